@@ -16,13 +16,13 @@ import cbor2
 
 from jacaros.artifacts.mapping.file import load_mapping
 from jacaros.asl.diagnostics import render_all
-from jacaros.cli.given_parameters import read_parameters
+from jacaros.cli.ros_arguments import read_parameters
 from jacaros.errors import JacarosError
 from jacaros.inspector.recorder import Recorder
 from jacaros.inspector.recording import Recording
 from jacaros.inspector.replay import replay_html
 from jacaros.mas.checking import check_files
-from jacaros.mas.programs import load_deployment
+from jacaros.mas.loading import load_deployment
 from jacaros.ros.backends.rosbridge_link import Link
 from jacaros.ros.backends.rosbridge_messages import Translator
 from jacaros.ros.parameter_store import checked_value

@@ -31,8 +31,8 @@ if TYPE_CHECKING:
     from jacaros.extension.views import PlanView as Plan
     from jacaros.mas.deployment import ProjectError
     from jacaros.mas.embedding.errors import AgentEnded, GoalFailed, RunEnded, UnknownAgent
-    from jacaros.mas.embedding.main import run
     from jacaros.mas.embedding.mas import Mas
+    from jacaros.mas.embedding.run import run
     from jacaros.mas.options import RunOptions
 
 __version__ = VERSION
@@ -90,7 +90,7 @@ _MODULES = {
     "ReceivedMessage",
     "jacaros.mas.deployment": "ProjectError",
     "jacaros.mas.embedding.errors": "AgentEnded GoalFailed RunEnded UnknownAgent",
-    "jacaros.mas.embedding.main": "run",
+    "jacaros.mas.embedding.run": "run",
     "jacaros.mas.embedding.mas": "Mas",
     "jacaros.mas.options": "RunOptions",
 }

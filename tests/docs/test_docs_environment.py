@@ -8,12 +8,9 @@ from pages import ROOT, blocks
 from jacaros.artifacts.tools import Barrier, Clock, Latch
 from jacaros.body.actions import keys
 from jacaros.env import Artifact, describe
-from jacaros.env.default.blackboard import Blackboard
-from jacaros.env.default.console import Console
-from jacaros.env.default.manrepo import ManualRepository
-from jacaros.env.default.system import SystemArtifact
-from jacaros.env.default.workspace import WorkspaceArtifact
 from jacaros.env.operation import OPERATION
+from jacaros.env.standard_artifacts import Blackboard, Console, ManualRepository, SystemArtifact
+from jacaros.env.workspace_artifact import WorkspaceArtifact
 from jacaros.mas.python_objects import actions
 from jacaros.project_modules import ProjectModules
 

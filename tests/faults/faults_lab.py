@@ -13,9 +13,9 @@ from pathlib import Path
 from typing import Any
 
 from jacaros.clock import Clock, Timer, VirtualClock, run
+from jacaros.mas.loading import load_deployment
 from jacaros.mas.mappings import with_mappings
 from jacaros.mas.options import RunOptions
-from jacaros.mas.programs import load_deployment
 from jacaros.mas.ros_graph import RosGraph
 from jacaros.mas.system import System
 from jacaros.ros.backend import Backend

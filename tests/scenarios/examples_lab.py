@@ -11,8 +11,8 @@ from types import ModuleType
 
 from jacaros.mas.deployment import Deployment
 from jacaros.mas.launch import launch
+from jacaros.mas.loading import load_deployment
 from jacaros.mas.options import RunOptions
-from jacaros.mas.programs import load_deployment
 from jacaros.mas.system import System
 from jacaros.sim import Event, GroundTruth, Sample
 from jacaros.testing import RunResult, run_project

@@ -21,8 +21,7 @@ from jacaros.artifacts.thesis.map import ArtSlamData
 from jacaros.artifacts.thesis.tutorial import ArtTutorial
 from jacaros.artifacts.tools import Barrier, Clock, Latch
 from jacaros.env import Artifact, InvalidArtifact, UnknownArtifactType
-from jacaros.env.default.blackboard import Blackboard
-from jacaros.env.default.console import Console
+from jacaros.env.standard_artifacts import Blackboard, Console
 from jacaros.project_modules import ModuleUnreadable, NotImported, ProjectModules
 
 BUILT_IN: Mapping[str, type[Artifact]] = MappingProxyType(

@@ -14,9 +14,8 @@ except ModuleNotFoundError as missing:
         name="py_trees",
     ) from missing
 
-from jacaros.behaviour_trees.act import Act, Failure
+from jacaros.behaviour_trees.act import Act, Failure, FromBlackboard, ToBlackboard
 from jacaros.behaviour_trees.artifact_behaviour import ArtifactBehaviour
-from jacaros.behaviour_trees.keys import FromBlackboard, ToBlackboard
 from jacaros.behaviour_trees.properties import (
     HasProperty,
     PropertiesToBlackboard,

@@ -1,11 +1,10 @@
-"""``Act``: an operation of an artifact as a behaviour."""
+"""``Act``: an operation of an artifact as a behaviour, with arguments from the blackboard and results that go there."""
 
 from dataclasses import dataclass
 
 from py_trees.common import Status
 
 from jacaros.behaviour_trees.artifact_behaviour import ArtifactBehaviour
-from jacaros.behaviour_trees.keys import FromBlackboard, ToBlackboard
 from jacaros.env.errors import OperationFailed
 from jacaros.env.ids import ArtifactId
 from jacaros.env.operation import OperationOutcome
@@ -147,3 +146,31 @@ def _written(operation: str, arguments: tuple[object, ...]) -> str:
     from_tree = FromBlackboard, ToBlackboard
     shown = [str(each) if isinstance(each, from_tree) else text(each, True) for each in arguments]
     return f"{operation}({', '.join(shown)})" if shown else operation
+
+
+@dataclass(frozen=True, slots=True)
+class FromBlackboard:
+    """An argument that is read from the blackboard whenever the operation begins.
+
+    Attributes:
+        key: of the blackboard, such as ``goal``, or an attribute of what is there, such as ``goal.x``.
+    """
+
+    key: str
+
+    def __str__(self) -> str:
+        return self.key
+
+
+@dataclass(frozen=True, slots=True)
+class ToBlackboard:
+    """An output parameter: its value goes to the blackboard when the operation has succeeded.
+
+    Attributes:
+        key: of the blackboard.
+    """
+
+    key: str
+
+    def __str__(self) -> str:
+        return f"-> {self.key}"

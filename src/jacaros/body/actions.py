@@ -2,7 +2,7 @@
 
 In CArtAgO these are operations of the artifacts ``workspace``, ``body_bob`` and ``session_bob``; the actions, arguments
 and reasons of failure are the same here.  What else can be done with workspaces is up to the artifact ``workspace``
-(`jacaros.env.default.workspace`).
+(`jacaros.env.workspace_artifact`).
 """
 
 from collections.abc import Callable, Mapping
@@ -13,14 +13,12 @@ from types import MappingProxyType
 from typing import Final
 
 from jacaros.bdi.state.act import Completion
-from jacaros.body.call import Call, name_of
+from jacaros.body.call import Call, name_of, unreachable
 from jacaros.body.completion import failed, of_operation, refused, succeeded
 from jacaros.body.filtering import Filter, filter_of
 from jacaros.body.focus import FocusedArtifacts
-from jacaros.body.selection import Selection
-from jacaros.body.undelivered import unreachable
+from jacaros.body.selection import Selection, Whereabouts, not_joined
 from jacaros.body.values import References, to_value
-from jacaros.body.whereabouts import Whereabouts, not_joined
 from jacaros.env.errors import OperationFailed, UnknownArtifact
 from jacaros.env.ids import ArtifactId, resolve_path
 from jacaros.env.operation import OperationOutcome

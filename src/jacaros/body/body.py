@@ -7,14 +7,12 @@ from typing import Protocol
 from jacaros.bdi.state.act import Act, Completion, Percept
 from jacaros.body.actions import ACTIONS, Action, Situation, keys
 from jacaros.body.call import Call, Direction, read
-from jacaros.body.completion import SUCCEEDED, of_operation, refused, succeeded
-from jacaros.body.deadline import Deadline
+from jacaros.body.completion import SUCCEEDED, Deadline, of_operation, refused, succeeded
 from jacaros.body.focus import FocusedArtifacts
 from jacaros.body.percepts import ADD, REMOVE, PerceptWriter
 from jacaros.body.personal import AgentBodyArtifact, AgentSessionArtifact
-from jacaros.body.selection import Selection
+from jacaros.body.selection import Selection, Whereabouts
 from jacaros.body.values import Outputs, References, atom_of, to_value
-from jacaros.body.whereabouts import Whereabouts
 from jacaros.env.artifact import Artifact
 from jacaros.env.errors import OperationFailed
 from jacaros.env.ids import ArtifactId

@@ -1,16 +1,18 @@
-"""An external action as the body reads it: what to do, with what, and where."""
+"""An external action as the body reads it: what to do, with what, and where.
+
+Actions that reach no artifact fail as CArtAgO's bridge to Jason tells of them (`Undelivered`).
+"""
 
 from dataclasses import dataclass
 
 from jacaros.bdi.state.act import Act
-from jacaros.body.undelivered import unknown_annotation, unreachable
 from jacaros.body.values import symbol_name, unquoted
 from jacaros.env.errors import OperationFailed, spelling_hint
 from jacaros.env.ids import ArtifactId
 from jacaros.env.ports import Workspace
-from jacaros.env.values import Structure
+from jacaros.env.values import Atom, Structure
 from jacaros.terms.text import text
-from jacaros.terms.values import Functor, Reference, String, Term, Var, bare, deref
+from jacaros.terms.values import Annotated, Functor, Reference, String, Term, Var, atom, bare, deref, functor
 
 _BY_ARTIFACT = {"artifact_id": "artifact", "aid": "artifact", "artifact_name": "artifact", "art": "artifact"}
 _BY_WORKSPACE = {"wid": "workspace", "wsp": "workspace"}
@@ -157,3 +159,54 @@ def _not_a(what: str, term: Term, where: str) -> OperationFailed:
     return OperationFailed(
         f"{where} wants a{what} or its name, not {text(term)}", Structure("wrong_op_arguments", (where,))
     )
+
+
+_ENV_FAILURE = functor("env_failure", 1)
+_ACTION_FAILED = functor("action_failed", 2)
+_OP = functor("op", 2)
+_GENERIC_ERROR, _UNKNOWN_ANNOTATION = atom("generic_error"), atom("unknown_annotation")
+
+
+class Undelivered(OperationFailed):
+    """An action that reached no artifact.
+
+    Attributes:
+        term: what ``env_failure_reason`` holds.
+        reason: what ``env_failure_detail`` holds.
+    """
+
+    def __init__(self, message: str, term: Term, reason: Structure | Atom | None) -> None:
+        super().__init__(message, reason)
+        self.term = term
+
+
+def nobody_offers(act: Act, message: str) -> Undelivered:
+    """No artifact that could be meant has the operation."""
+    symbol = act.functor
+    name = unquoted(symbol.name)
+    namespace = atom(symbol.namespace or "default")
+    words = " ".join(("(", name, *map(_words, act.arguments), ")"))
+    reason = Structure("unknown_operation", (f"{name}/{symbol.arity}",))
+    return Undelivered(message, _action_failed(symbol, (_OP, namespace, String(words))), reason)
+
+
+def _words(term: Term) -> str:
+    term = deref(term)
+    return str(term) if term.__class__ is String else text(term)
+
+
+def unreachable(act: Act, failure: OperationFailed) -> Undelivered:
+    """An annotation directs the action to where the agent cannot act."""
+    return Undelivered(failure.message, _action_failed(act.functor, _GENERIC_ERROR), failure.reason)
+
+
+def unknown_annotation(act: Act, annotation: Term, message: str) -> Undelivered:
+    """An annotation says nothing to the environment."""
+    symbol = act.functor
+    action = Annotated((symbol, *act.arguments) if act.arguments else symbol, act.annotations)
+    reason = Structure("unknown_annotation", (text(annotation),))
+    return Undelivered(message, (_ACTION_FAILED, action, _UNKNOWN_ANNOTATION), reason)
+
+
+def _action_failed(symbol: Functor, why: Term) -> Term:
+    return (_ENV_FAILURE, (_ACTION_FAILED, atom(symbol.name), why))

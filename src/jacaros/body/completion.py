@@ -1,12 +1,17 @@
-"""How actions end, as the mind is told."""
+"""How actions end, as the mind is told.
 
-from collections.abc import Iterable
+That may be by the time that the agent gives an action of its body: ``focusWhenAvailable(door)[timeout(500)]``.
+"""
+
+from collections.abc import Callable, Iterable
 
 from jacaros.bdi.state.act import Completion
-from jacaros.body.undelivered import Undelivered
+from jacaros.body.call import Call, Undelivered
 from jacaros.body.values import Outputs, References, to_term
+from jacaros.clock import Clock
 from jacaros.env.errors import OperationFailed
 from jacaros.env.operation import OperationOutcome
+from jacaros.env.ports import UnderWay
 from jacaros.env.values import Atom, Structure
 from jacaros.terms.values import String, Term, functor
 
@@ -56,3 +61,56 @@ def _values(outputs: Outputs, references: References) -> Iterable[tuple[Term, Te
     for variable, out in outputs:
         if out.is_set and out.value is not None:
             yield variable, to_term(out.value, references)
+
+
+Finish = Callable[[Completion], None]
+
+
+class Deadline:
+    """Gives an action up when its time is over.
+
+    Args:
+        call: the action, with its time.
+        clock: of the run.
+        finish: told how it ended.
+        references: for the reason of the failure.
+    """
+
+    def __init__(self, call: Call, clock: Clock, finish: Finish, references: References) -> None:
+        self._call, self._finish, self._references = call, finish, references
+        self._under_way: UnderWay | None = None
+        self._timer = clock.call_later(call.direction.timeout or 0.0, self._late)
+
+    def ended(self, completion: Completion) -> None:
+        """Be told that the action has ended in time."""
+        self._timer.cancel()
+        self._finish(completion)
+
+    def watch(self, under_way: UnderWay | None) -> UnderWay:
+        """Know what is to be given up; what this gives takes its place."""
+        self._under_way = under_way
+        return self
+
+    def _late(self) -> None:
+        if self._under_way is not None:
+            self._under_way.cancel()
+        milliseconds = round((self._call.direction.timeout or 0.0) * 1000, 3)
+        message = f"{self._call.key} did not end within {milliseconds:g} ms"
+        reason = Structure("operation_timeout", (self._call.key, milliseconds))
+        self._finish(failed(message, reason, self._references))
+
+    def cancel(self) -> None:
+        """Give the action up; its end is not told."""
+        self._timer.cancel()
+        if self._under_way is not None:
+            self._under_way.cancel()
+
+    def pause(self) -> None:
+        """Let the action rest, if it can; its time goes on."""
+        if self._under_way is not None:
+            self._under_way.pause()
+
+    def resume(self) -> None:
+        """Let it go on."""
+        if self._under_way is not None:
+            self._under_way.resume()

@@ -7,7 +7,7 @@ looks them up.  What the agent itself does with them its `AgentBody` does.
 from typing import NoReturn
 
 from jacaros.body.focus import FocusedArtifacts
-from jacaros.body.whereabouts import Whereabouts
+from jacaros.body.selection import Whereabouts
 from jacaros.env.artifact import Artifact, Out, internal_operation, operation
 from jacaros.env.ids import ArtifactId
 from jacaros.env.ports import Workspace

@@ -13,7 +13,7 @@ from jacaros.env.errors import UnknownArtifactType
 from jacaros.env.manual import Manual, describe
 from jacaros.errors import UsageError
 from jacaros.mas.deployment import Deployment
-from jacaros.mas.programs import load_deployment
+from jacaros.mas.loading import load_deployment
 from jacaros.module_outlines import UNSEEN
 from jacaros.project_modules import NotImported, ProjectModules
 from jacaros.text_files import is_file

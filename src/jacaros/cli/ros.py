@@ -149,7 +149,7 @@ def map_command(
     from jacaros.cli.graph import first_mapping, listening
     from jacaros.cli.graph.joining import Joined, NothingThere
     from jacaros.cli.graph.kinds import find_mappable
-    from jacaros.cli.graph.usual import left_out, usual_things
+    from jacaros.cli.graph.standard_topics import left_out, usual_things
 
     if output is not None and output.exists() and not force:
         raise UsageError(f"there is a file {output} already; --force writes over it")

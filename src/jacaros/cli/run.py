@@ -24,8 +24,8 @@ from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.console import StandardConsole
 from jacaros.mas.deployment import Deployment
 from jacaros.mas.launch import launch
+from jacaros.mas.loading import load_deployment
 from jacaros.mas.options import RunOptions
-from jacaros.mas.programs import load_deployment
 from jacaros.mas.system import System
 from jacaros.output import CLOSING, PATIENCE
 from jacaros.ros.address import ROS_KINDS
@@ -189,7 +189,7 @@ def command(
 def _parameters(
     project: Deployment, written: Sequence[str], files: Sequence[Path], options: RunOptions
 ) -> dict[str, Any]:
-    from jacaros.cli.given_parameters import read_parameters  # here: few runs are given any
+    from jacaros.cli.ros_arguments import read_parameters  # here: few runs are given any
     from jacaros.mas.ros_graph import node_name
 
     name = f"{options.namespace}/{options.node_name or node_name(project.name)}"
@@ -236,7 +236,7 @@ def report_idleness(mas: System) -> None:
 def _can_be_woken(mas: System) -> bool:
     """Whether something else than the agents may give them something to do: the ROS graph, artifacts, the project's Python
     code."""
-    from jacaros.env.default.furnishing import DEFAULT_TYPES  # here: only for runs that get idle
+    from jacaros.env.standard_artifacts import DEFAULT_TYPES  # here: only for runs that get idle
 
     if mas.ros.joined is not None or any(type(host) is not AgentHost for host in mas.directory):
         return True

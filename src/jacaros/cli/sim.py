@@ -1,5 +1,7 @@
 """``jacaros sim WORLD``."""
 
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +12,7 @@ from jacaros.cli.outputs import check_output
 from jacaros.clock import Clock, VirtualClock, WallClock, run
 from jacaros.errors import UsageError
 from jacaros.ros.address import ROS_KINDS, GraphAddress
+from jacaros.sim.description import BatterySettings, WorldDescription
 from jacaros.text_files import is_file
 
 
@@ -65,7 +68,6 @@ def command(
     **graph: Any,
 ) -> None:
     """Run WORLD (a world file, or the name of a world that comes with jacaros) until Ctrl-C."""  # fmt: skip
-    from jacaros.cli.batteries import told, with_full_batteries
     from jacaros.ros.node import to_stderr
     from jacaros.sim import World, serve
     from jacaros.sim.scaled_clock import ScaledClock
@@ -97,3 +99,34 @@ def command(
         await serve(loaded, backend, time, seconds, ground_truth, clock_too, tell)
 
     run(main, time)
+
+
+LOW = 20
+"""Percent at which it is told, each time that a battery gets so low."""
+
+
+def with_full_batteries(world: WorldDescription) -> WorldDescription:
+    """Give the same world with batteries that stay full."""
+    full = BatterySettings(level=100.0, drain_per_second=0.0, drain_per_metre=0.0, drain_per_radian=0.0)
+    return replace(world, robots=tuple(replace(robot, battery=full) for robot in world.robots))
+
+
+def told(tell: Callable[[str], None]) -> Callable[[dict[str, Any]], None]:
+    """Give a listener of `GroundTruth.listen` that tells *tell* of batteries that have become low, or are empty."""
+    low: set[str] = set()
+
+    def listen(record: dict[str, Any]) -> None:
+        if record.get("event") == "battery_empty":
+            tell(
+                f"the battery of {record['robot']} is empty: it does not drive any more. Start the world again; with "
+                "--full-battery it stays full"
+            )
+        elif record.get("event") == "battery":
+            robot, level = record["robot"], record["data"]["level"]
+            if level > LOW:
+                low.discard(robot)
+            elif robot not in low:
+                low.add(robot)
+                tell(f"the battery of {robot} is at {level} %")
+
+    return listen

@@ -6,13 +6,13 @@ from jacaros.clock import Clock
 from jacaros.env import ports
 from jacaros.env.artifact import Artifact
 from jacaros.env.creation import FindType
-from jacaros.env.default.furnishing import furnish
 from jacaros.env.errors import OperationFailed, UnknownArtifactType
 from jacaros.env.ids import ArtifactId
 from jacaros.env.kernel.registry import Registry
 from jacaros.env.kernel.setting import Setting, log_to_stderr
 from jacaros.env.operation import OPERATION, OperationRequest
 from jacaros.env.ports import UnderWay
+from jacaros.env.standard_artifacts import furnish
 from jacaros.env.tree import WorkspaceTree
 from jacaros.env.values import Structure
 from jacaros.env.workspace import Workspace

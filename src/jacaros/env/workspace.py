@@ -10,14 +10,14 @@ from jacaros.env.creation import FindType, artifact_type_of, attach, init_failed
 from jacaros.env.errors import OperationFailed, UnknownArtifact, spelling_hint
 from jacaros.env.execution import OperationExecution
 from jacaros.env.ids import ArtifactId
-from jacaros.env.kernel import outcomes
+from jacaros.env.kernel import faults
 from jacaros.env.kernel.interface import Interface
 from jacaros.env.kernel.registry import Registry
 from jacaros.env.kernel.setting import Setting
 from jacaros.env.kernel.steps import Steps
+from jacaros.env.lookup import Offering
 from jacaros.env.manual import Manual, describe
 from jacaros.env.observation import Observer
-from jacaros.env.offering import Offering
 from jacaros.env.operation import (
     LINK,
     OPERATION,
@@ -358,7 +358,7 @@ class Workspace(ports.Workspace):
 
     def _gone(self, request: OperationRequest) -> OperationExecution:
         refused_execution = OperationExecution(None, request)
-        request.on_done(outcomes.not_available(request.artifact))
+        request.on_done(faults.not_available(request.artifact))
         return refused_execution
 
     def focus(self, artifact_id: ArtifactId, observer: Observer, on_done: Told = ignore_outcome) -> None:
@@ -409,7 +409,7 @@ class Workspace(ports.Workspace):
     def _steps_of(self, artifact_id: ArtifactId) -> Steps:
         steps = self._registry.find(artifact_id)
         if steps is None:
-            gone = outcomes.not_available(artifact_id)
+            gone = faults.not_available(artifact_id)
             raise UnknownArtifact(gone.message or "", gone.reason)
         return steps
 

@@ -5,7 +5,7 @@ from jacaros.inspector.record import record
 from jacaros.inspector.recorder import Recorder
 from jacaros.inspector.recording import Frame, Recording
 from jacaros.inspector.replay import write_replay
-from jacaros.inspector.robot_view import RobotView, views_of
+from jacaros.inspector.scene import RobotView, views_of
 from jacaros.inspector.terminal_view import TerminalView
 from jacaros.inspector.watch import Watch, Watcher
 

@@ -10,7 +10,7 @@ from typing import Any
 from jacaros.artifacts.robots.odometry import not_finite
 from jacaros.clock import Clock
 from jacaros.inspector.map_drawing import can_be_drawn, map_drawing
-from jacaros.inspector.robot_view import UNKNOWN, RobotView
+from jacaros.inspector.scene import UNKNOWN, RobotView
 from jacaros.ros.backend import TRANSFORMS, Backend, Sample, Subscription
 from jacaros.ros.errors import RosError, TransformUnavailable
 from jacaros.ros.graph import GraphContents

@@ -9,7 +9,6 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from jacaros.inspector.colour_ramp import colour_at
 from jacaros.inspector.recording import Recording
 
 _STYLE = """
@@ -205,3 +204,17 @@ def _robots(sheet: _Sheet, recording: Recording) -> Iterator[str]:
         if len(described) > 1:
             name = html.escape(str(robot["name"]))
             yield f'<text class="name" text-anchor="middle" x="{x}" y="{y - size - 8:.1f}">{name}</text>'
+
+
+STOPS = ((74, 98, 190), (38, 146, 158), (120, 172, 84), (226, 160, 48), (205, 84, 60))
+
+
+def colour_at(part: float) -> tuple[int, int, int]:
+    """Red, green and blue (0 to 255) at *part* (0 to 1) of the way."""
+    place = min(0.9999, max(0.0, part)) * (len(STOPS) - 1)
+    index = int(place)
+    rest = place - index
+    red, green, blue = (
+        round(a + (b - a) * rest) for a, b in zip(STOPS[index], STOPS[index + 1], strict=True)
+    )
+    return red, green, blue

@@ -30,7 +30,7 @@ from pathlib import Path
 from typing import Any, TextIO
 
 from jacaros.inspector.recording import Frame, Recording, older_part
-from jacaros.inspector.robot_view import RobotView
+from jacaros.inspector.scene import RobotView
 from jacaros.output import CLOSING, PATIENCE, Output
 
 VERSION = 1

@@ -1,10 +1,43 @@
-"""What there is to see of a run: the embedded world, or whatever a real graph tells."""
+"""What there is to see of a run, and of its robots: the embedded world, or whatever a real graph tells."""
 
 from collections.abc import Mapping
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
-from jacaros.inspector.robot_view import RobotView, views_of
 from jacaros.sim import World
+
+UNKNOWN = -1.0
+"""The level of a battery that nobody tells of."""
+
+
+class RobotView(NamedTuple):
+    """A robot at one moment: pose (metres, radians), battery (percent, or `UNKNOWN`) and what happens to it.
+
+    Of the embedded world the true pose, of a robot on a real graph the one that it believes in.
+    """
+
+    name: str
+    x: float
+    y: float
+    yaw: float
+    battery: float
+    charging: bool = False
+    touching: bool = False
+
+
+def views_of(world: World) -> list[RobotView]:
+    """All robots of *world* as they are now."""
+    return [
+        RobotView(
+            robot.name,
+            robot.x,
+            robot.y,
+            robot.yaw,
+            robot.battery.level,
+            robot.battery.charging,
+            bool(robot.touching),
+        )
+        for robot in world.robots.values()
+    ]
 
 
 class Scene(Protocol):

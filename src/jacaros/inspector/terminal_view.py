@@ -19,7 +19,7 @@ from rich.live import Live
 from rich.text import Text
 
 from jacaros.inspector.braille import BrailleMap, character, draw_world
-from jacaros.inspector.robot_view import UNKNOWN, RobotView
+from jacaros.inspector.scene import UNKNOWN, RobotView
 from jacaros.output import Output
 
 FRAME_PERIOD = 0.1

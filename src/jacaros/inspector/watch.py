@@ -4,8 +4,7 @@ from collections.abc import Mapping
 from typing import Any, Protocol
 
 from jacaros.clock import Clock, Timer
-from jacaros.inspector.robot_view import RobotView
-from jacaros.inspector.scene import Scene
+from jacaros.inspector.scene import RobotView, Scene
 from jacaros.sim import GroundTruth
 from jacaros.sim.ground_truth import Record
 

@@ -15,7 +15,8 @@ from jacaros.asl.source import SourceFile
 from jacaros.asl.suppression import Suppressions, wanted
 from jacaros.mas.agent_classes import AgentClasses
 from jacaros.mas.deployment import AgentSpec, Deployment, ProjectError
-from jacaros.mas.programs import NEVER_SELECTED, Programs, load_deployment, text_of
+from jacaros.mas.loading import load_deployment
+from jacaros.mas.programs import NEVER_SELECTED, Programs, text_of
 from jacaros.mas.project.reading import read_project
 from jacaros.mas.python_code import PythonCode
 from jacaros.project_modules import ModuleUnreadable, ProjectModules

@@ -11,8 +11,8 @@ from contextlib import suppress
 from jacaros.clock import Clock
 from jacaros.ros.backend import Backend, Subscription
 from jacaros.ros.errors import RosError
-from jacaros.ros.given_parameters import GivenParameters
 from jacaros.ros.graph import GraphContents
+from jacaros.ros.parameter import GivenParameters
 from jacaros.ros.waiting import MISSING_AFTER
 
 SIM_TIME = "use_sim_time"

@@ -20,8 +20,8 @@ from typing import Any, NoReturn
 from jacaros.clock import Clock, VirtualClock, WallClock, new_event_loop
 from jacaros.mas.console import Console
 from jacaros.mas.deployment import Deployment
+from jacaros.mas.loading import load_deployment, mapped
 from jacaros.mas.options import RunOptions
-from jacaros.mas.programs import load_deployment, mapped
 from jacaros.mas.system import System
 from jacaros.mas.watchdog import Watchdog
 from jacaros.ros import lifetime

@@ -1,11 +1,10 @@
-"""From files to what is to be run: agent programs, read once and shared by all agents that run them."""
+"""The agent programs of a run: found, read once and shared by all agents that run them."""
 
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from errno import ENOTDIR
 from pathlib import Path
-from typing import Final
 
 from jacaros import asl
 from jacaros.asl import nodes
@@ -14,7 +13,7 @@ from jacaros.asl.checks.actions import KnownActions
 from jacaros.asl.diagnostics import AslError, Diagnostic
 from jacaros.asl.loader import load_program, parse_literals
 from jacaros.asl.suppression import wanted
-from jacaros.mas.deployment import AgentSpec, Deployment, ProjectError
+from jacaros.mas.deployment import AgentSpec
 from jacaros.mas.python_code import PythonCode
 from jacaros.text_files import file_text, is_file
 
@@ -228,46 +227,3 @@ def text_of(path: Path) -> str:
 
 def _unreadable(message: str) -> Diagnostic:
     return Diagnostic("error", message, code="unreadable-file")
-
-
-_PROJECTS: Final = (".mas2j", ".jcm")
-
-
-def load_deployment(path: str | Path) -> Deployment:
-    """What the project file *path* declares; a lone `.asl` or `.py` file is a system of one agent of its name.
-
-    Raises:
-        ProjectError: with all errors of the file, also when a program of an agent is not found.
-    """
-    path = Path(path)
-    if path.suffix in (".asl", ".py"):
-        return _lone_agent(path)
-    if path.suffix not in _PROJECTS:
-        raise ProjectError([Diagnostic("error", f"{path} is no .mas2j, .jcm, .asl or .py file")])
-    from jacaros.mas.project.reading import read_project  # here: a lone program starts sooner without it
-
-    deployment = read_project(path).deployment
-    if any(diagnostic.severity == "error" for diagnostic in deployment.ignored):
-        raise ProjectError(deployment.ignored)
-    return deployment
-
-
-def mapped(deployment: Deployment, names: Sequence[str | Path]) -> Deployment:
-    """The same with the artifacts of mapping files; a lone program focuses all of them.
-
-    Raises:
-        ProjectError: with all that is wrong in the files.
-    """
-    if not names:
-        return deployment
-    from jacaros.mas.mappings import with_mappings  # here: most runs have none
-
-    return with_mappings(deployment, tuple(map(str, names)))
-
-
-def _lone_agent(path: Path) -> Deployment:
-    if not is_file(path):
-        raise ProjectError([Diagnostic("error", f"{path} is not found")])
-    agent = AgentSpec(path.stem, path, path.stem)
-    base = path.parent
-    return Deployment(path.stem, base, (agent,), artifact_environment=True, source_paths=(base,))

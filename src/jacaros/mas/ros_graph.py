@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from jacaros.mas.graph_warnings import EmptyGraph, GraphTime, UndeclaredParameters
     from jacaros.mas.guarding import RunGuard
     from jacaros.ros.backend import Backend
-    from jacaros.ros.given_parameters import GivenParameters
+    from jacaros.ros.parameter import GivenParameters
     from jacaros.ros.ros_clock import RosClock
     from jacaros.sim.node import SimNode
     from jacaros.sim.world import World

@@ -12,9 +12,8 @@ from typing import Any, Protocol
 from jacaros.clock import Clock
 from jacaros.ros.action import ActionClient, ActionPolicy, ActionServer, Execute
 from jacaros.ros.fields import FieldType
-from jacaros.ros.given_parameters import GivenParameters
 from jacaros.ros.graph import GraphContents
-from jacaros.ros.parameter import Parameters
+from jacaros.ros.parameter import GivenParameters, Parameters
 from jacaros.ros.qos import DEFAULT_QOS, QoS
 from jacaros.ros.transform import Transform
 from jacaros.trace import Cause

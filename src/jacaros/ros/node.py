@@ -12,13 +12,12 @@ from jacaros.ros.action import ActionClient, ActionPolicy, ActionServer, Execute
 from jacaros.ros.backend import DEFAULT_POLICY, Publisher, Sample, Subscription, TopicEvent
 from jacaros.ros.errors import CapabilityMissing, RosError
 from jacaros.ros.fields import FieldType
-from jacaros.ros.given_parameters import GivenParameters
 from jacaros.ros.graph import GraphContents
 from jacaros.ros.lifetime import Lifetime
 from jacaros.ros.message import MessageFactory, Schema
 from jacaros.ros.names import NodeNames, message_type
 from jacaros.ros.orphans import OrphanPolicy, Orphans
-from jacaros.ros.parameter import Parameters, ParameterValue
+from jacaros.ros.parameter import GivenParameters, Parameters, ParameterValue
 from jacaros.ros.pending_goal import LeavingGoals
 from jacaros.ros.qos import DEFAULT_QOS, QoS
 from jacaros.ros.rosout import RosoutWriter

@@ -5,8 +5,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from jacaros.ros.errors import ParameterRefused, ParameterUnknown
-from jacaros.ros.given_parameters import GivenParameters
-from jacaros.ros.parameter import Declaration, ParameterValue
+from jacaros.ros.parameter import Declaration, GivenParameters, ParameterValue
 
 _NAMES: dict[type, str] = {bool: "bool", int: "int", float: "float", str: "text", bytes: "bytes"}
 _WIDEST = 2**63

@@ -1,7 +1,6 @@
 """The embedded robot world: TurtleBot-like robots on a plane, reached over ROS topics only."""
 
-from jacaros.sim.description import WorldDescription
-from jacaros.sim.errors import WorldError
+from jacaros.sim.description import WorldDescription, WorldError
 from jacaros.sim.ground_truth import Event, GroundTruth, Sample
 from jacaros.sim.node import SimNode
 from jacaros.sim.process import serve

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 from jacaros.sim.trigonometry import PI
+from jacaros.yaml_nodes import Problem, YamlFileError
 
 
 class Segment(NamedTuple):
@@ -203,3 +204,10 @@ class WorldDescription:
                 for robot in self.robots
             ],
         }
+
+
+__all__ = ["Problem", "WorldError"]
+
+
+class WorldError(YamlFileError):
+    """A wrong world file."""

@@ -1,6 +1,12 @@
-"""Differential drive: how a base with limits moves through one step of time.  Pure functions on numbers."""
+"""Differential drive: how a base with limits moves through one step of time.  Pure functions on numbers.
 
-from jacaros.sim.description import RobotLimits
+Odometry is a second pose, integrated from what the wheels did, with seeded errors when they are wanted.
+"""
+
+import math
+import random
+
+from jacaros.sim.description import OdometrySettings, Pose, RobotLimits
 from jacaros.sim.trigonometry import sine_cosine, wrap
 
 
@@ -44,3 +50,41 @@ def advance(x: float, y: float, yaw: float, distance: float, turn: float) -> tup
         x += distance * cosine
         y += distance * sine
     return x, y, (wrap(yaw + turn) if turn != 0.0 else yaw)
+
+
+# A uniform number of width sqrt(12) has the variance 1.  No Gaussian: its logarithm comes from the C library.
+_WIDTH = math.sqrt(12.0)
+
+
+class Odometry:
+    """Where the robot believes to be.
+
+    Errors are drawn with a standard deviation that grows with the square root of the way made in the step,
+    hence of its duration: what adds up over a metre does not depend on the length of the steps.
+
+    Attributes:
+        x, y, yaw: the estimated pose (metres, radians).
+        rolled, turned: metres and radians that the wheels have made in all, with their signs.
+    """
+
+    __slots__ = ("_draw", "rolled", "settings", "turned", "x", "y", "yaw")
+
+    def __init__(self, settings: OdometrySettings, start: Pose, seed: str) -> None:
+        self.settings = settings
+        self.x, self.y, self.yaw = (0.0, 0.0, 0.0) if settings.from_start else start
+        self.rolled = self.turned = 0.0
+        self._draw = random.Random(seed).random
+
+    def step(self, distance: float, turn: float) -> None:
+        """Take note of *distance* metres and *turn* radians that the wheels made in one step."""
+        settings = self.settings
+        self.rolled += distance
+        self.turned += turn
+        if settings.noisy:
+            way, angle = abs(distance), abs(turn)
+            distance += self._error(settings.per_metre, way)
+            turn += self._error(settings.per_radian, angle) + self._error(settings.turn_per_metre, way)
+        self.x, self.y, self.yaw = advance(self.x, self.y, self.yaw, distance, turn)
+
+    def _error(self, deviation: float, way: float) -> float:
+        return (self._draw() - 0.5) * _WIDTH * deviation * math.sqrt(way) if deviation and way else 0.0

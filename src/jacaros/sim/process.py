@@ -1,4 +1,7 @@
-"""The world as a process of its own on a ROS graph, with a file of what truly happens in it."""
+"""The world as a process of its own on a ROS graph, with a file of what truly happens in it.
+
+Its time goes out on ``/clock``, for nodes that live in simulated time (ROS's ``use_sim_time``).
+"""
 
 import asyncio
 import json
@@ -8,10 +11,10 @@ from collections.abc import Callable
 from pathlib import Path
 from types import TracebackType
 
-from jacaros.clock import Clock
+from jacaros.clock import Clock, Timer
 from jacaros.output import Output
 from jacaros.ros.backend import Backend
-from jacaros.sim.clock_publisher import ClockPublisher
+from jacaros.ros.message import stamp
 from jacaros.sim.ground_truth import Record, header
 from jacaros.sim.node import SimNode
 from jacaros.sim.world import World
@@ -123,3 +126,37 @@ async def serve(
         await backend.close()
         for number in _SIGNALS:
             loop.remove_signal_handler(number)
+
+
+PERIOD = 0.01
+"""Seconds of the world between two messages."""
+
+
+class ClockPublisher:
+    """Publishes ``rosgraph_msgs/msg/Clock`` on ``/clock``, a hundred times a second.
+
+    Args:
+        clock: the clock that the world follows.
+        backend: the graph; it is started already.
+    """
+
+    def __init__(self, clock: Clock, backend: Backend) -> None:
+        self._clock = clock
+        self._publisher = backend.publisher("/clock", "rosgraph_msgs/msg/Clock")
+        self._timer: Timer | None = None
+        self._last = 0.0
+        self._tick()
+
+    def _tick(self) -> None:
+        self._timer = self._clock.call_later(PERIOD, self._tick)
+        # A clock must not run back, whatever the machine's does.
+        self._last = max(self._last, self._clock.now())
+        message = self._publisher.message()
+        stamp(message.clock, self._last)
+        self._publisher.publish(message)
+
+    def close(self) -> None:
+        """Leave the topic."""
+        if self._timer is not None:
+            self._timer.cancel()
+        self._publisher.close()

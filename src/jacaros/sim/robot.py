@@ -1,15 +1,13 @@
-"""One robot of a running world: its true state, and what a step of time does to it."""
+"""One robot of a running world: its true state, its battery, and what a step of time does to it."""
 
 import math
 from collections.abc import Callable
 from typing import Any
 
-from jacaros.sim.battery import Battery
 from jacaros.sim.contact import WallIndex, push_out
-from jacaros.sim.description import Dock, Pose, RobotDescription
+from jacaros.sim.description import BatterySettings, Dock, Pose, RobotDescription
 from jacaros.sim.ground_truth import Sample
-from jacaros.sim.motion import advance, ramp
-from jacaros.sim.odometry import Odometry
+from jacaros.sim.motion import Odometry, advance, ramp
 from jacaros.sim.trigonometry import sine_cosine
 
 STILL_SPEED = 0.02
@@ -188,3 +186,46 @@ class Robot:
     def _within(self, dock: Dock) -> bool:
         dx, dy = self.x - dock.pose.x, self.y - dock.pose.y
         return dx * dx + dy * dy <= dock.radius * dock.radius
+
+
+FULL_VOLTAGE = 16.4
+EMPTY_VOLTAGE = 12.8
+
+
+class Battery:
+    """A battery with a level in percent, 0 to 100.
+
+    Attributes:
+        level: percent left.
+        charging: True while a dock gives it current and it is not full.
+    """
+
+    __slots__ = ("charging", "level", "settings")
+
+    def __init__(self, settings: BatterySettings) -> None:
+        self.settings = settings
+        self.level = settings.level
+        self.charging = False
+
+    def step(self, dt: float, distance: float, turn: float, docked: bool) -> None:
+        """Let *dt* seconds pass in which the robot drove *distance* metres and turned *turn* radians."""
+        settings = self.settings
+        drain = settings.drain_per_second * dt
+        drain += settings.drain_per_metre * abs(distance) + settings.drain_per_radian * abs(turn)
+        if docked:
+            # The dock feeds the robot too, so a full battery stays full.
+            level = self.level + settings.charge_per_second * dt
+            self.level = 100.0 if level > 100.0 else level
+        else:
+            self.level = self.level - drain if self.level > drain else 0.0
+        self.charging = docked and self.level < 100.0
+
+    @property
+    def empty(self) -> bool:
+        """True when the motors get no current any more."""
+        return self.level <= 0.0
+
+    @property
+    def voltage(self) -> float:
+        """Volts, falling in a straight line from a full to an empty four-cell battery."""
+        return EMPTY_VOLTAGE + (FULL_VOLTAGE - EMPTY_VOLTAGE) * self.level / 100.0

@@ -9,7 +9,7 @@ topic (below the robot's namespace)         type                          direct
 ``/cmd_vel``, ``/cmd_vel_mux/input/navi``   ``geometry_msgs/msg/Twist``   in, the last message wins
 ``/cleaning/task``                          ``std_msgs/msg/String``       in, logged with the true pose
 ``/initialpose``                            ``geometry_msgs/msg/PoseWithCovarianceStamped`` in, for localisation
-``/amcl_pose``                              the same                      out, latched, see `jacaros.sim.amcl_pose`
+``/amcl_pose``                              the same                      out, latched, see `jacaros.sim.robot_transforms`
 =========================================== ============================= ==========================
 
 Bumpers and the dock are in `jacaros.sim.robot_contacts`, transforms in `jacaros.sim.robot_transforms`, and what the robot
@@ -21,12 +21,11 @@ from typing import Any
 
 from jacaros.ros.backend import Backend, Publisher, Sample, Subscription
 from jacaros.ros.message import constant, stamp
-from jacaros.sim.amcl_pose import AmclPose
 from jacaros.sim.navigation.frames import MAP, pose_fault, pose_of
 from jacaros.sim.navigation.localisation import Localisation
 from jacaros.sim.robot import Robot
 from jacaros.sim.robot_contacts import RobotContacts
-from jacaros.sim.robot_transforms import RobotTransforms
+from jacaros.sim.robot_transforms import AmclPose, RobotTransforms
 from jacaros.sim.trigonometry import sine_cosine
 from jacaros.sim.world_time import WorldTime
 

@@ -27,8 +27,16 @@ import itertools
 import re
 from pathlib import Path
 
-from jacaros.sim.description import Dock, Door, Rectangle, Room, Segment, WorldDescription
-from jacaros.sim.errors import Problem, WorldError
+from jacaros.sim.description import (
+    Dock,
+    Door,
+    Problem,
+    Rectangle,
+    Room,
+    Segment,
+    WorldDescription,
+    WorldError,
+)
 from jacaros.sim.robot_file import read_pose, read_robot
 from jacaros.text_files import is_file
 from jacaros.yaml_nodes import Node, read_document

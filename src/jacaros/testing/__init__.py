@@ -7,7 +7,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from jacaros.mas.embedding.pursued_goal import PursuedGoal
+    from jacaros.mas.embedding.running_agent import PursuedGoal
     from jacaros.testing.fake_graph import FakeGraph
     from jacaros.testing.harness import AgentHarness
     from jacaros.testing.outcomes import Outcome, Problem, SuiteOutcome, write_junit

@@ -26,7 +26,7 @@ from jacaros.bdi.rules import goals
 from jacaros.bdi.rules.watched import WatchedGoal
 from jacaros.bdi.state.options import Options
 from jacaros.bdi.state.speech_act import SpeechAct
-from jacaros.mas.embedding.pursued_goal import PursuedGoal
+from jacaros.mas.embedding.running_agent import PursuedGoal
 from jacaros.mas.open_mind import OpenMind, literal
 from jacaros.mas.programs import Programs
 from jacaros.mas.python_code import PythonCode

@@ -28,7 +28,8 @@ from jacaros.asl.loader import load_program, parse_literals
 from jacaros.asl.source import Span
 from jacaros.errors import JacarosError, UsageError
 from jacaros.mas.deployment import AgentSpec, Deployment, has_own_artifacts
-from jacaros.mas.programs import Programs, library_file, load_deployment
+from jacaros.mas.loading import load_deployment
+from jacaros.mas.programs import Programs, library_file
 from jacaros.mas.project.reading import USUAL_PATHS
 from jacaros.mas.python_code import PythonCode
 from jacaros.project_modules import ProjectModules

@@ -25,8 +25,8 @@ from jacaros.clock import Clock, VirtualClock, WallClock, run
 from jacaros.errors import InternalError, JacarosError
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.deployment import Deployment, ProjectError
+from jacaros.mas.loading import mapped
 from jacaros.mas.options import RunOptions
-from jacaros.mas.programs import mapped
 from jacaros.mas.python_code import PythonCode
 from jacaros.mas.ros_graph import NO_WORLD
 from jacaros.mas.system import System

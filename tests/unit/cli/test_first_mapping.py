@@ -7,8 +7,8 @@ import pytest
 from jacaros.artifacts.mapping.checking import check_mapping
 from jacaros.artifacts.mapping.file import read_mapping
 from jacaros.artifacts.mapping.interfaces import StoredInterfaces
+from jacaros.cli.graph.standard_topics import robots
 from jacaros.cli.graph.suggestions import Entry, acting, calling, looking, plain_name, property_of, publishing
-from jacaros.cli.graph.usual import robots
 from jacaros.ros.graph import Endpoint, GraphContents, TopicInfo
 from jacaros.ros.qos import QoS
 

@@ -5,8 +5,8 @@ from typing import Any
 
 import pytest
 
-from jacaros.cli.given_parameters import read_parameters
 from jacaros.cli.main import call
+from jacaros.cli.ros_arguments import read_parameters
 from jacaros.errors import UsageError
 
 FILE = """

@@ -10,9 +10,8 @@ from typing import Any
 import pytest
 from click import Context
 
-from jacaros.cli.given_parameters import read_parameters
 from jacaros.cli.main import jacaros
-from jacaros.cli.ros_arguments import as_options
+from jacaros.cli.ros_arguments import as_options, read_parameters
 
 FILE = Path(__file__).parents[3] / "examples" / "04_patrol" / "patrol_launch.py"
 

@@ -3,9 +3,9 @@
 import gc
 
 from jacaros.env import Artifact, operation
-from jacaros.env.choice import chosen_artifact
 from jacaros.env.kernel.interface import OperationTable
 from jacaros.env.kernel.steps import Steps
+from jacaros.env.lookup import chosen_artifact
 
 MANY = 300
 

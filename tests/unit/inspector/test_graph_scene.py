@@ -16,7 +16,7 @@ from jacaros.inspector.picture import picture_svg
 from jacaros.inspector.recorder import Recorder
 from jacaros.inspector.recording import Recording
 from jacaros.inspector.replay import payload
-from jacaros.inspector.robot_view import UNKNOWN
+from jacaros.inspector.scene import UNKNOWN
 from jacaros.inspector.watch import Watch
 from jacaros.ros.open import open_backend
 from jacaros.sim import SimNode, World

@@ -9,8 +9,7 @@ from jacaros.clock import VirtualClock, run
 from jacaros.errors import JacarosError
 from jacaros.inspector.recorder import Recorder
 from jacaros.inspector.recording import Recording
-from jacaros.inspector.robot_view import RobotView
-from jacaros.inspector.scene import EmbeddedScene
+from jacaros.inspector.scene import EmbeddedScene, RobotView
 from jacaros.inspector.watch import Watch
 from jacaros.ros.open import open_backend
 from jacaros.sim import SimNode, World

@@ -17,7 +17,7 @@ from jacaros.inspector.picture import picture_svg, write_picture
 from jacaros.inspector.recorder import Recorder
 from jacaros.inspector.recording import Recording
 from jacaros.inspector.replay import replay_html, write_replay
-from jacaros.inspector.robot_view import RobotView
+from jacaros.inspector.scene import RobotView
 from jacaros.sim import World
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")

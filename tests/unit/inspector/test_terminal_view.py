@@ -10,7 +10,7 @@ import pytest
 from rich.console import Console
 
 from jacaros.inspector.braille import BrailleMap
-from jacaros.inspector.robot_view import RobotView
+from jacaros.inspector.scene import RobotView
 from jacaros.inspector.terminal_view import TerminalView
 from jacaros.sim import World
 

@@ -8,8 +8,8 @@ from jacaros.bdi.mind import Mind
 from jacaros.clock import VirtualClock, run
 from jacaros.mas.console import Console
 from jacaros.mas.diagnostics import OK, TOPIC, TYPE, WARN, AgentVitals
+from jacaros.mas.loading import load_deployment
 from jacaros.mas.options import RunOptions
-from jacaros.mas.programs import load_deployment
 from jacaros.mas.system import System
 from jacaros.ros.open import open_backend
 

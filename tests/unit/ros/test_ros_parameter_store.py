@@ -7,8 +7,7 @@ from typing import Any
 import pytest
 
 from jacaros.ros.errors import ParameterRefused, ParameterUnknown
-from jacaros.ros.given_parameters import GivenParameters
-from jacaros.ros.parameter import Declaration, ParameterValue
+from jacaros.ros.parameter import Declaration, GivenParameters, ParameterValue
 from jacaros.ros.parameter_store import DeclaredParameters, checked_value, kind_of
 
 

@@ -10,6 +10,7 @@ import pytest
 
 from jacaros.sim import World
 from jacaros.sim.description import Rectangle, Segment, WorldDescription
+from jacaros.sim.navigation.driver import Route
 from jacaros.sim.navigation.failure import (
     GOAL_OCCUPIED,
     GOAL_OUTSIDE_MAP,
@@ -18,11 +19,9 @@ from jacaros.sim.navigation.failure import (
     START_OUTSIDE_MAP,
     NavigationFailure,
 )
-from jacaros.sim.navigation.grid import REACH, RESOLUTION, Grid
+from jacaros.sim.navigation.grid import DIAGONAL, REACH, RESOLUTION, Grid, cheapest_path
 from jacaros.sim.navigation.placement import Placement, distance
 from jacaros.sim.navigation.planner import MARGIN, Planner
-from jacaros.sim.navigation.route import Route
-from jacaros.sim.navigation.search import DIAGONAL, cheapest_path
 from jacaros.sim.trigonometry import PI
 
 RADIUS = 0.17

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from jacaros.cli.graph.joining import Joined, NothingThere
 from jacaros.cli.graph.kinds import Kind, Thing
 from jacaros.cli.graph.listening import root
+from jacaros.cli.graph.standard_topics import robot_of, robots
 from jacaros.cli.graph.suggestions import (
     TWISTS,
     Entry,
@@ -17,7 +18,6 @@ from jacaros.cli.graph.suggestions import (
     property_of,
     publishing,
 )
-from jacaros.cli.graph.usual import robot_of, robots
 
 _SECTIONS = ("properties", "signals", "frames", "operations")
 _NAMES = {

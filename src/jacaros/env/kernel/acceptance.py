@@ -8,7 +8,7 @@ import typing
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from jacaros.env.kernel import records
+from jacaros.env.kernel import kinds
 from jacaros.env.kernel.kinds import ANYTHING, Accept, Kind, Unsuitable, alternatives, got, instance_of
 from jacaros.env.values import Atom, Out, Structure, equal, text
 
@@ -78,9 +78,9 @@ def _kind_of_class(kind: type) -> Kind:
         return _member(kind)
     if _of_numpy(kind, "generic"):
         return _numpy_scalar(kind)
-    fields = records.fields_of(kind)
+    fields = kinds.fields_of(kind)
     if fields is not None:
-        return records.record(kind, fields, kind_of)
+        return kinds.record(kind, fields, kind_of)
     if getattr(kind, "_is_protocol", False) and not getattr(kind, "_is_runtime_protocol", False):
         return ANYTHING
     return instance_of(kind, kind.__name__)

@@ -10,7 +10,7 @@ from typing import Any
 from jacaros.clock import standing_still
 from jacaros.env.errors import InvalidArtifact, OperationFailed
 from jacaros.env.execution import OperationExecution
-from jacaros.env.kernel import outcomes
+from jacaros.env.kernel import faults
 from jacaros.env.kernel.declaration import DeclaredOperation
 from jacaros.env.kernel.signature import Signature
 from jacaros.env.kernel.steps import Steps
@@ -46,7 +46,7 @@ class ExternalSession:
         if self._steps.inside():
             raise InvalidArtifact(f"artifact {self._steps.id.name}: this is within an operation already")
         if self._steps.disposed:
-            raise _failure(outcomes.not_available(self._steps.id))
+            raise _failure(faults.not_available(self._steps.id))
         self._execution = self._new_execution(self._hold, threaded=False)
         await self._steps.enter_task(self._execution)
 
@@ -81,11 +81,11 @@ class ExternalSession:
         while alive and not event.wait(PATIENCE):
             alive = loop is not None and not loop.is_closed()
         if not event.is_set():
-            raise _failure(outcomes.not_available(self._steps.id))
+            raise _failure(faults.not_available(self._steps.id))
 
     def _arrive(self) -> None:
         if self._steps.disposed:
-            self._told(outcomes.not_available(self._steps.id))
+            self._told(faults.not_available(self._steps.id))
         else:
             self._steps.turns.enter(self._new_execution(self._hold, threaded=True), None)
 

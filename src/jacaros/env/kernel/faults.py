@@ -1,9 +1,20 @@
-"""Exceptions of an artifact's code: which are its author's, and how they are put into words."""
+"""What fails an operation: exceptions of an artifact's code, and the failed outcomes that the kernel itself makes.
+
+Of exceptions it says which are the author's, and puts them into words; an outcome has a message and a reason term.
+"""
 
 import signal
 import traceback
 from types import CodeType
 from typing import Any
+
+from jacaros.env.errors import OperationFailed
+from jacaros.env.ids import ArtifactId
+from jacaros.env.kernel.interface import Interface
+from jacaros.env.kernel.signature import WrongArguments
+from jacaros.env.operation import INTERNAL, LINK, OPERATION, OperationOutcome, OperationRequest
+from jacaros.env.values import Structure
+from jacaros.errors import InternalError
 
 _SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP", "SIGALRM")
 
@@ -41,3 +52,69 @@ def told(error: BaseException) -> str:
     """An exception in words: its class, and what it says."""
     said = text_of(error)
     return f"{type(error).__name__}: {said}" if said else type(error).__name__
+
+
+_CALLERS = {OPERATION: "agents", LINK: "other artifacts only", INTERNAL: "the artifact itself only"}
+
+
+def key(request: OperationRequest) -> str:
+    """Name and number of arguments, such as ``inc/1``."""
+    return f"{request.operation}/{len(request.arguments)}"
+
+
+def unknown_operation(request: OperationRequest, kind: str, interface: Interface) -> OperationOutcome:
+    """The artifact has no operation of that name and number of arguments for that caller."""
+    name, arity, artifact = request.operation, len(request.arguments), request.artifact
+    for other in (OPERATION, LINK, INTERNAL):
+        if other != kind and interface.table(other).find(name, arity) is not None:
+            hint = f"; its {other} of that name is for {_CALLERS[other]}"
+            break
+    else:
+        hint = interface.table(kind).explain(name)
+    message = f"artifact {artifact.name} ({artifact.type_name}) has no {kind} {key(request)}{hint}"
+    return OperationOutcome(False, message, Structure("unknown_operation", (artifact, name)))
+
+
+def wrong_arguments(request: OperationRequest, wrong: WrongArguments) -> OperationOutcome:
+    """An argument is not of the kind that the operation wants."""
+    message = f"operation {key(request)} of artifact {request.artifact.name}: {wrong}"
+    return OperationOutcome(False, message, Structure("wrong_op_arguments", (request.artifact, key(request))))
+
+
+def not_available(artifact: ArtifactId) -> OperationOutcome:
+    """The artifact is there no more."""
+    message = f"artifact {artifact.path} is not available: it has been disposed"
+    return OperationOutcome(False, message, Structure("artifact_not_available", (artifact.name,)))
+
+
+def disposed(request: OperationRequest) -> OperationOutcome:
+    """The artifact went away while the operation was waiting or running."""
+    message = f"artifact {request.artifact.path} was disposed before {key(request)} ended"
+    return OperationOutcome(False, message, Structure("artifact_disposed", (request.artifact.name,)))
+
+
+def timed_out(request: OperationRequest, seconds: float) -> OperationOutcome:
+    """The operation did not end in the time that its caller gave it."""
+    milliseconds = round(seconds * 1000, 3)
+    shown = f"{milliseconds:g} ms" if milliseconds < 1000 else f"{seconds:g} s"
+    message = f"operation {key(request)} of artifact {request.artifact.name} did not end within {shown}"
+    return OperationOutcome(False, message, Structure("operation_timeout", (key(request), milliseconds)))
+
+
+def failed(request: OperationRequest, error: BaseException) -> OperationOutcome:
+    """The code of the operation raised *error*."""
+    if isinstance(error, OperationFailed):
+        # A class of the author's own need not have called the constructor.
+        message = getattr(error, "message", None)
+        reason = getattr(error, "reason", None)
+        return OperationOutcome(False, message if isinstance(message, str) else text_of(error), reason)
+    functor = "internal_error" if isinstance(error, InternalError) else "operation_error"
+    message = told_in(error, request)
+    return OperationOutcome(False, message, Structure(functor, (key(request),)))
+
+
+def told_in(error: BaseException, request: OperationRequest) -> str:
+    """An exception in words, and the operation in which it was raised."""
+    where = f"in operation {key(request)} of {request.artifact.name}"
+    said = text_of(error)
+    return f"{type(error).__name__} {where}: {said}" if said else f"{type(error).__name__} {where}"

@@ -11,7 +11,7 @@ from jacaros.clock import Clock
 from jacaros.env.errors import InvalidArtifact, OperationFailed
 from jacaros.env.execution import OperationExecution
 from jacaros.env.ids import ArtifactId
-from jacaros.env.kernel import outcomes
+from jacaros.env.kernel import faults
 from jacaros.env.kernel.publication import Publication
 from jacaros.env.kernel.setting import Setting
 from jacaros.env.kernel.turns import Guard, TurnQueue
@@ -163,7 +163,7 @@ class StepInProgress(ABC):
         if not self.turns.ask(guard):
             if self.disposed:
                 # Nobody else is there to make it true: only the operation that disposed its own artifact goes on.
-                gone = outcomes.disposed(execution.request)
+                gone = faults.disposed(execution.request)
                 raise OperationFailed(gone.message or "", gone.reason)
             await self.turns.release_until(execution, guard)
 

@@ -13,7 +13,7 @@ from jacaros.clock import standing_still, start_thread
 from jacaros.env.errors import InvalidArtifact, OperationFailed
 from jacaros.env.execution import OperationExecution
 from jacaros.env.ids import ArtifactId
-from jacaros.env.kernel import outcomes
+from jacaros.env.kernel import faults
 from jacaros.env.kernel.declaration import DeclaredOperation
 from jacaros.env.kernel.ending import Ending
 from jacaros.env.kernel.faults import is_interruption
@@ -82,14 +82,14 @@ class Steps(StepInProgress):
         table = self.interface.links if kind == LINK else self.interface.operations
         declared = table.find(request.operation, len(request.arguments))
         if declared is None:
-            return self.refuse(request, outcomes.unknown_operation(request, kind, self.interface))
+            return self.refuse(request, faults.unknown_operation(request, kind, self.interface))
         try:
             arguments = declared.signature.bind(request.arguments)
         except WrongArguments as wrong:
-            return self.refuse(request, outcomes.wrong_arguments(request, wrong))
+            return self.refuse(request, faults.wrong_arguments(request, wrong))
         cause = request.cause
         if self.setting.tracer is not None:
-            cause = self.setting.trace("operation", f"{self.id.path} {outcomes.key(request)}", cause)
+            cause = self.setting.trace("operation", f"{self.id.path} {faults.key(request)}", cause)
         execution = OperationExecution(self, request, declared, arguments, cause)
         self.turns.enter(execution, None if declared.guard is None else self._guard(execution))
         if request.timeout is not None and not execution.ended:
@@ -129,7 +129,7 @@ class Steps(StepInProgress):
         try:
             arguments = declared.signature.bind(request.arguments)
         except WrongArguments as wrong:
-            return self.refuse(request, outcomes.wrong_arguments(request, wrong))
+            return self.refuse(request, faults.wrong_arguments(request, wrong))
         execution = OperationExecution(self, request, declared, arguments, request.cause)
         self.turns.enter(execution, None)
         return execution
@@ -172,7 +172,7 @@ class Steps(StepInProgress):
         elif not declared.coroutine:
             self._run(execution, declared)
         else:
-            name = f"{self.id.path} {outcomes.key(execution.request)}"
+            name = f"{self.id.path} {faults.key(execution.request)}"
             self.setting.know_loop()
             execution.task = asyncio.get_running_loop().create_task(self._drive(execution), name=name)
             self._running[execution] = None
@@ -266,7 +266,7 @@ class Steps(StepInProgress):
             outcome = SUCCEEDED
         else:
             self._roll_back()
-            outcome = outcomes.failed(execution.request, error)
+            outcome = faults.failed(execution.request, error)
             self._note(execution, error)
         if execution.verdict is not None:
             outcome = execution.verdict
@@ -299,7 +299,7 @@ class Steps(StepInProgress):
 
     def _note(self, execution: OperationExecution, error: BaseException) -> None:
         """Log what nobody else would see, or what its author must see."""
-        key = outcomes.key(execution.request)
+        key = faults.key(execution.request)
         if isinstance(error, InternalError) or execution.request.operation == EXTERNAL:
             return
         if not isinstance(error, OperationFailed):
@@ -359,13 +359,13 @@ class Steps(StepInProgress):
         self.publication.close()
         for execution in (*self.turns.waiting_to_begin(), *self._running):
             if execution is not survivor and not execution.stopped:
-                self._stop(execution, outcomes.disposed(execution.request))
+                self._stop(execution, faults.disposed(execution.request))
         self._close_if_over()
 
     def _time_is_up(self, execution: OperationExecution) -> None:
         seconds = execution.request.timeout
         if seconds is not None and not execution.ended and not execution.stopped:
-            self._stop(execution, outcomes.timed_out(execution.request, seconds))
+            self._stop(execution, faults.timed_out(execution.request, seconds))
 
     def _stop(self, execution: OperationExecution, outcome: OperationOutcome) -> None:
         """End an operation from outside; its caller is told *outcome* when it has ended.
@@ -402,12 +402,12 @@ class Steps(StepInProgress):
 
     def _leave_behind(self, executions: Iterable[OperationExecution], seconds: float) -> None:
         for execution in tuple(executions):
-            key = outcomes.key(execution.request)
+            key = faults.key(execution.request)
             told = (
                 f"operation {key} did not stop within {seconds:g} s of its artifact's disposal; abandoning it"
             )
             self.setting.log(f"[{self.id.name}] {told}")
-            self._tell(execution, outcomes.disposed(execution.request))
+            self._tell(execution, faults.disposed(execution.request))
             if (
                 execution.task is not None
                 and execution.declared is not None

@@ -7,10 +7,10 @@ from types import TracebackType
 from typing import Any
 
 from jacaros.env.artifact import Artifact
-from jacaros.env.choice import artifact_named, chosen_artifact
 from jacaros.env.environment import Environment
 from jacaros.env.errors import OperationFailed, UnknownArtifact, WorkspaceError, spelling_hint
 from jacaros.env.ids import ArtifactId, resolve_path
+from jacaros.env.lookup import artifact_named, chosen_artifact
 from jacaros.env.operation import OperationOutcome, OperationRequest
 from jacaros.env.ports import Workspace
 from jacaros.env.session.account import Account, Observer

@@ -3,7 +3,7 @@
 from jacaros.env.environment import Environment
 from jacaros.env.errors import OperationFailed
 from jacaros.env.ids import ArtifactId, resolve_path
-from jacaros.env.joined import in_order, joined_workspace
+from jacaros.env.lookup import in_order, joined_workspace
 from jacaros.env.ports import Workspace
 from jacaros.env.values import Structure
 

@@ -9,13 +9,12 @@ from jacaros.bdi.snapshot import restore
 from jacaros.errors import UsageError
 from jacaros.mas.deployment import AgentSpec, Deployment, FocusSpec
 from jacaros.mas.embedding.errors import UnknownAgent
-from jacaros.mas.embedding.printed import OnLog, OnPrint, PrintedLine
 from jacaros.mas.embedding.run import EmbeddedRun
 from jacaros.mas.embedding.running_agent import RunningAgent
-from jacaros.mas.embedding.stream import Stream
+from jacaros.mas.embedding.stream import OnLog, OnPrint, PrintedLine, Stream
+from jacaros.mas.loading import load_deployment, mapped
 from jacaros.mas.options import RunOptions
 from jacaros.mas.population import begin
-from jacaros.mas.programs import load_deployment, mapped
 
 if TYPE_CHECKING:
     from jacaros.env.artifact import Artifact

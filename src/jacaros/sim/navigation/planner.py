@@ -12,9 +12,8 @@ from jacaros.sim.navigation.failure import (
     START_OUTSIDE_MAP,
     NavigationFailure,
 )
-from jacaros.sim.navigation.grid import Grid
+from jacaros.sim.navigation.grid import Grid, cheapest_path
 from jacaros.sim.navigation.placement import Point, distance
-from jacaros.sim.navigation.search import cheapest_path
 
 MARGIN = 0.06
 """Metres that a planned way keeps from walls at the least, beside the robot's radius."""

@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from jacaros.sim.navigation.driver import STOP, in_the_way
+from jacaros.sim.navigation.driver import STOP, Route, in_the_way
 from jacaros.sim.navigation.failure import (
     FAILED_TO_MAKE_PROGRESS,
     NO_VALID_PATH,
@@ -14,7 +14,6 @@ from jacaros.sim.navigation.failure import (
 from jacaros.sim.navigation.navigator import Navigator
 from jacaros.sim.navigation.placement import Placement, Point, distance
 from jacaros.sim.navigation.planner import Circle, told
-from jacaros.sim.navigation.route import Route
 from jacaros.sim.navigation.wheels import PERIOD, Hold
 
 TOLERANCE = 0.05

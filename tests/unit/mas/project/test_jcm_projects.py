@@ -9,7 +9,7 @@ from jacaros.asl.diagnostics import Diagnostic
 from jacaros.env.values import Atom
 from jacaros.mas.checking import check_files
 from jacaros.mas.deployment import Deployment, FocusSpec, ProjectError
-from jacaros.mas.programs import load_deployment
+from jacaros.mas.loading import load_deployment
 from jacaros.mas.project.reading import read_project
 
 

@@ -1,1 +1,0 @@
-"""The artifacts that every workspace has from the beginning."""

@@ -1,0 +1,200 @@
+"""Artifacts that every workspace has from the beginning: blackboard, console, system, and the manuals of types."""
+
+from typing import NoReturn
+
+from jacaros.env.artifact import Artifact, Out, operation
+from jacaros.env.ids import ArtifactId
+from jacaros.env.manual import Manual, describe, manual_term
+from jacaros.env.tree import WorkspaceTree
+from jacaros.env.values import equal, plain, text
+from jacaros.env.workspace import Workspace
+from jacaros.env.workspace_artifact import WorkspaceArtifact
+
+Entry = tuple[object, ...]
+
+
+class Blackboard(Artifact):
+    """A tuple space, as in the coordination language Linda.
+
+    A tuple is a name with any number of arguments.  A pattern fits a tuple of the same length when its
+    bound arguments are equal; unbound ones are outputs and fit anything (the same variable twice only
+    equal values).  The oldest fitting tuple is taken.
+    """
+
+    def init(self) -> None:
+        """Begin without tuples."""
+        self._tuples: list[Entry] = []
+
+    @operation
+    def out(self, *entry: object) -> None:
+        """Put a tuple; its arguments must be bound."""
+        if any(isinstance(item, Out) for item in entry):
+            self.fail("a tuple on the blackboard must not contain unbound variables", "unbound_argument")
+        self._tuples.append(tuple(map(plain, entry)))
+
+    @operation(name="in", guard="is_there")
+    def take(self, *pattern: object) -> None:
+        """Take a fitting tuple away; waits until there is one."""
+        taken = self._bind(pattern)
+        self._tuples = [entry for entry in self._tuples if entry is not taken]
+
+    @operation(guard="is_there")
+    def rd(self, *pattern: object) -> None:
+        """Read a fitting tuple; waits until there is one."""
+        self._bind(pattern)
+
+    @operation
+    def inp(self, *pattern: object) -> None:
+        """Take a fitting tuple away; fails with reason ``no_match`` when there is none."""
+        self._need(pattern)
+        self.take(*pattern)
+
+    @operation
+    def rdp(self, *pattern: object) -> None:
+        """Read a fitting tuple; fails with reason ``no_match`` when there is none."""
+        self._need(pattern)
+        self._bind(pattern)
+
+    def is_there(self, *pattern: object) -> bool:
+        """True when there is a tuple that fits *pattern*."""
+        return self._find(pattern) is not None
+
+    def _need(self, pattern: Entry) -> None:
+        if not self.is_there(*pattern):
+            shown = ",".join("_" if isinstance(item, Out) else text(item, quoted=True) for item in pattern)
+            self.fail(f"no tuple on the blackboard fits ({shown})", "no_match")
+
+    def _find(self, pattern: Entry) -> Entry | None:
+        return next((entry for entry in self._tuples if _fits(pattern, entry)), None)
+
+    def _bind(self, pattern: Entry) -> Entry:
+        entry = self._find(pattern)
+        assert entry is not None, "the guard was true"
+        for wanted, value in zip(pattern, entry, strict=True):
+            if isinstance(wanted, Out):
+                wanted.set(value)
+        return entry
+
+
+def _fits(pattern: Entry, entry: Entry) -> bool:
+    if len(pattern) != len(entry):
+        return False
+    bound: dict[int, object] = {}
+    for wanted, value in zip(pattern, entry, strict=True):
+        if isinstance(wanted, Out):
+            wanted = bound.setdefault(id(wanted.variable or wanted), value)
+        if not equal(wanted, value):
+            return False
+    return True
+
+
+class Console(Artifact):
+    """Prints for agents, one line for each call, arguments written one after the other.
+
+    The lines go to ``resources["console"]``, a function of agent and text; without it to the log.  The
+    names with ``AgName`` are other names of the same: the host shows who prints anyway.
+    """
+
+    @operation(name="printWithAgName")
+    @operation(name="printlnWithAgName")
+    @operation(name="print")
+    @operation
+    def println(self, *arguments: object) -> None:
+        """Print the arguments as one line."""
+        write_line(self, "".join(map(text, arguments)))
+
+
+def write_line(artifact: Artifact, line: str) -> None:
+    """Print a line for the agent that has called an operation of *artifact*."""
+    write = artifact.resources.get("console")
+    if callable(write):
+        write(artifact.caller, line)
+    else:
+        artifact.log(line)
+
+
+class SystemArtifact(Artifact):
+    """The process in which agents and artifacts run."""
+
+    @operation(name="shutdownNode")
+    def shut_down(self) -> None:
+        """End the run, as ``.stopMAS`` does."""
+        stop = self.resources.get("stop")
+        if not callable(stop):
+            self.fail("nobody here can end the run", "not_supported", "shutdownNode/0")
+        stop()
+
+    @operation
+    def crash(self) -> None:
+        """End the process at once: not supported."""
+        self._refuse("a run is not ended without putting things in order; shutdownNode or .stopMAS ends it")
+
+    @operation(name="spawnNode")
+    def spawn(self, *arguments: object) -> None:
+        """Start another process: not possible yet."""
+        self._refuse("other processes cannot be started yet")
+
+    def _refuse(self, message: str) -> NoReturn:
+        request = self.current.request
+        self.fail(message, "not_supported", f"{request.operation}/{len(request.arguments)}")
+
+
+class ManualRepository(Artifact):
+    """Manuals of artifact types.
+
+    Every type has one, made from its code: its operations, properties and signals with what its author says of them.
+    Agents may put other texts in their places.
+    """
+
+    def init(self, workspace: Workspace, tree: WorkspaceTree) -> None:
+        """Begin without texts of agents."""
+        self._here, self._tree = workspace, tree
+        self._stored: dict[str, str] = {}
+
+    @operation(name="storeManual")
+    def store(self, type_name: str, content: str) -> None:
+        """Keep a text as the manual of a type."""
+        self._stored[str.__str__(type_name)] = content
+
+    @operation(name="getManualContent")
+    def give_content(self, type_name: str, content: Out) -> None:
+        """Give the manual of a type as a text."""
+        content.set(self._content(type_name))
+
+    @operation(name="consultManual")
+    def consult(self, type_name: str) -> None:
+        """Print the manual of a type."""
+        for line in self._content(type_name).splitlines():
+            write_line(self, line)
+
+    @operation(name="getManual")
+    def give(self, what: ArtifactId | str, manual: Out) -> None:
+        """Give the manual of a type, or of one artifact with what it has defined for itself, as a term."""
+        manual.set(manual_term(self._manual(what)))
+
+    def _content(self, type_name: str) -> str:
+        stored = self._stored.get(type_name)
+        return stored if stored is not None else str(self._manual(type_name))
+
+    def _manual(self, what: ArtifactId | str) -> Manual:
+        if isinstance(what, ArtifactId):
+            workspace = self._tree.find(what.workspace)
+            if isinstance(workspace, Workspace):
+                return workspace.manual(what)
+            what = what.type_name
+        return describe(self._here.artifact_type(what))
+
+
+DEFAULT_TYPES = frozenset(
+    each.__name__ for each in (Blackboard, Console, ManualRepository, SystemArtifact, WorkspaceArtifact)
+)
+"""Names of the types of the artifacts that every workspace has."""
+
+
+def furnish(workspace: Workspace, tree: WorkspaceTree) -> None:
+    """Give a workspace the artifacts that each one has; none of them is made before somebody needs it."""
+    workspace.offer("blackboard", Blackboard)
+    workspace.offer("console", Console)
+    workspace.offer("manrepo", ManualRepository, (workspace, tree))
+    workspace.offer("system", SystemArtifact)
+    workspace.offer("workspace", WorkspaceArtifact, (workspace, tree))
