@@ -172,6 +172,17 @@ class PropertyStore:
             self._leave_index(old)
             self._by_first[name].setdefault(_first(new), {})[key] = None
 
+    def put(self, name: str, values: tuple[object, ...]) -> None:
+        """Give the first property called *name* new values; if there is none, add one.
+
+        Raises:
+            InvalidArtifact: *name* cannot be the name of a belief.
+        """
+        if self._by_name.get(name):
+            self.update(name, values, None)
+        else:
+            self.define(name, values, None)
+
     def remove(self, name: str, template: tuple[object, ...]) -> None:
         """Remove the first property called *name* whose values fit *template* (see `first`).
 

@@ -137,6 +137,7 @@ class Reading:
         clock: the time for rate limit and expiry.
         deliver: takes the values that are passed, and the cause that led to them; None for a reading that is only asked.
         outlet: is told the rest.
+        name: of the property that shows the values, if there is one.
     """
 
     def __init__(
@@ -145,8 +146,9 @@ class Reading:
         clock: Clock,
         deliver: Callable[[Values, Cause | None], None] | None = None,
         outlet: Outlet = ALOOF,
+        name: str = "",
     ) -> None:
-        self.policy = policy
+        self.policy, self.name = policy, name
         self.newest: Values | None = None
         self._clock = clock
         self._deliver = deliver
@@ -163,15 +165,25 @@ class Reading:
         """Take a message's values, and pass them on now, later or never."""
         if self.policy.finite and (why := not_finite(values)) is not None:
             self._outlet.refuse(why, cause)
-            return
+        else:
+            self.take_finite(values, cause)
+
+    def take_finite(self, values: Values, cause: Cause | None = None) -> None:
+        """Take a message's values whose numbers are known to be finite, and pass them on now, later or never."""
+        if self.offer(values, cause):
+            self._deliver_newest()
+
+    def offer(self, values: Values, cause: Cause | None) -> bool:
+        """Take values whose numbers are known to be finite; True when they count as passed on, which the caller does."""
         self.newest, self._cause = values, cause
         if self.policy.expire is not None:
             self._confirm(self.policy.expire)
         for expected in self._expecting:
             if not expected.done():
                 expected.set_result(None)
-        if not self.policy.on_demand and self._pause is None and not self._queue.waits:
-            self._deliver_if_new()
+        return (
+            not self.policy.on_demand and self._pause is None and not self._queue.waits and self._may_pass()
+        )
 
     def passed(self) -> Values:
         """The newest values, passed on by the caller; empty before the first message.
@@ -207,16 +219,27 @@ class Reading:
                 timer.cancel()
 
     def _deliver_if_new(self) -> None:
+        if self._may_pass():
+            self._deliver_newest()
+
+    def _deliver_newest(self) -> None:
+        assert self._deliver is not None
+        assert self.newest is not None
+        self._deliver(self.newest, self._cause)
+
+    def _may_pass(self) -> bool:
+        """Whether the newest values are passed on now; if so they count as passed."""
         if self.newest is None or self._deliver is None:
-            return
-        if self._delivered is None or self.policy.differ(self._delivered, self.newest):
+            return False
+        passes = self._delivered is None or self.policy.differ(self._delivered, self.newest)
+        if passes:
             if self.policy.latest_only and self._outlet.behind() and self._queue.wait():
-                return
+                return False
             self._delivered = self.newest
             if self.policy.rate is not None:
                 self._pause = self._clock.call_later(1.0 / self.policy.rate, self._end_pause)
-            self._deliver(self.newest, self._cause)
         self._queue.waits = False
+        return passes
 
     def _end_pause(self) -> None:
         self._pause = None

@@ -17,8 +17,6 @@ FIRST_MESSAGE = 5.0
 class SensingArtifact(ConnectedArtifact):
     """An artifact with readings of sensors; see `jacaros.artifacts.kit.ros_artifact.RosArtifact`."""
 
-    _together: "list[tuple[str, Values, Callable[[], None]]] | None" = None
-
     def reading(self, name: str, policy: ReadingPolicy, *initial: object) -> Reading:
         """Let the property *name* follow a sensor by *policy*; ends with the artifact.
 
@@ -33,48 +31,38 @@ class SensingArtifact(ConnectedArtifact):
         """
         if initial and policy.expire is None:
             self.define_property(name, *initial)
-        coming = 0
         faults: dict[str, Faults] = {}
 
         def deliver(values: Values, cause: Cause | None) -> None:
-            nonlocal coming
-            coming += 1
-            if self._together is None:
-                self.start(self.show_readings, [(name, values, arrived)], cause=cause)
-            else:
-                self._together.append((name, values, arrived))
-
-        def arrived() -> None:
-            nonlocal coming
-            coming = 0
+            self._tell_readings([(name, values)], cause)
 
         def refuse(number: float, cause: Cause | None) -> None:
             topic = cause.what if cause is not None else name
             faults.setdefault(topic, self.faults_at(topic)).not_finite(name, number)
 
-        def behind() -> bool:
-            return coming > 0 or self.has_untaken(name)
-
+        behind = partial(self._steps.publication.has_untaken, name)
         outlet = Outlet(partial(self.start, self.withdraw_reading, name), refuse, behind)
-        return self.kept(Reading(policy, self.clock, deliver, outlet))
+        return self.kept(Reading(policy, self.clock, deliver, outlet, name))
 
     def take_together(self, cause: Cause | None, *taken: tuple[Reading, Values]) -> None:
-        """Give several readings the values of one message; what they pass on becomes known in one step."""
-        shown = self._together = []
-        try:
-            for reading, values in taken:
-                reading.take(values, cause)
-        finally:
-            self._together = None
+        """Give several readings the values of one message, whose numbers are known to be finite; what they pass on becomes
+        known in one step."""
+        shown = [(reading.name, values) for reading, values in taken if reading.offer(values, cause)]
         if shown:
+            self._tell_readings(shown, cause)
+
+    def _tell_readings(self, shown: list[tuple[str, Values]], cause: Cause | None) -> None:
+        """Give properties new values now, or as soon as the artifact is free."""
+        if not self._steps.tell(self._show_values, shown, cause):
+            self._steps.publication.coming.update(name for name, _ in shown)
             self.start(self.show_readings, shown, cause=cause)
 
     @internal_operation
     def show_readings(self, shown: object) -> None:
-        """Give properties new values, on behalf of a sensor: name, values, and what is called when they are known."""
+        """Give properties new values, on behalf of a sensor: names and values."""
         assert isinstance(shown, list)
-        for name, values, arrived in shown:
-            arrived()
+        self._steps.publication.coming.difference_update(name for name, _ in shown)
+        for name, values in shown:
             self._show_values(name, values)
 
     @internal_operation
@@ -84,10 +72,7 @@ class SensingArtifact(ConnectedArtifact):
             self.remove_property(name)
 
     def _show_values(self, name: str, values: Values) -> None:
-        if self.has_property(name):
-            self.update_property(name, *values)
-        else:
-            self.define_property(name, *values)
+        self._steps.publication.properties.put(name, values)
 
     @internal_operation
     def show_elements(self, name: str, elements: object) -> None:

@@ -98,12 +98,7 @@ def _is_keyed(row: Row) -> bool:
 # --- percepts ----------------------------------------------------------------------------------------------------
 
 
-def take_percepts(agent: Circumstance) -> None:
-    """Bring the belief base in line with what was noticed."""
-    perceiving.take_percepts(agent, _take_in)
-
-
-def _take_in(agent: Circumstance, percepts: list[Percept]) -> None:
+def take_in(agent: Circumstance, percepts: list[Percept]) -> None:
     """Take in what was noticed in one step, where its events go into the queue as they are."""
     if (
         agent.waits.events

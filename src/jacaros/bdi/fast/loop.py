@@ -7,7 +7,7 @@ intention goes on as long as nothing else wants a cycle.  What an agent has that
 
 from typing import Any
 
-from jacaros.bdi.fast.beliefs import take_percepts, watch
+from jacaros.bdi.fast.beliefs import take_in, watch
 from jacaros.bdi.rules import cycle as plain_cycle
 from jacaros.bdi.rules import failure, meta_events
 from jacaros.bdi.rules.add_im import add_frame, go_without, log_inapplicable
@@ -15,6 +15,7 @@ from jacaros.bdi.rules.clr_int import pop_finished
 from jacaros.bdi.rules.cycle import begin_turn, deliberate, has_work, is_done, look_at_names
 from jacaros.bdi.rules.exec_int import announce, execute, select_intention, step_failed, tell_waiting
 from jacaros.bdi.rules.goal_failure import fail_intention, has_room
+from jacaros.bdi.rules.perceiving import take_percepts
 from jacaros.bdi.rules.proc_msg import read_message
 from jacaros.bdi.rules.sel_ev import begin_with, handle_atomic_event, pass_over
 from jacaros.bdi.state.circumstance import CROWD, Circumstance
@@ -124,7 +125,7 @@ def look_around(agent: Circumstance, cycle: int) -> None:
     agent.counts.next_check -= 1  # what comes in may bring new names as any step does
     # What is usual: there is a message, or percepts, and nothing else.
     if agent.incoming.percepts:
-        take_percepts(agent)
+        take_percepts(agent, take_in)
         if agent.incoming.tasks:
             plain_cycle.do_tasks(agent)
             plain_cycle.check_conditions(agent)

@@ -1,6 +1,6 @@
 """What observers see of one artifact: its committed properties and its signals."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 from jacaros.env.ids import ArtifactId
@@ -21,15 +21,26 @@ class Publication:
     Attributes:
         properties: the properties, with those of the step in progress.
         observers: who focuses the artifact, in the order of focusing.
+        coming: names of properties whose new values wait for the turn of the artifact.
     """
 
-    __slots__ = ("_artifact", "_frozen", "_observers", "_setting", "_slow", "_telling", "properties")
+    __slots__ = (
+        "_artifact",
+        "_frozen",
+        "_observers",
+        "_setting",
+        "_telling",
+        "_untaken",
+        "coming",
+        "properties",
+    )
 
     def __init__(self, artifact: ArtifactId, setting: Setting) -> None:
         self._artifact, self._setting = artifact, setting
         self.properties = PropertyStore()
         self._observers: dict[Observer, None] = {}
-        self._slow: tuple[SlowObserver, ...] = ()
+        self.coming: set[str] = set()
+        self._untaken: tuple[Callable[[str], bool], ...] = ()
         self._frozen: tuple[ObservableProperty, ...] | None = None
         self._telling: _Telling = _NOBODY
 
@@ -66,15 +77,17 @@ class Publication:
             self._show(observer, removed=self.committed())
 
     def has_untaken(self, name: str) -> bool:
-        """Whether an observer has still to take up what it was told about properties called *name*."""
-        for observer in self._slow:  # noqa: SIM110 - asked with every message of a sensor: no generator for that
-            if observer.has_untaken(name):
+        """Whether properties called *name* will change, or an observer has still to take up what it was told about them."""
+        if name in self.coming:
+            return True
+        for is_untaken in self._untaken:  # noqa: SIM110 - asked with every message of a sensor: no generator for that
+            if is_untaken(name):
                 return True
         return False
 
     def _note_slow(self) -> None:
         # Asking an object for a protocol costs more than a whole step, and sensors ask with every message.
-        self._slow = tuple(each for each in self._observers if isinstance(each, SlowObserver))
+        self._untaken = tuple(each.has_untaken for each in self._observers if isinstance(each, SlowObserver))
 
     def close(self) -> None:
         """Remove all observers."""

@@ -8,6 +8,7 @@ import asyncio
 import inspect
 from collections.abc import Callable, Iterable
 from functools import partial
+from typing import TypeVar
 
 from jacaros.clock import standing_still, start_thread
 from jacaros.env.errors import InvalidArtifact, OperationFailed
@@ -33,7 +34,11 @@ from jacaros.env.operation import (
     ignore_outcome,
 )
 from jacaros.errors import InternalError
+from jacaros.trace import Cause
 
+V = TypeVar("V")
+TELLING = "tell"
+"""What people are told has failed when new values of properties are wrong."""
 PATIENCE = 20.0
 """Seconds that the operations of a disposed artifact have to come to their end, as in CArtAgO."""
 
@@ -64,6 +69,7 @@ class Steps(StepInProgress):
         self.ending = Ending()
         self.abandon: Callable[[], object] = self.dispose
         self._running: dict[OperationExecution, None] = {}
+        self._teller = OperationExecution(self, OperationRequest(artifact_id, TELLING, (), None))
 
     @property
     def over(self) -> bool:
@@ -122,6 +128,43 @@ class Steps(StepInProgress):
         else:
             self.turns.enter(execution, None if declared.guard is None else self._guard(execution))
         return execution
+
+    def tell(
+        self, show: Callable[[str, V], None], told: Iterable[tuple[str, V]], cause: Cause | None
+    ) -> bool:
+        """Make a step that only changes properties; False when it cannot be made now, and nothing was done.
+
+        This is the way of sensors, and the hottest there is, so no operation is made for it.  It cannot be made while
+        somebody has the turn or waits for it, nor from another thread.
+
+        Args:
+            show: gives the property of a name its new values; a plain function.
+            told: names and values.
+            cause: what led to it.
+        """
+        turns = self.turns
+        if turns.holder is not None or turns.places or turns.serving or self.disposed:
+            return False
+        if self.setting.elsewhere():
+            return False
+        teller = self._teller
+        teller.cause, turns.holder = cause, teller
+        try:
+            for name, values in told:
+                show(name, values)
+            self.publication.publish(cause)
+        except Exception as error:
+            self._roll_back()
+            self._note(teller, error)
+            if isinstance(error, InternalError):
+                self.setting.report(error)
+        finally:
+            if self._started:
+                self.commit()
+            turns.holder = None
+            if turns.places:
+                turns.reconsider()
+        return True
 
     def initialise(self, declared: DeclaredOperation, request: OperationRequest) -> OperationExecution:
         """Run the ``init`` of the artifact as its first operation; the number of arguments is right."""

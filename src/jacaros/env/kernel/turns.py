@@ -39,24 +39,26 @@ class TurnQueue:
     Attributes:
         holder: who has the turn, None while the artifact is free.
         asking: True while a guard is evaluated, which must not change anything.
+        places: of those who wait.
+        serving: True while the turn is being given to somebody, or ended.
     """
 
-    __slots__ = ("_begin", "_changed", "_places", "_serving", "asking", "holder")
+    __slots__ = ("_begin", "_changed", "asking", "holder", "places", "serving")
 
     def __init__(self, begin: Callable[[OperationExecution, BaseException | None], None]) -> None:
         self._begin = begin
         self.asking = False
         self.holder: OperationExecution | None = None
-        self._places: list[Place] = []
+        self.places: list[Place] = []
         self._changed = False
-        self._serving = False
+        self.serving = False
 
     def enter(self, execution: OperationExecution, guard: Guard | None) -> None:
         """Let an operation begin as soon as its turn comes, which may be at once."""
-        if self.holder is not None or self._serving:
-            self._places.append(Place(execution, guard))
+        if self.holder is not None or self.serving:
+            self.places.append(Place(execution, guard))
             return
-        self._serving = True
+        self.serving = True
         self._changed = False  # who waits while the artifact is free has been asked since the last change
         try:
             if guard is None:
@@ -65,21 +67,21 @@ class TurnQueue:
             else:
                 self._enter_guarded(Place(execution, guard))
         finally:
-            self._serving = False
-            if self._places:
+            self.serving = False
+            if self.places:
                 self.serve()
 
     def _enter_guarded(self, place: Place) -> None:
         if self._may_go(place):
             self._give(place)
         else:
-            self._places.append(place)
+            self.places.append(place)
 
     def line_up(
         self, executions: list[OperationExecution], guard: Callable[[OperationExecution], Guard | None]
     ) -> None:
         """Queue operations that the holder of the turn has started."""
-        self._places.extend(Place(each, guard(each)) for each in executions)
+        self.places.extend(Place(each, guard(each)) for each in executions)
 
     async def retake(self, execution: OperationExecution) -> None:
         """Wait until *execution* has the turn again.
@@ -91,13 +93,13 @@ class TurnQueue:
             self.holder = execution
             return
         place = Place(execution, None, asyncio.get_running_loop().create_future())
-        self._places.insert(0 if execution.stopped else len(self._places), place)
+        self.places.insert(0 if execution.stopped else len(self.places), place)
         await self._granted(place)
 
     async def release_until(self, execution: OperationExecution, guard: Guard) -> None:
         """Give up the turn of *execution*, and wait until it has it again with *guard* true."""
         place = Place(execution, guard, asyncio.get_running_loop().create_future())
-        self._places.append(place)
+        self.places.append(place)
         self.release()
         await self._granted(place)
         if place.error is not None:
@@ -114,12 +116,12 @@ class TurnQueue:
     async def _retake_first(self, place: Place) -> None:
         place.guard = None
         while self.holder is not place.execution:
-            self._places.remove(place)
+            self.places.remove(place)
             if self.holder is None:
                 self.holder = place.execution
                 return
             place.granted = asyncio.get_running_loop().create_future()
-            self._places.insert(0, place)
+            self.places.insert(0, place)
             try:
                 await place.granted
             except asyncio.CancelledError:
@@ -139,14 +141,14 @@ class TurnQueue:
         """End the last step of *execution*: *tell* comes before anybody else has a turn."""
         self.holder = None
         self._changed = True
-        if self._serving:
+        if self.serving:
             tell(execution, outcome)
             return
-        self._serving = True
+        self.serving = True
         try:
             tell(execution, outcome)
         finally:
-            self._serving = False
+            self.serving = False
             self.serve()
 
     def reconsider(self) -> None:
@@ -156,34 +158,34 @@ class TurnQueue:
 
     def serve(self) -> None:
         """Give the turn to all who may have it, one after the other."""
-        if self._serving:
+        if self.serving:
             return
-        self._serving = True
+        self.serving = True
         try:
-            while self._changed and self.holder is None and self._places:
+            while self._changed and self.holder is None and self.places:
                 self._changed = False
                 place = self._next()
                 if place is not None:
                     self._give(place)
         finally:
-            self._serving = False
+            self.serving = False
 
     def withdraw(self, execution: OperationExecution) -> bool:
         """Forget an operation that has not begun; False when it is not waiting to begin."""
-        for place in self._places:
+        for place in self.places:
             if place.execution is execution and place.granted is None:
-                self._places.remove(place)
+                self.places.remove(place)
                 return True
         return False
 
     def waiting_to_begin(self) -> list[OperationExecution]:
         """The operations that wait for their first turn, in their order."""
-        return [place.execution for place in self._places if place.granted is None]
+        return [place.execution for place in self.places if place.granted is None]
 
     def _next(self) -> Place | None:
-        for index, place in enumerate(self._places):
+        for index, place in enumerate(self.places):
             if self._may_go(place):
-                del self._places[index]
+                del self.places[index]
                 return place
         return None
 
