@@ -8,7 +8,8 @@ from jacaros.sim.door_server import DoorServer
 from jacaros.sim.map_server import MapServer
 from jacaros.sim.navigation.grid import Grid
 from jacaros.sim.navigation.robot import RobotNavigation
-from jacaros.sim.robot_node import TICKS_PER_SECOND, RobotNode
+from jacaros.sim.robot_node import RobotNode
+from jacaros.sim.robot_sensors import TICKS_PER_SECOND
 from jacaros.sim.world import World
 from jacaros.sim.world_time import WorldTime
 

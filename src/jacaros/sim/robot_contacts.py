@@ -16,12 +16,10 @@ Nothing is computed unless somebody listens.
 import math
 from typing import Any
 
-from jacaros.ros.backend import Backend, Publisher
-from jacaros.ros.errors import UnknownInterface
-from jacaros.ros.message import constant, stamp
+from jacaros.ros.backend import Publisher
+from jacaros.ros.message import constant
 from jacaros.sim.navigation.sight import hidden
-from jacaros.sim.robot import Robot
-from jacaros.sim.world_time import WorldTime
+from jacaros.sim.robot_sensors import RobotOnGraph
 
 _TICKS_PER_HAZARD = 2
 _TICKS_PER_DOCK = 10
@@ -36,36 +34,21 @@ _KOBUKI = {"left": "LEFT", "front": "CENTER", "right": "RIGHT"}
 
 
 class RobotContacts:
-    """The bumper and dock topics of one robot.
+    """The bumper and dock topics of one robot."""
 
-    Args:
-        time: the world, on a clock.
-        robot: which of its robots.
-        backend: the graph; it is started already.
-        prefix: of the robot's topics.
-        frame_prefix: of its frames.
-    """
-
-    def __init__(
-        self, time: WorldTime, robot: Robot, backend: Backend, prefix: str, frame_prefix: str
-    ) -> None:
-        self._time, self._robot, self._backend = time, robot, backend
-        self._prefix, self._frame_prefix = prefix, frame_prefix
-        self._hazards = self._join("/hazard_detection", "irobot_create_msgs/msg/HazardDetectionVector")
-        self._dock = self._join("/dock_status", "irobot_create_msgs/msg/DockStatus")
-        self._state = self._join("/sensor_state", "turtlebot3_msgs/msg/SensorState")
-        self._bumper = self._join("/mobile_base/events/bumper", "kobuki_msgs/msg/BumperEvent")
-        self._core = self._join("/mobile_base/sensors/core", "kobuki_msgs/msg/SensorState")
+    def __init__(self, at: RobotOnGraph) -> None:
+        self._at, self._time, self._robot = at, at.time, at.robot
+        self._hazards = at.publisher_if_known(
+            "/hazard_detection", "irobot_create_msgs/msg/HazardDetectionVector"
+        )
+        self._dock = at.publisher_if_known("/dock_status", "irobot_create_msgs/msg/DockStatus")
+        self._state = at.publisher_if_known("/sensor_state", "turtlebot3_msgs/msg/SensorState")
+        self._bumper = at.publisher_if_known("/mobile_base/events/bumper", "kobuki_msgs/msg/BumperEvent")
+        self._core = at.publisher_if_known("/mobile_base/sensors/core", "kobuki_msgs/msg/SensorState")
         # There is nothing to fall off, and so nothing is told.
-        self._cliff = self._join("/mobile_base/events/cliff", "kobuki_msgs/msg/CliffEvent")
+        self._cliff = at.publisher_if_known("/mobile_base/events/cliff", "kobuki_msgs/msg/CliffEvent")
         self._pressed: frozenset[str] = frozenset()
         self._docked: bool | None = None
-
-    def _join(self, topic: str, type_name: str) -> Publisher | None:
-        try:
-            return self._backend.publisher(self._prefix + topic, type_name)
-        except UnknownInterface:  # not a robot of this kind
-            return None
 
     def publish(self, ticks: int) -> None:
         """Publish what is due at this tick of 20 Hz."""
@@ -91,23 +74,23 @@ class RobotContacts:
         message = publisher.message(battery=round(132 + 0.33 * battery.level))
         state = "DOCKING_CHARGING" if battery.charging else "DOCKING_CHARGED" if docked else "DISCHARGING"
         message.charger = constant(message, state)
-        self._head(message.header, "base_link")
+        self._at.fill_header(message.header, "base_link")
         publisher.publish(message)
 
     def _publish_hazards(self, publisher: Any, pressed: frozenset[str]) -> None:
         detections = []
         for side in sorted(pressed & _BUMPERS.keys()):
-            hazard = self._backend.message("irobot_create_msgs/msg/HazardDetection")
-            self._head(hazard.header, _BUMPERS[side])
+            hazard = self._at.backend.message("irobot_create_msgs/msg/HazardDetection")
+            self._at.fill_header(hazard.header, _BUMPERS[side])
             hazard.type = constant(hazard, "BUMP")
             detections.append(hazard)
         message = publisher.message(detections=detections)
-        self._head(message.header, "base_link")
+        self._at.fill_header(message.header, "base_link")
         publisher.publish(message)
 
     def _publish_dock(self, publisher: Any, docked: bool) -> None:
         message = publisher.message(is_docked=docked, dock_visible=docked or self._sees_dock())
-        self._head(message.header, "base_link")
+        self._at.fill_header(message.header, "base_link")
         publisher.publish(message)
 
     def _sees_dock(self) -> bool:
@@ -122,7 +105,7 @@ class RobotContacts:
 
     def _publish_state(self, publisher: Any, pressed: frozenset[str]) -> None:
         message = publisher.message()
-        self._head(message.header, "base_link")
+        self._at.fill_header(message.header, "base_link")
         forward = bool(pressed - {"back"})
         message.bumper = forward * constant(message, "BUMPER_FORWARD")
         message.bumper += ("back" in pressed) * constant(message, "BUMPER_BACKWARD")
@@ -140,10 +123,6 @@ class RobotContacts:
             message.bumper = constant(message, _KOBUKI[side])
             message.state = constant(message, "PRESSED" if side in pressed else "RELEASED")
             publisher.publish(message)
-
-    def _head(self, header: Any, frame: str) -> None:
-        stamp(header.stamp, self._time.now())
-        header.frame_id = self._frame_prefix + frame
 
     def close(self) -> None:
         """Leave the topics."""

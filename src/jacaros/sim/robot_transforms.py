@@ -7,15 +7,14 @@ A robot that localises itself tells where it believes to be, latched, when it ha
 import math
 from typing import Any
 
-from jacaros.ros.backend import TRANSFORMS, Backend, Publisher
+from jacaros.ros.backend import TRANSFORMS, Publisher
 from jacaros.ros.errors import RosError, UnknownInterface
 from jacaros.ros.message import stamp
 from jacaros.ros.qos import QoS
 from jacaros.sim.navigation.frames import BASE, FOOTPRINT, MAP, ODOMETRY, SCAN
-from jacaros.sim.navigation.localisation import FOUND, Localisation
+from jacaros.sim.navigation.localisation import FOUND
 from jacaros.sim.navigation.placement import Placement, distance
-from jacaros.sim.robot import Robot
-from jacaros.sim.world_time import WorldTime
+from jacaros.sim.robot_sensors import RobotOnGraph
 
 _TRANSFORM = "geometry_msgs/msg/TransformStamped"
 _HERE = Placement(0.0, 0.0)
@@ -27,21 +26,15 @@ class RobotTransforms:
     ``map`` to ``odom`` and ``odom`` to ``base_footprint`` go to ``/tf``, twenty times a second; ``base_footprint`` to
     ``base_link`` to ``base_scan``, all at the same place, and the robot's own ``map`` if it has a namespace, to
     ``/tf_static``, once.
-
-    Args:
-        time: the world, on a clock.
-        robot: which of its robots.
-        localisation: where it believes to be.
-        backend: the graph; it is started already.
     """
 
-    def __init__(self, time: WorldTime, robot: Robot, localisation: Localisation, backend: Backend) -> None:
-        self._time, self._robot, self._localisation, self._backend = time, robot, localisation, backend
-        namespace = robot.description.namespace
-        self._prefix = f"{namespace}/" if namespace else ""
+    def __init__(self, at: RobotOnGraph) -> None:
+        self._time, self._robot, self._backend = at.time, at.robot, at.backend
+        self._localisation = at.localisation
+        self._prefix = at.frame_prefix
         self._publisher = self._join()
         self._static_is_out = False
-        if backend.name != "memory":
+        if at.backend.name != "memory":
             # On other graphs it is not known who listens to /tf_static alone.
             self._publish_static()
 
@@ -54,8 +47,9 @@ class RobotTransforms:
         except UnknownInterface:  # tf2_msgs is not everywhere where ROS 2 is
             return None
 
-    def publish(self) -> None:
-        """Publish where the robot believes to be."""
+    def publish(self, ticks: int) -> None:
+        """Publish where the robot believes to be, at every tick."""
+        del ticks
         publisher = self._publisher
         if publisher is None or not publisher.subscription_count:
             return
@@ -107,38 +101,19 @@ _LATCHED = QoS(durability="transient_local", depth=1)
 
 
 class AmclPose:
-    """Publishes the pose of one robot on the map; nothing is worked out until somebody has listened.
+    """Publishes the pose of one robot on the map; nothing is worked out until somebody has listened."""
 
-    Args:
-        time: the world, on a clock.
-        robot: which of its robots.
-        localisation: where it believes to be.
-        backend: the graph; it is started already.
-        prefix: of the robot's topics.
-        frame_prefix: of its frames.
-    """
-
-    def __init__(
-        self,
-        time: WorldTime,
-        robot: Robot,
-        localisation: Localisation,
-        backend: Backend,
-        prefix: str,
-        frame_prefix: str,
-    ) -> None:
-        self._time, self._robot, self._localisation = time, robot, localisation
-        self._frame = frame_prefix + MAP
-        self._publisher = backend.publisher(f"{prefix}/amcl_pose", TYPE, _LATCHED)
+    def __init__(self, at: RobotOnGraph) -> None:
+        self._time, self._robot, self._localisation = at.time, at.robot, at.localisation
+        self._frame = at.frame_prefix + MAP
+        self._publisher = at.publisher("/amcl_pose", TYPE, _LATCHED)
         self._is_wanted = False
         self._at = (math.inf, math.inf, 0.0)
         self._variances: tuple[float, float] | None = None
 
-    def publish(self) -> None:
-        """Publish the pose if the robot has moved, or its place is known more or less well than before.
-
-        The world has caught up.
-        """
+    def publish(self, ticks: int) -> None:
+        """Publish the pose if the robot has moved, or its place is known more or less well than before."""
+        del ticks
         if not self._is_wanted:
             if not self._publisher.subscription_count:
                 return

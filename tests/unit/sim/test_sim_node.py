@@ -18,6 +18,8 @@ from jacaros.ros.message import to_seconds
 from jacaros.ros.open import open_backend
 from jacaros.sim import GroundTruth, SimNode, World, serve
 from jacaros.sim.process import GroundTruthFile
+from jacaros.sim.robot_node import RobotNode
+from jacaros.sim.robot_sensors import RobotOnGraph
 from jacaros.sim.scaled_clock import ScaledClock
 
 TWIST = "geometry_msgs/msg/Twist"
@@ -334,3 +336,43 @@ def test_a_scaled_clock_runs_at_its_speed(monkeypatch: pytest.MonkeyPatch) -> No
     fast.call_later(2.0, lambda: None)
     slow.call_later(2.0, lambda: None)
     assert delays == [0.5, 4.0]
+
+
+class Sonar:
+    """A sensor of a project: how far the robot is from the origin."""
+
+    def __init__(self, at: RobotOnGraph) -> None:
+        self._at = at
+        self._publisher = at.publisher("/sonar", "sensor_msgs/msg/Range")
+
+    def publish(self, ticks: int) -> None:
+        if ticks % 10 == 0:
+            message = self._publisher.message(range=math.hypot(self._at.robot.x, self._at.robot.y))
+            self._at.fill_header(message.header, "sonar")
+            self._publisher.publish(message)
+
+    def close(self) -> None:
+        self._publisher.close()
+
+
+def test_another_sensor_is_one_class() -> None:
+    heard: list[tuple[str, float]] = []
+
+    async def body(run: Run) -> None:
+        (robot, *_) = run.world.robots.values()
+        node = RobotNode(run.node.time, robot, run.backend, (Sonar,))
+        prefix = node.prefix
+        run.backend.subscription(
+            f"{prefix}/sonar",
+            "sensor_msgs/msg/Range",
+            lambda sample: heard.append((sample.message.header.frame_id, sample.message.range)),
+        )
+        for _ in range(20):
+            node.publish()
+        await run.clock.sleep(0.01)
+        node.close()
+
+    in_world("patrol", body)
+    assert len(heard) == 2
+    assert heard[0][0].endswith("sonar")
+    assert heard[0][1] >= 0.0
