@@ -24,7 +24,9 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     group.addoption("--require-ros1", action="store_true", help="fail, do not skip, when ROS 1 is missing")
     group.addoption("--require-ros2", action="store_true", help="fail, do not skip, when ROS 2 is missing")
     group.addoption(
-        "--require-rosbridge", action="store_true", help="fail, do not skip, when roslibpy is missing"
+        "--require-rosbridge",
+        action="store_true",
+        help="fail, do not skip, when websockets or roslibpy is missing",
     )
 
 

@@ -54,7 +54,7 @@ def test_a_failing_hook_keeps_no_other_back(graph: Any, pair: Pair, topic: str) 
     assert "an exit hook failed: ValueError: this hook is broken" in driver.log()
 
 
-@pytest.mark.only("ros1", "ros2")
+@pytest.mark.only("ros1", "ros2", "rosbridge-ros2")
 @pytest.mark.parametrize("how", ["SIGINT", "SIGTERM", "SIGHUP"])
 def test_a_signal_stops_the_robot(graph: Any, pair: Pair, topic: str, how: str) -> None:
     _, watcher = pair
@@ -65,7 +65,7 @@ def test_a_signal_stops_the_robot(graph: Any, pair: Pair, topic: str, how: str) 
     assert code == {"SIGINT": -2, "SIGTERM": 143, "SIGHUP": 129}[how]
 
 
-@pytest.mark.only("ros1", "ros2")
+@pytest.mark.only("ros1", "ros2", "rosbridge-ros2")
 @pytest.mark.parametrize(("how", "code"), [("exception", 1), ("exit", 7), ("return", 0)])
 def test_the_end_of_the_program_stops_the_robot(
     graph: Any, pair: Pair, topic: str, how: str, code: int
@@ -77,7 +77,7 @@ def test_the_end_of_the_program_stops_the_robot(
     assert_stopped(graph, watcher, f"{topic}/{how}")
 
 
-@pytest.mark.only("ros1", "ros2")
+@pytest.mark.only("ros1", "ros2", "rosbridge-ros2")
 def test_a_busy_program_stops_the_robot_at_a_signal(graph: Any, pair: Pair, topic: str) -> None:
     _, watcher = pair
     driver = driving(graph, watcher, topic)
@@ -87,7 +87,7 @@ def test_a_busy_program_stops_the_robot_at_a_signal(graph: Any, pair: Pair, topi
     assert_stopped(graph, watcher, topic)
 
 
-@pytest.mark.only("ros1", "ros2")
+@pytest.mark.only("ros1", "ros2", "rosbridge-ros2")
 def test_a_closed_node_costs_nothing(graph: Any, pair: Pair, topic: str) -> None:
     _, watcher = pair
     node = graph.peer("resting")

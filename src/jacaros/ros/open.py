@@ -16,7 +16,7 @@ _OPTIONS: dict[str, set[str]] = {
     "ros2": {"domain_id"},
     "rosbridge": {"url"},
 }
-_LIBRARIES = {"ros1": "rospy", "ros2": "rclpy", "rosbridge": "roslibpy"}
+_LIBRARIES = {"ros1": "rospy", "ros2": "rclpy", "rosbridge": "websockets"}
 _CURES = {
     "ros1": (
         "On Debian 12 install python3-rospy and the message packages with apt-get and use a venv made by "

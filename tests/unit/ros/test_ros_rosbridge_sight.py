@@ -10,7 +10,7 @@ class Server:
 
     def __init__(self) -> None:
         self.asked: list[str] = []
-        self.requests = Requests(self._take)
+        self.requests = Requests(self._take, lambda question, seconds: None)
         self.sight = Sight(self.requests, "/rosapi/subscribers", {}, lambda seen: len(seen["subscribers"]), 0)
 
     def _take(self, operation: dict[str, Any]) -> bool:

@@ -1,17 +1,17 @@
-"""A robot behind a rosbridge server, for a machine without ROS: JSON over a WebSocket, through roslibpy.
+"""A robot behind a rosbridge server, for a machine without ROS: JSON over a WebSocket.
 
 The server (``rosbridge_server`` of ROS 1 or ROS 2) is the node in the graph; we are one of its clients.  So the graph
 knows us by the server's name, and what rosapi, the node beside it, does not tell cannot be known.  Which ROS it is, is
 asked at each connection.  The message classes are those of the `memory` backend.
 
-Everything comes in on roslibpy's thread.  Messages wait there in the queues of the subscriptions, answers in `Requests`;
-the rest is handed to the loop.
+Everything happens on the loop; only exit hooks may send from another thread (see `Link`).
 """
 
 import asyncio
 import contextlib
 import os
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 from weakref import WeakValueDictionary
 
@@ -38,12 +38,12 @@ from jacaros.ros.backends.rosbridge_members import Members
 from jacaros.ros.backends.rosbridge_messages import Translator
 from jacaros.ros.backends.rosbridge_parameter_services import read
 from jacaros.ros.backends.rosbridge_parameters import BridgeParameters
-from jacaros.ros.backends.rosbridge_requests import Done, Requests
+from jacaros.ros.backends.rosbridge_requests import Requests
 from jacaros.ros.backends.rosbridge_services import BridgeClient, BridgeService
 from jacaros.ros.backends.rosbridge_topics import BridgePublisher, BridgeSubscription
 from jacaros.ros.backends.rosbridge_types import BridgeSchema, written_on_ros1
 from jacaros.ros.calling import settle
-from jacaros.ros.errors import CallFailed, CallTimedOut, CapabilityMissing, ServiceError, ServiceUnavailable
+from jacaros.ros.errors import CallFailed, CallTimedOut, CapabilityMissing, ServiceUnavailable
 from jacaros.ros.graph import GraphContents
 from jacaros.ros.handoff import post
 from jacaros.ros.lifetime import Lifetime
@@ -86,7 +86,7 @@ class RosbridgeBackend(Node):
             )
         self.url = checked_url(url or os.environ.get("ROSBRIDGE_URI") or DEFAULT_URL)
         self._link = Link(self.url, self._link_up, self._link_down, self._received, self._say)
-        self.requests = Requests(self._link.send)
+        self.requests = Requests(self._link.send, self._link.ask)
         self._schema = BridgeSchema(settings.interface_paths, self._ask_for_type, self._cannot_ask)
         super().__init__(settings, self._schema, Lifetime(settings.log, self._leave, threaded=True))
         self.translator = Translator(self._schema)
@@ -135,6 +135,7 @@ class RosbridgeBackend(Node):
     async def close(self) -> None:
         """Run the exit hooks and disconnect."""
         await self.lifetime.leave()
+        self._link.stop()
         if self._greeting is not None:
             self._greeting.cancel()
         for check in self._checks:
@@ -229,14 +230,6 @@ class RosbridgeBackend(Node):
         """A type in full form as the server writes it."""
         return written_on_ros1(type_name) if self.ros_version == 1 else type_name
 
-    def settling(self, answer: asyncio.Future[Any]) -> Done:
-        """What settles a future of the loop from another thread."""
-
-        def done(values: dict[str, Any] | None, problem: ServiceError | None) -> None:
-            post(self.loop, settle, answer, values, problem)
-
-        return done
-
     def require_connection(self, service: str) -> None:
         """Raise `ServiceUnavailable` while there is no server."""
         if not self.connected:
@@ -267,7 +260,7 @@ class RosbridgeBackend(Node):
 
     async def _rosapi(self, service: str, arguments: dict[str, Any], timeout: float | None) -> Any:
         answer: asyncio.Future[Any] = self.loop.create_future()
-        number = self.requests.begin(f"/rosapi/{service}", arguments, self.settling(answer), timeout)
+        number = self.requests.begin(f"/rosapi/{service}", arguments, partial(settle, answer), timeout)
         try:
             return await within(self.clock, answer, timeout)
         except TimeoutError:
@@ -276,14 +269,7 @@ class RosbridgeBackend(Node):
         finally:
             self.requests.forget(number)
 
-    # On roslibpy's thread:
-
-    def _link_up(self) -> None:
-        post(self.loop, self._begin_greeting)
-
-    def _link_down(self) -> None:
-        self.attached = False
-        post(self.loop, self._disconnected)
+    # For the link:
 
     def _received(self, message: dict[str, Any]) -> None:
         operation = message["op"]
@@ -291,14 +277,10 @@ class RosbridgeBackend(Node):
             feed = self.members.known_feed(str(message.get("topic")))
             if feed is not None:
                 feed.put(message.get("msg"))
-        elif operation == "service_response":
-            self.requests.answered(message)
-        else:
-            post(self.loop, self._dispatch, operation, message)
+        else:  # in its turn, after the messages of topics that came before
+            self.loop.call_soon(self._dispatch, operation, message)
 
-    # On the loop:
-
-    def _begin_greeting(self) -> None:
+    def _link_up(self) -> None:
         if self._greeting is not None:
             self._greeting.cancel()
         self._ended_at = ""
@@ -327,8 +309,8 @@ class RosbridgeBackend(Node):
         if self._first_look is not None and not self._first_look.done():
             self._first_look.set_result(None)
 
-    def _disconnected(self) -> None:
-        self.attached = False  # again: a greeting may have ended meanwhile
+    def _link_down(self) -> None:
+        self.attached = False
         if self._greeting is not None:
             self._greeting.cancel()
         self.requests.fail_all()
@@ -354,7 +336,9 @@ class RosbridgeBackend(Node):
 
     def _do(self, operation: str, message: dict[str, Any]) -> None:
         number = str(message.get("id"))
-        if operation == "call_service":
+        if operation == "service_response":
+            self.requests.answered(message)
+        elif operation == "call_service":
             service = self._services.get(str(message.get("service")))
             if service is not None:
                 service.called(message)

@@ -5,17 +5,15 @@ actionlib wraps around an action's own (``pkg/NameActionGoal`` and so on).
 """
 
 from collections.abc import Callable
-from typing import Any
 
 from jacaros.ros.backend import Sample
 from jacaros.ros.backends.rosbridge_node import BridgeNode
 from jacaros.ros.backends.rosbridge_topics import BridgePublisher, BridgeSubscription
-from jacaros.ros.handoff import Handoff
 from jacaros.ros.orphans import Orphans
 from jacaros.ros.qos import DEFAULT_QOS, QoS
 
 WAITING = 300
-"""Messages of an action's topics that may wait for the loop."""
+"""Messages of each of an action's topics that may wait for the loop: none is dropped, so their order stays."""
 
 
 class ActionTopics:
@@ -33,9 +31,6 @@ class ActionTopics:
         self.clock = node.clock
         self.log = node.log
         self.factory = node.factory
-        self._queue: Handoff[tuple[_Lane, Any]] = Handoff(
-            node.loop, WAITING, lambda item: item[0].deliver(item[1])
-        )
 
     @property
     def orphans(self) -> Orphans:
@@ -58,32 +53,10 @@ class ActionTopics:
     ) -> BridgeSubscription:
         """Have *callback* called for every message."""
 
-        def queue(deliver: Callable[[Any], None]) -> _Lane:
-            return _Lane(self._queue, deliver)
-
-        made = BridgeSubscription(self._node, topic, type_name, callback, qos, None, queue)
+        made = BridgeSubscription(self._node, topic, type_name, callback, qos, None, WAITING)
         self._node.members.add(made)
         return made
 
     def add_exit_hook(self, hook: Callable[[], None]) -> Callable[[], None]:
         """Have *hook* called when the process stops."""
         return self._node.add_exit_hook(hook)
-
-
-class _Lane:
-    """One topic's part of the queue that all share."""
-
-    def __init__(self, queue: "Handoff[tuple[_Lane, Any]]", deliver: Callable[[Any], None]) -> None:
-        self._queue = queue
-        self._deliver = deliver
-        self._closed = False
-
-    def put(self, item: Any) -> None:
-        self._queue.put((self, item))
-
-    def deliver(self, item: Any) -> None:
-        if not self._closed:
-            self._deliver(item)
-
-    def close(self) -> None:
-        self._closed = True

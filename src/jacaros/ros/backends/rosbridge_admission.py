@@ -11,7 +11,6 @@ from typing import Any, Protocol
 from jacaros.clock import Timer
 from jacaros.ros.backends.rosbridge_node import BridgeNode
 from jacaros.ros.errors import ServiceError
-from jacaros.ros.handoff import post
 from jacaros.ros.names import message_type
 
 FIRST_PAUSE, LONGEST_PAUSE = 1.0, 16.0
@@ -82,12 +81,9 @@ class Admission:
     def _look(self) -> None:
         self._timer = None
         if self._cases and self._node.attached:
-            self._node.requests.begin("/rosapi/topics", {}, self._answered)
+            self._node.requests.begin("/rosapi/topics", {}, self._judge)
 
-    def _answered(self, values: dict[str, Any] | None, _: ServiceError | None) -> None:
-        post(self._node.loop, self._judge, values)
-
-    def _judge(self, values: dict[str, Any] | None) -> None:
+    def _judge(self, values: dict[str, Any] | None, _: ServiceError | None) -> None:
         if values is not None and isinstance(values.get("topics"), list):
             types = dict(zip(values["topics"], values.get("types") or (), strict=False))
             for asked, case in list(self._cases.items()):

@@ -1,101 +1,240 @@
-"""The WebSocket to a rosbridge server, through roslibpy's asyncio transport: connecting, and connecting again.
+"""The connection to a rosbridge server, on the loop: made, watched, and made again whenever it is lost.
 
-roslibpy brings two transports.  Twisted's reactor is one for the process and cannot be started twice; asyncio's loop is
-one more loop, in a daemon thread that roslibpy keeps, and touches no signal handlers.  Both were as fast in measurements
-(docs/decisions).  Of roslibpy's classes the connection is used, below its ``Ros`` and ``Topic``: those tell nothing of
-messages lost while the link is down, know no actions of a server's side, and call back without an order of shutting down.
+The loop reads.  Any thread can write: the exit hooks, which stop the robot, run in a thread when the loop is stuck or has
+ended, and what they send must leave all the same.  So frames do not pass asyncio's transport, whose buffer only the loop
+empties.  They go to the socket directly, under a lock for which no sender waits.
 
 A link is up while the server answers pings: a robot that drove out of reach closes no connection.
 """
 
 import asyncio
+import contextlib
 import json
-import logging
+import selectors
+import socket
 import threading
+import time
+from collections import deque
 from collections.abc import Callable
-from typing import Any
+from typing import Any, cast
 from urllib.parse import urlsplit
 
 import cbor2
-from roslibpy.comm.comm_asyncio import (  # type: ignore[import-untyped]
-    AsyncioRosBridgeClientFactory,
-    AsyncioRosBridgeProtocol,
-)
+from websockets.exceptions import WebSocketException
 
 from jacaros.errors import UsageError
 from jacaros.ros.backends.rosbridge_fragments import Fragments, frames
+from jacaros.ros.backends.rosbridge_wire import Wire, address
+from jacaros.ros.handoff import post
 
-FIRST_PAUSE, LONGEST_PAUSE = 0.25, 2.0
-"""Seconds between two attempts to connect: at first, and at most."""
+FIRST_PAUSE, LONGEST_PAUSE, GROWTH = 0.25, 2.0, 1.7
+"""Seconds between two attempts to connect: at first, and at most; and by what each is longer than the one before."""
 CONNECTING = 4.0
 """Seconds after which an attempt is given up: a network that swallows packets says nothing for minutes."""
 PING_EVERY, PING_PATIENCE = 1.0, 4.0
 """Seconds between pings, and for the answer."""
 BACKLOG = 4_000_000
 """Bytes that may wait for a slow network; what is published beyond is dropped, for it would arrive too late anyway."""
+TRY_AGAIN = 0.002
+"""Seconds until what a slow network did not take is offered to it again."""
+LAST_MESSAGE = 0.5
+"""Seconds that a thread which is not the loop's waits for the network to take a message: nobody else may offer it again."""
+GOODBYE = 0.5
+"""Seconds for the server to close the connection when it is told that we leave."""
 
 
-class _Protocol(AsyncioRosBridgeProtocol):  # type: ignore[misc]
-    """One connection; all but ``send_message`` and ``backlog`` is called on roslibpy's thread."""
+class Connection(asyncio.Protocol):
+    """One connection.
 
-    factory: "_Factory"
-    transport: Any
+    Args:
+        url: address of the server.
+        on_message: called with each message, and whether it is binary.
+    """
 
-    def __init__(self) -> None:
-        super().__init__()
-        self._handed_over = 0
+    def __init__(self, url: str, on_message: Callable[[bytes, bool], None]) -> None:
+        self._loop = asyncio.get_running_loop()
+        self._home = threading.get_ident()
+        self._wire = Wire(url)
+        self._on_message = on_message
+        self._queued: deque[bytes] = deque()
+        self._output = bytearray()
         self._lock = threading.Lock()
+        """Held for reading and writing, never while anything waits.  Only readers wait for it."""
+        self._retrying = False
+        self._transport: asyncio.Transport | None = None
+        self._timer: asyncio.TimerHandle | None = None
+        self._ping_sent: float | None = None
+        self.opened: asyncio.Future[None] = self._loop.create_future()
+        self.ended: asyncio.Future[None] = self._loop.create_future()
+        self.over = False
+        """Whether nothing can be read any more."""
 
-    def send_message(self, payload: bytes) -> None:
-        self._count(len(payload))
-        super().send_message(payload)
-
-    def _send(self, payload: bytes) -> None:
-        self._count(-len(payload))
-        super()._send(payload)
-
-    def _count(self, size: int) -> None:
-        with self._lock:
-            self._handed_over += size
-
-    def onMessage(self, payload: bytes, isBinary: bool) -> None:  # noqa: N802, N803
-        self.factory.link.received(payload, isBinary)
-
+    @property
     def backlog(self) -> int:
-        """Bytes that wait: for roslibpy's thread, and for the network."""
-        return self._handed_over + int(self.transport.get_write_buffer_size())
+        """Bytes that wait for the network."""
+        return len(self._output)
 
+    @property
+    def is_open(self) -> bool:
+        """Whether messages can be sent."""
+        return not self.over and self._wire.opened
 
-class _Factory(AsyncioRosBridgeClientFactory):  # type: ignore[misc]
-    """Connects, and connects again."""
+    # asyncio's:
 
-    protocol = _Protocol
-    compression = None  # costs more time than it saves in a local network
-    initialDelay, maxDelay, factor = FIRST_PAUSE, LONGEST_PAUSE, 1.7  # noqa: N815 (roslibpy's names)
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        self._transport = cast("asyncio.Transport", transport)  # proactors' are not of the class
+        self._socket: socket.socket = transport.get_extra_info("socket").dup()
+        self._push()
 
-    def __init__(self, link: "Link", url: str) -> None:
-        self.link = link
-        super().__init__(url)
-        self.setProtocolOptions(
-            autoPingInterval=PING_EVERY, autoPingTimeout=PING_PATIENCE, openHandshakeTimeout=CONNECTING
-        )
+    def data_received(self, data: bytes) -> None:
+        self._ping_sent = None
+        self._take(data, self._on_message)
+        if not self.opened.done() and self._wire.opened:
+            self.opened.set_result(None)
+            self._ping_later()
+        elif not self.opened.done() and self._wire.failure is not None:
+            self.drop()
 
-    async def _connect_async(self) -> None:
-        if self._stop:  # closed between two attempts
+    def connection_lost(self, exc: Exception | None) -> None:
+        if self._timer is not None:
+            self._timer.cancel()
+        self._lose()
+        if not self.opened.done():
+            self.opened.set_exception(exc or self._wire.failure or ConnectionError("closed by the server"))
+        self.ended.set_result(None)
+
+    # For the link:
+
+    def send(self, text: bytes) -> None:
+        """Send a message, from any thread and even in a signal handler."""
+        self._queued.append(text)
+        if not self._push() and threading.get_ident() != self._home:
+            self.flush(LAST_MESSAGE)
+
+    def flush(self, seconds: float) -> None:
+        """Wait until what was sent has left the process; blocks."""
+        deadline = time.monotonic() + seconds
+        while not self._push() and time.monotonic() < deadline:
+            time.sleep(TRY_AGAIN)
+
+    def close(self) -> None:
+        """Say goodbye to the server, after what was sent; from any thread."""
+        with self._lock:
+            while self._queued:
+                self._wire.send(self._queued.popleft())
+            self._wire.close()
+        self.flush(LAST_MESSAGE)
+
+    def drop(self) -> None:
+        """End the connection, from any thread."""
+        if self._transport is None or self.over:
             return
+        if not (self._loop.is_running() and post(self._loop, self._transport.abort)):
+            with contextlib.suppress(OSError):
+                self._socket.shutdown(socket.SHUT_RDWR)
+            self._lose()
+
+    def wait(
+        self, done: Callable[[], object], seconds: float, on_message: Callable[[bytes, bool], None]
+    ) -> None:
+        """Block until *done* gives True or the connection is lost.
+
+        The loop reads meanwhile if it runs in another thread; otherwise it is waiting here, or has ended, and this thread
+        reads in its place.
+        """
+        deadline = time.monotonic() + seconds
+        while not (done() or self.over) and (rest := deadline - time.monotonic()) > 0.0:
+            if self._loop.is_running() and threading.get_ident() != self._home:
+                time.sleep(min(rest, TRY_AGAIN))
+            else:
+                self._read_here(min(rest, 0.1), on_message)
+
+    def _lose(self) -> None:
+        with self._lock:
+            self.over = True
+            self._output.clear()
+            self._socket.close()
+
+    def _read_here(self, seconds: float, on_message: Callable[[bytes, bool], None]) -> None:
+        self._push()
+        with selectors.DefaultSelector() as selector:
+            selector.register(self._socket, selectors.EVENT_READ)
+            if not selector.select(seconds):
+                return
         try:
-            async with asyncio.timeout(CONNECTING):
-                await super()._connect_async()
-        except TimeoutError:
-            self._schedule_reconnect()
+            data = self._socket.recv(262144)
+        except BlockingIOError:
+            return
+        except OSError:
+            data = b""
+        if data:
+            self._take(data, on_message)
+        else:
+            self.over = True
 
-    def _schedule_reconnect(self) -> None:
-        self.link.failed()
-        super()._schedule_reconnect()
+    def _take(self, data: bytes, on_message: Callable[[bytes, bool], None]) -> None:
+        try:
+            with self._lock:
+                messages = self._wire.feed(data)
+        except OSError:  # of TLS
+            self.drop()
+            return
+        self._push()
+        for payload, binary in messages:
+            on_message(payload, binary)
 
-    def halt(self) -> None:
-        """Connect no more."""
-        self._stop = True
+    def _push(self) -> bool:
+        """Give the network what it takes now; return False when some must wait.
+
+        A thread that finds the lock taken returns: the one that has it looks again for what was queued meanwhile.
+        """
+        while self._lock.acquire(blocking=False):
+            try:
+                sent = self._write()
+            finally:
+                self._lock.release()
+            if not sent:
+                if not self._retrying:
+                    self._retrying = post(self._loop, self._push_later)
+                return False
+            if not self._queued:
+                break
+        return True
+
+    def _push_later(self) -> None:
+        self._loop.call_later(TRY_AGAIN, self._push_again)
+
+    def _push_again(self) -> None:
+        self._retrying = False
+        self._push()
+
+    def _write(self) -> bool:
+        while self._queued:
+            self._wire.send(self._queued.popleft())
+        self._output += self._wire.output()
+        try:
+            while self._output:
+                del self._output[: self._socket.send(self._output)]
+        except (BlockingIOError, InterruptedError):
+            return False
+        except OSError:  # the reader learns it, too
+            self._output.clear()
+        return True
+
+    def _ping_later(self) -> None:
+        self._timer = self._loop.call_later(PING_EVERY, self._ping)
+
+    def _ping(self) -> None:
+        now = self._loop.time()
+        if self._ping_sent is None:
+            self._ping_sent = now
+            with self._lock:
+                self._wire.ping()
+            self._push()
+        elif now - self._ping_sent > PING_PATIENCE:
+            self.drop()
+            return
+        self._ping_later()
 
 
 class Link:
@@ -103,10 +242,10 @@ class Link:
 
     Args:
         url: address of the server, ``ws://robot.lab.example:9090``.
-        on_up: called on roslibpy's thread when the connection is there.
+        on_up: called on the loop when the connection is there.
         on_down: called there when it is lost, and when an attempt has failed.
         on_message: called there with each message of the server.
-        on_problem: called there with a line about what cannot be understood.
+        on_problem: called, from any thread, with a line about what cannot be understood.
     """
 
     def __init__(
@@ -117,30 +256,32 @@ class Link:
         on_message: Callable[[dict[str, Any]], None],
         on_problem: Callable[[str], None],
     ) -> None:
-        # Connections that fail are told through `Waiting`; roslibpy would print tracebacks as well.
-        logging.getLogger("roslibpy").setLevel(logging.CRITICAL)
         self._url = url
         self._on_up = on_up
         self._on_down = on_down
         self._on_message = on_message
         self._on_problem = on_problem
-        self._factory: _Factory | None = None
-        self._protocol: _Protocol | None = None
-        self._closing = False
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._work: asyncio.Task[None] | None = None
+        self._connection: Connection | None = None
         self._fragments = Fragments()
-        self._idle = threading.Event()
+        self._awaited: dict[str, dict[str, Any] | None] = {}
 
     @property
     def up(self) -> bool:
         """Whether there is a connection."""
-        return self._protocol is not None
+        return self._connection is not None
 
     def start(self) -> None:
-        """Begin to connect; blocks for a moment when roslibpy's thread must be started."""
-        factory = self._factory = _Factory(self, self._url)
-        factory.on("ready", self._opened)
-        factory.on("close", self._closed)
-        factory.connect()
+        """Begin to connect; on the loop."""
+        self._loop = asyncio.get_running_loop()
+        self._work = self._loop.create_task(self._keep_connected())
+
+    def stop(self) -> None:
+        """Connect no more; on the loop."""
+        self._connection = None
+        if self._work is not None:
+            self._work.cancel()
 
     def send(self, message: dict[str, Any], droppable: bool = False) -> bool:
         """Send *message*, from any thread; False when it is lost because there is no connection.
@@ -149,68 +290,107 @@ class Link:
             message: what the protocol calls an operation.
             droppable: lose it also when too much waits already.
         """
-        protocol = self._protocol
-        if protocol is None or (droppable and protocol.backlog() > BACKLOG):
+        connection = self._connection
+        if connection is None or (droppable and connection.backlog > BACKLOG):
             return False
         for frame in frames(message):
-            protocol.send_message(frame)
-        return self._protocol is protocol
+            connection.send(frame)
+        return self._connection is connection
+
+    def ask(self, question: dict[str, Any], seconds: float) -> dict[str, Any] | None:
+        """Send an operation and block, in any thread, until its answer is there; None when the connection is lost.
+
+        What else arrives meanwhile waits for the loop.
+
+        Raises:
+            TimeoutError: there is no answer within *seconds*.
+        """
+        number = question["id"]
+        self._awaited[number] = None
+        try:
+            connection = self._connection
+            if connection is None or not self.send(question):
+                return None
+            connection.wait(lambda: self._awaited[number], seconds, self._keep_for_loop)
+            if self._awaited[number] is None and not connection.over:
+                raise TimeoutError
+            return self._awaited[number]
+        finally:
+            del self._awaited[number]
 
     def finish(self, seconds: float) -> None:
         """Wait until what was sent has left the process, then close; blocks, so not on the loop."""
-        self._closing = True
-        factory, protocol = self._factory, self._protocol
-        if factory is None:
-            return
-        factory.halt()
-        if protocol is None:
-            return
-        # The connection's own thread does this after the messages that were handed to it before.
-        loop: Any = factory.manager.loop
-        loop.call_soon_threadsafe(self._close_when_sent, protocol, seconds)
-        self._idle.wait(seconds + 0.5)
+        connection = self._connection
+        if connection is not None:
+            connection.flush(seconds)
+            connection.close()
+            connection.wait(lambda: False, GOODBYE, lambda payload, binary: None)
+            connection.drop()
+        if self._loop is not None:
+            post(self._loop, self.stop)
 
     def received(self, payload: bytes, binary: bool) -> None:
-        """Take a frame of the server, JSON or, in binary ones, CBOR; on roslibpy's thread."""
+        """Take a message of the server; on the loop."""
+        operation = self._operation(payload, binary)
+        if operation is not None:
+            self._on_message(operation)
+
+    def _keep_for_loop(self, payload: bytes, binary: bool) -> None:
+        operation = self._operation(payload, binary)
+        if operation is not None and self._loop is not None:
+            post(self._loop, self._on_message, operation)
+
+    def _operation(self, payload: bytes, binary: bool) -> dict[str, Any] | None:
+        """Read a message, JSON or, in binary ones, CBOR; None if there is nothing for the loop."""
         try:
-            message = cbor2.loads(payload) if binary else json.loads(payload)
+            message: Any = cbor2.loads(payload) if binary else json.loads(payload)
             if message["op"] == "fragment":
                 message = self._fragments.add(message)
-            if message is not None and isinstance(message["op"], str):
-                self._on_message(message)
-        except (
-            Exception
-        ) as problem:  # a CBOR frame of junk may be dates, fractions, expressions: each has errors of its own
+            if message is None or not isinstance(message["op"], str):
+                return None
+            if self._awaited and message.get("id") in self._awaited:
+                self._awaited[message["id"]] = message
+                return None
+        except Exception as problem:
+            # A CBOR message of junk may be dates, fractions, expressions: each has errors of its own.
             told = f"{type(problem).__name__}: {str(problem)[:80]}"
             self._on_problem(
                 f"the rosbridge server sent a frame that is not an operation; it is ignored: {payload[:80]!r} ({told})"
             )
+            return None
+        operation: dict[str, Any] = message
+        return operation
 
-    def failed(self) -> None:
-        """An attempt to connect has failed, or the connection is lost; on roslibpy's thread."""
-        if self._protocol is None and not self._closing:
+    async def _keep_connected(self) -> None:
+        pause = FIRST_PAUSE
+        while True:
+            connection = await self._connect()
+            if connection is not None:
+                pause = FIRST_PAUSE
+                self._fragments.clear()
+                self._connection = connection
+                self._on_up()
+                # The end of a program may cancel this task before the exit hooks run: they need the connection.
+                await asyncio.shield(connection.ended)
+                self._connection = None
             self._on_down()
+            await asyncio.sleep(pause)
+            pause = min(pause * GROWTH, LONGEST_PAUSE)
 
-    def _opened(self, protocol: _Protocol) -> None:
-        if self._closing:
-            protocol.send_close()
-            return
-        self._protocol = protocol
-        self._fragments.clear()
-        self._on_up()
-
-    def _closed(self, _: Any) -> None:
-        was_up, self._protocol = self._protocol is not None, None
-        self._idle.set()
-        if was_up:
-            self._on_down()
-
-    def _close_when_sent(self, protocol: _Protocol, seconds: float) -> None:
-        if seconds > 0.0 and self._protocol is protocol and protocol.backlog():
-            loop = asyncio.get_running_loop()
-            loop.call_later(0.005, self._close_when_sent, protocol, seconds - 0.005)
-        else:
-            protocol.send_close()
+    async def _connect(self) -> Connection | None:
+        host, port = address(self._url)
+        connection = Connection(self._url, self.received)
+        try:
+            async with asyncio.timeout(CONNECTING):
+                loop = asyncio.get_running_loop()
+                await loop.create_connection(lambda: connection, host, port)
+                await connection.opened
+            return connection
+        except (OSError, UnicodeError, WebSocketException):
+            return None
+        finally:
+            if not connection.is_open:
+                connection.drop()
 
 
 def checked_url(url: str) -> str:
@@ -224,7 +404,7 @@ def checked_url(url: str) -> str:
         port = parts.port
     except ValueError:
         port, parts = None, urlsplit("")
-    if parts.scheme not in ("ws", "wss") or not parts.hostname:
+    if parts.scheme not in ("ws", "wss") or not parts.hostname or parts.fragment:
         raise UsageError(
             f"a rosbridge server has an address such as ws://robot.lab.example:9090, not {url!r}"
         )

@@ -7,7 +7,7 @@ from typing import Any, Protocol
 from jacaros.clock import Clock
 from jacaros.ros.backend import Sample
 from jacaros.ros.backends.rosbridge_messages import Translator
-from jacaros.ros.backends.rosbridge_requests import Done, Requests, Sight
+from jacaros.ros.backends.rosbridge_requests import Requests, Sight
 from jacaros.ros.lifetime import Lifetime
 from jacaros.ros.message import MessageFactory
 from jacaros.ros.orphans import Orphans
@@ -25,22 +25,11 @@ class Member(Protocol):
         """Give it up."""
 
 
-class Queue(Protocol):
-    """Takes messages on the link's thread for the loop."""
-
-    def put(self, item: Any) -> None:
-        """Queue *item*."""
-
-    def close(self) -> None:
-        """Forget what waits and take nothing more."""
-
-
 class Sink(Protocol):
     """A subscription of ours."""
 
-    @property
-    def queue(self) -> Queue:
-        """Takes what comes."""
+    def put(self, values: Any) -> None:
+        """Take a message, not decoded yet."""
 
     @property
     def depth(self) -> int:
@@ -149,9 +138,6 @@ class BridgeNode(Protocol):
 
     def add_exit_hook(self, hook: Callable[[], None]) -> Callable[[], None]:
         """Have *hook* called when the process stops."""
-
-    def settling(self, answer: asyncio.Future[Any]) -> Done:
-        """What settles a future of the loop from another thread."""
 
     def require_connection(self, service: str) -> None:
         """Raise `ServiceUnavailable` while there is no server."""

@@ -1,10 +1,6 @@
-"""Service calls through the bridge: numbered requests, their answers, and what the bridge itself is asked (rosapi).
-
-Answers arrive on the link's thread, and there the callbacks run.
-"""
+"""Service calls through the bridge: numbered requests, their answers, and what the bridge itself is asked (rosapi)."""
 
 import itertools
-import threading
 import time
 from collections.abc import Callable
 from typing import Any, Generic, TypeVar
@@ -31,18 +27,23 @@ class Requests:
 
     Args:
         send: hands an operation to the link; False when it is lost.
+        ask: sends one and blocks until the answer is there, as `Link.ask` does.
     """
 
-    def __init__(self, send: Callable[[dict[str, Any]], bool]) -> None:
+    def __init__(
+        self,
+        send: Callable[[dict[str, Any]], bool],
+        ask: Callable[[dict[str, Any], float], dict[str, Any] | None],
+    ) -> None:
         self._send = send
+        self._ask = ask
         self._numbers = itertools.count(1)
         self._pending: dict[str, tuple[str, Done]] = {}
-        self._lock = threading.Lock()
         self.interruptions = 0
         """How often the connection was lost: what was answered before the last time may not be so any more."""
 
     def begin(self, service: str, arguments: Any, done: Done, timeout: float | None = None) -> str:
-        """Call *service*; *done* is called once, on any thread, possibly at once.
+        """Call *service*; *done* is called once, possibly immediately.
 
         Args:
             service: absolute name.
@@ -53,10 +54,9 @@ class Requests:
         Returns:
             the number under which the call can be given up.
         """
-        number = f"call_service:{service}:{next(self._numbers)}"
-        with self._lock:
-            self._pending[number] = (service, done)
-        operation = {"op": "call_service", "id": number, "service": service, "args": arguments}
+        operation = self._operation(service, arguments)
+        number: str = operation["id"]
+        self._pending[number] = (service, done)
         if timeout is not None:
             operation["timeout"] = timeout
         if not self._send(operation):
@@ -67,8 +67,7 @@ class Requests:
 
     def forget(self, number: str) -> None:
         """Give a call up: nobody wants its answer any more."""
-        with self._lock:
-            self._pending.pop(number, None)
+        self._pending.pop(number, None)
 
     def answered(self, message: dict[str, Any]) -> None:
         """Take an answer of the server."""
@@ -83,37 +82,30 @@ class Requests:
     def fail_all(self) -> None:
         """End all calls: the connection is lost, and answers with it."""
         self.interruptions += 1
-        with self._lock:
-            numbers = {number: service for number, (service, _) in self._pending.items()}
-        for number, service in numbers.items():
+        for number, (service, _) in list(self._pending.items()):
             text = f"service {service}: the connection to the rosbridge server was lost during the call"
             self._end(number, None, CallFailed(text))
 
     def _end(self, number: str, values: dict[str, Any] | None, problem: ServiceError | None) -> None:
-        with self._lock:
-            _, done = self._pending.pop(number, ("", None))
+        _, done = self._pending.pop(number, ("", None))
         if done is not None:
             done(values, problem)
 
     def call_blocking(self, service: str, arguments: Any, seconds: float) -> dict[str, Any] | None:
-        """Call *service* and wait for the answer in this thread; None when it is a failure.
+        """Call *service* and block until the answer is there, in any thread; None when it is a failure.
 
         Raises:
-            TimeoutError: there is no answer in time.
+            TimeoutError: there is no answer within *seconds*.
         """
-        ended = threading.Event()
-        answers: list[dict[str, Any] | None] = []
+        answer = self._ask(self._operation(service, arguments), seconds)
+        if answer is None or not answer.get("result", True):
+            return None
+        values = answer.get("values")
+        return values if isinstance(values, dict) else {}
 
-        def done(values: dict[str, Any] | None, _: ServiceError | None) -> None:
-            answers.append(values)
-            ended.set()
-
-        number = self.begin(service, arguments, done)
-        ended.wait(seconds)
-        self.forget(number)
-        if not answers:
-            raise TimeoutError
-        return answers[0]
+    def _operation(self, service: str, arguments: Any) -> dict[str, Any]:
+        number = f"call_service:{service}:{next(self._numbers)}"
+        return {"op": "call_service", "id": number, "service": service, "args": arguments}
 
 
 def _failure(service: str, text: object) -> ServiceError:

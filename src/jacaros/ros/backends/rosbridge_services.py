@@ -1,11 +1,12 @@
 """Services through the bridge, both ways."""
 
+from functools import partial
 from typing import Any
 
 from jacaros.ros.backend import Handler
 from jacaros.ros.backends.rosbridge_node import BridgeNode
 from jacaros.ros.backends.rosbridge_requests import Sight
-from jacaros.ros.calling import AttemptingClient, ServerWatch
+from jacaros.ros.calling import AttemptingClient, ServerWatch, settle
 from jacaros.ros.errors import CallFailed, MessageMismatch, ServiceError
 from jacaros.ros.names import request_type, response_type
 from jacaros.ros.serving import Responder
@@ -43,7 +44,7 @@ class BridgeClient(AttemptingClient):
         answer = self._pending.new()
         arguments = node.translator.encode(request_type(self._type_name), message)
         patience = FOR_EVER if rest is None else rest
-        number = node.requests.begin(self.name, arguments, node.settling(answer), patience)
+        number = node.requests.begin(self.name, arguments, partial(settle, answer), patience)
         try:
             with ServerWatch(node.clock, self.name, answer, lambda: self._offered.value):
                 values = await within(node.clock, answer, rest)

@@ -1,14 +1,12 @@
 """Topics through the bridge."""
 
-import threading
 from collections import deque
 from collections.abc import Callable
 from typing import Any
 
 from jacaros.ros.backend import Sample, TopicEvent, TopicTrouble
-from jacaros.ros.backends.rosbridge_node import BridgeNode, Queue, Sink
+from jacaros.ros.backends.rosbridge_node import BridgeNode, Sink
 from jacaros.ros.backends.rosbridge_requests import Sight
-from jacaros.ros.handoff import Handoff
 from jacaros.ros.qos import QoS
 from jacaros.ros.serving import published_message
 
@@ -94,7 +92,7 @@ class BridgePublisher:
         return self._node.written_type(self._type_name)
 
     def refused(self, text: str) -> None:
-        """The server does not publish for us; on the loop."""
+        """The server does not publish for us."""
         if text not in self._told:
             self._told.add(text)
             self._node.log(f"what is published there goes nowhere: {text}")
@@ -125,7 +123,6 @@ class TopicFeed:
         self.written_type = written_type
         self.number = node.members.number("subscribe", topic)
         self._node = node
-        self._lock = threading.Lock()
         self._sinks: tuple[Sink, ...] = ()
         self._last: Any = None
         self._depth = 0
@@ -135,10 +132,9 @@ class TopicFeed:
 
     def add(self, sink: Sink) -> None:
         """Serve *sink* too."""
-        with self._lock:
-            self._sinks = (*self._sinks, sink)
-            if sink.latched and self._last is not None:
-                sink.queue.put(self._last)
+        self._sinks = (*self._sinks, sink)
+        if sink.latched and self._last is not None:
+            sink.put(self._last)
         self._depth = max(self._depth, sink.depth)
         # Once only, though a longer queue would be right for a later sink: to a client that subscribes again the server
         # sends the next message twice, and the latched one again.
@@ -147,9 +143,8 @@ class TopicFeed:
 
     def remove(self, sink: Sink) -> bool:
         """Serve *sink* no more; True when it was the last."""
-        with self._lock:
-            self._sinks = tuple(other for other in self._sinks if other is not sink)
-            return not self._sinks
+        self._sinks = tuple(other for other in self._sinks if other is not sink)
+        return not self._sinks
 
     def join(self) -> None:
         """Subscribe at a server that does not know us yet."""
@@ -171,22 +166,20 @@ class TopicFeed:
 
     def lost(self) -> None:
         """The link is down: what is latched comes again, and may be another then."""
-        with self._lock:
-            self._last = None
+        self._last = None
 
     def leave(self) -> None:
         """Unsubscribe at the server."""
         self._node.send({"op": "unsubscribe", "id": self.number, "topic": self.topic})
 
     def put(self, values: Any) -> None:
-        """Take a message of the server, not decoded yet; on the link's thread."""
-        with self._lock:
-            self._last = values
-            for sink in self._sinks:
-                sink.queue.put(values)
+        """Take a message of the server, not decoded yet."""
+        self._last = values
+        for sink in self._sinks:
+            sink.put(values)
 
     def refused(self, text: str) -> None:
-        """The server does not give us the topic; on the loop."""
+        """The server does not give us the topic."""
         for sink in self._sinks:
             sink.trouble(text)
 
@@ -194,7 +187,10 @@ class TopicFeed:
 class BridgeSubscription:
     """Subscription of `RosbridgeBackend`.
 
-    Messages are decoded on the loop, when it is their turn: what a full queue drops costs nothing.
+    Messages are decoded when it is their turn: what a full queue drops costs nothing.
+
+    Args:
+        waiting: messages that may wait for their turn; as many as *qos* says by default.
     """
 
     def __init__(
@@ -205,7 +201,7 @@ class BridgeSubscription:
         callback: Callable[[Sample], None],
         qos: QoS,
         on_event: Callable[[TopicEvent], None] | None,
-        queue: Callable[[Callable[[Any], None]], Queue] | None = None,
+        waiting: int | None = None,
     ) -> None:
         self.topic = topic
         self.depth = qos.depth
@@ -215,16 +211,14 @@ class BridgeSubscription:
         self._callback = callback
         self._on_event = on_event
         self._told: set[str] = set()
-        self.queue: Queue = (
-            Handoff(node.loop, qos.depth, self._deliver) if queue is None else queue(self._deliver)
-        )
+        self._waiting: deque[Any] = deque(maxlen=waiting or qos.depth)
         self._feed = node.members.feed(
             topic,
             lambda: node.written_type(type_name),
             lambda: node.packs and node.translator.packs(type_name),
         )
-        self._feed.add(self)
         self._closed = False
+        self._feed.add(self)
 
     @property
     def publisher_count(self) -> int:
@@ -233,7 +227,7 @@ class BridgeSubscription:
 
     def close(self) -> None:
         """Leave the topic."""
-        self.queue.close()
+        self._waiting.clear()
         if not self._closed:
             self._closed = True
             self._node.members.drop(self)
@@ -250,9 +244,16 @@ class BridgeSubscription:
         else:
             self._node.log(text)
 
-    def _deliver(self, values: Any) -> None:
+    def put(self, values: Any) -> None:
+        """Queue a message for a turn of the loop; the oldest is dropped when the queue is full."""
+        self._waiting.append(values)
+        self._node.loop.call_soon(self._deliver_next)
+
+    def _deliver_next(self) -> None:
+        if not self._waiting:  # a later message pushed this turn's one out, or the subscription was closed
+            return
         try:
-            message = self._node.translator.decode(self._type_name, values)
+            message = self._node.translator.decode(self._type_name, self._waiting.popleft())
         except ValueError as problem:
             self.trouble(f"topic {self.topic}: a message is no {self._type_name}: {problem}")
         else:

@@ -1,0 +1,134 @@
+"""The bytes of one connection to a rosbridge server: a WebSocket and, for ``wss``, TLS below it; no sockets, no loop.
+
+Both layers are ``websockets``'s and ``ssl``'s own state machines.  Nothing here may run on two threads at a time.
+"""
+
+import ssl
+from functools import cache
+
+from websockets.client import ClientProtocol
+from websockets.frames import Frame, Opcode
+from websockets.protocol import State
+from websockets.uri import parse_uri
+
+_DATA = (Opcode.TEXT, Opcode.BINARY, Opcode.CONT)
+
+
+def address(url: str) -> tuple[str, int]:
+    """Return the host and the port of a server."""
+    uri = parse_uri(url)
+    return uri.host, uri.port
+
+
+class Wire:
+    """What a client reads and writes on its connection.
+
+    Args:
+        url: address of the server, with its port.
+        context: certificates to trust for ``wss``; those of the system by default.
+    """
+
+    def __init__(self, url: str, context: ssl.SSLContext | None = None) -> None:
+        uri = parse_uri(url)
+        # No extension: compressing costs more time than it saves in a local network.  No limit of a message's size: only
+        # the topics that we asked for come.
+        self._protocol = ClientProtocol(uri, max_size=None)
+        self._tls = _Tls(context or _system_context(), uri.host) if uri.secure else None
+        self._parts: list[bytes] = []
+        self._binary = False
+        self._protocol.send_request(self._protocol.connect())
+
+    @property
+    def opened(self) -> bool:
+        """Whether the server has accepted the connection, and it is not being closed."""
+        return self._protocol.state is State.OPEN
+
+    @property
+    def failure(self) -> Exception | None:
+        """Why the server's answer to the request for a WebSocket is not one."""
+        return self._protocol.handshake_exc
+
+    def feed(self, data: bytes) -> list[tuple[bytes, bool]]:
+        """Take bytes of the server; return the messages that are complete now, each with whether it is binary.
+
+        Raises:
+            ssl.SSLError: the server is not the one of the address, or breaks the rules of TLS.
+        """
+        if self._tls is not None:
+            data = self._tls.decrypted(data)
+        if data:
+            self._protocol.receive_data(data)
+        messages = []
+        for event in self._protocol.events_received():
+            if isinstance(event, Frame) and event.opcode in _DATA:
+                if event.opcode is not Opcode.CONT:
+                    self._binary = event.opcode is Opcode.BINARY
+                if event.fin and not self._parts:
+                    messages.append((bytes(event.data), self._binary))
+                    continue
+                self._parts.append(bytes(event.data))
+                if event.fin:
+                    messages.append((b"".join(self._parts), self._binary))
+                    self._parts.clear()
+        return messages
+
+    def send(self, text: bytes) -> None:
+        """Write a message; it is lost when the connection is being closed."""
+        if self.opened:
+            self._protocol.send_text(text)
+
+    def ping(self) -> None:
+        """Ask the server for a sign of life."""
+        if self.opened:
+            self._protocol.send_ping(b"")
+
+    def close(self) -> None:
+        """Say goodbye; the server closes the connection then."""
+        if self.opened:
+            self._protocol.send_close(1000)
+
+    def output(self) -> bytes:
+        """Return the bytes to send to the server."""
+        data = b"".join(self._protocol.data_to_send())
+        return data if self._tls is None else self._tls.encrypted(data)
+
+
+class _Tls:
+    """The client's side of TLS."""
+
+    def __init__(self, context: ssl.SSLContext, host: str) -> None:
+        self._incoming, self._outgoing = ssl.MemoryBIO(), ssl.MemoryBIO()
+        self._tls = context.wrap_bio(self._incoming, self._outgoing, server_hostname=host)
+        self._ready = False
+        self._waiting = b""
+        self._shake_hands()
+
+    def decrypted(self, data: bytes) -> bytes:
+        self._incoming.write(data)
+        if not self._ready:
+            self._shake_hands()
+        parts = []
+        try:
+            while self._ready and (part := self._tls.read(65536)):
+                parts.append(part)
+        except ssl.SSLWantReadError:
+            pass
+        return b"".join(parts)
+
+    def encrypted(self, data: bytes) -> bytes:
+        self._waiting += data
+        while self._ready and self._waiting:
+            self._waiting = self._waiting[self._tls.write(self._waiting) :]
+        return self._outgoing.read()
+
+    def _shake_hands(self) -> None:
+        try:
+            self._tls.do_handshake()
+            self._ready = True
+        except ssl.SSLWantReadError:
+            pass
+
+
+@cache
+def _system_context() -> ssl.SSLContext:
+    return ssl.create_default_context()
