@@ -23,9 +23,9 @@ from jacaros.inspector.recording import Recording
 from jacaros.inspector.replay import replay_html
 from jacaros.mas.checking import check_files
 from jacaros.mas.loading import load_deployment
-from jacaros.ros.backends.rosbridge_link import Link
-from jacaros.ros.backends.rosbridge_messages import Translator
+from jacaros.ros.drivers.rosbridge.link import Link
 from jacaros.ros.parameter_store import checked_value
+from jacaros.ros.protocols.rosbridge_messages import Translator
 from jacaros.ros.typestore import RosbagsSchema
 from jacaros.sim.ground_truth import GroundTruth, Sample
 from jacaros.sim.world_file import load_world

@@ -16,6 +16,11 @@ _OPTIONS: dict[str, set[str]] = {
     "ros2": {"domain_id"},
     "rosbridge": {"url"},
 }
+BACKENDS = {
+    **{kind: f"jacaros.ros.backends.{kind}" for kind in ("memory", "ros1", "ros2")},
+    "rosbridge": "jacaros.ros.drivers.rosbridge.backend",
+}
+"""The modules of the backends."""
 _LIBRARIES = {"ros1": "rospy", "ros2": "rclpy", "rosbridge": "websockets"}
 _CURES = {
     "ros1": (
@@ -74,7 +79,7 @@ def _backend_class(kind: str) -> Any:
     try:
         if library is not None:
             import_module(library)  # first, so that it is what is told to be missing, and no part of it
-        module = import_module(f"jacaros.ros.backends.{kind}")
+        module = import_module(BACKENDS[kind])
     except ImportError as problem:
         if library is None or (problem.name or "").startswith("jacaros"):
             raise

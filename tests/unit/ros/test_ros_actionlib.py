@@ -15,10 +15,10 @@ from jacaros.ros.actionlib_client import OVERTAKEN, ActionlibWire
 from jacaros.ros.actionlib_server import ActionlibServer
 from jacaros.ros.actionlib_states import STATUS_PERIOD, part_type
 from jacaros.ros.backends.memory import MemoryBackend, MemoryGraph
-from jacaros.ros.backends.rosbridge_types import BridgeSchema
 from jacaros.ros.errors import CallTimedOut, GoalRejected
 from jacaros.ros.open import open_backend
 from jacaros.ros.orphans import OrphanPolicy
+from jacaros.ros.protocols.rosbridge_types import BridgeSchema
 
 COUNT = "jacaros_interfaces/action/Count"
 

@@ -25,8 +25,8 @@ from websockets.frames import Frame
 from websockets.server import ServerProtocol
 
 from jacaros.clock import WallClock, run
-from jacaros.ros.backends.rosbridge_link import BACKLOG, Link
-from jacaros.ros.backends.rosbridge_wire import Wire
+from jacaros.ros.drivers.rosbridge.link import BACKLOG, Link
+from jacaros.ros.protocols.rosbridge_wire import Wire
 
 TEXT, BINARY, CONTINUATION = 1, 2, 0
 

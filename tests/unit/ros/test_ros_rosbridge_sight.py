@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from jacaros.ros.backends.rosbridge_requests import Requests, Sight
+from jacaros.ros.protocols.rosbridge_requests import Requests, Sight
 
 
 class Server:

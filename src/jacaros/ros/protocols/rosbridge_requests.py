@@ -2,9 +2,11 @@
 
 import itertools
 import time
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
+from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
+from jacaros.clock import Clock
 from jacaros.ros.errors import CallFailed, ServiceError, ServiceUnavailable
 
 T = TypeVar("T")
@@ -18,6 +20,12 @@ Done = Callable[[dict[str, Any] | None, ServiceError | None], None]
 LOOK_AGAIN, LOOK_STEADILY = 0.25, 1.0
 """Seconds after which what was seen of the graph is asked for again, when somebody wants to know: while there is nothing to
 be seen, and when there is."""
+PATIENCE = 3.0
+"""Seconds for one answer of rosapi."""
+ATTEMPTS, PAUSE = 6, 0.5
+"""How often rosapi is asked whose graph it is, and seconds between: it may start after the server."""
+FIRST_SIGN_OF_2 = "/msg/"
+"""What the names of types have on ROS 2 alone."""
 UNANSWERED = 10.0
 """Seconds after which a question that nobody answers is asked again."""
 
@@ -168,3 +176,45 @@ class Sight(Generic[T]):
             self._value = self._unknown if values is None else self._read(values)
         except (KeyError, TypeError):  # another server's idea of rosapi
             self._value = self._unknown
+
+
+@dataclass(frozen=True, slots=True)
+class Greeting:
+    """What was found out.
+
+    Attributes:
+        ros_version: 1 or 2.
+        packs: the server can write CBOR; of ROS 2, the first ones lost messages over it.
+        told: rosapi has answered; else ROS 2 is assumed.
+    """
+
+    ros_version: int
+    packs: bool
+    told: bool = True
+
+
+async def greet(
+    ask: Callable[[str, dict[str, Any], float], Awaitable[Any]], clock: Clock, is_up: Callable[[], bool]
+) -> Greeting | None:
+    """Ask rosapi; None when the connection is lost meanwhile.
+
+    Args:
+        ask: calls a service of rosapi, with a time-out.
+        clock: measures the pauses.
+        is_up: tells whether there is a connection.
+    """
+    for _ in range(ATTEMPTS):
+        try:
+            answer = await ask("get_ros_version", {}, PATIENCE)
+            return Greeting(int(answer["version"]), packs=True)
+        except (ServiceError, KeyError, TypeError, ValueError):
+            pass  # ROS 1 does not have it, nor ROS 2 in its first years
+        try:
+            types = (await ask("topics", {}, PATIENCE))["types"]
+            version = 2 if any(FIRST_SIGN_OF_2 in kind for kind in types) else 1
+            return Greeting(version, packs=version == 1)
+        except (ServiceError, KeyError, TypeError):
+            await clock.sleep(PAUSE)
+        if not is_up():
+            return None
+    return Greeting(2, packs=False, told=False)

@@ -1,14 +1,18 @@
-"""Topics through the bridge."""
+"""Topics through the bridge, also those of ROS 1's actions."""
 
 from collections import deque
 from collections.abc import Callable
 from typing import Any
 
 from jacaros.ros.backend import Sample, TopicEvent, TopicTrouble
-from jacaros.ros.backends.rosbridge_node import BridgeNode, Sink
-from jacaros.ros.backends.rosbridge_requests import Sight
-from jacaros.ros.qos import QoS
+from jacaros.ros.drivers.rosbridge.node import BridgeNode
+from jacaros.ros.orphans import Orphans
+from jacaros.ros.protocols.rosbridge_requests import Sight
+from jacaros.ros.qos import DEFAULT_QOS, QoS
 from jacaros.ros.serving import published_message
+
+WAITING = 300
+"""Messages of each of an action's topics that may wait for the loop: none is dropped, so their order stays."""
 
 
 class BridgePublisher:
@@ -34,7 +38,7 @@ class BridgePublisher:
         self._subscribers = Sight(
             node.requests, "/rosapi/subscribers", {"topic": topic}, lambda seen: len(seen["subscribers"]), 0
         )
-        self._number = node.members.number("advertise", topic)
+        self._number = node.number("advertise", topic)
         if node.attached:
             self.join()
 
@@ -65,8 +69,8 @@ class BridgePublisher:
         """Leave the topic."""
         if not self._closed:
             self._closed = True
-            self._node.members.drop(self)
-            self._node.members.admission.forget(self)
+            self._node.drop(self)
+            self._node.admission.forget(self)
             self._node.send({"op": "unadvertise", "id": self._number, "topic": self.topic})
 
     def join(self) -> None:
@@ -83,7 +87,7 @@ class BridgePublisher:
         if self._node.ros_version == 2:
             operation["qos"] = _quality(qos)
         self._node.send(operation)
-        self._node.members.admission.expect(self)
+        self._node.admission.expect(self)
         for message in self._kept:
             self._send(message)
 
@@ -111,26 +115,19 @@ class TopicFeed:
     see of a latched topic is kept here.
     """
 
-    def __init__(
-        self,
-        node: BridgeNode,
-        topic: str,
-        written_type: Callable[[], str],
-        packed: Callable[[], bool],
-    ) -> None:
+    def __init__(self, node: BridgeNode, topic: str, type_name: str) -> None:
         self.topic = topic
-        self._packed = packed
-        self.written_type = written_type
-        self.number = node.members.number("subscribe", topic)
+        self._type_name = type_name
+        self.number = node.number("subscribe", topic)
         self._node = node
-        self._sinks: tuple[Sink, ...] = ()
+        self._sinks: tuple[BridgeSubscription, ...] = ()
         self._last: Any = None
         self._depth = 0
         self.publishers = Sight(
             node.requests, "/rosapi/publishers", {"topic": topic}, lambda seen: len(seen["publishers"]), 0
         )
 
-    def add(self, sink: Sink) -> None:
+    def add(self, sink: "BridgeSubscription") -> None:
         """Serve *sink* too."""
         self._sinks = (*self._sinks, sink)
         if sink.latched and self._last is not None:
@@ -141,10 +138,12 @@ class TopicFeed:
         if len(self._sinks) == 1 and self._node.attached:
             self.join()
 
-    def remove(self, sink: Sink) -> bool:
-        """Serve *sink* no more; True when it was the last."""
+    def remove(self, sink: "BridgeSubscription") -> None:
+        """Serve *sink* no longer; unsubscribe at the server when it was the last one."""
         self._sinks = tuple(other for other in self._sinks if other is not sink)
-        return not self._sinks
+        if not self._sinks:
+            self._node.drop_feed(self)
+            self._node.send({"op": "unsubscribe", "id": self.number, "topic": self.topic})
 
     def join(self) -> None:
         """Subscribe at a server that does not know us yet."""
@@ -155,22 +154,22 @@ class TopicFeed:
             "type": self.written_type(),
             "queue_length": self._depth,
         }
-        if self._packed():
+        if self._node.packs and self._node.translator.packs(self._type_name):
             operation["compression"] = "cbor"
         # Without qos the server chooses what goes with all publishers that it sees.  But if there are none yet, it does not
         # get what they will have said before it knows them.
         if self._node.ros_version == 2 and any(sink.latched for sink in self._sinks):
             operation["qos"] = _quality(QoS(durability="transient_local", depth=self._depth))
         self._node.send(operation)
-        self._node.members.admission.expect(self)
+        self._node.admission.expect(self)
+
+    def written_type(self) -> str:
+        """The type as the server writes it."""
+        return self._node.written_type(self._type_name)
 
     def lost(self) -> None:
         """The link is down: what is latched comes again, and may be another then."""
         self._last = None
-
-    def leave(self) -> None:
-        """Unsubscribe at the server."""
-        self._node.send({"op": "unsubscribe", "id": self.number, "topic": self.topic})
 
     def put(self, values: Any) -> None:
         """Take a message of the server, not decoded yet."""
@@ -212,11 +211,10 @@ class BridgeSubscription:
         self._on_event = on_event
         self._told: set[str] = set()
         self._waiting: deque[Any] = deque(maxlen=waiting or qos.depth)
-        self._feed = node.members.feed(
-            topic,
-            lambda: node.written_type(type_name),
-            lambda: node.packs and node.translator.packs(type_name),
-        )
+        feed = node.feeds.get(topic)
+        if not isinstance(feed, TopicFeed):
+            feed = node.feeds[topic] = TopicFeed(node, topic, type_name)
+        self._feed = feed
         self._closed = False
         self._feed.add(self)
 
@@ -230,9 +228,8 @@ class BridgeSubscription:
         self._waiting.clear()
         if not self._closed:
             self._closed = True
-            self._node.members.drop(self)
-            if self._feed.remove(self):
-                self._node.members.drop_feed(self._feed)
+            self._node.drop(self)
+            self._feed.remove(self)
 
     def trouble(self, text: str) -> None:
         """Tell that the server does not send what we want, once for each reason."""
@@ -268,3 +265,51 @@ def _quality(qos: QoS) -> dict[str, Any]:
         "reliability": qos.reliability,
         "durability": qos.durability,
     }
+
+
+class ActionTopics:
+    """Where `ActionlibWire` and `ActionlibServer` have the topics of one action of a ROS 1 robot, an `ActionTopicsNode`.
+
+    The rosbridge protocol knows no actions of ROS 1, so goals, requests for cancelling and news are ordinary messages of
+    the types that actionlib wraps around an action's own (``pkg/NameActionGoal`` and so on).
+
+    What comes on them is delivered in the order in which it came: the end of a goal not before its feedback.  And what
+    goes out is not dropped because the network is slow: a lost request for cancelling would not be repeated.
+
+    Args:
+        node: the backend.
+    """
+
+    def __init__(self, node: BridgeNode) -> None:
+        self._node = node
+        self.clock = node.clock
+        self.log = node.log
+        self.factory = node.factory
+
+    @property
+    def orphans(self) -> Orphans:
+        """What recognises goals of earlier runs."""
+        return self._node.orphans
+
+    @property
+    def node_name(self) -> str:
+        """Absolute name of the node."""
+        return self._node.node_name
+
+    def publisher(self, topic: str, type_name: str, qos: QoS = DEFAULT_QOS) -> BridgePublisher:
+        """Make a publisher."""
+        made = BridgePublisher(self._node, topic, type_name, qos, droppable=False)
+        self._node.add(made)
+        return made
+
+    def subscription(
+        self, topic: str, type_name: str, callback: Callable[[Sample], None], qos: QoS = DEFAULT_QOS
+    ) -> BridgeSubscription:
+        """Have *callback* called for every message."""
+        made = BridgeSubscription(self._node, topic, type_name, callback, qos, None, WAITING)
+        self._node.add(made)
+        return made
+
+    def add_exit_hook(self, hook: Callable[[], None]) -> Callable[[], None]:
+        """Have *hook* called when the process stops."""
+        return self._node.add_exit_hook(hook)

@@ -23,9 +23,8 @@ import cbor2
 from websockets.exceptions import WebSocketException
 
 from jacaros.errors import UsageError
-from jacaros.ros.backends.rosbridge_fragments import Fragments, frames
-from jacaros.ros.backends.rosbridge_wire import Wire, address
 from jacaros.ros.handoff import post
+from jacaros.ros.protocols.rosbridge_wire import Fragments, Wire, address, frames
 
 FIRST_PAUSE, LONGEST_PAUSE, GROWTH = 0.25, 2.0, 1.7
 """Seconds between two attempts to connect: at first, and at most; and by what each is longer than the one before."""

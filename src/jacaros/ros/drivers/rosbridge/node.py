@@ -1,0 +1,430 @@
+"""What all parts of the rosbridge backend share: the connection, whose graph it is, and all that we have at the server.
+
+The server forgets what it knows of us when the connection is lost, so it is told everything again after each connection.
+"""
+
+import asyncio
+import contextlib
+import itertools
+from dataclasses import dataclass
+from functools import partial
+from typing import Any, Protocol
+
+from jacaros.clock import Timer
+from jacaros.ros.calling import settle
+from jacaros.ros.drivers.rosbridge.link import Link
+from jacaros.ros.errors import CallFailed, CallTimedOut, ServiceError, ServiceUnavailable
+from jacaros.ros.handoff import post
+from jacaros.ros.lifetime import Lifetime
+from jacaros.ros.names import message_type
+from jacaros.ros.node import Node, NodeSettings
+from jacaros.ros.protocols.rosbridge_messages import Translator
+from jacaros.ros.protocols.rosbridge_requests import PATIENCE, Requests, greet
+from jacaros.ros.protocols.rosbridge_types import BridgeSchema, written_on_ros1
+from jacaros.ros.waiting import Waiting, within
+
+FIRST_LOOK = 5.0
+"""Seconds that starting waits for the first attempt to connect; a server that is not there refuses immediately."""
+SENDING = 0.5
+"""Seconds that closing waits for the messages published last to leave."""
+DOING = 1.0
+"""Seconds that closing waits until the server has done what it was sent last."""
+FETCHING = 3.0
+"""Seconds that the loop may be held up by asking for a type that is unknown here."""
+CURE = (
+    "On the robot, start `ros2 launch rosbridge_server rosbridge_websocket_launch.xml` (ROS 1: `roslaunch rosbridge_server "
+    "rosbridge_websocket.launch`), and give its address with --bridge or ROSBRIDGE_URI."
+)
+FIRST_PAUSE, LONGEST_PAUSE = 1.0, 16.0
+"""Seconds until the first look whether a topic was admitted, and between two at most; each pause doubles the last."""
+MISSES = 3
+"""Looks without the topic after which it was refused."""
+
+
+class Member(Protocol):
+    """A publisher, subscription, service, client or action of ours.
+
+    It may also have ``join``, called when a server is there that does not know us yet, and ``lost``, called when the
+    connection is gone.
+    """
+
+    def close(self) -> None:
+        """Give it up."""
+
+
+class Asked(Protocol):
+    """A subscription or a publisher at the server."""
+
+    @property
+    def topic(self) -> str:
+        """Absolute name."""
+
+    def written_type(self) -> str:
+        """The type as the server writes it."""
+
+    def join(self) -> None:
+        """Ask for it, at a server that does not know us yet."""
+
+    def refused(self, text: str) -> None:
+        """The server does not do it; the text says why."""
+
+
+class Feed(Asked, Protocol):
+    """The one subscription of a topic at the server."""
+
+    @property
+    def number(self) -> str:
+        """The id of the subscription."""
+
+    def put(self, values: Any) -> None:
+        """Take a message of the server, not decoded yet."""
+
+    def lost(self) -> None:
+        """The link is down."""
+
+
+class BridgeNode(Node):
+    """A client of a rosbridge server, for the parts that it consists of.
+
+    Args:
+        settings: names, clock and reports.
+        url: address of the server.
+
+    Attributes:
+        attached: there is a connection, and it is known whose graph it is.
+        packs: the server can write CBOR.
+        goals: by the id of a goal, who sent it.
+    """
+
+    def __init__(self, settings: NodeSettings, url: str) -> None:
+        self.url = url
+        self._link = Link(self.url, self._link_up, self._link_down, self._received, self._say)
+        self.requests = Requests(self._link.send, self._link.ask)
+        self._schema = BridgeSchema(settings.interface_paths, self._ask_for_type, self._cannot_ask)
+        super().__init__(settings, self._schema, Lifetime(settings.log, self._leave, threaded=True))
+        self.translator = Translator(self._schema)
+        self.admission = Admission(self)
+        self.feeds: dict[str, Feed] = {}
+        self.goals: dict[str, Any] = {}
+        self.attached = False
+        self.packs = False
+        self._members: list[Member] = []
+        self._numbers = itertools.count(1)
+        self._has_rosapi = False
+        self._greeting: asyncio.Task[None] | None = None
+        self._first_look: asyncio.Future[None] | None = None
+        self._waiting: Waiting | None = None
+        self._ended_at = ""
+        """The type at which rosapi went away."""
+        self._checks: set[asyncio.Task[None]] = set()
+        self._lost_topics: set[str] = set()
+        self._told: set[str] = set()
+
+    @property
+    def ros_version(self) -> int:  # type: ignore[override]
+        """Of the robot; 2 until the first connection."""
+        return self.translator.ros_version
+
+    async def start(self) -> None:
+        """Connect, or say that the server is awaited and go on trying in the background."""
+        self._loop = asyncio.get_running_loop()
+        self._first_look = self._loop.create_future()
+        self.lifetime.join()
+        self._link.start()
+        await asyncio.wait([self._first_look], timeout=FIRST_LOOK)
+        if not self._link.up and not self._first_look.done():
+            self._await_server()
+        else:
+            await self._first_look
+
+    async def close(self) -> None:
+        """Run the exit hooks and disconnect."""
+        await self.lifetime.leave()
+        self._link.stop()
+        if self._greeting is not None:
+            self._greeting.cancel()
+        for check in self._checks:
+            check.cancel()
+        self.attached = False
+        self.admission.close()
+        for member in list(self._members):
+            member.close()
+        self._members.clear()
+        self.requests.fail_all()
+        if self._waiting is not None:
+            self._waiting.__exit__(RuntimeError, None, None)
+            self._waiting = None
+        self.set_connected(False)
+
+    def rosout(self, level: str, text: str) -> None:
+        """Write a line to the graph's log; while there is no connection nobody would read it."""
+        if self.connected:
+            super().rosout(level, text)
+
+    # For the parts:
+
+    def number(self, operation: str, name: str) -> str:
+        """An id for an operation; the server names it when it has something to say about it."""
+        return f"{operation}:{name}:{next(self._numbers)}"
+
+    def add(self, member: Member) -> None:
+        """Keep *member* until it is closed."""
+        self._members.append(member)
+
+    def drop(self, member: Member) -> None:
+        """Forget a member that was closed."""
+        if member in self._members:
+            self._members.remove(member)
+
+    def drop_feed(self, feed: Feed) -> None:
+        """Forget a topic to which no subscription of ours listens."""
+        if self.feeds.get(feed.topic) is feed:
+            del self.feeds[feed.topic]
+            self.admission.forget(feed)
+
+    def send(self, operation: dict[str, Any], droppable: bool = False) -> bool:
+        """Send an operation to the server that knows us, from any thread; False when it is lost."""
+        return self.attached and self._link.send(operation, droppable)
+
+    def written_type(self, type_name: str) -> str:
+        """A type in full form as the server writes it."""
+        return written_on_ros1(type_name) if self.ros_version == 1 else type_name
+
+    def require_connection(self, service: str) -> None:
+        """Raise `ServiceUnavailable` while there is no server."""
+        if not self.connected:
+            raise ServiceUnavailable(
+                f"service {service}: there is no connection to the rosbridge server at {self.url}"
+            )
+
+    def note_loss(self, topic: str) -> None:
+        """Say that messages are lost, once a topic and an interruption; from any thread."""
+        if topic not in self._lost_topics:
+            self._lost_topics.add(topic)
+            self._say(
+                f"messages for {topic} are lost: the rosbridge server at {self.url} is away or too slow"
+            )
+
+    async def rosapi(self, service: str, arguments: dict[str, Any], timeout: float | None = None) -> Any:
+        """Call a service of rosapi and give the fields of its response.
+
+        Raises:
+            ServiceUnavailable: rosapi does not run.
+            CallTimedOut, CallFailed: as `Client.call`.
+        """
+        self.require_connection(f"/rosapi/{service}")
+        try:
+            return await self._rosapi(service, arguments, timeout)
+        except (ServiceUnavailable, CallTimedOut) as problem:
+            raise type(problem)(f"{problem}{self._loss_of_rosapi()}") from None
+
+    async def _rosapi(self, service: str, arguments: dict[str, Any], timeout: float | None) -> Any:
+        answer: asyncio.Future[Any] = self.loop.create_future()
+        number = self.requests.begin(f"/rosapi/{service}", arguments, partial(settle, answer), timeout)
+        try:
+            return await within(self.clock, answer, timeout)
+        except TimeoutError:
+            about = ", ".join(str(value) for value in arguments.values())
+            raise CallTimedOut(f"rosapi did not answer {service}({about}) within {timeout:g} s") from None
+        finally:
+            self.requests.forget(number)
+
+    # For the link:
+
+    def _link_up(self) -> None:
+        if self._greeting is not None:
+            self._greeting.cancel()
+        self._ended_at = ""
+        self._lost_topics.clear()
+        self._told.clear()
+        self._greeting = self.loop.create_task(self._greet())
+
+    async def _greet(self) -> None:
+        """Find out whose graph it is, and tell the server all that we have."""
+        found = await greet(self._rosapi, self.clock, lambda: self._link.up)
+        if found is None:
+            return
+        if not found.told:
+            self.log(
+                f"the rosbridge server at {self.url} has no rosapi beside it, so nothing can be looked up; ROS 2 is "
+                "assumed. Its launch file starts both"
+            )
+        self.translator.ros_version, self.packs = found.ros_version, found.packs
+        self._has_rosapi = found.told
+        self.attached = True
+        self._join()
+        if self._waiting is not None:
+            self._waiting.__exit__(None, None, None)
+            self._waiting = None
+        self.set_connected(True)
+        if self._first_look is not None and not self._first_look.done():
+            self._first_look.set_result(None)
+
+    def _join(self) -> None:
+        """Tell all that we have to a server that does not know us yet."""
+        for feed in list(self.feeds.values()):
+            feed.join()
+        for member in list(self._members):
+            join = getattr(member, "join", None)
+            if join is not None:
+                join()
+
+    def _link_down(self) -> None:
+        self.attached = False
+        if self._greeting is not None:
+            self._greeting.cancel()
+        self.requests.fail_all()
+        for feed in list(self.feeds.values()):
+            feed.lost()
+        for member in list(self._members):
+            lost = getattr(member, "lost", None)
+            if lost is not None:
+                lost()
+        if not self.lifetime.leaving:
+            self._await_server()
+        self.set_connected(False)
+
+    def _await_server(self) -> None:
+        if self._waiting is None:
+            what = f"rosbridge server at {self.url}"
+            self._waiting = Waiting(self.clock, self.log, what, CURE).__enter__()
+        if self._first_look is not None and not self._first_look.done():
+            self._first_look.set_result(None)
+
+    def _received(self, message: dict[str, Any]) -> None:
+        """Take an operation of the server."""
+        raise NotImplementedError
+
+    def _say(self, text: str) -> None:
+        post(self.loop, self.log, text)
+
+    def _ask_for_type(self, service: str, arguments: dict[str, Any]) -> dict[str, Any] | None:
+        answer = None
+        try:
+            answer = self.requests.call_blocking(service, arguments, FETCHING)
+        finally:
+            if answer is None:
+                post(self.loop, self._check_rosapi, str(arguments["type"]))
+        return answer
+
+    def _check_rosapi(self, asked: str) -> None:
+        """Find out whether rosapi still runs: genuine ones end at some types that they are asked for."""
+        check = self.loop.create_task(self._look_for_rosapi(asked))
+        self._checks.add(check)
+        check.add_done_callback(self._checks.discard)
+
+    async def _look_for_rosapi(self, asked: str) -> None:
+        try:
+            await self._rosapi("topics", {}, PATIENCE)
+            self._ended_at = ""
+        except (ServiceUnavailable, CallTimedOut) as problem:
+            if self._has_rosapi and not self._ended_at:
+                self._ended_at = asked
+                self.log(f"{problem}{self._loss_of_rosapi()}")
+        except CallFailed:
+            pass  # the link is lost, which is reported
+
+    def _loss_of_rosapi(self) -> str:
+        if not self._ended_at:
+            return ""
+        return (
+            f": rosapi went away when it was asked for the type {self._ended_at}. Start rosapi again on the robot, and "
+            "name a folder with the definition of this type (in a mapping file: interfaces)"
+        )
+
+    def _cannot_ask(self) -> str | None:
+        if self.attached:
+            return None
+        return f"the rosbridge server at {self.url} would be asked, but there is no connection to it"
+
+    def _leave(self) -> None:
+        # A server forgets what it has received and not done yet when its client leaves; an answer says that all before it
+        # is done.
+        with contextlib.suppress(TimeoutError):
+            self.requests.call_blocking("/rosapi/get_time", {}, DOING)
+        self._link.finish(SENDING)
+
+
+@dataclass(slots=True)
+class _Case:
+    misses: int = 0
+    conflict: bool = False
+
+
+class Admission:
+    """Looks after what was asked for until it is there.
+
+    rosbridge refuses silently: a topic of another type, a type that is not installed on the robot, a name that it may not
+    serve are lines in its own log and nothing on the link.  So the node looks at the graph after each subscription and
+    advertisement, until the topic is there with our type.
+
+    Args:
+        node: asks.
+    """
+
+    def __init__(self, node: BridgeNode) -> None:
+        self._node = node
+        self._cases: dict[Asked, _Case] = {}
+        self._timer: Timer | None = None
+        self._pause = FIRST_PAUSE
+
+    def expect(self, asked: Asked) -> None:
+        """*asked* was asked for just now; on the loop."""
+        if any(part.startswith("_") for part in asked.topic.split("/")):
+            return  # hidden: rosapi does not tell it
+        self._cases.setdefault(asked, _Case()).misses = 0
+        self._pause = FIRST_PAUSE
+        self._look_later()
+
+    def forget(self, asked: Asked) -> None:
+        """Nobody wants it any more."""
+        self._cases.pop(asked, None)
+
+    def close(self) -> None:
+        """Look no more."""
+        self._cases.clear()
+        if self._timer is not None:
+            self._timer.cancel()
+
+    def _look_later(self) -> None:
+        if self._timer is not None:
+            self._timer.cancel()
+        self._timer = self._node.clock.call_later(self._pause, self._look)
+
+    def _look(self) -> None:
+        self._timer = None
+        if self._cases and self._node.attached:
+            self._node.requests.begin("/rosapi/topics", {}, self._judge)
+
+    def _judge(self, values: dict[str, Any] | None, _: ServiceError | None) -> None:
+        if values is not None and isinstance(values.get("topics"), list):
+            types = dict(zip(values["topics"], values.get("types") or (), strict=False))
+            for asked, case in list(self._cases.items()):
+                self._compare(asked, case, types.get(asked.topic))
+        if self._cases:
+            self._pause = min(self._pause * 2.0, LONGEST_PAUSE)
+            self._look_later()
+
+    def _compare(self, asked: Asked, case: _Case, found: str | None) -> None:
+        wanted = asked.written_type()
+        if found in (None, "", "*"):
+            self._missed(asked, case, wanted)
+        elif found != wanted:
+            case.conflict = True
+            asked.refused(
+                f"topic {asked.topic} carries {message_type(str(found))}, not {message_type(wanted)}"
+            )
+        else:
+            del self._cases[asked]
+            if case.conflict:  # it was refused, and would not be now
+                asked.join()
+
+    def _missed(self, asked: Asked, case: _Case, wanted: str) -> None:
+        case.misses += 1
+        # rosapi of ROS 1 tells of topics only that are published.
+        if self._node.ros_version == 2 and case.misses == MISSES:
+            case.conflict = True
+            asked.refused(
+                f"topic {asked.topic} is not in the graph though the rosbridge server was asked for it: is {wanted} "
+                "installed on the robot, and may the server serve this topic (its parameter topics_glob)?"
+            )

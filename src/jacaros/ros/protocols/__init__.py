@@ -1,0 +1,1 @@
+"""Protocols on top of messages and bytes, without sockets and without a loop."""
