@@ -126,7 +126,7 @@ class Connection(asyncio.Protocol):
 
     def drop(self) -> None:
         """End the connection, from any thread."""
-        if self._transport is None or self.over:
+        if self._transport is None:
             return
         if not (self._loop.is_running() and post(self._loop, self._transport.abort)):
             with contextlib.suppress(OSError):
