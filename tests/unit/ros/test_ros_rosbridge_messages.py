@@ -1,0 +1,103 @@
+"""Messages and operations in the notation of the rosbridge protocol, without a connection."""
+
+import json
+import math
+from typing import Any
+
+import cbor2
+import pytest
+
+pytest.importorskip("websockets")
+
+from jacaros.ros.protocols.rosbridge_messages import Translator
+from jacaros.ros.protocols.rosbridge_wire import LONGEST, OPEN_AT_ONCE, Fragments, frames
+from jacaros.ros.typestore import RosbagsSchema
+
+SCAN, IMAGE, STAMP = (
+    "sensor_msgs/msg/LaserScan",
+    "sensor_msgs/msg/CompressedImage",
+    "builtin_interfaces/msg/Time",
+)
+
+
+@pytest.fixture
+def schema() -> RosbagsSchema:
+    """The message classes."""
+    return RosbagsSchema(())
+
+
+@pytest.fixture
+def translator(schema: RosbagsSchema) -> Translator:
+    """What is tested."""
+    return Translator(schema)
+
+
+def test_times_are_written_as_the_robots_ros_does_and_read_in_both_notations(
+    schema: RosbagsSchema, translator: Translator
+) -> None:
+    time = schema.new(STAMP)
+    time.sec, time.nanosec = 7, 9
+    assert translator.encode(STAMP, time) == {"sec": 7, "nanosec": 9}
+    translator.ros_version = 1
+    assert translator.encode(STAMP, time) == {"secs": 7, "nsecs": 9}
+    for written in ({"sec": 7, "nanosec": 9}, {"secs": 7, "nsecs": 9}):
+        read = translator.decode(STAMP, written)
+        assert (read.sec, read.nanosec) == (7, 9)
+
+
+def test_octets_are_base64_and_null_is_not_a_number(translator: Translator) -> None:
+    image = translator.decode(IMAGE, {"format": "png", "data": "AQID"})
+    assert image.data.tolist() == [1, 2, 3]
+    assert translator.encode(IMAGE, image)["data"] == "AQID"
+    scan = translator.decode(SCAN, {"ranges": [1.0, None], "range_max": None})
+    assert scan.ranges[0] == 1.0
+    assert math.isnan(scan.ranges[1])
+    assert math.isnan(scan.range_max)
+
+
+def test_a_packed_array_is_read_with_its_infinite_numbers(translator: Translator) -> None:
+    little_endian_float32 = cbor2.CBORTag(85, b"\x00\x00\x80\x3f\x00\x00\x80\x7f")
+    scan = translator.decode(SCAN, cbor2.loads(cbor2.dumps({"ranges": little_endian_float32})))
+    assert scan.ranges.tolist() == [1.0, math.inf]
+    assert translator.packs(SCAN)
+    assert not translator.packs("nav_msgs/msg/Odometry"), "servers lose arrays of a fixed length"
+
+
+@pytest.mark.parametrize(
+    ("value", "problem"),
+    [
+        ({"angle_min": "wide"}, "field angle_min of sensor_msgs/msg/LaserScan"),
+        ({"ranges": 7}, "field ranges"),
+        ({"header": {"stamp": 7}}, "field stamp of std_msgs/msg/Header"),
+        (7, "is given for a sensor_msgs/msg/LaserScan"),
+    ],
+)
+def test_what_is_not_of_the_type_is_refused_with_the_name_of_the_field(
+    translator: Translator, value: Any, problem: str
+) -> None:
+    with pytest.raises(ValueError, match=problem):
+        translator.decode(SCAN, value)
+
+
+def test_a_large_operation_is_cut_into_fragments_that_make_it_again_in_any_order() -> None:
+    operation = {"op": "publish", "topic": "/a", "msg": {"data": 'ä"' * LONGEST}}
+    pieces = [json.loads(frame) for frame in frames(operation)]
+    assert len(pieces) > 1
+    assert all(len(frame) < 10_000_000 for frame in frames(operation))
+    fragments = Fragments()
+    made = [fragments.add(piece) for piece in reversed(pieces)]
+    assert made == [None] * (len(pieces) - 1) + [operation]
+
+
+def test_incomplete_operations_are_limited_and_forgotten_with_the_connection() -> None:
+    fragments = Fragments()
+
+    def half(number: int, which: int) -> dict[str, Any]:
+        return {"op": "fragment", "id": number, "num": which, "total": 2, "data": ('{"op":', '"x"}')[which]}
+
+    for number in range(OPEN_AT_ONCE + 1):
+        assert fragments.add(half(number, 0)) is None
+    assert fragments.add(half(0, 1)) is None, "the oldest was given up"
+    assert fragments.add(half(OPEN_AT_ONCE, 1)) == {"op": "x"}
+    fragments.clear()
+    assert fragments.add(half(OPEN_AT_ONCE - 1, 1)) is None
