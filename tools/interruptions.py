@@ -24,8 +24,6 @@ from collections import Counter
 from pathlib import Path
 from typing import Any
 
-from jacaros.ros.open import BACKENDS
-
 PROGRAM = '!g. +!g <- makeArtifact("wheels", "ArtCmdVel", [], W); focus(W); move(1000000).'
 LISTENERS = {
     "ros2": """
@@ -161,7 +159,7 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=0, help="seed of the moments and signals (default: 0)")
     arguments = parser.parse_args()
     kind, chance = arguments.kind, random.Random(arguments.seed)
-    for module in (*MODULES, BACKENDS[kind]):
+    for module in (*MODULES, f"jacaros.ros.drivers.{kind}.backend"):
         importlib.import_module(module)  # once for all runs, which are forks of this process
     listener = None
     if kind != "memory":

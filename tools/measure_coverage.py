@@ -22,7 +22,7 @@ PARTS = (
     ("tools/check_conformance.py", "language"),
     ("tools/check_conformance.py", "environment"),
 )
-APART = ("bdi/actions", "bdi/explaining", "bdi/fast", "bdi/rules", "bdi/state", "ros/backends", "ros/drivers")
+APART = ("bdi/actions", "bdi/explaining", "bdi/fast", "bdi/rules", "bdi/state", "ros/drivers")
 """Folders with a row of their own."""
 
 

@@ -14,9 +14,9 @@ from jacaros.artifacts.robots.odometry import Odometer
 from jacaros.bdi.mind import Mind
 from jacaros.cli.main import main
 from jacaros.mas.agent_host import AgentHost
-from jacaros.ros.backends.ros1_connections import InletTransport
-from jacaros.ros.backends.ros1_streams import Inlet, Outbox
-from jacaros.ros.backends.ros1_topics import Ros1Publisher, TopicFeed
+from jacaros.ros.drivers.ros1.connections import InletTransport
+from jacaros.ros.drivers.ros1.streams import Inlet, Outbox
+from jacaros.ros.drivers.ros1.topics import Ros1Publisher, TopicFeed
 
 STOPS: tuple[tuple[type, str, str], ...] = (
     (Inlet, "_read", ""),

@@ -19,7 +19,7 @@ import peer as peer_module
 
 import jacaros.ros.errors
 from jacaros.clock import VirtualClock, new_event_loop
-from jacaros.ros.backends.memory import MemoryGraph
+from jacaros.ros.drivers.memory.backend import MemoryGraph
 
 PATIENCE = 90.0
 """Seconds after which a test gives up; far more than any step takes on a busy machine."""

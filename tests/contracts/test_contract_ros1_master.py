@@ -78,7 +78,7 @@ def test_an_early_message_that_cannot_be_serialised_does_not_silence_its_topic(
     # rospy serialises only when somebody is connected, which at this moment is a race; so its publisher is a stand-in.
     import rospy
 
-    from jacaros.ros.backends import ros1_topics
+    from jacaros.ros.drivers.ros1 import topics as ros1_topics
 
     sent: list[int] = []
 

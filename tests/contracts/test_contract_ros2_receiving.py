@@ -14,7 +14,7 @@ pytestmark = pytest.mark.ros2
 BEGIN = """
 import asyncio, sys
 from jacaros.clock import WallClock, run
-from jacaros.ros.backends import ros2_receiving
+from jacaros.ros.drivers.ros2 import receiving as ros2_receiving
 from jacaros.ros.open import open_backend
 
 STRING = "std_msgs/msg/String"
@@ -226,7 +226,7 @@ class _Answering(dict[Any, Any]):
 
 
 def test_a_call_may_be_answered_while_it_is_forgotten() -> None:
-    from jacaros.ros.backends.ros2_goals import Ros2GoalWire
+    from jacaros.ros.drivers.ros2.goals import Ros2GoalWire
 
     wire = Ros2GoalWire.__new__(Ros2GoalWire)
     wire._calls = _Answering({"first": None, "second": None})

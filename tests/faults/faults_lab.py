@@ -19,7 +19,7 @@ from jacaros.mas.options import RunOptions
 from jacaros.mas.ros_graph import RosGraph
 from jacaros.mas.system import System
 from jacaros.ros.backend import Backend
-from jacaros.ros.backends.memory_graph import MemoryGraph
+from jacaros.ros.drivers.memory.graph import MemoryGraph
 from jacaros.ros.open import open_backend
 from jacaros.ros.ros_clock import CLOCK_TYPE, RosClock
 from jacaros.sim.ground_truth import GroundTruth

@@ -29,7 +29,7 @@ from peer import Peer
 from rosapi import RosApi, write_ros1_types
 
 from jacaros.clock import WallClock, run
-from jacaros.ros.backends.memory import MemoryBackend, MemoryGraph
+from jacaros.ros.drivers.memory.backend import MemoryBackend, MemoryGraph
 from jacaros.ros.handoff import post
 from jacaros.ros.node import NodeSettings
 

@@ -16,11 +16,6 @@ _OPTIONS: dict[str, set[str]] = {
     "ros2": {"domain_id"},
     "rosbridge": {"url"},
 }
-BACKENDS = {
-    **{kind: f"jacaros.ros.backends.{kind}" for kind in ("memory", "ros1", "ros2")},
-    "rosbridge": "jacaros.ros.drivers.rosbridge.backend",
-}
-"""The modules of the backends."""
 _LIBRARIES = {"ros1": "rospy", "ros2": "rclpy", "rosbridge": "websockets"}
 _CURES = {
     "ros1": (
@@ -45,7 +40,7 @@ def open_backend(kind: str, clock: Clock, node_name: str, namespace: str = "", *
         node_name: plain name of the node.
         namespace: put before relative names.
         options: ``remap``, ``log``, ``parameters``, ``orphans``, ``interface_paths`` (see `NodeSettings`); for ``memory``
-            also ``graph``, a `jacaros.ros.backends.memory.MemoryGraph` to share; for ``ros2`` also ``domain_id``; for
+            also ``graph``, a `jacaros.ros.drivers.memory.graph.MemoryGraph` to share; for ``ros2`` also ``domain_id``; for
             ``rosbridge`` also ``url``, the server's address.
 
     Raises:
@@ -79,7 +74,7 @@ def _backend_class(kind: str) -> Any:
     try:
         if library is not None:
             import_module(library)  # first, so that it is what is told to be missing, and no part of it
-        module = import_module(BACKENDS[kind])
+        module = import_module(f"jacaros.ros.drivers.{kind}.backend")
     except ImportError as problem:
         if library is None or (problem.name or "").startswith("jacaros"):
             raise

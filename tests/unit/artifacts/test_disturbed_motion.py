@@ -7,7 +7,7 @@ from robot_lab import STANDSTILL, Lab, assert_at, in_lab
 
 from jacaros.artifacts.robots.odometry import ArtOdometry
 from jacaros.artifacts.robots.velocity import ArtCmdVel
-from jacaros.ros.backends.memory_faults import Fate, both, delayed, dropped, duplicated
+from jacaros.ros.drivers.memory.graph import Fate, both, delayed, dropped, duplicated
 
 
 def disturb(lab: Lab, topic: str, fate: Fate) -> None:

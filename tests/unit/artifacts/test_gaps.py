@@ -9,7 +9,7 @@ from jacaros.artifacts.robots.lane import GUARD_TRIPPED
 from jacaros.artifacts.robots.velocity import ArtCmdVel
 from jacaros.clock import VirtualClock
 from jacaros.env.values import Structure
-from jacaros.ros.backends.memory_faults import delayed, dropped
+from jacaros.ros.drivers.memory.graph import delayed, dropped
 from jacaros.ros.guarded import guarded_by
 
 A_SECOND = 1000 * VirtualClock.CYCLES_PER_MILLISECOND

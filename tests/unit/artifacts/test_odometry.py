@@ -8,7 +8,7 @@ from robot_lab import Lab, in_lab
 from jacaros.artifacts.robots.odometry import ArtOdometry, ArtOdometryOnDemand
 from jacaros.artifacts.robots.velocity import ArtCmdVel
 from jacaros.env import OperationFailed, Out, Structure
-from jacaros.ros.backends.memory import MemoryBackend
+from jacaros.ros.drivers.memory.backend import MemoryBackend
 
 
 def test_verbose_odometry_gives_one_change_and_no_signal_for_each_new_message() -> None:

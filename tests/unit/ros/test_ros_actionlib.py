@@ -14,7 +14,7 @@ from jacaros.ros.action_serving import GoalUnderWay
 from jacaros.ros.actionlib_client import OVERTAKEN, ActionlibWire
 from jacaros.ros.actionlib_server import ActionlibServer
 from jacaros.ros.actionlib_states import STATUS_PERIOD, part_type
-from jacaros.ros.backends.memory import MemoryBackend, MemoryGraph
+from jacaros.ros.drivers.memory.backend import MemoryBackend, MemoryGraph
 from jacaros.ros.errors import CallTimedOut, GoalRejected
 from jacaros.ros.open import open_backend
 from jacaros.ros.orphans import OrphanPolicy

@@ -7,7 +7,7 @@ import pytest
 
 from jacaros.clock import VIRTUAL_EPOCH, VirtualClock, run
 from jacaros.ros.backend import Backend, Sample
-from jacaros.ros.backends.memory import MemoryGraph
+from jacaros.ros.drivers.memory.backend import MemoryGraph
 from jacaros.ros.errors import CallFailed, CallTimedOut
 from jacaros.ros.open import open_backend
 from jacaros.ros.qos import QoS

@@ -9,8 +9,8 @@ import pytest
 from jacaros.clock import VirtualClock, run
 from jacaros.ros.action import SERVER_LOST_AFTER, GoalStatus
 from jacaros.ros.backend import Backend
-from jacaros.ros.backends.memory import MemoryGraph
-from jacaros.ros.backends.memory_faults import both, delayed, dropped, duplicated
+from jacaros.ros.drivers.memory.backend import MemoryGraph
+from jacaros.ros.drivers.memory.graph import both, delayed, dropped, duplicated
 from jacaros.ros.errors import CallFailed, RosError, ServerLost, ServiceUnavailable
 from jacaros.ros.open import open_backend
 from jacaros.ros.parameter import Declaration

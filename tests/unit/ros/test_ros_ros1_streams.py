@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 import pytest
 
 from jacaros.clock import WallClock, run
-from jacaros.ros.backends.ros1_streams import CHUNK, Inlet, Outbox
+from jacaros.ros.drivers.ros1.streams import CHUNK, Inlet, Outbox
 
 PATIENCE = 20.0
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from jacaros.ros.backends.ros1_types import GenpySchema
+from jacaros.ros.drivers.ros1.types import GenpySchema
 from jacaros.ros.errors import UnknownInterface
 from jacaros.ros.fields import FieldType
 from jacaros.ros.message import MessageFactory, plain, to_seconds

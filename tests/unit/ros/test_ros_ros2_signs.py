@@ -2,8 +2,8 @@
 
 import pytest
 
-from jacaros.ros.backends import ros2_signs
-from jacaros.ros.backends.ros2_signs import SignsOfLife
+from jacaros.ros.drivers.ros2 import signs as ros2_signs
+from jacaros.ros.drivers.ros2.signs import SignsOfLife
 
 
 class Watched:

@@ -8,7 +8,7 @@ import pytest
 
 from jacaros.clock import VirtualClock, run
 from jacaros.ros.backend import Backend
-from jacaros.ros.backends.memory import MemoryGraph
+from jacaros.ros.drivers.memory.backend import MemoryGraph
 from jacaros.ros.errors import RosError, TransformUnavailable
 from jacaros.ros.open import open_backend
 

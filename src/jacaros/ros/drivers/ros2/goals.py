@@ -12,7 +12,7 @@ from rclpy.event_handler import SubscriptionEventCallbacks  # type: ignore[impor
 from jacaros.ros.action import Outcome
 from jacaros.ros.action_calling import GoalSender
 from jacaros.ros.action_serving import text_of
-from jacaros.ros.backends.ros2_actions import (
+from jacaros.ros.drivers.ros2.actions import (
     CANCEL_GOAL,
     FEEDBACK_QUALITY,
     GET_RESULT,
@@ -24,17 +24,17 @@ from jacaros.ros.backends.ros2_actions import (
     id_message,
     new_goal_id,
 )
-from jacaros.ros.backends.ros2_graph import (
+from jacaros.ros.drivers.ros2.graph import (
     FEEDBACK,
     SEND_GOAL,
     action_mismatch,
     action_servers,
     action_servers_in,
+    profile,
 )
-from jacaros.ros.backends.ros2_node import Ros2Node
-from jacaros.ros.backends.ros2_quality import profile
-from jacaros.ros.backends.ros2_services import SETTLING
-from jacaros.ros.backends.ros2_signs import SignsOfLife
+from jacaros.ros.drivers.ros2.node import Ros2Node
+from jacaros.ros.drivers.ros2.services import SETTLING
+from jacaros.ros.drivers.ros2.signs import SignsOfLife
 from jacaros.ros.errors import CallFailed, ServerLost
 from jacaros.ros.handoff import Handoff, post
 

@@ -23,13 +23,13 @@ from jacaros.ros.backend import (
     Sample,
     TopicEvent,
 )
-from jacaros.ros.backends import ros2_graph
-from jacaros.ros.backends.ros2_actions import Ros2ActionServer
-from jacaros.ros.backends.ros2_goals import Ros2GoalWire
-from jacaros.ros.backends.ros2_node import Member, Ros2Node
-from jacaros.ros.backends.ros2_parameters import OtherParameters, OwnParameters, read_value
-from jacaros.ros.backends.ros2_services import Ros2Client, Ros2Service
-from jacaros.ros.backends.ros2_topics import Ros2Publisher, Ros2Subscription
+from jacaros.ros.drivers.ros2 import graph as ros2_graph
+from jacaros.ros.drivers.ros2.actions import Ros2ActionServer
+from jacaros.ros.drivers.ros2.goals import Ros2GoalWire
+from jacaros.ros.drivers.ros2.node import Member, Ros2Node
+from jacaros.ros.drivers.ros2.parameters import OtherParameters, OwnParameters, read_value
+from jacaros.ros.drivers.ros2.services import Ros2Client, Ros2Service
+from jacaros.ros.drivers.ros2.topics import Ros2Publisher, Ros2Subscription
 from jacaros.ros.errors import CallFailed, CallTimedOut, RosError, UnknownInterface
 from jacaros.ros.graph import GraphContents
 from jacaros.ros.handoff import in_thread

@@ -29,12 +29,16 @@ from jacaros.ros.backend import (
     Sample,
     TopicEvent,
 )
-from jacaros.ros.backends.memory_actions import MemoryActionServer, MemoryGoalWire
-from jacaros.ros.backends.memory_graph import MemoryGraph
-from jacaros.ros.backends.memory_node import Member, MemoryNode
-from jacaros.ros.backends.memory_parameters import MemoryParameters
-from jacaros.ros.backends.memory_services import MemoryClient, MemoryService
-from jacaros.ros.backends.memory_topics import MemoryPublisher, MemorySubscription
+from jacaros.ros.drivers.memory.graph import MemoryGraph
+from jacaros.ros.drivers.memory.node import Member, MemoryNode
+from jacaros.ros.drivers.memory.services import (
+    MemoryActionServer,
+    MemoryClient,
+    MemoryGoalWire,
+    MemoryParameters,
+    MemoryService,
+)
+from jacaros.ros.drivers.memory.topics import MemoryPublisher, MemorySubscription
 from jacaros.ros.errors import RosError, ServiceUnavailable
 from jacaros.ros.graph import GraphContents
 from jacaros.ros.names import action_type, message_type, service_type

@@ -14,7 +14,7 @@ from genpy import DeserializationError  # type: ignore[import-not-found]
 from rospy.exceptions import TransportTerminated  # type: ignore[import-not-found]
 from rospy.impl.tcpros_base import TCPROSTransport  # type: ignore[import-not-found]
 
-from jacaros.ros.backends.ros1_streams import Inlet, Outbox
+from jacaros.ros.drivers.ros1.streams import Inlet, Outbox
 from jacaros.ros.handoff import post
 
 Take = Callable[[list[Any], "dict[str, str]"], None]

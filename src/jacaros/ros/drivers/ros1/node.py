@@ -11,17 +11,16 @@ from weakref import WeakKeyDictionary
 import rospy  # type: ignore[import-not-found]
 import rospy.impl.registration as registration  # type: ignore[import-not-found]
 
-from jacaros.ros.backends.ros1_connections import Takers, connect_streams
-from jacaros.ros.backends.ros1_master import Heard, MasterLink, NodeActions, Offers, stay_local
-from jacaros.ros.backends.ros1_mismatch import MismatchWatch
-from jacaros.ros.backends.ros1_repairs import (
+from jacaros.ros.drivers.ros1.connections import Takers, connect_streams
+from jacaros.ros.drivers.ros1.master import Heard, MasterLink, MismatchWatch, NodeActions, Offers, stay_local
+from jacaros.ros.drivers.ros1.repairs import (
     let_closed_nodes_rest,
     let_parameters_tell,
     let_subscribers_hear,
     log_to_standard_error,
     print_to_standard_error,
 )
-from jacaros.ros.backends.ros1_types import GenpySchema
+from jacaros.ros.drivers.ros1.types import GenpySchema
 from jacaros.ros.errors import CapabilityMissing, RosError
 from jacaros.ros.handoff import post
 from jacaros.ros.lifetime import Lifetime

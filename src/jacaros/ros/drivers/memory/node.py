@@ -3,7 +3,7 @@
 import itertools
 from typing import Protocol
 
-from jacaros.ros.backends.memory_graph import MemoryGraph
+from jacaros.ros.drivers.memory.graph import MemoryGraph
 from jacaros.ros.lifetime import Lifetime
 from jacaros.ros.node import Node, NodeSettings
 from jacaros.ros.parameter_store import DeclaredParameters
@@ -18,7 +18,7 @@ class Member(Protocol):
 
 
 class MemoryNode(Node):
-    """The part of `jacaros.ros.backends.memory.MemoryBackend` that its members use.
+    """The part of `jacaros.ros.drivers.memory.backend.MemoryBackend` that its members use.
 
     Args:
         settings: names, clock and reports.

@@ -4,23 +4,186 @@ Tests make it misbehave: `MemoryGraph.disturb`, `vanish`, `interrupt` and `resto
 """
 
 import asyncio
-from collections.abc import Callable, Mapping
+import random
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Protocol
 
-from jacaros.ros.backends.memory_faults import Fate
-from jacaros.ros.backends.memory_members import (
-    GoalLine,
-    GraphActionServer,
-    GraphNode,
-    GraphPublisher,
-    GraphService,
-    GraphSubscription,
-    Vanishing,
-)
+from jacaros.ros.action_calling import GoalSender
+from jacaros.ros.backend import TopicEvent
 from jacaros.ros.errors import RosError
 from jacaros.ros.graph import Endpoint, GraphContents, TopicInfo
 from jacaros.ros.parameter import ParameterValue
+from jacaros.ros.parameter_store import DeclaredParameters
+from jacaros.ros.qos import QoS
+
+
+class Vanishing(Protocol):
+    """Something that can be gone without a word."""
+
+    def vanish(self) -> None:
+        """Be gone without a word."""
+        ...
+
+
+class GraphNode(Vanishing, Protocol):
+    """A node."""
+
+    declared: DeclaredParameters
+
+    @property
+    def node_name(self) -> str:
+        """Absolute name of the node."""
+        ...
+
+    @property
+    def loop(self) -> asyncio.AbstractEventLoop:
+        """The loop on which it runs."""
+        ...
+
+    def set_connected(self, connected: bool) -> None:
+        """Learn that the graph was found or lost."""
+        ...
+
+
+class TopicEnd(Protocol):
+    """A publisher or a subscription."""
+
+    type_name: str
+    qos: QoS
+
+    @property
+    def node_name(self) -> str:
+        """Absolute name of the node."""
+        ...
+
+
+class GraphSubscription(TopicEnd, Protocol):
+    """A subscription."""
+
+    put: Callable[[Any], None]
+
+    def meet(self, publisher: "GraphPublisher") -> None:
+        """Be connected to a publisher, or say why not."""
+        ...
+
+    def trouble(self, publisher: "GraphPublisher") -> TopicEvent | None:
+        """Why nothing can come from a publisher."""
+        ...
+
+    def choose_way(self) -> None:
+        """Let messages come in as the topic's faults want it."""
+        ...
+
+
+class GraphPublisher(TopicEnd, Protocol):
+    """A publisher."""
+
+    def connect(self, subscription: GraphSubscription) -> None:
+        """Send to a subscription."""
+        ...
+
+    def disconnect(self, subscription: GraphSubscription) -> None:
+        """Send to a subscription no more."""
+        ...
+
+    def disconnect_all(self) -> None:
+        """Send to nobody."""
+        ...
+
+    def refused(self, subscription: GraphSubscription) -> None:
+        """Say that a subscription takes the topic for something else."""
+        ...
+
+
+class GraphService(Vanishing, Protocol):
+    """A service."""
+
+    name: str
+    type_name: str
+
+    def handle(self, request: Any, answer: asyncio.Future[Any]) -> None:
+        """Answer one call."""
+        ...
+
+
+class GoalLine(Protocol):
+    """An action client's line to the servers."""
+
+    name: str
+    sender: GoalSender
+
+    @property
+    def offered(self) -> bool:
+        """Whether a server offers the action."""
+        ...
+
+    def server_came(self) -> None:
+        """A server is there."""
+        ...
+
+    def server_went(self) -> None:
+        """There is no server any more."""
+        ...
+
+
+class GraphActionServer(Vanishing, Protocol):
+    """An action server."""
+
+    name: str
+    type_name: str
+    vanished: bool
+
+    def take(self, goal_id: str, request: Any, wire: GoalLine) -> None:
+        """Judge a goal and begin with it."""
+        ...
+
+    def cancel(self, goal_id: str, wire: GoalLine) -> None:
+        """Handle a request for cancelling."""
+        ...
+
+
+Fate = Callable[[Any], Sequence[float]]
+"""Takes a message; gives the delays in seconds after which copies of it arrive: none when it is lost."""
+
+
+def delayed(seconds: float, jitter: float = 0.0, seed: int = 0) -> Fate:
+    """Let every message come late.
+
+    Args:
+        seconds: by so much.
+        jitter: and by up to so much more, at random, so that messages overtake each other.
+        seed: of the jitter.
+    """
+    chance = random.Random(seed)
+    return lambda message: (seconds + chance.uniform(0.0, jitter) if jitter else seconds,)
+
+
+def dropped(share: float = 1.0, seed: int = 0) -> Fate:
+    """Lose messages.
+
+    Args:
+        share: of the messages, from 0 to 1; 1 loses all.
+        seed: of the choice.
+    """
+    chance = random.Random(seed)
+    return lambda message: () if chance.random() < share else (0.0,)
+
+
+def duplicated(copies: int = 2, apart: float = 0.0) -> Fate:
+    """Let every message come several times.
+
+    Args:
+        copies: how often.
+        apart: seconds between two copies.
+    """
+    return lambda message: [number * apart for number in range(copies)]
+
+
+def both(first: Fate, second: Fate) -> Fate:
+    """Let two things happen to each message: each copy that *first* lets through suffers *second*."""
+    return lambda message: [late + later for late in first(message) for later in second(message)]
+
 
 HIDDEN = ("/rosout", "/parameter_events")
 """Topics that every graph has; `GraphContents` leaves them out."""
@@ -204,7 +367,7 @@ class MemoryGraph:
         Args:
             topic: absolute name.
             fate: for each message and subscription, the delays in seconds after which copies arrive; see
-                `jacaros.ros.backends.memory_faults`.
+                `jacaros.ros.drivers.memory.faults`.
 
         Returns:
             what ends it.

@@ -20,11 +20,10 @@ import rclpy.executors  # type: ignore[import-not-found]
 import rclpy.signals  # type: ignore[import-not-found]
 from rclpy.exceptions import ParameterException  # type: ignore[import-not-found]
 
-from jacaros.ros.backends.ros2_output import leave_standard_output_alone
-from jacaros.ros.backends.ros2_receiving import Receiver
-from jacaros.ros.backends.ros2_second_look import Find, SecondLook
-from jacaros.ros.backends.ros2_types import RosidlSchema
-from jacaros.ros.backends.ros2_values import parameter
+from jacaros.ros.drivers.ros2.output import leave_standard_output_alone
+from jacaros.ros.drivers.ros2.receiving import Receiver
+from jacaros.ros.drivers.ros2.second_look import Find, SecondLook
+from jacaros.ros.drivers.ros2.types import RosidlSchema, parameter
 from jacaros.ros.errors import ParameterRefused
 from jacaros.ros.handoff import in_thread, post
 from jacaros.ros.lifetime import Lifetime

@@ -12,9 +12,15 @@ from rclpy.event_handler import (  # type: ignore[import-not-found]
 )
 
 from jacaros.ros.backend import Sample, TopicEvent, TopicTrouble
-from jacaros.ros.backends.ros2_graph import RCLError, endpoint, foreign_types, own_types, publishers_in
-from jacaros.ros.backends.ros2_node import Ros2Node
-from jacaros.ros.backends.ros2_quality import profile
+from jacaros.ros.drivers.ros2.graph import (
+    RCLError,
+    endpoint,
+    foreign_types,
+    own_types,
+    profile,
+    publishers_in,
+)
+from jacaros.ros.drivers.ros2.node import Ros2Node
 from jacaros.ros.errors import RosError
 from jacaros.ros.handoff import Handoff, post
 from jacaros.ros.qos import QoS, incompatibility

@@ -5,9 +5,9 @@ from collections.abc import Callable
 from typing import Any
 
 from jacaros.ros.backend import Handler
-from jacaros.ros.backends.ros2_graph import service_mismatch, service_servers, service_servers_in
-from jacaros.ros.backends.ros2_node import Ros2Node
 from jacaros.ros.calling import AttemptingClient, ServerWatch, settle
+from jacaros.ros.drivers.ros2.graph import service_mismatch, service_servers, service_servers_in
+from jacaros.ros.drivers.ros2.node import Ros2Node
 from jacaros.ros.errors import CallFailed, ServiceUnavailable
 from jacaros.ros.handoff import post
 from jacaros.ros.serving import Responder

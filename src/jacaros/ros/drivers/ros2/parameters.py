@@ -21,9 +21,9 @@ from rclpy.exceptions import (  # type: ignore[import-not-found]
 )
 from rclpy.parameter import Parameter, parameter_value_to_python  # type: ignore[import-not-found]
 
-from jacaros.ros.backends.ros2_node import Ros2Node
-from jacaros.ros.backends.ros2_services import Ros2Client
-from jacaros.ros.backends.ros2_values import parameter, plain_value
+from jacaros.ros.drivers.ros2.node import Ros2Node
+from jacaros.ros.drivers.ros2.services import Ros2Client
+from jacaros.ros.drivers.ros2.types import parameter, plain_value
 from jacaros.ros.errors import CapabilityMissing, ParameterRefused, ParameterUnknown, ServerGone
 from jacaros.ros.handoff import LoopEnded, ask
 from jacaros.ros.parameter import Declaration, ParameterValue

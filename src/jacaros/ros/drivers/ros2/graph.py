@@ -1,12 +1,14 @@
-"""What rclpy knows of the graph: who is there, and with which types."""
+"""What rclpy knows of the graph: who is there, with which types, and with which quality of service."""
 
 from typing import Any
 
+import rclpy.duration  # type: ignore[import-not-found]
+import rclpy.qos  # type: ignore[import-not-found]
 from rclpy.impl.implementation_singleton import rclpy_implementation  # type: ignore[import-not-found]
 
-from jacaros.ros.backends.ros2_node import Ros2Node
-from jacaros.ros.backends.ros2_quality import quality
+from jacaros.ros.drivers.ros2.node import Ros2Node
 from jacaros.ros.graph import Endpoint, GraphContents, TopicInfo
+from jacaros.ros.qos import QoS
 
 RCLError = rclpy_implementation.RCLError
 """What rclpy raises when the middleware refuses."""
@@ -157,3 +159,33 @@ def service_servers_in(rcl: Any, name: str) -> frozenset[bytes]:
 def service_servers(node: Ros2Node, name: str) -> frozenset[bytes]:
     """The identities of those that offer a service, where the middleware makes services of topics, as all on DDS do."""
     return service_servers_in(node.rcl, name)
+
+
+_FOREVER = 2**62
+"""Nanoseconds from which on a deadline is none; the middlewares have several numbers for it."""
+
+
+def profile(qos: QoS) -> Any:
+    """Give rclpy's profile."""
+    reliability, durability = rclpy.qos.ReliabilityPolicy, rclpy.qos.DurabilityPolicy
+    told: dict[str, Any] = {}
+    if qos.deadline is not None:
+        told["deadline"] = rclpy.duration.Duration(seconds=qos.deadline)
+    return rclpy.qos.QoSProfile(
+        depth=qos.depth,
+        reliability=reliability.RELIABLE if qos.reliability == "reliable" else reliability.BEST_EFFORT,
+        durability=durability.TRANSIENT_LOCAL if qos.durability == "transient_local" else durability.VOLATILE,
+        **told,
+    )
+
+
+def quality(given: Any) -> QoS:
+    """Read rclpy's profile of somebody's endpoint."""
+    reliability, durability = rclpy.qos.ReliabilityPolicy, rclpy.qos.DurabilityPolicy
+    nanoseconds = given.deadline.nanoseconds
+    return QoS(
+        reliability="best_effort" if given.reliability == reliability.BEST_EFFORT else "reliable",
+        durability="transient_local" if given.durability == durability.TRANSIENT_LOCAL else "volatile",
+        depth=max(1, given.depth),  # not every middleware tells it
+        deadline=nanoseconds * 1e-9 if 0 < nanoseconds < _FOREVER else None,
+    )

@@ -1,7 +1,7 @@
 """ROS 1 through rospy: one node per process, callbacks handed to the loop, registrations looked after.
 
 Nothing here waits on the loop: joining, registering and calling services happen in threads, see
-`jacaros.ros.backends.ros1_master`.  The addresses are rospy's: ``ROS_MASTER_URI``, ``ROS_IP``,
+`jacaros.ros.drivers.ros1.master`.  The addresses are rospy's: ``ROS_MASTER_URI``, ``ROS_IP``,
 ``ROS_HOSTNAME``; with none given and a master on this machine everything stays on the loopback interface.
 """
 
@@ -27,11 +27,10 @@ from jacaros.ros.backend import (
     Sample,
     TopicEvent,
 )
-from jacaros.ros.backends.ros1_graph import graph_contents
-from jacaros.ros.backends.ros1_node import Ros1Node
-from jacaros.ros.backends.ros1_parameters import Ros1Parameters, give
-from jacaros.ros.backends.ros1_services import Ros1Client, Ros1Service
-from jacaros.ros.backends.ros1_topics import Feeds, Ros1Publisher, Ros1Subscription
+from jacaros.ros.drivers.ros1.graph import graph_contents
+from jacaros.ros.drivers.ros1.node import Ros1Node
+from jacaros.ros.drivers.ros1.services import Ros1Client, Ros1Parameters, Ros1Service, give
+from jacaros.ros.drivers.ros1.topics import Feeds, Ros1Publisher, Ros1Subscription
 from jacaros.ros.graph import GraphContents
 from jacaros.ros.names import action_type, message_type, service_type
 from jacaros.ros.node import NodeSettings

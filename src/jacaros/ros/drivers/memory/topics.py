@@ -1,4 +1,4 @@
-"""Publishers and subscriptions of `jacaros.ros.backends.memory`.
+"""Publishers and subscriptions of `jacaros.ros.drivers.memory.backend`.
 
 Publishing is the innermost loop of every run on this backend: what is rare (faults, deadlines) replaces
 `MemorySubscription.put` instead of being asked for at each message.
@@ -11,8 +11,8 @@ from typing import Any
 
 from jacaros.clock import Timer
 from jacaros.ros.backend import Sample, TopicEvent, TopicTrouble
-from jacaros.ros.backends.memory_members import GraphPublisher, GraphSubscription
-from jacaros.ros.backends.memory_node import MemoryNode
+from jacaros.ros.drivers.memory.graph import GraphPublisher, GraphSubscription
+from jacaros.ros.drivers.memory.node import MemoryNode
 from jacaros.ros.qos import QoS, incompatibility
 from jacaros.ros.serving import published_message
 

@@ -8,7 +8,7 @@ from typing import Any
 import rospy  # type: ignore[import-not-found]
 
 from jacaros.ros.backend import Sample, TopicEvent, TopicTrouble
-from jacaros.ros.backends.ros1_node import Ros1Node, wait_until_sent
+from jacaros.ros.drivers.ros1.node import Ros1Node, wait_until_sent
 from jacaros.ros.errors import MessageMismatch
 from jacaros.ros.handoff import Handoff, post
 from jacaros.ros.qos import QoS

@@ -16,10 +16,9 @@ from unique_identifier_msgs.msg import UUID  # type: ignore[import-not-found]
 
 from jacaros.ros.action import ActionPolicy, Execute, GoalStatus, Outcome
 from jacaros.ros.action_serving import ServedGoals
-from jacaros.ros.backends.ros2_graph import ACTION, FEEDBACK, SEND_GOAL
-from jacaros.ros.backends.ros2_node import Ros2Node
-from jacaros.ros.backends.ros2_quality import profile
-from jacaros.ros.backends.ros2_services import LateService
+from jacaros.ros.drivers.ros2.graph import ACTION, FEEDBACK, SEND_GOAL, profile
+from jacaros.ros.drivers.ros2.node import Ros2Node
+from jacaros.ros.drivers.ros2.services import LateService
 from jacaros.ros.qos import QoS
 
 GET_RESULT, CANCEL_GOAL, STATUS = f"{ACTION}get_result", f"{ACTION}cancel_goal", f"{ACTION}status"

@@ -8,9 +8,9 @@ from typing import Any
 
 import rosgraph.network  # type: ignore[import-not-found]
 
-from jacaros.ros.backends.ros1_master import PATIENCE, Master
-from jacaros.ros.backends.ros1_node import Ros1Node
-from jacaros.ros.backends.ros1_types import ROS1_PACKAGES
+from jacaros.ros.drivers.ros1.master import PATIENCE, Master
+from jacaros.ros.drivers.ros1.node import Ros1Node
+from jacaros.ros.drivers.ros1.types import ROS1_PACKAGES
 from jacaros.ros.errors import CallTimedOut, ServiceError
 from jacaros.ros.graph import Endpoint, GraphContents, TopicInfo
 from jacaros.ros.handoff import in_thread

@@ -1,1 +1,0 @@
-"""The backends, one file each; only these files import a ROS client library."""

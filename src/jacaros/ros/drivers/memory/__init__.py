@@ -1,0 +1,1 @@
+"""A ROS graph inside the process."""

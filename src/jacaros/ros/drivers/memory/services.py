@@ -1,0 +1,320 @@
+"""Services, actions and parameters of `jacaros.ros.drivers.memory.backend`, those who offer them and those who ask."""
+
+import asyncio
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import Any
+
+from jacaros.ros.action import SERVER_LOST_AFTER, ActionPolicy, Execute, Outcome
+from jacaros.ros.action_calling import GoalSender
+from jacaros.ros.action_serving import ServedGoals
+from jacaros.ros.backend import Handler
+from jacaros.ros.calling import PendingCalls, server_gone, settle
+from jacaros.ros.drivers.memory.graph import GoalLine, GraphActionServer, GraphService, MemoryGraph
+from jacaros.ros.drivers.memory.node import MemoryNode
+from jacaros.ros.errors import CallFailed, CallTimedOut, CapabilityMissing, ServiceUnavailable
+from jacaros.ros.names import request_type
+from jacaros.ros.parameter import Declaration, ParameterValue
+from jacaros.ros.parameter_store import DeclaredParameters
+from jacaros.ros.serving import Responder, checked_message
+from jacaros.ros.waiting import Absence, Waiting, within
+
+
+class MemoryService:
+    """Service of `MemoryBackend`."""
+
+    def __init__(self, node: MemoryNode, name: str, type_name: str, handler: Handler) -> None:
+        self.name = name
+        self.type_name = type_name
+        self._node = node
+        self._graph = node.graph
+        self._responder = Responder(node.factory, name, type_name, handler, node.log)
+        self._vanished = False
+        self._clock = node.clock
+        self._answers: set[asyncio.Future[Any]] = set()
+        self._graph.offer(self)
+
+    def handle(self, request: Any, answer: asyncio.Future[Any]) -> None:
+        """Run the handler for one call."""
+
+        def done(response: Any, problem: CallFailed | None) -> None:
+            if self._vanished:
+                return
+            self._answers.discard(answer)
+            if self._graph.up:
+                settle(answer, response, problem)
+            else:
+                self._graph.tell(settle, answer, response, problem)
+
+        self._answers.add(answer)
+        self._responder.answer(request, done)
+
+    def close(self) -> None:
+        """Stop to offer the service."""
+        self._graph.withdraw(self)
+        self._responder.close()
+        self._node.forget(self)
+
+    def vanish(self) -> None:
+        """Be gone without a word: its clients find that out after a while."""
+        self._vanished = True
+        for answer in self._answers:
+            self._clock.call_later(SERVER_LOST_AFTER, partial(settle, answer, None, server_gone(self.name)))
+        self._answers.clear()
+        self.close()
+
+
+class MemoryClient:
+    """Client of `MemoryBackend`."""
+
+    def __init__(self, node: MemoryNode, name: str, type_name: str) -> None:
+        self.name = name
+        self._node = node
+        self._type_name = type_name
+        self._pending = PendingCalls(name)
+        self._absence = Absence()
+
+    @property
+    def ready(self) -> bool:
+        """Whether somebody offers the service."""
+        return self._node.graph.server(self.name) is not None
+
+    def request(self, **fields: Any) -> Any:
+        """Make a request message."""
+        return self._node.factory.make(request_type(self._type_name), fields)
+
+    async def call(self, request: Any = None, timeout: float | None = None) -> Any:
+        """Call the service and give its response."""
+        clock = self._node.clock
+        message = checked_message(self._node.factory, request_type(self._type_name), request)
+        deadline = None if timeout is None else clock.elapsed + timeout
+        server = await self._server(timeout)
+        if server.type_name != self._type_name:
+            raise CallFailed(f"service {self.name} is of type {server.type_name}, not {self._type_name}")
+        answer = self._pending.new()
+        server.handle(message, answer)
+        try:
+            return await within(clock, answer, None if deadline is None else deadline - clock.elapsed)
+        except TimeoutError:
+            raise CallTimedOut(f"service {self.name} did not answer within {timeout:g} s") from None
+
+    async def _server(self, timeout: float | None) -> GraphService:
+        graph = self._node.graph
+        what = f"service {self.name} ({self._type_name})"
+        server = graph.server(self.name)
+        while server is None:
+            await come(self._node, f"service {self.name}", what, timeout, self._absence)
+            server = graph.server(self.name)
+        self._absence.end(self._node.log, what)
+        return server
+
+    def close(self) -> None:
+        """Give the client up."""
+        self._pending.close()
+        self._node.forget(self)
+
+
+async def come(node: MemoryNode, thing: str, what: str, timeout: float | None, absence: Absence) -> None:
+    """Wait until something has come to the graph, with a report.
+
+    Args:
+        node: who waits.
+        thing: what `MemoryGraph.arrival` calls it.
+        what: what people call it.
+        timeout: seconds.
+        absence: how often it was awaited before, see `Waiting`.
+
+    Raises:
+        ServiceUnavailable: it has not come in time.
+    """
+    with Waiting(node.clock, node.log, what, "Is the node that offers it running?", absence=absence):
+        try:
+            await within(node.clock, node.graph.arrival(thing), timeout)
+        except TimeoutError:
+            raise ServiceUnavailable(f"nobody offered {what} within {timeout:g} s") from None
+
+
+class MemoryActionServer:
+    """Action server of `MemoryBackend`."""
+
+    def __init__(
+        self, node: MemoryNode, name: str, type_name: str, execute: Execute, policy: ActionPolicy
+    ) -> None:
+        self.name = name
+        self.type_name = type_name
+        self.vanished = False
+        self._node = node
+        self._graph = node.graph
+        self._goals = ServedGoals(node.clock, node.factory, name, type_name, execute, policy, node.log)
+        self._graph.offer_action(self)
+
+    def take(self, goal_id: str, request: Any, wire: GoalLine) -> None:
+        """Judge a goal and begin with it."""
+        if self.vanished:
+            return
+        refusal = self._goals.judge(request)
+        if refusal is not None:
+            self._graph.tell(wire.sender.rejected, goal_id, refusal)
+            return
+        self._graph.tell(wire.sender.accepted, goal_id)
+        self._goals.begin(goal_id, request, _News(self._graph, wire, goal_id))
+
+    def cancel(self, goal_id: str, wire: GoalLine) -> None:
+        """Handle a request for cancelling."""
+        if not self.vanished:
+            self._graph.tell(wire.sender.cancel_answered, goal_id, self._goals.cancel(goal_id))
+
+    def close(self) -> None:
+        """Stop to offer the action."""
+        self._goals.close()
+        self._leave()
+
+    def vanish(self) -> None:
+        """Be gone without a word: the clients of goals under way learn nothing."""
+        self.vanished = True
+        self._goals.abandon()
+        self._leave()
+
+    def _leave(self) -> None:
+        self._graph.withdraw_action(self)
+        self._node.forget(self)
+
+
+class _News:
+    """Brings the news of one goal to its client."""
+
+    def __init__(self, graph: MemoryGraph, wire: GoalLine, goal_id: str) -> None:
+        self._graph = graph
+        self._wire = wire
+        self._goal_id = goal_id
+
+    def feedback(self, message: Any) -> None:
+        if self._graph.up:  # else it is lost, as messages are
+            self._graph.tell(self._wire.sender.feedback, self._goal_id, message)
+
+    def ended(self, outcome: Outcome) -> None:
+        self._graph.tell(self._wire.sender.ended, self._goal_id, outcome)
+
+
+class MemoryGoalWire:
+    """Carries goals from a `GoalSender` to the servers of the graph."""
+
+    def __init__(self, node: MemoryNode, name: str, type_name: str) -> None:
+        self.name = name
+        self.graph = node.graph
+        self.sender = GoalSender(node.clock, node.log, node.factory, name, type_name, node.leaving_goals)
+        self.sender.wire = self
+        self._node = node
+        self._type_name = type_name
+        self._servers: dict[str, GraphActionServer] = {}
+        self.graph.connect(self)
+        self._forget_hook = node.add_exit_hook(self._cancel_all)
+
+    @property
+    def offered(self) -> bool:
+        """Whether a server offers the action."""
+        return self.graph.action_server(self.name) is not None
+
+    def new_id(self) -> str:
+        """Number the node's goals."""
+        return self._node.new_goal_id()
+
+    def send_goal(self, goal_id: str, goal: Any) -> None:
+        """Hand a goal to the server."""
+        server = self.graph.action_server(self.name)
+        if server is None:
+            raise CallFailed(f"action {self.name} is not offered any more")
+        if server.type_name != self._type_name:
+            raise CallFailed(f"action {self.name} is of type {server.type_name}, not {self._type_name}")
+        if not self._node.lifetime.admits():
+            raise CallFailed(f"action {self.name}: the node is leaving the graph")
+        self._servers[goal_id] = server
+        self.graph.tell(server.take, goal_id, goal, self)
+
+    def cancel_goal(self, goal_id: str) -> None:
+        """Ask the goal's server to cancel it."""
+        server = self._servers.get(goal_id)
+        if server is not None and not self._node.vanished:
+            self.graph.tell(server.cancel, goal_id, self)
+
+    def adopt_goal(self, goal_id: str) -> None:
+        """Never called: a graph inside the process has no earlier runs."""
+
+    def forget_goal(self, goal_id: str) -> None:
+        """The goal is over."""
+        self._servers.pop(goal_id, None)
+
+    def close(self) -> None:
+        """Cancel the goals, and leave."""
+        self.sender.close()  # which calls this again, when they are cancelled
+        self._forget_hook()
+        self.graph.disconnect(self)
+        self._node.forget(self)
+
+    def _cancel_all(self) -> None:
+        """Cancel what is under way, as an exit hook."""
+        for goal_id in list(self._servers):
+            self.cancel_goal(goal_id)
+
+    def server_came(self) -> None:
+        """A server is there."""
+        vanished = any(server.vanished for server in self._servers.values())
+        self.sender.server_present(True, same=not vanished)
+
+    def server_went(self) -> None:
+        """There is no server any more."""
+        self.sender.server_present(False)
+
+
+class MemoryParameters:
+    """The parameters of a node, seen from another or from itself."""
+
+    def __init__(self, asker: MemoryNode, node: str) -> None:
+        self.node = node
+        self._asker = asker
+        self._absence = Absence()
+
+    def declare(self, name: str, declaration: Declaration) -> ParameterValue:
+        """Declare a parameter of our own node."""
+        self._require_own()
+        return self._asker.declared.declare(name, declaration)
+
+    def withdraw(self, name: str) -> None:
+        """Take a declaration of our own node back."""
+        self._require_own()
+        self._asker.declared.withdraw(name)
+
+    async def names(self, timeout: float | None = None) -> list[str]:
+        """Names of the node's parameters."""
+        return (await self._store(timeout)).names()
+
+    async def get(self, name: str, timeout: float | None = None) -> ParameterValue:
+        """Give a parameter's value."""
+        return (await self._store(timeout)).get(name)
+
+    async def set(self, name: str, value: ParameterValue, timeout: float | None = None) -> None:
+        """Change a parameter."""
+        (await self._store(timeout)).set(name, value)
+        await asyncio.sleep(0)  # the news of it comes first, as it does on real graphs more often than not
+
+    def on_change(self, callback: Callable[[Mapping[str, ParameterValue]], None]) -> Callable[[], None]:
+        """Have *callback* called with what changed."""
+        return self._asker.graph.listen_to_parameters(self.node, callback)
+
+    def _require_own(self) -> None:
+        if self.node != self._asker.node_name:
+            raise CapabilityMissing(
+                f"only {self.node} itself can declare its parameters; {self._asker.node_name} can get and set them"
+            )
+
+    async def _store(self, timeout: float | None) -> DeclaredParameters:
+        if self.node == self._asker.node_name:
+            return self._asker.declared
+        graph = self._asker.graph
+        node = graph.node(self.node)
+        what = f"parameters of node {self.node}"
+        while node is None:
+            await come(self._asker, f"node {self.node}", what, timeout, self._absence)
+            node = graph.node(self.node)
+        self._absence.end(self._asker.log, what)
+        return node.declared
