@@ -28,6 +28,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         action="store_true",
         help="fail, do not skip, when websockets or roslibpy is missing",
     )
+    group.addoption("--require-mqtt", action="store_true", help="fail, do not skip, without an MQTT broker")
 
 
 @pytest.fixture(autouse=True)

@@ -32,6 +32,7 @@ BIN = Path(PYTHON).parent
 NOT_HERE = 3
 """Exit code of a script that cannot do its work on this machine."""
 
+INSTALL = ("tools/install_program.sh",)
 PYTEST = (PYTHON, "-m", "pytest", "-q", "-p", "no:cacheprovider")
 SMOKE = ("tests/unit/compiler", "tests/unit/env", "tests/unit/extension")
 """Tests that show in seconds whether another Python works: code that we generate, annotations, asyncio."""
@@ -87,7 +88,8 @@ class Part:
 def parts() -> list[Part]:
     """All parts, in the order in which they start."""
     found = [
-        Part("chromium", ("tools/install_chromium.sh",), "install"),
+        Part("chromium", (*INSTALL, "chromium", "chromium", "chromium-browser", "google-chrome"), "install"),
+        Part("mosquitto", (*INSTALL, "mosquitto", "mosquitto"), "install"),
         Part("ros1-install", ("tools/install_ros1.sh",), "install"),
         Part("ros2-jazzy-install", ("tools/install_ros2.sh", "jazzy"), "install"),
         Part("ros2-kilted-install", ("tools/install_ros2.sh", "kilted"), "install"),
@@ -107,8 +109,15 @@ def parts() -> list[Part]:
         ),
         Part(
             "contracts",
-            (*PYTEST, "tests/contracts", "-m", "not ros1 and not ros2 and not rosbridge"),
+            (*PYTEST, "tests/contracts", "-m", "not ros1 and not ros2 and not rosbridge and not mqtt"),
             budget=5,
+        ),
+        Part(
+            "mqtt",
+            (*PYTEST, "tests/contracts", "-m", "mqtt", "--require-mqtt"),
+            "waiting",
+            needs="mosquitto",
+            budget=20,
         ),
         Part(
             "rosbridge",

@@ -13,10 +13,10 @@ sys.path.insert(0, str(Path(__file__).parent))  # the peers' files are programs,
 from bridges import BRIDGED, BehindBridge, BridgeServer, behind_bridge
 from expected import BEYOND
 from graphs import InMemory, InProcesses
-from masters import Master
+from masters import Broker, Master
 from presence import is_wanted, need, ros2_environment
 
-KINDS = ("memory", "ros1", "ros2", *BRIDGED)
+KINDS = ("memory", "ros1", "ros2", *BRIDGED, "mqtt")
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
@@ -24,7 +24,7 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     if "graph" in metafunc.fixturenames:
         only = metafunc.definition.get_closest_marker("only")
         kinds = [kind for kind in (only.args if only else KINDS) if is_wanted(kind, metafunc.config)]
-        marks = {"ros1": [pytest.mark.ros1], "ros2": [pytest.mark.ros2]}
+        marks = {kind: [getattr(pytest.mark, kind)] for kind in ("ros1", "ros2", "mqtt")}
         marks |= {kind: [pytest.mark.rosbridge] for kind in BRIDGED}
         metafunc.parametrize(
             "graph", [pytest.param(k, marks=marks.get(k, [])) for k in kinds], indirect=True, scope="session"
@@ -70,12 +70,14 @@ def graph(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
         yield made
         made.close()
         return
-    master = Master(folder)
-    master.start()
-    made = InProcesses(kind, master.environment)
+    server = Broker(folder) if kind == "mqtt" else Master(folder)
+    server.start()
+    made = InProcesses(kind, server.environment)
     yield made
-    made.close()
-    master.close()
+    try:
+        made.close()
+    finally:
+        server.close()
 
 
 @pytest.fixture(scope="session")

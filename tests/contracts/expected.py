@@ -17,6 +17,7 @@ CAPABILITIES = {
     },
 }
 # There the peer that is asked is a node of the graph itself.
+CAPABILITIES["mqtt"] = {"topics", "transforms", "discovery"}
 CAPABILITIES["rosbridge-ros2-right"] = CAPABILITIES["memory"]
 """Kind of graph → the capabilities (constants of `jacaros.ros.backend`) that its backend has."""
 
@@ -27,6 +28,7 @@ BEYOND = {
     "rosbridge-ros2-right": _SERVED_OVER_A_BRIDGE | {"events", "failing services"},
     "rosbridge-ros2-left": {"events", "own parameters", "given parameters", "dying servers"},
     "rosbridge-ros1": {"events", "given parameters"},
+    "mqtt": {"services", "actions", "parameters", "deadlines", "rosout"},
     # The graph behind the bridge is one of ROS 2 without actionlib and without a master.
     "rosbridge-ros1-left": {"events", "actions", "parameters", "contents", "failing services", "rosout"},
 }

@@ -25,6 +25,10 @@ PATIENCE = 90.0
 """Seconds after which a test gives up; far more than any step takes on a busy machine."""
 
 
+MODULES = {"mqtt": "mqtt_driver.backend:MqttBackend"}
+"""Kinds of graph whose driver is not a part of the package, by the name of its module."""
+
+
 class MemoryPeer:
     """A peer in this process: commands run the graph's loop until they are done."""
 
@@ -219,7 +223,7 @@ class InProcesses:
         self, name: str, namespace: str = "", start: bool = True, flags: str = "", **options: Any
     ) -> Any:
         environment = self.environment | ({"PYTHON_FLAGS": flags} if flags else {})
-        made = ProcessPeer(self.kind, name, namespace, options, dict(environment))
+        made = ProcessPeer(MODULES.get(self.kind, self.kind), name, namespace, options, dict(environment))
         self._peers.append(made)
         if start:
             made.start()

@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from masters import Master
+from masters import Broker, Master
 
 LIBRARIES = {"ros1": "rospy", "ros2": "rclpy"}
 
@@ -25,6 +25,10 @@ def missing(kind: str) -> str | None:
         # The server of these tests speaks through roslibpy's WebSocket library: an implementation that is not ours.
         lacking = [name for name in ("websockets", "roslibpy") if importlib.util.find_spec(name) is None]
         return f"no {lacking[0]} in {sys.executable}; run `pip install 'jacaros[dev]'`" if lacking else None
+    if kind == "mqtt":
+        if importlib.util.find_spec("aiomqtt") is None:
+            return f"no aiomqtt in {sys.executable}; run `pip install 'jacaros[dev]'`"
+        return None if Broker.program() else "no mosquitto; run `tools/install_program.sh mosquitto`"
     if importlib.util.find_spec(LIBRARIES[kind]) is None:
         return f"no {LIBRARIES[kind]} in {sys.executable}; run tools/install_{kind}.sh and use its venv"
     if kind == "ros1" and Master.program() is None:

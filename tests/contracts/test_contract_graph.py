@@ -52,7 +52,7 @@ def test_a_topic_that_everybody_left_is_gone(graph: Any, pair: Pair, topic: str)
     )
 
 
-@pytest.mark.needs("contents")
+@pytest.mark.needs("contents", "services")
 def test_services_are_seen(graph: Any, pair: Pair, topic: str) -> None:
     left, right = pair
     right.serve(topic)

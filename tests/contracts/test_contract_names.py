@@ -2,6 +2,8 @@
 
 from typing import Any
 
+import pytest
+
 Pair = tuple[Any, Any]
 
 
@@ -15,6 +17,7 @@ def test_names_are_resolved_in_the_namespace(graph: Any) -> None:
     assert robot.resolve("~x") == "/robot1/y"
 
 
+@pytest.mark.needs("services")
 def test_namespaces_reach_the_graph(graph: Any, pair: Pair, own_name: str) -> None:
     _, right = pair
     robot = graph.peer("brain2", namespace=f"/{own_name}", remap={"scan": f"/other/{own_name}"})

@@ -11,7 +11,7 @@ from presence import need
 PAGE = Path(__file__).parents[2] / "docs" / "reference" / "middleware.md"
 
 
-@pytest.mark.parametrize("kind", ["ros1", "ros2", "rosbridge"])
+@pytest.mark.parametrize("kind", ["ros1", "ros2", "rosbridge", "mqtt"])
 def test_the_real_graph_is_there(kind: str, request: pytest.FixtureRequest) -> None:
     need(kind, request.config)
 
@@ -24,7 +24,9 @@ def test_the_reference_has_the_same_table_of_capabilities() -> None:
     ]
     [head] = [row for row in rows if row[0] == "capability"]
     rows = rows[rows.index(head) + 2 :]
-    one_for_all = {kind: able for kind, able in CAPABILITIES.items() if not kind.startswith("rosbridge-")}
+    one_for_all = {
+        kind: able for kind, able in CAPABILITIES.items() if not kind.startswith(("rosbridge-", "mqtt"))
+    }
     # Both flavours of the bridge, whichever side the peers are on, but for the side that is no bridge.
     for flavour, words in (("rosbridge-ros1", {"yes"}), ("rosbridge-ros2", {"yes", "of ROS 2"})):
         told: dict[str, set[str]] = {kind.strip("`"): set() for kind in head[1:-1]}

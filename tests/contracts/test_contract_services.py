@@ -13,6 +13,8 @@ from jacaros.ros.errors import (
     UnknownInterface,
 )
 
+pytestmark = pytest.mark.needs("services")
+
 Pair = tuple[Any, Any]
 TRIGGER = "std_srvs/srv/Trigger"
 

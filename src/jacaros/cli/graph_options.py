@@ -17,6 +17,15 @@ if TYPE_CHECKING:
 
 F = TypeVar("F", bound=Callable[..., Any])
 
+
+class RosKind(click.Choice[str]):
+    """Takes a kind of graph, or a class for one's own as ``MODULE:NAME``."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Give the name of a class as it is written."""
+        return value if ":" in value else super().convert(value, param, ctx)
+
+
 _ADDRESS = (
     click.option(
         "--domain-id",

@@ -7,8 +7,9 @@ from typing import Any
 
 import click
 
-from jacaros.cli.graph_options import address_options
+from jacaros.cli.graph_options import RosKind, address_options
 from jacaros.clock import WallClock, run
+from jacaros.ros.middleware import ROS_KINDS
 
 LEAST_TIMEOUT = 0.15
 """Seconds: three heartbeats."""
@@ -18,7 +19,7 @@ LEAST_TIMEOUT = 0.15
 @click.argument("name")
 @click.option(
     "--ros",
-    type=click.Choice(("ros1", "ros2", "rosbridge")),
+    type=RosKind(ROS_KINDS[1:]),
     required=True,
     envvar="JACAROS_ROS",
     show_envvar=True,

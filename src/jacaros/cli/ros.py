@@ -8,10 +8,10 @@ from typing import Any, TypeVar
 
 import click
 
-from jacaros.cli.graph_options import address_options
+from jacaros.cli.graph_options import RosKind, address_options
 from jacaros.errors import UsageError
 from jacaros.mas.options import RunOptions
-from jacaros.ros.address import ROS_KINDS
+from jacaros.ros.middleware import MIDDLEWARES, ROS_KINDS
 
 F = TypeVar("F", bound=Callable[..., Any])
 T = TypeVar("T")
@@ -19,7 +19,7 @@ T = TypeVar("T")
 _OPTIONS = (
     click.option(
         "--ros",
-        type=click.Choice(ROS_KINDS),
+        type=RosKind(ROS_KINDS),
         default="memory",
         envvar="JACAROS_ROS",
         show_default=True,
@@ -238,7 +238,7 @@ def _written(ros: str, world: str | None, **rest: Any) -> str:
     """The options as they are written, for commands in comments."""
     parts = [f"--ros {ros}"] if ros != "memory" else []
     parts += [f"--world {world}"] if world is not None else []
-    for name in ("domain_id", "master", "bridge"):
-        if rest[name] is not None:
-            parts.append(f"--{name.replace('_', '-')} {rest[name]}")
+    for kind in MIDDLEWARES.values():
+        if rest.get(kind.option) is not None:
+            parts.append(f"{kind.flag} {rest[kind.option]}")
     return "".join(f" {part}" for part in parts)

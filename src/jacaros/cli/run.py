@@ -12,6 +12,7 @@ import click
 
 from jacaros.bdi.mind import Mind
 from jacaros.cli.graph_options import (
+    RosKind,
     graph_options,
     orphan_policy,
     orphans_option,
@@ -28,7 +29,7 @@ from jacaros.mas.loading import load_deployment
 from jacaros.mas.options import RunOptions
 from jacaros.mas.system import System
 from jacaros.output import CLOSING, PATIENCE
-from jacaros.ros.address import ROS_KINDS
+from jacaros.ros.middleware import ROS_KINDS
 from jacaros.text_files import is_file
 
 FAST_PATIENCE = 1.0
@@ -53,7 +54,7 @@ SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
 @click.option("--seed", type=int, help="Makes random numbers repeatable; with --clock fast the whole run.")
 @click.option(
     "--ros",
-    type=click.Choice(ROS_KINDS),
+    type=RosKind(ROS_KINDS),
     default="memory",
     envvar="JACAROS_ROS",
     show_default=True,

@@ -7,11 +7,12 @@ from typing import Any
 
 import click
 
-from jacaros.cli.graph_options import read_remaps, world_options
+from jacaros.cli.graph_options import RosKind, read_remaps, world_options
 from jacaros.cli.outputs import check_output
 from jacaros.clock import Clock, VirtualClock, WallClock, run
 from jacaros.errors import UsageError
-from jacaros.ros.address import ROS_KINDS, GraphAddress
+from jacaros.ros.address import GraphAddress
+from jacaros.ros.middleware import ROS_KINDS
 from jacaros.sim.description import BatterySettings, WorldDescription
 from jacaros.text_files import is_file
 
@@ -20,7 +21,7 @@ from jacaros.text_files import is_file
 @click.argument("world")
 @click.option(
     "--ros",
-    type=click.Choice(ROS_KINDS),
+    type=RosKind(ROS_KINDS),
     required=True,
     envvar="JACAROS_ROS",
     show_envvar=True,

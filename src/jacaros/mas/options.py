@@ -6,7 +6,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from jacaros.errors import UsageError
-from jacaros.ros.address import ROS_KINDS, GraphAddress
+from jacaros.ros.address import GraphAddress
+from jacaros.ros.middleware import MIDDLEWARES, middleware
 
 if TYPE_CHECKING:
     from jacaros.ros.orphans import OrphanPolicy
@@ -71,8 +72,7 @@ class RunOptions(GraphAddress):
         Raises:
             UsageError: with what to do instead.
         """
-        if self.ros not in ROS_KINDS:
-            raise UsageError(f"there is no ROS backend {self.ros!r}; there are {', '.join(ROS_KINDS)}")
+        middleware(self.ros)
         if self.fast and self.ros != "memory":
             raise UsageError(
                 f"the virtual clock (--clock fast) cannot run with a real ROS graph (--ros {self.ros}): its "
@@ -94,6 +94,6 @@ class RunOptions(GraphAddress):
             raise UsageError("--for wants a number of seconds that is not negative")
 
     def _names_the_graph(self) -> bool:
-        options = (self.domain_id, self.master, self.bridge, self.node_name)
+        options = (self.node_name, *(self._given(kind) for kind in MIDDLEWARES.values()))
         names = self.namespace or self.remap or self.parameters
         return bool(names or any(option is not None for option in options))

@@ -4,7 +4,6 @@ The graph inside the process, and the world with it, come into being when the fi
 a program that talks to no robot pays for none.  A real graph is joined at the start.
 """
 
-import os
 from collections.abc import Callable, Coroutine
 from contextlib import AsyncExitStack
 from pathlib import Path
@@ -189,9 +188,8 @@ class RosGraph:
     def _look_for_others(self, backend: "Backend") -> None:
         from jacaros.mas.graph_warnings import EmptyGraph
 
-        domain = self._options.domain_id
-        number = os.environ.get("ROS_DOMAIN_ID", "0") if domain is None else str(domain)
-        self._empty = EmptyGraph(backend, self._clock, f"the ROS 2 graph of domain {number}", self._log_ros)
+        where = f"the ROS 2 graph of domain {self._options.identity}"
+        self._empty = EmptyGraph(backend, self._clock, where, self._log_ros)
 
     def _log_ros(self, text: str) -> None:
         self._log(f"[ros] {text}")

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from jacaros.errors import UsageError
+from jacaros.ros.middleware import MIDDLEWARES, Middleware, middleware
 
 # What only a program with robots needs is imported in functions: the options of every run are an address, too.
 if TYPE_CHECKING:
@@ -14,15 +15,6 @@ if TYPE_CHECKING:
     from jacaros.ros.orphans import OrphanPolicy
     from jacaros.ros.parameter import ParameterValue
 
-_VARIABLES = {
-    "memory": ("", ""),
-    "ros1": ("ROS_MASTER_URI", "http://localhost:11311"),
-    "ros2": ("ROS_DOMAIN_ID", "0"),
-    "rosbridge": ("ROSBRIDGE_URI", ""),
-}
-"""By kind: the variable that names the graph where no option does, and what it is without both."""
-
-ROS_KINDS = tuple(_VARIABLES)
 LAST_DOMAIN = 232
 """The highest domain id whose ports all exist (ROS 2 documentation, "The ROS_DOMAIN_ID")."""
 
@@ -32,7 +24,8 @@ class GraphAddress:
     """A graph and the names of our node in it; what is None comes from the environment, as in other ROS nodes.
 
     Attributes:
-        ros: kind of the ROS graph: ``memory`` (inside the process), ``ros1``, ``ros2`` or ``rosbridge``.
+        ros: kind of the ROS graph: ``memory`` (inside the process), ``ros1``, ``ros2``, ``rosbridge``, or a class of the
+            user's, see `jacaros.ros.middleware`.
         domain_id: of ROS 2; else ``ROS_DOMAIN_ID``.
         master: address of the ROS 1 master, such as ``http://robot.lab.example:11311``; else ``ROS_MASTER_URI``.
         bridge: address of a rosbridge server, such as ``ws://robot.lab.example:9090``.
@@ -57,21 +50,20 @@ class GraphAddress:
     @property
     def identity(self) -> str:
         """The domain or address of the graph, wherever it is given."""
-        variable, default = _VARIABLES[self.ros]
-        given = self.domain_id if self.domain_id is not None else self.master or self.bridge
-        return str(given if given is not None else os.environ.get(variable) or default)
+        kind = middleware(self.ros)
+        given = self._given(kind)
+        return str(given if given is not None else os.environ.get(kind.variable) or kind.default)
 
     @property
     def arguments(self) -> list[str]:
         """The graph and the namespace, as options of a command line."""
-        options = {
-            "--ros": self.ros,
-            "--domain-id": self.domain_id,
-            "--master": self.master,
-            "--bridge": self.bridge,
-            "--namespace": self.namespace or None,
-        }
+        kind = middleware(self.ros)
+        options = {"--ros": self.ros, kind.flag: self._given(kind), "--namespace": self.namespace or None}
         return [part for name, value in options.items() if value is not None for part in (name, str(value))]
+
+    def _given(self, kind: Middleware) -> Any:
+        """What names a graph of the kind, if it was given."""
+        return getattr(self, kind.option) if kind.option else None
 
     def check(self) -> None:
         """Refuse what cannot be, or cannot go together.
@@ -82,19 +74,15 @@ class GraphAddress:
         from jacaros.ros.errors import NameInvalid
         from jacaros.ros.names import NodeNames
 
-        for option, value, kind in (
-            ("--domain-id", self.domain_id, "ros2"),
-            ("--master", self.master, "ros1"),
-            ("--bridge", self.bridge, "rosbridge"),
-        ):
-            if value is not None and self.ros != kind:
-                raise UsageError(f"{option} goes with --ros {kind}, not with --ros {self.ros}")
+        middleware(self.ros)
+        for name, kind in MIDDLEWARES.items():
+            given = self._given(kind)
+            if given is not None and self.ros != name:
+                raise UsageError(f"{kind.flag} goes with --ros {name}, not with --ros {self.ros}")
+            if given is not None and kind.schemes:
+                _check_address(kind, str(given))
         if self.domain_id is not None and not 0 <= self.domain_id <= LAST_DOMAIN:
             raise UsageError(f"--domain-id is a whole number from 0 to {LAST_DOMAIN}, not {self.domain_id}")
-        if self.master is not None:
-            _check_address("--master", self.master, ("http", "https"), "http://robot.lab.example:11311")
-        if self.bridge is not None:
-            _check_address("--bridge", self.bridge, ("ws", "wss"), "ws://robot.lab.example:9090")
         self._check_parameters()
         try:
             NodeNames(self.node_name or "node", self.namespace, self.remap)
@@ -127,13 +115,12 @@ class GraphAddress:
         """
         from jacaros.ros import open as opening
 
-        if self.ros == "ros2":
-            options["domain_id"] = self.domain_id
+        kind = middleware(self.ros)
+        if kind.keyword:
+            options[kind.keyword] = self._given(kind)
         if self.ros == "ros1" and self.master is not None:
             # rospy reads it there and nowhere else, and has one node in a process anyway.
             os.environ["ROS_MASTER_URI"] = self.master
-        if self.ros == "rosbridge":
-            options["url"] = self.bridge
         namespace = self.namespace
         if not namespace and self.ros == "ros1":
             namespace = os.environ.get("ROS_NAMESPACE", "")
@@ -150,13 +137,13 @@ class GraphAddress:
         )
 
 
-def _check_address(option: str, written: str, schemes: tuple[str, ...], example: str) -> None:
+def _check_address(kind: Middleware, written: str) -> None:
     from urllib.parse import urlsplit
 
     try:
         parts = urlsplit(written)
-        complete = parts.scheme in schemes and parts.hostname and parts.port
+        complete = parts.scheme in kind.schemes and parts.hostname and parts.port
     except ValueError:
         complete = None
     if not complete:
-        raise UsageError(f"{option} is an address with its port, such as {example}, not {written!r}")
+        raise UsageError(f"{kind.flag} is an address with its port, such as {kind.example}, not {written!r}")

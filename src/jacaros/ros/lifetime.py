@@ -137,12 +137,12 @@ class Lifetime:
         A signal may interrupt, or another thread overtake, what is between the check and the client library's own
         publishing.  Without the second look the old velocity would follow the zero.
         """
-        if not self.admits():
+        if not self._open and not self.admits():
             return
         try:
             send(message)
         finally:
-            if not self.admits():
+            if not self._open and not self.admits():
                 self._run_hooks()
 
     def stop(self) -> None:

@@ -12,6 +12,7 @@ from jacaros.mas.ros_graph import RosGraph
 from jacaros.ros.backend import Backend
 from jacaros.ros.errors import CapabilityMissing, RosError
 from jacaros.ros.graph import Endpoint, GraphContents, TopicInfo
+from jacaros.ros.middleware import middleware
 
 FIRST_LOOK = 1.0
 """Seconds for which the embedded world runs before it is looked at."""
@@ -19,13 +20,6 @@ DISCOVERY = 2.0
 """Seconds that ROS 2 may take to find all nodes."""
 PAUSE = 0.5
 """Seconds between two looks; when they see the same, that is all."""
-
-
-_WORLDS = {
-    "memory": "give it a world: --world house",
-    "ros1": "a world: jacaros sim house --ros ros1",
-    "rosbridge": "a world in the graph of the bridge: jacaros sim house --ros ros1 (or ros2)",
-}
 
 
 class NothingThere(JacarosError):
@@ -82,15 +76,16 @@ async def joined(options: RunOptions, clock: Clock, timeout: float) -> AsyncIter
 
 
 async def _look(backend: Backend, clock: Clock, options: RunOptions, timeout: float) -> GraphContents:
+    kind = middleware(options.ros)
     try:
         seen = await _settled(backend, clock, timeout)
     except CapabilityMissing:
         raise
     except RosError as error:
-        raise NothingThere(f"{error}. {_cure(options)}") from error
+        raise NothingThere(f"{error}. {kind.unreachable}".rstrip()) from error
     if not (seen.topics or seen.services or seen.actions or seen.nodes):
-        cure = _cure(options) if options.ros == "ros2" else f"Start the robot, or {_WORLDS[options.ros]}"
-        raise NothingThere(f"nobody else is in the {_graph_name(options)}. {cure}")
+        cure = kind.deserted or kind.unreachable
+        raise NothingThere(f"nobody else is in the {_graph_name(options)}. {cure}".rstrip())
     return seen
 
 
@@ -129,21 +124,5 @@ def _others(endpoints: tuple[Endpoint, ...], node: str) -> tuple[Endpoint, ...]:
 
 def _graph_name(options: RunOptions) -> str:
     if options.ros == "ros2":
-        return f"ROS 2 graph of domain {_domain(options)}"
+        return f"ROS 2 graph of domain {options.identity}"
     return f"graph ({options.ros})"
-
-
-def _domain(options: RunOptions) -> str:
-    given = options.domain_id
-    return os.environ.get("ROS_DOMAIN_ID", "0") if given is None else str(given)
-
-
-def _cure(options: RunOptions) -> str:
-    if options.ros == "ros2":
-        return (
-            "Is the robot, or `jacaros sim house --ros ros2`, running? It must have the same domain (--domain-id N or "
-            "ROS_DOMAIN_ID) and the same ROS_AUTOMATIC_DISCOVERY_RANGE; a long --timeout helps on slow networks"
-        )
-    if options.ros == "ros1":
-        return "Start the robot or `roscore`, or say where its master is: --master http://robot.lab.example:11311"
-    return "Start rosbridge on the robot, or say where it is: --bridge ws://robot.lab.example:9090"

@@ -5,17 +5,10 @@ definitions from ``rosbags``.  A published message is handed over by reference, 
 order of publishing; so messages are read-only from `publish` on.
 """
 
-import asyncio
-from collections.abc import Callable
-from typing import TypeVar
-
-from jacaros.ros.action import ActionPolicy, Execute
-from jacaros.ros.action_calling import GoalSender
 from jacaros.ros.backend import (
     ACTIONS,
     DEADLINES,
     DECLARED_PARAMETERS,
-    DEFAULT_POLICY,
     GRAPH_QOS,
     PARAMETER_EVENTS,
     PARAMETERS,
@@ -25,12 +18,9 @@ from jacaros.ros.backend import (
     TOPICS,
     TRANSFORMS,
     Backend,
-    Handler,
-    Sample,
-    TopicEvent,
 )
 from jacaros.ros.drivers.memory.graph import MemoryGraph
-from jacaros.ros.drivers.memory.node import Member, MemoryNode
+from jacaros.ros.drivers.memory.node import MemoryNode
 from jacaros.ros.drivers.memory.services import (
     MemoryActionServer,
     MemoryClient,
@@ -39,17 +29,11 @@ from jacaros.ros.drivers.memory.services import (
     MemoryService,
 )
 from jacaros.ros.drivers.memory.topics import MemoryPublisher, MemorySubscription
-from jacaros.ros.errors import RosError, ServiceUnavailable
+from jacaros.ros.errors import ServiceUnavailable
 from jacaros.ros.graph import GraphContents
-from jacaros.ros.names import action_type, message_type, service_type
-from jacaros.ros.node import NodeSettings
-from jacaros.ros.qos import DEFAULT_QOS, QoS
-from jacaros.ros.typestore import RosbagsSchema
+from jacaros.ros.node import NodeSettings, Parts
 
 __all__ = ["BACKEND", "MemoryBackend", "MemoryGraph", "MemoryPublisher", "MemorySubscription"]
-
-
-_M = TypeVar("_M", bound=Member)
 
 
 class MemoryBackend(MemoryNode):
@@ -77,25 +61,30 @@ class MemoryBackend(MemoryNode):
         }
     )
 
+    parts = Parts(
+        publisher=MemoryPublisher,
+        subscription=MemorySubscription,
+        service=MemoryService,
+        client=MemoryClient,
+        action_client=MemoryGoalWire.client,
+        action_server=MemoryActionServer,
+    )
+
     def __init__(self, settings: NodeSettings, graph: MemoryGraph | None = None) -> None:
-        self._schema = RosbagsSchema(settings.interface_paths)
-        super().__init__(settings, self._schema, graph)
+        super().__init__(settings, graph)
 
     async def start(self) -> None:
         """Join the graph."""
-        self._loop = asyncio.get_running_loop()
-        self.lifetime.join()
+        self.join()
         self.graph.join(self)
         self.set_connected(self.graph.up)
 
     async def close(self) -> None:
         """Run the exit hooks and leave the graph."""
         self.lifetime.stop()
-        for member in list(self.members):
-            member.close()
-        self.members.clear()
+        self.close_members()
         self.graph.leave(self)
-        self.set_connected(False)
+        self.left()
         self.lifetime.left()
 
     def vanish(self) -> None:
@@ -106,50 +95,6 @@ class MemoryBackend(MemoryNode):
         self.members.clear()
         self.graph.leave(self)
 
-    def publisher(self, topic: str, type_name: str, qos: QoS = DEFAULT_QOS) -> MemoryPublisher:
-        """Make a publisher."""
-        return self._joined(MemoryPublisher(self, self.resolve(topic), message_type(type_name), qos))
-
-    def subscription(
-        self,
-        topic: str,
-        type_name: str,
-        callback: Callable[[Sample], None],
-        qos: QoS = DEFAULT_QOS,
-        on_event: Callable[[TopicEvent], None] | None = None,
-    ) -> MemorySubscription:
-        """Have *callback* called for every message."""
-        full_type = message_type(type_name)
-        self.factory.fields(full_type)
-        name = self.resolve(topic)
-        return self._joined(MemorySubscription(self, name, full_type, callback, qos, on_event))
-
-    def service(self, name: str, type_name: str, handler: Handler) -> MemoryService:
-        """Offer a service."""
-        full_type = service_type(type_name)
-        self._schema.offered(full_type)
-        return self._joined(MemoryService(self, self.resolve(name), full_type, handler))
-
-    def client(self, name: str, type_name: str) -> MemoryClient:
-        """Make a client of a service."""
-        full_type = service_type(type_name)
-        self._schema.service(full_type)
-        return self._joined(MemoryClient(self, self.resolve(name), full_type))
-
-    def action_client(self, name: str, type_name: str) -> GoalSender:
-        """Make a client of an action."""
-        full_type = action_type(type_name)
-        self._schema.action(full_type)
-        return self._joined(MemoryGoalWire(self, self.resolve(name), full_type)).sender
-
-    def action_server(
-        self, name: str, type_name: str, execute: Execute, policy: ActionPolicy = DEFAULT_POLICY
-    ) -> MemoryActionServer:
-        """Offer an action."""
-        full_type = action_type(type_name)
-        self._schema.offered(full_type)
-        return self._joined(MemoryActionServer(self, self.resolve(name), full_type, execute, policy))
-
     def parameters(self, node: str | None = None) -> MemoryParameters:
         """Give the parameters of our own node, or of another."""
         return MemoryParameters(self, self.node_name if node is None else self.resolve(node))
@@ -159,14 +104,6 @@ class MemoryBackend(MemoryNode):
         if not self.graph.up:
             raise ServiceUnavailable("the graph is interrupted")
         return self.graph.contents()
-
-    def _joined(self, member: _M) -> _M:
-        assert self.loop is not None
-        if self.vanished:
-            member.close()
-            raise RosError(f"node {self.node_name} was taken away from the graph")
-        self.members.append(member)
-        return member
 
 
 BACKEND: type[Backend] = MemoryBackend

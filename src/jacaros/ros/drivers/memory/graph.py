@@ -10,7 +10,6 @@ from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 from jacaros.ros.action_calling import GoalSender
-from jacaros.ros.backend import TopicEvent
 from jacaros.ros.errors import RosError
 from jacaros.ros.graph import Endpoint, GraphContents, TopicInfo
 from jacaros.ros.parameter import ParameterValue
@@ -61,14 +60,17 @@ class TopicEnd(Protocol):
 class GraphSubscription(TopicEnd, Protocol):
     """A subscription."""
 
-    put: Callable[[Any], None]
+    @property
+    def arrive(self) -> Callable[[Any], None]:
+        """Takes a message from a publisher."""
+        ...
 
     def meet(self, publisher: "GraphPublisher") -> None:
         """Be connected to a publisher, or say why not."""
         ...
 
-    def trouble(self, publisher: "GraphPublisher") -> TopicEvent | None:
-        """Why nothing can come from a publisher."""
+    def fits(self, publisher: "GraphPublisher") -> bool:
+        """Whether messages of a publisher come."""
         ...
 
     def choose_way(self) -> None:
@@ -420,7 +422,7 @@ class MemoryGraph:
         for topic in self._topics.values():
             for publisher in topic.publishers:
                 for subscription in topic.subscriptions:
-                    if subscription.trouble(publisher) is None:
+                    if subscription.fits(publisher):
                         publisher.connect(subscription)
         for name in self._services:
             self._arrived(f"service {name}")

@@ -1,20 +1,13 @@
 """A node in a graph inside the process, as its publishers, services and actions know it."""
 
 import itertools
-from typing import Protocol
 
 from jacaros.ros.drivers.memory.graph import MemoryGraph
+from jacaros.ros.errors import RosError
 from jacaros.ros.lifetime import Lifetime
-from jacaros.ros.node import Node, NodeSettings
+from jacaros.ros.node import M, Node, NodeSettings
 from jacaros.ros.parameter_store import DeclaredParameters
 from jacaros.ros.typestore import RosbagsSchema
-
-
-class Member(Protocol):
-    """What a node has in its graph."""
-
-    def close(self) -> None:
-        """Leave, and be forgotten by the node."""
 
 
 class MemoryNode(Node):
@@ -22,15 +15,12 @@ class MemoryNode(Node):
 
     Args:
         settings: names, clock and reports.
-        schema: the message classes.
         graph: the graph to join; a new one without it.
-
-    Attributes:
-        members: what the node has in the graph, in its order.
     """
 
-    def __init__(self, settings: NodeSettings, schema: RosbagsSchema, graph: MemoryGraph | None) -> None:
-        super().__init__(settings, schema, Lifetime(settings.log))
+    def __init__(self, settings: NodeSettings, graph: MemoryGraph | None) -> None:
+        self.schema = RosbagsSchema(settings.interface_paths)
+        super().__init__(settings, self.schema, Lifetime(settings.log))
         self.graph = graph if graph is not None else MemoryGraph()
         self.declared = DeclaredParameters(
             self.node_name,
@@ -39,13 +29,14 @@ class MemoryNode(Node):
             self.log,
         )
         self.vanished = False
-        self.members: list[Member] = []
         self._goal_numbers = itertools.count(1)
 
-    def forget(self, member: Member) -> None:
-        """Note that a member has left."""
-        if member in self.members:
-            self.members.remove(member)
+    def keep(self, member: M) -> M:
+        """Close *member* with the node; raises `RosError` when the node is gone."""
+        if self.vanished:
+            member.close()
+            raise RosError(f"node {self.node_name} was taken away from the graph")
+        return super().keep(member)
 
     def new_goal_id(self) -> str:
         """Number the goals that this node sends."""

@@ -24,6 +24,7 @@ class MemoryService:
     """Service of `MemoryBackend`."""
 
     def __init__(self, node: MemoryNode, name: str, type_name: str, handler: Handler) -> None:
+        node.schema.offered(type_name)
         self.name = name
         self.type_name = type_name
         self._node = node
@@ -68,6 +69,7 @@ class MemoryClient:
     """Client of `MemoryBackend`."""
 
     def __init__(self, node: MemoryNode, name: str, type_name: str) -> None:
+        node.schema.service(type_name)
         self.name = name
         self._node = node
         self._type_name = type_name
@@ -140,6 +142,7 @@ class MemoryActionServer:
     def __init__(
         self, node: MemoryNode, name: str, type_name: str, execute: Execute, policy: ActionPolicy
     ) -> None:
+        node.schema.offered(type_name)
         self.name = name
         self.type_name = type_name
         self.vanished = False
@@ -147,6 +150,7 @@ class MemoryActionServer:
         self._graph = node.graph
         self._goals = ServedGoals(node.clock, node.factory, name, type_name, execute, policy, node.log)
         self._graph.offer_action(self)
+        node.keep(self)
 
     def take(self, goal_id: str, request: Any, wire: GoalLine) -> None:
         """Judge a goal and begin with it."""
@@ -200,6 +204,7 @@ class MemoryGoalWire:
     """Carries goals from a `GoalSender` to the servers of the graph."""
 
     def __init__(self, node: MemoryNode, name: str, type_name: str) -> None:
+        node.schema.action(type_name)
         self.name = name
         self.graph = node.graph
         self.sender = GoalSender(node.clock, node.log, node.factory, name, type_name, node.leaving_goals)
@@ -209,6 +214,11 @@ class MemoryGoalWire:
         self._servers: dict[str, GraphActionServer] = {}
         self.graph.connect(self)
         self._forget_hook = node.add_exit_hook(self._cancel_all)
+
+    @classmethod
+    def client(cls, node: MemoryNode, name: str, type_name: str) -> GoalSender:
+        """Make an action client, as the port has it, and keep its wire at the node."""
+        return node.keep(cls(node, name, type_name)).sender
 
     @property
     def offered(self) -> bool:

@@ -5,15 +5,13 @@ Nothing here waits on the loop: joining, registering and calling services happen
 ``ROS_HOSTNAME``; with none given and a master on this machine everything stays on the loopback interface.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 
-from jacaros.ros.action import ActionPolicy, Execute
 from jacaros.ros.action_calling import GoalSender
 from jacaros.ros.actionlib_client import ActionlibWire
 from jacaros.ros.actionlib_server import ActionlibServer
 from jacaros.ros.backend import (
     ACTIONS,
-    DEFAULT_POLICY,
     DISCOVERY,
     PARAMETER_EVENTS,
     PARAMETERS,
@@ -23,18 +21,20 @@ from jacaros.ros.backend import (
     TOPICS,
     TRANSFORMS,
     Backend,
-    Handler,
-    Sample,
-    TopicEvent,
 )
 from jacaros.ros.drivers.ros1.graph import graph_contents
 from jacaros.ros.drivers.ros1.node import Ros1Node
 from jacaros.ros.drivers.ros1.services import Ros1Client, Ros1Parameters, Ros1Service, give
-from jacaros.ros.drivers.ros1.topics import Feeds, Ros1Publisher, Ros1Subscription
+from jacaros.ros.drivers.ros1.topics import Ros1Publisher, Ros1Subscription
 from jacaros.ros.graph import GraphContents
-from jacaros.ros.names import action_type, message_type, service_type
-from jacaros.ros.node import NodeSettings
-from jacaros.ros.qos import DEFAULT_QOS, QoS
+from jacaros.ros.names import message_type
+from jacaros.ros.node import NodeSettings, Parts
+
+
+def _action_client(node: Ros1Node, name: str, type_name: str) -> GoalSender:
+    sender = GoalSender(node.clock, node.log, node.factory, name, type_name, node.leaving_goals, node.orphans)
+    sender.wire = ActionlibWire(node, sender)
+    return sender
 
 
 class Ros1Backend(Ros1Node):
@@ -58,70 +58,33 @@ class Ros1Backend(Ros1Node):
         }
     )
 
+    parts = Parts(
+        publisher=Ros1Publisher,
+        subscription=Ros1Subscription,
+        service=Ros1Service,
+        client=Ros1Client,
+        action_client=_action_client,
+        action_server=ActionlibServer,
+    )
+
     def __init__(self, settings: NodeSettings) -> None:
         super().__init__(settings)
-        self._feeds = Feeds(self)
         give(self)
-
-    def publisher(self, topic: str, type_name: str, qos: QoS = DEFAULT_QOS) -> Ros1Publisher:
-        """Make a publisher."""
-        self.require_no_deadline(qos)
-        return Ros1Publisher(self, self.resolve(topic), message_type(type_name), qos)
-
-    def subscription(
-        self,
-        topic: str,
-        type_name: str,
-        callback: Callable[[Sample], None],
-        qos: QoS = DEFAULT_QOS,
-        on_event: Callable[[TopicEvent], None] | None = None,
-    ) -> Ros1Subscription:
-        """Have *callback* called for every message."""
-        self.require_no_deadline(qos)
-        full_type = message_type(type_name)
-        made = Ros1Subscription(self, self._feeds, self.resolve(topic), full_type, callback, qos, on_event)
-        self._feeds.see_types()
-        return made
 
     def types_changed(self, types: Mapping[str, str]) -> None:
         """Tell subscriptions whose topic has another type."""
-        self._feeds.see_types(types)
+        self.types = {topic: message_type(kind) for topic, kind in types.items() if kind != "*"}
+        for topic, feed in self.feeds.items():
+            feed.see_type(self.types.get(topic, feed.type_name))
 
     def definition_differs(self, topic: str, kind: str, theirs: str, ours: str) -> None:
-        """Tell subscriptions whose publisher has another definition."""
-        self._feeds.see_definition(topic, kind, theirs, ours)
-
-    def service(self, name: str, type_name: str, handler: Handler) -> Ros1Service:
-        """Offer a service."""
-        return Ros1Service(self, self.resolve(name), service_type(type_name), handler)
-
-    def client(self, name: str, type_name: str) -> Ros1Client:
-        """Make a client of a service."""
-        return Ros1Client(self, self.resolve(name), service_type(type_name))
-
-    def action_client(self, name: str, type_name: str) -> GoalSender:
-        """Make a client of an action."""
-        full_type = action_type(type_name)
-        sender = GoalSender(
-            self.clock,
-            self.log,
-            self.factory,
-            self.resolve(name),
-            full_type,
-            self.leaving_goals,
-            self.orphans,
-        )
-        sender.wire = ActionlibWire(self, sender)
-        self.actions[sender] = None
-        return sender
-
-    def action_server(
-        self, name: str, type_name: str, execute: Execute, policy: ActionPolicy = DEFAULT_POLICY
-    ) -> ActionlibServer:
-        """Offer an action."""
-        server = ActionlibServer(self, self.resolve(name), action_type(type_name), execute, policy)
-        self.actions[server] = None
-        return server
+        """Tell subscriptions whose publisher has another definition of the type: another md5 sum."""
+        if topic in self.feeds:
+            package, _, name = kind.partition("/")
+            self.feeds[topic].tell(
+                f"topic {topic}: a publisher has another definition of {package}/msg/{name} (md5 sum {theirs}, here "
+                f"{ours}): nothing will be received from it; install its version of {package} here"
+            )
 
     def parameters(self, node: str | None = None) -> Ros1Parameters:
         """Give the parameters below a node's name."""

@@ -1,12 +1,10 @@
 """The ROS 1 node of this process: joined to the graph, kept in it, and left."""
 
-import asyncio
 import logging
 import os
 import time
 from collections.abc import Callable, Collection, Mapping
-from typing import Any, Protocol
-from weakref import WeakKeyDictionary
+from typing import Any
 
 import rospy  # type: ignore[import-not-found]
 import rospy.impl.registration as registration  # type: ignore[import-not-found]
@@ -21,22 +19,14 @@ from jacaros.ros.drivers.ros1.repairs import (
     print_to_standard_error,
 )
 from jacaros.ros.drivers.ros1.types import GenpySchema
-from jacaros.ros.errors import CapabilityMissing, RosError
+from jacaros.ros.errors import RosError
 from jacaros.ros.handoff import post
 from jacaros.ros.lifetime import Lifetime
 from jacaros.ros.node import Node, NodeSettings
-from jacaros.ros.qos import QoS
-from jacaros.ros.waiting import Waiting
+from jacaros.ros.topics import TopicFeed
 
 SENDING = 0.5
 """Seconds that closing waits for the messages published last to leave."""
-
-
-class Member(Protocol):
-    """Something at the node that is closed with it."""
-
-    def close(self) -> None:
-        """Leave the graph."""
 
 
 class Ros1Node(Node):
@@ -65,10 +55,10 @@ class Ros1Node(Node):
             self._note_problem,
         )
         self.link = MasterLink(self.master_uri, self.node_name, actions)
-        self.members: dict[Member, None] = {}
         self.takers = Takers(self.log)
-        self.actions: WeakKeyDictionary[Member, None] = WeakKeyDictionary()
-        """Action clients and servers: they have something to tell when they are closed."""
+        self.feeds: dict[str, TopicFeed[Any]] = {}
+        self.types: Mapping[str, str] = {}
+        """The types of all topics, as the master has them."""
         self.unsent: dict[Callable[[], bool], None] = {}
         """Publishers' tests whether anything waits to be sent."""
         self.on_return: dict[Callable[[], None], None] = {}
@@ -76,45 +66,29 @@ class Ros1Node(Node):
         self.on_parameter: dict[Callable[[str, Any], None], None] = {}
         """Called on the loop with name and value of a parameter that the master says has changed."""
         self._refused = ""
-        self._waiting: Waiting | None = None
-        self._first_look: asyncio.Future[None] | None = None
 
     async def start(self) -> None:
         """Join the graph, or say that the master is awaited and go on trying in the background."""
         if Ros1Node._started:
             raise RosError("ROS 1 allows one node per process, and this process has had one already")
         Ros1Node._started = True
-        self._loop = asyncio.get_running_loop()
         stay_local(self.master_uri)
         print_to_standard_error()
         let_subscribers_hear()
         let_closed_nodes_rest()
-        self.takers.loop = self._loop
-        connect_streams(self.takers)
         let_parameters_tell(self._note_parameter)
-        self.lifetime.join()
-        self._first_look = self._loop.create_future()
+        looked = self.join()
+        self.takers.loop = self.loop
+        connect_streams(self.takers)
         self.link.start()
-        await self._first_look
+        await looked
 
     async def close(self) -> None:
         """Run the exit hooks and leave the graph."""
-        for action in list(self.actions):
-            action.close()
+        self.close_actions()
         await self.lifetime.leave()
-        for member in list(self.members):
-            member.close()
-        self.members.clear()
-        if self._waiting is not None:
-            self._waiting.__exit__(RosError, None, None)
-        self.set_connected(False)
-
-    def require_no_deadline(self, qos: QoS) -> None:
-        """Refuse a deadline, which nobody here would watch; raises `CapabilityMissing`."""
-        if qos.deadline is not None:
-            raise CapabilityMissing(
-                f"a deadline of {qos.deadline:g} s: ROS 1 has no deadlines (ros2 and memory do); leave it out"
-            )
+        self.close_members()
+        self.left()
 
     def types_changed(self, types: Mapping[str, str]) -> None:
         """Be told the types of all topics, as on ROS 1; on the loop, when publishers have come or gone."""
@@ -136,27 +110,18 @@ class Ros1Node(Node):
         self.link.stop()
         if self._loop is not None:
             # A signal may come while `start` still waits for the link, which will say nothing more.
-            post(self._loop, self._has_looked)
+            post(self._loop, self.looked)
         rospy.signal_shutdown("closed")
 
     def _note_state(self, present: bool) -> None:
         post(self.loop, self._state_changed, present)
 
     def _state_changed(self, present: bool) -> None:
-        if not present and self._waiting is None:
+        if present:
+            self.found()
+        else:
             cure = "Start it with `roscore`, or set ROS_MASTER_URI to where it runs."
-            self._waiting = Waiting(
-                self.clock, self.log, f"ROS master at {self.master_uri}", cure
-            ).__enter__()
-        elif present and self._waiting is not None:
-            self._waiting.__exit__(None, None, None)
-            self._waiting = None
-        self.set_connected(present)
-        self._has_looked()
-
-    def _has_looked(self) -> None:
-        if self._first_look is not None and not self._first_look.done():
-            self._first_look.set_result(None)
+            self.missing(f"ROS master at {self.master_uri}", cure)
 
     def _note_again(self, names: list[str], all_of_them: bool) -> None:
         text = f"the ROS master had forgotten {', '.join(sorted(names))}: registered again"

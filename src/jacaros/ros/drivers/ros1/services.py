@@ -36,7 +36,6 @@ class Ros1Service:
         self._responder = Responder(node.factory, name, type_name, handler, node.log)
         self._service: Any = None
         self._closed = False
-        node.members[self] = None
         node.link.do(self._register)
 
     def close(self) -> None:
@@ -44,7 +43,7 @@ class Ros1Service:
         if self._closed:
             return
         self._closed = True
-        self._node.members.pop(self, None)
+        self._node.forget(self)
         self._responder.close()
         self._node.link.do(self._unregister)
 
@@ -76,7 +75,6 @@ class Ros1Client(AttemptingClient):
     def __init__(self, node: Ros1Node, name: str, type_name: str) -> None:
         super().__init__(node, name, type_name)
         self._class = node.schema.service_class(type_name)
-        node.members[self] = None
 
     @property
     def ready(self) -> bool:
@@ -111,7 +109,7 @@ class Ros1Client(AttemptingClient):
 
     def close(self) -> None:
         """Give the client up."""
-        self._node.members.pop(self, None)
+        self._node.forget(self)
         self._pending.close()
 
 

@@ -94,6 +94,7 @@ class Ros2ActionServer:
             LateService(node, CancelGoal, name + CANCEL_GOAL, self._cancel),
             LateService(node, impl.SendGoalService, name + SEND_GOAL, self._judge),
         ]
+        node.keep(self)
 
     def publish_feedback(self, identity: Any, message: Any) -> None:
         """Tell how far a goal is."""
@@ -111,9 +112,6 @@ class Ros2ActionServer:
         goal.asking.clear()
         self._publish_status()
         self._node.loop.call_later(RESULT_KEPT, self._goals.pop, goal_id(goal.info.goal_id), None)
-
-    def farewell(self, seconds: float) -> None:
-        """Clients learn from the graph that the server is gone."""
 
     def close(self) -> None:
         """Stop to offer the action."""

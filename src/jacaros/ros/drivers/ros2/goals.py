@@ -110,6 +110,12 @@ class Ros2GoalWire:
             ),
         ]
         self._forget_hook = node.add_exit_hook(self._cancel_all)
+        node.farewells[self._farewell] = None
+
+    @classmethod
+    def client(cls, node: Ros2Node, name: str, type_name: str) -> GoalSender:
+        """Make an action client, as the port has it, and keep its wire at the node."""
+        return node.keep(cls(node, name, type_name)).sender
 
     # What the sender asks for:
 
@@ -169,6 +175,7 @@ class Ros2GoalWire:
             return
         self._closed = True
         self._forget_hook()
+        del self._node.farewells[self._farewell]
         self._feedback.close()
         for timer in (self._looking, self._sending):
             if timer is not None:
@@ -180,7 +187,7 @@ class Ros2GoalWire:
             node.retire_later(node.rcl.destroy_subscription, subscription)
         node.forget(self)
 
-    def farewell(self, seconds: float) -> None:
+    def _farewell(self, seconds: float) -> None:
         """Give requests to cancel the time to arrive."""
         if self._goals:
             time.sleep(min(0.1, seconds))

@@ -4,13 +4,12 @@ Domain, discovery range and the middleware below are ROS 2's own business: ``ROS
 ``ROS_AUTOMATIC_DISCOVERY_RANGE``, ``RMW_IMPLEMENTATION``.
 """
 
-import asyncio
 import os
 import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import suppress
-from typing import Any, Protocol
+from typing import Any
 
 # Unless this is set before their import, rclpy's messages take whatever is assigned and publish it misread.
 os.environ.setdefault("ROS_PYTHON_CHECK_FIELDS", "1")
@@ -40,16 +39,6 @@ LINGERING = 0.5
 """Seconds that a closed thing stays in the graph when something that it sent may still be on its way."""
 
 
-class Member(Protocol):
-    """What the node holds in the graph: a publisher, an action server and so on."""
-
-    def farewell(self, seconds: float) -> None:
-        """Say what is to be said before leaving, within *seconds*; on any thread, when the process ends."""
-
-    def close(self) -> None:
-        """Leave the graph."""
-
-
 class Ros2Node(Node):
     """The part of the ROS 2 backend that its publishers, services and actions rest on.
 
@@ -75,7 +64,8 @@ class Ros2Node(Node):
         self.rcl: Any = None
         self.receiver: Receiver
         self._looks: list[SecondLook] = []
-        self.members: list[Member] = []
+        self.farewells: dict[Callable[[float], None], None] = {}
+        """Wait, in any thread and for so many seconds at most, until what was sent has arrived."""
 
     @property
     def ended(self) -> bool:
@@ -84,22 +74,19 @@ class Ros2Node(Node):
 
     async def start(self) -> None:
         """Join the graph."""
-        self._loop = asyncio.get_running_loop()
-        self.lifetime.join()
-        await in_thread(self._loop, self._join, "joining")
-        self.set_connected(True)
+        self.join()
+        await in_thread(self.loop, self._join, "joining")
+        self.found()
 
     async def close(self) -> None:
         """Run the exit hooks and leave the graph."""
         self.lifetime.stop()
+        if not self.ended:
+            self.close_actions()
         await in_thread(self.loop, self._send_rest, "closing")
-        for member in list(self.members):
-            # On the loop: what waits for an answer of theirs fails here.
-            with suppress(Exception):  # whatever is wrong with one, the others are to be closed
-                member.close()
-        self.members.clear()
+        self.close_members()  # on the loop: what waits for an answer of theirs fails here
         await self.lifetime.leave()
-        self.set_connected(False)
+        self.left()
 
     def retire(self, destroy: Callable[[Any], Any], thing: Any) -> None:
         """Have *destroy* called with *thing*, on the executor's thread.
@@ -122,11 +109,6 @@ class Ros2Node(Node):
             self.retire(destroy, thing)
         else:
             self.loop.call_later(LINGERING, self.retire, destroy, thing)
-
-    def forget(self, member: Member) -> None:
-        """Note that a member has left."""
-        if member in self.members:
-            self.members.remove(member)
 
     def look_again(
         self, find: Find, suspects: frozenset[bytes], tell: Callable[[frozenset[bytes]], None]
@@ -216,7 +198,7 @@ class Ros2Node(Node):
         if self.rcl is None:
             return
         deadline = time.monotonic() + SENDING
-        for member in list(self.members):
+        for farewell in list(self.farewells):
             with suppress(Exception):  # whatever is wrong with one, the others are to be heard
-                member.farewell(max(0.0, deadline - time.monotonic()))
+                farewell(max(0.0, deadline - time.monotonic()))
         time.sleep(0.02)  # best-effort messages are acknowledged by nobody

@@ -242,9 +242,7 @@ class OtherParameters:
                     raise
 
     def _client(self, name: str, type_name: str) -> Ros2Client:
-        client = Ros2Client(self._node, name, type_name)
-        self._node.members.append(client)
-        return client
+        return self._node.keep(Ros2Client(self._node, name, type_name))
 
 
 def _descriptor(default: Any, declaration: Declaration) -> Any:

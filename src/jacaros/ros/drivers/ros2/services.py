@@ -120,9 +120,6 @@ class Ros2Service:
         self._responder = Responder(node.factory, name, type_name, handler, node.log)
         self._service = LateService(node, node.schema.message_class(type_name), name, self._answer)
 
-    def farewell(self, seconds: float) -> None:
-        """Nothing is left to say."""
-
     def close(self) -> None:
         """Stop to offer the service."""
         self._responder.close()
@@ -205,9 +202,6 @@ class Ros2Client(AttemptingClient):
         fresh = not self._acquainted or not servers <= self._servers
         self._servers |= servers
         return fresh
-
-    def farewell(self, seconds: float) -> None:
-        """Nothing is left to say."""
 
     def close(self) -> None:
         """Give the client up."""

@@ -11,7 +11,7 @@ from rclpy.event_handler import (  # type: ignore[import-not-found]
     SubscriptionEventCallbacks,
 )
 
-from jacaros.ros.backend import Sample, TopicEvent, TopicTrouble
+from jacaros.ros.backend import Sample
 from jacaros.ros.drivers.ros2.graph import (
     RCLError,
     endpoint,
@@ -24,7 +24,7 @@ from jacaros.ros.drivers.ros2.node import Ros2Node
 from jacaros.ros.errors import RosError
 from jacaros.ros.handoff import Handoff, post
 from jacaros.ros.qos import QoS, incompatibility
-from jacaros.ros.serving import published_message
+from jacaros.ros.topics import OnEvent, TopicPublisher, TopicSubscription
 
 LOOKING = 2.0
 """Seconds between two looks at who publishes on a topic that is silent: ROS 2 tells of no other type by itself."""
@@ -48,17 +48,11 @@ def _at_topic(node: Ros2Node, topic: str, type_name: str) -> Iterator[None]:
         raise RosError(f"topic {topic} cannot be joined with type {type_name}: {because}") from None
 
 
-class Ros2Publisher:
+class Ros2Publisher(TopicPublisher[Ros2Node]):
     """Publisher of the ``ros2`` backend."""
 
     def __init__(self, node: Ros2Node, topic: str, type_name: str, qos: QoS) -> None:
-        self.topic = topic
-        self._node = node
-        self._type_name = type_name
-        self._class = node.factory.message_class(type_name)
-        self._qos = qos
-        self._told: set[bytes] = set()
-        self._closed = False
+        super().__init__(node, topic, type_name, qos)
         events = PublisherEventCallbacks(
             incompatible_qos=lambda _: post(node.loop, self._compare_qos) and None,
             use_default_callbacks=False,
@@ -67,49 +61,38 @@ class Ros2Publisher:
             self._publisher: Any = node.rcl.create_publisher(
                 self._class, topic, profile(qos), event_callbacks=events
             )
+        node.farewells[self._farewell] = None
 
     @property
     def subscription_count(self) -> int:
         """How many subscriptions are connected now."""
         return 0 if self._closed else int(self._publisher.get_subscription_count())
 
-    def message(self, **fields: Any) -> Any:
-        """Make a message of the topic's type."""
-        return self._node.factory.make(self._type_name, fields)
+    def _send(self, message: Any) -> None:
+        self._publisher.publish(message)
 
-    def publish(self, message: Any) -> None:
-        """Send *message*."""
-        if not isinstance(message, self._class):
-            message = published_message(self._node.factory, self.topic, self._type_name, message)
-        if not self._closed:
-            self._node.lifetime.send(self._publisher.publish, message)
-
-    def farewell(self, seconds: float) -> None:
+    def _farewell(self, seconds: float) -> None:
         """Wait until the reliable subscriptions have what was published, but not longer than *seconds*."""
-        if not self._closed:
-            self._publisher.wait_for_all_acked(rclpy.duration.Duration(seconds=seconds))
+        self._publisher.wait_for_all_acked(rclpy.duration.Duration(seconds=seconds))
 
-    def close(self) -> None:
-        """Leave the topic."""
-        if not self._closed:
-            self._closed = True
-            self._node.retire(self._node.rcl.destroy_publisher, self._publisher)
-            self._node.forget(self)
+    def _leave(self) -> None:
+        del self._node.farewells[self._farewell]
+        self._node.retire(self._node.rcl.destroy_publisher, self._publisher)
 
     def _compare_qos(self) -> None:
         """Tell the log which subscriptions ask for more than is offered."""
         if self._closed or self._node.ended:
             return
         for info in self._node.rcl.get_subscriptions_info_by_topic(self.topic):
-            listener, identity = endpoint(info), bytes(info.endpoint_gid)
-            reason = None if listener.qos is None else incompatibility(self._qos, listener.qos)
-            if reason is not None and identity not in self._told:
-                self._told.add(identity)
+            listener = endpoint(info)
+            reason = None if listener.qos is None else incompatibility(self.qos, listener.qos)
+            if reason is not None:
                 who = listener.node or "an unknown node"
-                self._node.log(f"topic {self.topic}: {who} does not get what we publish, because {reason}")
+                text = f"topic {self.topic}: {who} does not get what we publish, because {reason}"
+                self.tell(text, bytes(info.endpoint_gid))
 
 
-class Ros2Subscription:
+class Ros2Subscription(TopicSubscription[Ros2Node]):
     """Subscription of the ``ros2`` backend."""
 
     def __init__(
@@ -119,22 +102,15 @@ class Ros2Subscription:
         type_name: str,
         callback: Callable[[Sample], None],
         qos: QoS,
-        on_event: Callable[[TopicEvent], None] | None,
+        on_event: OnEvent,
     ) -> None:
-        self.topic = topic
-        self._node = node
-        self._type_name = type_name
-        self._qos = qos
-        self._callback = callback
-        self._on_event = on_event
-        self._queue: Handoff[Any] = Handoff(node.loop, qos.depth, self._deliver)
+        super().__init__(node, topic, type_name, callback, qos, on_event)
+        self._queue: Handoff[Any] = Handoff(node.loop, qos.depth, self.deliver)
         self._silent = True
         self._lively = 0
         self._missing: frozenset[bytes] = frozenset()
         self._trusted_until = 0.0
         self._deadline_missed = False
-        self._told: set[str] = set()
-        self._closed = False
         kind = node.factory.message_class(type_name)
         with _at_topic(node, topic, type_name):
             self._subscription: Any = node.rcl.create_subscription(
@@ -157,17 +133,18 @@ class Ros2Subscription:
             return len(publishers_in(self._node.rcl, self.topic) - self._missing)
         return int(self._node.rcl.count_publishers(self.topic))
 
-    def farewell(self, seconds: float) -> None:
-        """Nothing is left to say."""
+    def deliver(self, message: Any) -> None:
+        """Hand a message over, on the loop."""
+        self._silent = False
+        self._missing = frozenset()
+        self._deadline_missed = False
+        super().deliver(message)
+        self._node.delivered()
 
-    def close(self) -> None:
-        """Leave the topic."""
+    def _leave(self) -> None:
         self._queue.close()
         self._timer.cancel()
-        if not self._closed:
-            self._closed = True
-            self._node.receiver.remove(self._subscription, self._destroy)
-            self._node.forget(self)
+        self._node.receiver.remove(self._subscription, self._destroy)
 
     def _destroy(self) -> None:
         self._node.retire(self._node.rcl.destroy_subscription, self._subscription)
@@ -180,34 +157,15 @@ class Ros2Subscription:
             return event
 
         return SubscriptionEventCallbacks(
-            deadline=on_loop(self._miss_deadline) if self._qos.deadline is not None else None,
+            deadline=on_loop(self._miss_deadline) if self.qos.deadline is not None else None,
             incompatible_qos=on_loop(self._compare_qos),
             use_default_callbacks=False,
         )
 
-    def _deliver(self, message: Any) -> None:
-        self._silent = False
-        self._missing = frozenset()
-        self._deadline_missed = False
-        self._callback(self._node.sample(message, self.topic))
-        self._node.delivered()
-
-    def _tell(self, trouble: TopicTrouble, text: str) -> None:
-        if self._closed:
-            return
-        if self._on_event is not None:
-            self._on_event(TopicEvent(trouble, text))
-        else:
-            self._node.log(text)
-
     def _miss_deadline(self) -> None:
-        # The middleware tells it again with every deadline that passes; for the log the first after a message is enough.
-        if self._on_event is not None or not self._deadline_missed:
-            self._deadline_missed = True
-            self._tell(
-                TopicTrouble.DEADLINE_MISSED,
-                f"topic {self.topic}: no message came for {self._qos.deadline:g} s, which is the deadline",
-            )
+        # The middleware tells it again with every deadline that passes.
+        first, self._deadline_missed = not self._deadline_missed, True
+        self.tell_deadline(first)
 
     def _compare_qos(self) -> None:
         """Find out which publisher does not fit; the event itself names one of the reasons only."""
@@ -216,37 +174,20 @@ class Ros2Subscription:
         found = False
         for info in self._node.rcl.get_publishers_info_by_topic(self.topic):
             publisher = endpoint(info)
-            reason = None if publisher.qos is None else incompatibility(publisher.qos, self._qos)
-            if reason is None:
-                continue
-            found = True
-            key = f"qos {bytes(info.endpoint_gid).hex()}"
-            if key not in self._told:
-                self._told.add(key)
-                self._tell_qos(f"not connected to {publisher.node or 'an unknown node'}, because {reason}")
+            reason = None if publisher.qos is None else incompatibility(publisher.qos, self.qos)
+            if reason is not None:
+                found = True
+                self.tell_qos(reason, f" to {publisher.node or 'an unknown node'}", bytes(info.endpoint_gid))
         if not found:
-            self._tell_qos(
-                "not connected to a publisher, because what it offers and what is asked for do not fit"
-            )
-
-    def _tell_qos(self, what: str) -> None:
-        self._tell(
-            TopicTrouble.INCOMPATIBLE_QOS, f"topic {self.topic}: {what}; ask for no more than is offered"
-        )
+            self.tell_qos("what it offers and what is asked for do not fit", " to a publisher")
 
     def _look(self) -> None:
         """See whether a silent topic carries another type: then nothing ever comes, and nobody says why."""
         if self._closed or self._node.ended:
             return
         if self._silent and self.publisher_count:
-            for other, who in foreign_types(self._node, self.topic, self._type_name).items():
-                if other not in self._told:
-                    self._told.add(other)
-                    self._tell(
-                        TopicTrouble.OTHER_TYPE,
-                        f"topic {self.topic}: {who} publishes {other}, not {self._type_name}; "
-                        f"write {other} here to receive it",
-                    )
+            for other, who in foreign_types(self._node, self.topic, self.type_name).items():
+                self.tell_other_type(who, other)
         if self._silent and self._lively >= LIVELY and time.monotonic() > self._trusted_until:
             self._doubt()
         self._lively = 0 if self._silent else self._lively + 1

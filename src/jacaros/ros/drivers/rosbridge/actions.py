@@ -104,7 +104,7 @@ class Ros2Goals:
         self._status = BridgeSubscription(
             node, f"{sender.name}/_action/status", STATUS_TYPE, self._status_changed, STATUS, None
         )
-        node.add(self._status)
+        node.keep(self._status)
         self._forget_hook = node.add_exit_hook(self._cancel_all)
 
     @property
@@ -333,12 +333,14 @@ class BridgeActionClient(GoalSender):
     """Action client of `RosbridgeBackend`."""
 
     def __init__(self, node: BridgeNode, name: str, type_name: str) -> None:
+        node.schema.action(type_name)
         super().__init__(
             node.clock, node.log, node.factory, name, type_name, node.leaving_goals, node.orphans
         )
         self._node = node
         self._wire = _Wire(node, self)
         self.wire = self._wire
+        node.keep(self)
         if node.attached:
             self.join()
 
@@ -354,7 +356,7 @@ class BridgeActionClient(GoalSender):
     def close(self) -> None:
         """Give the client up."""
         super().close()
-        self._node.drop(self)
+        self._node.forget(self)
 
 
 class _Wire:
@@ -415,6 +417,9 @@ class BridgeActionServer:
     def __init__(
         self, node: BridgeNode, name: str, type_name: str, execute: Execute, policy: ActionPolicy
     ) -> None:
+        node.schema.action(type_name)
+        node.action_servers[name] = self
+        node.keep(self)
         self.name = name
         self._node = node
         self._offer = (name, type_name, execute, policy)
@@ -437,7 +442,7 @@ class BridgeActionServer:
 
     def close(self) -> None:
         """Stop to offer the action."""
-        self._node.drop(self)
+        self._node.forget(self)
         if self._service is not None:
             self._service.close()
             self._service = None

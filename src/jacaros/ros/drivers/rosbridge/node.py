@@ -9,6 +9,7 @@ import itertools
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, Protocol
+from weakref import WeakValueDictionary
 
 from jacaros.clock import Timer
 from jacaros.ros.calling import settle
@@ -21,7 +22,8 @@ from jacaros.ros.node import Node, NodeSettings
 from jacaros.ros.protocols.rosbridge_messages import Translator
 from jacaros.ros.protocols.rosbridge_requests import PATIENCE, Requests, greet
 from jacaros.ros.protocols.rosbridge_types import BridgeSchema, written_on_ros1
-from jacaros.ros.waiting import Waiting, within
+from jacaros.ros.topics import TopicFeed
+from jacaros.ros.waiting import within
 
 FIRST_LOOK = 5.0
 """Seconds that starting waits for the first attempt to connect; a server that is not there refuses immediately."""
@@ -41,17 +43,6 @@ MISSES = 3
 """Looks without the topic after which it was refused."""
 
 
-class Member(Protocol):
-    """A publisher, subscription, service, client or action of ours.
-
-    It may also have ``join``, called when a server is there that does not know us yet, and ``lost``, called when the
-    connection is gone.
-    """
-
-    def close(self) -> None:
-        """Give it up."""
-
-
 class Asked(Protocol):
     """A subscription or a publisher at the server."""
 
@@ -69,18 +60,21 @@ class Asked(Protocol):
         """The server does not do it; the text says why."""
 
 
-class Feed(Asked, Protocol):
-    """The one subscription of a topic at the server."""
+class CalledService(Protocol):
+    """A service of ours."""
 
-    @property
-    def number(self) -> str:
-        """The id of the subscription."""
+    def called(self, message: dict[str, Any]) -> None:
+        """Take a call."""
 
-    def put(self, values: Any) -> None:
-        """Take a message of the server, not decoded yet."""
 
-    def lost(self) -> None:
-        """The link is down."""
+class AskedServer(Protocol):
+    """An action server of ours."""
+
+    def goal(self, message: dict[str, Any]) -> None:
+        """Take a goal."""
+
+    def cancel(self, goal_id: str) -> None:
+        """Take a request for cancelling."""
 
 
 class BridgeNode(Node):
@@ -100,20 +94,20 @@ class BridgeNode(Node):
         self.url = url
         self._link = Link(self.url, self._link_up, self._link_down, self._received, self._say)
         self.requests = Requests(self._link.send, self._link.ask)
-        self._schema = BridgeSchema(settings.interface_paths, self._ask_for_type, self._cannot_ask)
-        super().__init__(settings, self._schema, Lifetime(settings.log, self._leave, threaded=True))
-        self.translator = Translator(self._schema)
+        self.schema = BridgeSchema(settings.interface_paths, self._ask_for_type, self._cannot_ask)
+        super().__init__(settings, self.schema, Lifetime(settings.log, self._leave, threaded=True))
+        self.translator = Translator(self.schema)
         self.admission = Admission(self)
-        self.feeds: dict[str, Feed] = {}
+        self.feeds: dict[str, TopicFeed[Any]] = {}
         self.goals: dict[str, Any] = {}
+        # Weakly: the node keeps them, until they are closed.
+        self.services: WeakValueDictionary[str, CalledService] = WeakValueDictionary()
+        self.action_servers: WeakValueDictionary[str, AskedServer] = WeakValueDictionary()
         self.attached = False
         self.packs = False
-        self._members: list[Member] = []
         self._numbers = itertools.count(1)
         self._has_rosapi = False
         self._greeting: asyncio.Task[None] | None = None
-        self._first_look: asyncio.Future[None] | None = None
-        self._waiting: Waiting | None = None
         self._ended_at = ""
         """The type at which rosapi went away."""
         self._checks: set[asyncio.Task[None]] = set()
@@ -127,15 +121,13 @@ class BridgeNode(Node):
 
     async def start(self) -> None:
         """Connect, or say that the server is awaited and go on trying in the background."""
-        self._loop = asyncio.get_running_loop()
-        self._first_look = self._loop.create_future()
-        self.lifetime.join()
+        looked = self.join()
         self._link.start()
-        await asyncio.wait([self._first_look], timeout=FIRST_LOOK)
-        if not self._link.up and not self._first_look.done():
+        await asyncio.wait([looked], timeout=FIRST_LOOK)
+        if not self._link.up and not looked.done():
             self._await_server()
         else:
-            await self._first_look
+            await looked
 
     async def close(self) -> None:
         """Run the exit hooks and disconnect."""
@@ -147,14 +139,9 @@ class BridgeNode(Node):
             check.cancel()
         self.attached = False
         self.admission.close()
-        for member in list(self._members):
-            member.close()
-        self._members.clear()
+        self.close_members()
         self.requests.fail_all()
-        if self._waiting is not None:
-            self._waiting.__exit__(RuntimeError, None, None)
-            self._waiting = None
-        self.set_connected(False)
+        self.left()
 
     def rosout(self, level: str, text: str) -> None:
         """Write a line to the graph's log; while there is no connection nobody would read it."""
@@ -166,21 +153,6 @@ class BridgeNode(Node):
     def number(self, operation: str, name: str) -> str:
         """An id for an operation; the server names it when it has something to say about it."""
         return f"{operation}:{name}:{next(self._numbers)}"
-
-    def add(self, member: Member) -> None:
-        """Keep *member* until it is closed."""
-        self._members.append(member)
-
-    def drop(self, member: Member) -> None:
-        """Forget a member that was closed."""
-        if member in self._members:
-            self._members.remove(member)
-
-    def drop_feed(self, feed: Feed) -> None:
-        """Forget a topic to which no subscription of ours listens."""
-        if self.feeds.get(feed.topic) is feed:
-            del self.feeds[feed.topic]
-            self.admission.forget(feed)
 
     def send(self, operation: dict[str, Any], droppable: bool = False) -> bool:
         """Send an operation to the server that knows us, from any thread; False when it is lost."""
@@ -253,18 +225,13 @@ class BridgeNode(Node):
         self._has_rosapi = found.told
         self.attached = True
         self._join()
-        if self._waiting is not None:
-            self._waiting.__exit__(None, None, None)
-            self._waiting = None
-        self.set_connected(True)
-        if self._first_look is not None and not self._first_look.done():
-            self._first_look.set_result(None)
+        self.found()
 
     def _join(self) -> None:
         """Tell all that we have to a server that does not know us yet."""
         for feed in list(self.feeds.values()):
             feed.join()
-        for member in list(self._members):
+        for member in list(self.members):
             join = getattr(member, "join", None)
             if join is not None:
                 join()
@@ -276,20 +243,14 @@ class BridgeNode(Node):
         self.requests.fail_all()
         for feed in list(self.feeds.values()):
             feed.lost()
-        for member in list(self._members):
+        for member in list(self.members):
             lost = getattr(member, "lost", None)
             if lost is not None:
                 lost()
-        if not self.lifetime.leaving:
-            self._await_server()
-        self.set_connected(False)
+        self._await_server()
 
     def _await_server(self) -> None:
-        if self._waiting is None:
-            what = f"rosbridge server at {self.url}"
-            self._waiting = Waiting(self.clock, self.log, what, CURE).__enter__()
-        if self._first_look is not None and not self._first_look.done():
-            self._first_look.set_result(None)
+        self.missing(f"rosbridge server at {self.url}", CURE)
 
     def _received(self, message: dict[str, Any]) -> None:
         """Take an operation of the server."""

@@ -211,7 +211,7 @@ class NodeParameters:
 
     def _client(self, name: str, type_name: str) -> BridgeClient:
         client = BridgeClient(self._node, name, type_name)
-        self._node.add(client)
+        self._node.keep(client)
         return client
 
 

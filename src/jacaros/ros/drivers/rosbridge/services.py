@@ -28,6 +28,7 @@ class BridgeClient(AttemptingClient):
     _node: BridgeNode  # pyright: ignore[reportIncompatibleVariableOverride]
 
     def __init__(self, node: BridgeNode, name: str, type_name: str) -> None:
+        node.schema.service(type_name)
         super().__init__(node, name, type_name)  # pyright: ignore[reportArgumentType]
         self._offered = Sight(
             node.requests, "/rosapi/service_type", {"service": name}, lambda seen: bool(seen["type"]), False
@@ -68,7 +69,7 @@ class BridgeClient(AttemptingClient):
 
     def close(self) -> None:
         """Give the client up."""
-        self._node.drop(self)
+        self._node.forget(self)
         self._pending.close()
 
 
@@ -76,6 +77,8 @@ class BridgeService:
     """Service of `RosbridgeBackend`."""
 
     def __init__(self, node: BridgeNode, name: str, type_name: str, handler: Handler) -> None:
+        node.schema.service(type_name)
+        node.services[name] = self
         self.name = name
         self._node = node
         self._type_name = type_name
@@ -94,7 +97,7 @@ class BridgeService:
         self._responder.close()
         if not self._closed:
             self._closed = True
-            self._node.drop(self)
+            self._node.forget(self)
             self._node.send({"op": "unadvertise_service", "service": self.name})
 
     def called(self, message: dict[str, Any]) -> None:

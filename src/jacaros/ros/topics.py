@@ -1,0 +1,324 @@
+"""Publishers and subscriptions, as far as no middleware matters: checks, news of trouble, feeds for many readers.
+
+A driver derives from these classes and says only how a message goes out and how one comes in.
+"""
+
+import threading
+from collections import deque
+from collections.abc import Callable, Iterable
+from typing import Any, Generic, Protocol, TypeVar
+
+from jacaros.ros.backend import Sample, TopicEvent, TopicTrouble
+from jacaros.ros.node import Node
+from jacaros.ros.qos import QoS
+from jacaros.ros.serving import published_message
+
+N = TypeVar("N", bound=Node)
+
+OnEvent = Callable[[TopicEvent], None] | None
+
+
+class TopicPublisher(Generic[N]):
+    """A publisher; a driver defines `_send` and `_leave`.
+
+    Args:
+        node: whose it is.
+        topic: absolute name.
+        type_name: message type in full form.
+        qos: what is offered to subscriptions.
+    """
+
+    def __init__(self, node: N, topic: str, type_name: str, qos: QoS) -> None:
+        self.topic = topic
+        self.type_name = type_name
+        self.qos = qos
+        self._node = node
+        self._class = node.factory.message_class(type_name)
+        self._closed = False
+        self._told: set[object] = set()
+
+    @property
+    def node_name(self) -> str:
+        """Absolute name of the node."""
+        return self._node.node_name
+
+    @property
+    def latched(self) -> bool:
+        """Whether late subscriptions get what was said last."""
+        return self.qos.durability == "transient_local"
+
+    def message(self, **fields: Any) -> Any:
+        """Make a message of the topic's type."""
+        return self._node.factory.make(self.type_name, fields)
+
+    def publish(self, message: Any) -> None:
+        """Send *message*, unless the node is leaving and this is no exit hook; see `Lifetime.send`."""
+        if not isinstance(message, self._class):
+            message = published_message(self._node.factory, self.topic, self.type_name, message)
+        if not self._closed:
+            self._node.lifetime.send(self._send, message)
+
+    def close(self) -> None:
+        """Leave the topic."""
+        if not self._closed:
+            self._closed = True
+            self._node.forget(self)
+            self._leave()
+
+    def tell(self, text: str, key: object = None) -> None:
+        """Log why what is published reaches nobody, once for each *key* (the text by default)."""
+        if not self._closed and (key or text) not in self._told:
+            self._told.add(key or text)
+            self._node.log(text)
+
+    def _send(self, message: Any) -> None:
+        """Send a message of the topic's class; from any thread when the process ends."""
+        raise NotImplementedError
+
+    def _leave(self) -> None:
+        """Leave the topic, once."""
+        raise NotImplementedError
+
+
+class TopicSubscription(Generic[N]):
+    """A subscription; a driver hands messages to `deliver`, or to `put` when each is to wait for its turn.
+
+    Args:
+        node: whose it is.
+        topic: absolute name.
+        type_name: message type in full form.
+        callback: takes each message, on the loop.
+        qos: what is asked of publishers.
+        on_event: takes news of trouble, on the loop; without it they are logged.
+    """
+
+    def __init__(
+        self,
+        node: N,
+        topic: str,
+        type_name: str,
+        callback: Callable[[Sample], None],
+        qos: QoS,
+        on_event: OnEvent,
+    ) -> None:
+        self.topic = topic
+        self.type_name = type_name
+        self.qos = qos
+        self._node = node
+        self._callback = callback
+        self._on_event = on_event
+        self._closed = False
+        self._told: set[object] = set()
+        self._waiting: deque[Any] = deque(maxlen=qos.depth)
+        self._loop = node.loop
+
+    @property
+    def node_name(self) -> str:
+        """Absolute name of the node."""
+        return self._node.node_name
+
+    @property
+    def latched(self) -> bool:
+        """Whether what was said last is to come at once."""
+        return self.qos.durability == "transient_local"
+
+    def put(self, message: Any) -> None:
+        """Queue *message* for a turn of the loop, on the loop; the oldest is dropped when the queue is full."""
+        if not self._loop.is_closed():
+            self._waiting.append(message)
+            self._loop.call_soon(self._deliver_next)
+
+    def deliver(self, message: Any) -> None:
+        """Hand a message over, on the loop."""
+        self._callback(self._node.sample(message, self.topic))
+
+    def tell(self, trouble: TopicTrouble, text: str, key: object = None) -> None:
+        """Tell of trouble, on the loop.
+
+        Args:
+            trouble: what it is.
+            text: one line for people.
+            key: told once for each of these; each time without one.
+        """
+        if self._closed or key in self._told:
+            return
+        if key is not None:
+            self._told.add(key)
+        if self._on_event is None:
+            self._node.log(text)
+        else:
+            # Later: the one who subscribes does not have the subscription yet.
+            self._loop.call_soon(self._tell_now, TopicEvent(trouble, text))
+
+    def tell_other_type(self, who: str, theirs: str) -> None:
+        """Tell, once for each type, that messages of another type are published."""
+        self.tell(
+            TopicTrouble.OTHER_TYPE,
+            f"topic {self.topic}: {who} publishes {theirs}, not {self.type_name}; write {theirs} here to receive it",
+            theirs,
+        )
+
+    def tell_qos(self, problem: str, whose: str = "", key: object = None) -> None:
+        """Tell that a publisher (*whose*: to whom we are not connected) offers less than is asked for."""
+        self.tell(
+            TopicTrouble.INCOMPATIBLE_QOS,
+            f"topic {self.topic}: not connected{whose}, because {problem}; ask for no more than is offered",
+            key,
+        )
+
+    def tell_deadline(self, first: bool) -> None:
+        """Tell that a deadline passed without a message; the log hears only of the *first* after a message."""
+        if first or self._on_event is not None:
+            self.tell(
+                TopicTrouble.DEADLINE_MISSED,
+                f"topic {self.topic}: no message came for {self.qos.deadline:g} s, which is the deadline",
+            )
+
+    def close(self) -> None:
+        """Leave the topic; the callback is not called any more."""
+        self._waiting.clear()
+        if not self._closed:
+            self._closed = True
+            self._node.forget(self)
+            self._leave()
+
+    def _tell_now(self, event: TopicEvent) -> None:
+        if self._on_event is not None and not self._closed:
+            self._on_event(event)
+
+    def _deliver_next(self) -> None:
+        # Empty when a later message pushed this turn's one out, or when the subscription was closed.
+        if self._waiting:
+            self.deliver(self._waiting.popleft())
+
+    def _leave(self) -> None:
+        """Leave the topic, once."""
+        raise NotImplementedError
+
+
+class Reader(Protocol):
+    """A subscription that shares a feed."""
+
+    def put(self, message: Any) -> None:
+        """Take a message, from any thread from which the feed gets it."""
+
+    def tell(self, trouble: TopicTrouble, text: str, key: object = None) -> None:
+        """Tell of trouble, on the loop."""
+
+
+R = TypeVar("R", bound=Reader)
+F = TypeVar("F", bound="TopicFeed[Any]")
+
+
+class TopicFeed(Generic[R]):
+    """The process's one subscription of a topic at the middleware, shared by ours; a driver defines `_leave`.
+
+    Args:
+        topic: absolute name.
+        type_name: message type in full form: that of the first subscription.
+    """
+
+    def __init__(self, topic: str, type_name: str) -> None:
+        self.topic = topic
+        self.type_name = type_name
+        self.readers: tuple[R, ...] = ()
+        self.lock = threading.Lock()
+        """Held while readers or what is latched change."""
+
+    @property
+    def publisher_count(self) -> int:
+        """How many publishers are connected now."""
+        raise NotImplementedError
+
+    def add(self, reader: R) -> None:
+        """Let *reader* have the messages, the latched ones first."""
+        with self.lock:
+            self.readers = (*self.readers, reader)
+            for message in self.latched(reader):
+                reader.put(message)
+
+    def remove(self, reader: R) -> bool:
+        """Serve *reader* no longer; True when it was the last one, and the topic was left."""
+        with self.lock:
+            self.readers = tuple(other for other in self.readers if other is not reader)
+            last = not self.readers
+        if last:
+            self._leave()
+        return last
+
+    def join(self) -> None:
+        """Ask for the topic at a server that does not know us yet."""
+
+    def lost(self) -> None:
+        """Note that the server is gone: what is latched comes again, and may be another then."""
+
+    def latched(self, reader: R) -> Iterable[Any]:
+        """What a late *reader* is to get first."""
+        return ()
+
+    def put(self, message: Any) -> None:
+        """Hand a message to all readers."""
+        for reader in self.readers:
+            reader.put(message)
+
+    def see_type(self, type_name: str) -> None:
+        """Be told which type the topic has in the graph."""
+        if type_name != self.type_name:
+            self.tell(
+                f"topic {self.topic} carries {type_name}, but {self.type_name} was asked for: nothing will be received; "
+                f"write {type_name}"
+            )
+
+    def tell(self, text: str) -> None:
+        """Tell each reader, once, that what others publish is not what it asked for."""
+        for reader in self.readers:
+            reader.tell(TopicTrouble.OTHER_TYPE, text, text)
+
+    def _leave(self) -> None:
+        """Leave the topic: nobody here listens to it any more."""
+        raise NotImplementedError
+
+
+class SharedSubscription(TopicSubscription[N]):
+    """A subscription that reads from a feed, made with the first one of its topic and left with the last.
+
+    Args:
+        feeds: those of the node by topic.
+        new_feed: makes one for a node, a topic and a type.
+        others: as for `TopicSubscription`.
+    """
+
+    def __init__(
+        self,
+        node: N,
+        topic: str,
+        type_name: str,
+        callback: Callable[[Sample], None],
+        qos: QoS,
+        on_event: OnEvent,
+        feeds: dict[str, F],
+        new_feed: Callable[[N, str, str], F],
+    ) -> None:
+        super().__init__(node, topic, type_name, callback, qos, on_event)
+        self._feeds = feeds
+        if topic not in feeds:
+            feeds[topic] = new_feed(node, topic, type_name)
+        self._feed: TopicFeed[Any] | None = feeds[topic]
+        if self._feed.type_name == type_name:
+            self._feed.add(self)
+        else:
+            self.tell(
+                TopicTrouble.OTHER_TYPE,
+                f"topic {topic} is received as {self._feed.type_name} in this process already, not as {type_name}: "
+                f"nothing will be received; write {self._feed.type_name}",
+            )
+            self._feed = None
+
+    @property
+    def publisher_count(self) -> int:
+        """How many publishers are connected now."""
+        return 0 if self._feed is None or self._closed else self._feed.publisher_count
+
+    def _leave(self) -> None:
+        if self._feed is not None and self._feed.remove(self) and self._feeds.get(self.topic) is self._feed:
+            del self._feeds[self.topic]
