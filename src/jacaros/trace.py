@@ -1,6 +1,5 @@
 """Causes: why a thing happened, and the port through which a run is observed."""
 
-import itertools
 from typing import NamedTuple, Protocol
 
 
@@ -8,9 +7,9 @@ class Cause(NamedTuple):
     """One link in the chain from a sensor message to a command.
 
     Attributes:
-        id: number of this link, unique in the process.
+        id: number of this link, unique in the run.
         parent: number of the link that led to it, 0 at the beginning of a chain.
-        kind: stop of the journey, such as ``sample``, ``property``, ``event``, ``act``, ``operation``.
+        kind: stop of the journey, ``sample``, ``property``, ``act`` or ``operation``.
         what: short text for people.
     """
 
@@ -20,16 +19,8 @@ class Cause(NamedTuple):
     what: str
 
 
-_numbers = itertools.count(1)
-
-
 class Tracer(Protocol):
-    """Observer of a run; it is told of every cause as it arises."""
+    """Observer of a run; where there is none, no cause is made."""
 
-    def record(self, cause: Cause, time: float) -> None:
-        """Take note of *cause*, which arose at *time* (seconds of the run's clock)."""
-
-
-def cause(kind: str, what: str, parent: Cause | None = None) -> Cause:
-    """Make the next link of a chain."""
-    return Cause(next(_numbers), parent.id if parent is not None else 0, kind, what)
+    def link(self, kind: str, what: str, parent: Cause | None = None) -> Cause:
+        """Make the next link of a chain, and take note of it."""

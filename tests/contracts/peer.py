@@ -26,8 +26,16 @@ from jacaros.ros.handoff import post
 from jacaros.ros.message import plain
 from jacaros.ros.open import open_backend
 from jacaros.ros.qos import QoS
+from jacaros.trace import Cause
 
 ADD = "example_interfaces/srv/AddTwoInts"
+
+
+class Causes:
+    """Makes the causes of one node."""
+
+    def link(self, kind: str, what: str, parent: Cause | None = None) -> Cause:
+        return Cause(1, parent.id if parent is not None else 0, kind, what)
 
 
 class Peer(ActionCommands, GraphCommands):
@@ -39,6 +47,7 @@ class Peer(ActionCommands, GraphCommands):
         self._clock = clock
         self._lines: list[str] = []
         self._backend = open_backend(kind, clock, name, namespace, log=self._log, **options)
+        self._backend.tracer = Causes()
         self._connection: list[bool] = []
         self._backend.on_connection(self._connection.append)
         self._received: dict[str, list[Sample]] = defaultdict(list)
@@ -177,7 +186,12 @@ class Peer(ActionCommands, GraphCommands):
     def samples(self, topic: str) -> list[Any]:
         now = self._clock.now()
         return [
-            {"topic": s.topic, "stamp": s.stamp, "age": now - s.stamp, "cause": [s.cause.kind, s.cause.what]}
+            {
+                "topic": s.topic,
+                "stamp": s.stamp,
+                "age": now - s.stamp,
+                "cause": s.cause and [s.cause.kind, s.cause.what],
+            }
             for s in self._received[topic]
         ]
 

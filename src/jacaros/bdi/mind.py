@@ -56,7 +56,7 @@ from jacaros.terms.values import (
     functor,
     functor_of,
 )
-from jacaros.trace import Cause, cause
+from jacaros.trace import Cause
 
 ERROR = functor("error", 1)
 
@@ -364,9 +364,8 @@ class Mind(Circumstance):
         assert intention is not None
         self._acts += 1
         number = self._beginning = self._acts
-        why = cause("act", symbol.name, intention.cause) if intention.cause is not None else None
         try:
-            self.architecture.act(Act(number, symbol, arguments, annotations, intention.id, why))
+            self.architecture.act(Act(number, symbol, arguments, annotations, intention.id, intention.cause))
         finally:
             self._beginning = 0
             completion, self._ended_at_once = self._ended_at_once, None

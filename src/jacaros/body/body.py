@@ -233,9 +233,10 @@ class AgentBody:
             raise _too_deep(artifact, call.key) from None
         done = partial(self._done, act.id, outputs)
         timeout = call.direction.timeout
-        request = OperationRequest(
-            artifact, call.name, tuple(arguments), self._agent, act.cause, done, timeout
-        )
+        tracer, why = self._environment.tracer, act.cause
+        if tracer is not None:
+            why = tracer.link("act", f"{self._agent} {call.key}", why)
+        request = OperationRequest(artifact, call.name, tuple(arguments), self._agent, why, done, timeout)
         return self._environment.execute(request)
 
     def _done(self, act_id: int, outputs: Outputs, outcome: OperationOutcome) -> None:

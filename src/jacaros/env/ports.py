@@ -18,7 +18,7 @@ from jacaros.env.errors import OperationFailed
 from jacaros.env.ids import ArtifactId
 from jacaros.env.observation import Observer
 from jacaros.env.operation import OperationOutcome, OperationRequest, ignore_outcome
-from jacaros.trace import Cause
+from jacaros.trace import Cause, Tracer
 
 Told = Callable[[OperationOutcome], None]
 """Told how something ended."""
@@ -164,6 +164,10 @@ class Workspace(Protocol):
 
 class Environment(Protocol):
     """All workspaces that can be seen from here."""
+
+    @property
+    def tracer(self) -> Tracer | None:
+        """Told of every cause that arises, None while nobody watches."""
 
     @property
     def clock(self) -> Clock:

@@ -5,6 +5,7 @@ from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 
+from jacaros.inspector.cause_news import CauseNews
 from jacaros.inspector.goal_news import GoalNews
 from jacaros.inspector.recorder import Recorder
 from jacaros.inspector.recording import Recording
@@ -42,7 +43,8 @@ def record(
     watch = watch_of(mas.system, [recorder], mas.world)
     watch.start()
     news = GoalNews(partial(watch.event, "goal"))
-    ends = mas.on_print(watch.text), news.listen_to_all(mas.system.directory)
+    causes = CauseNews(mas.system.clock, watch.beginning, watch.event)
+    ends = mas.on_print(watch.text), news.listen_to_all(mas.system.directory), causes.listen_to(mas.system)
     try:
         yield recorder.recording if keep else None
     finally:

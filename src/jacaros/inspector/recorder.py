@@ -14,6 +14,9 @@ Events that the replay knows how to show:
                           failed, recovered, dropped or replaced (by a tail call); ``id`` tells goals apart,
                           ``intention`` the stacks they are on; of a failure ``why``, in lines: error and
                           place, step, terms for plans
+``cause``                 what led to an act of an agent, and the act itself: ``id``, ``parent`` (the id of what led to
+                          it, 0: nothing), ``kind`` (sample: a message of ROS, operation, property, act), ``what``,
+                          and ``at``, when it arose; the page does not show them yet
 events of the world       ``robot`` and what `jacaros.sim.ground_truth.Event` says: docked, undocked,
                           charging, charged, bump, collision, task, battery, ...
 ========================  ==========================================================================

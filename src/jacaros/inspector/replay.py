@@ -58,7 +58,7 @@ def payload(recording: Recording) -> dict[str, Any]:
             for name, (x, y, yaw, battery, charging, touching) in zip(recording.robots, columns, strict=False)
         ],
         "texts": [[round(t, 3), agent, text] for t, agent, text in recording.texts],
-        "events": [[round(t, 3), kind, data] for t, kind, data in recording.events],
+        "events": [[round(t, 3), kind, data] for t, kind, data in recording.events if kind != "cause"],
     }
 
 

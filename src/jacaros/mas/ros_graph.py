@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from jacaros.ros.ros_clock import RosClock
     from jacaros.sim.node import SimNode
     from jacaros.sim.world import World
+    from jacaros.trace import Tracer
 
 DEFAULT_WORLD = "empty"
 """The world of a project that names none: an open floor with one robot."""
@@ -64,6 +65,7 @@ class RosGraph:
         self._source = options.world if options.world is not None else world
         self._log = log
         self._backend: Backend | None = None
+        self._tracer: Tracer | None = None
         self._companions: list[Backend] = []
         self._node: SimNode | None = None
         self._followed: RosClock | None = None
@@ -176,7 +178,15 @@ class RosGraph:
                 steps.callback(self._undeclared.close)
 
     def _open(self) -> "Backend":
-        return self._options.open(self._clock, self._name, self._log_ros)
+        backend = self._options.open(self._clock, self._name, self._log_ros)
+        backend.tracer = self._tracer
+        return backend
+
+    def trace(self, tracer: "Tracer | None") -> None:
+        """Have *tracer* told of each message that reaches our node, from now on."""
+        self._tracer = tracer
+        if self._backend is not None:
+            self._backend.tracer = tracer
 
     def _follow_clock(self, backend: "Backend") -> None:
         from jacaros.ros.ros_clock import RosClock

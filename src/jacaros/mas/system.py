@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from jacaros.env.environment import Environment
     from jacaros.mas.diagnostics import Diagnostics
     from jacaros.mas.environment import RunEnvironment
+    from jacaros.trace import Tracer
 
 
 OUT_OF_MEMORY = 137
@@ -86,6 +87,7 @@ class System:
         self.scheduler = Scheduler(clock, self.idleness.look, self.fail, idle_work=self._compile_ahead)
         self.idleness.turns = self.scheduler
         self._run_environment: RunEnvironment | None = None
+        self._tracer: Tracer | None = None
         self._diagnostics: Diagnostics | None = None
         self.ros = self._find_graph()
         self._modules = ProjectModules(deployment.base_path, *deployment.source_paths)
@@ -167,6 +169,13 @@ class System:
         """Workspaces and artifacts; None while nobody has needed them."""
         return self._run_environment.environment if self._run_environment is not None else None
 
+    def trace(self, tracer: "Tracer | None") -> None:
+        """Have *tracer* told, from now on, why things happen: messages, operations, properties, acts; None ends it."""
+        self._tracer = tracer
+        self.ros.trace(tracer)
+        if self._run_environment is not None:
+            self._run_environment.environment.tracer = tracer
+
     # ---- the start
 
     async def start(self) -> None:
@@ -231,6 +240,7 @@ class System:
             self._run_environment = RunEnvironment(
                 self.deployment, self._modules, self.clock, resources, self.console, self.activity, self.fail
             )
+            self._run_environment.environment.tracer = self._tracer
         return self._run_environment
 
     def _situate(self, host: AgentHost, spec: AgentSpec) -> None:

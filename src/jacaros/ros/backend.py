@@ -16,7 +16,7 @@ from jacaros.ros.graph import GraphContents
 from jacaros.ros.parameter import GivenParameters, Parameters
 from jacaros.ros.qos import DEFAULT_QOS, QoS
 from jacaros.ros.transform import Transform
-from jacaros.trace import Cause
+from jacaros.trace import Cause, Tracer
 
 TOPICS = "topics"
 SERVICES = "services"
@@ -70,13 +70,13 @@ class Sample:
         message: read-only by agreement: other receivers may hold the same object.
         topic: absolute name.
         stamp: when it reached the loop, in seconds of the clock.
-        cause: beginning of the chain that leads to beliefs and commands.
+        cause: beginning of the chain that leads to beliefs and commands; None while nobody watches.
     """
 
     message: Any
     topic: str
     stamp: float
-    cause: Cause
+    cause: Cause | None
 
 
 class Publisher(Protocol):
@@ -170,7 +170,13 @@ DEFAULT_POLICY = ActionPolicy()
 
 
 class Backend(Protocol):
-    """A node in a ROS graph."""
+    """A node in a ROS graph.
+
+    Attributes:
+        tracer: told of each message that arrives, None while nobody watches.
+    """
+
+    tracer: Tracer | None
 
     @property
     def name(self) -> str:

@@ -36,7 +36,7 @@ from jacaros.ros.rosout import RosoutWriter
 from jacaros.ros.tf import TransformBroadcaster, TransformListener
 from jacaros.ros.transform import Transform
 from jacaros.ros.waiting import Waiting
-from jacaros.trace import cause
+from jacaros.trace import Tracer
 
 
 def to_stderr(text: str) -> None:
@@ -127,6 +127,7 @@ class Node:
         self.connected = False
         self.delivered: Callable[[], None] = lambda: None
         """Called on the loop when a message that came from outside has been delivered."""
+        self.tracer: Tracer | None = None
         self.orphans = Orphans(self.names.full_name, settings.orphans, settings.log)
         self.leaving_goals: LeavingGoals = {}
         """Goals of all action clients that were asked to be cancelled and have not ended."""
@@ -247,10 +248,6 @@ class Node:
     def message(self, type_name: str, /, **fields: Any) -> Any:
         """Make a message."""
         return self.factory.make(message_type(type_name), fields)
-
-    def sample(self, message: Any, topic: str) -> Sample:
-        """Wrap a message that has just reached the loop."""
-        return Sample(message, topic, self.clock.now(), cause("sample", topic))
 
     def tf_broadcast(self, transform: Any, static: bool = False) -> None:
         """Publish a transform."""

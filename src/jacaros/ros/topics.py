@@ -130,7 +130,9 @@ class TopicSubscription(Generic[N]):
 
     def deliver(self, message: Any) -> None:
         """Hand a message over, on the loop."""
-        self._callback(self._node.sample(message, self.topic))
+        node = self._node
+        why = None if node.tracer is None else node.tracer.link("sample", self.topic)
+        self._callback(Sample(message, self.topic, node.clock.now(), why))
 
     def tell(self, trouble: TopicTrouble, text: str, key: object = None) -> None:
         """Tell of trouble, on the loop.

@@ -9,6 +9,7 @@ from jacaros.artifacts.robots.odometry import ArtOdometry, ArtOdometryOnDemand
 from jacaros.artifacts.robots.velocity import ArtCmdVel
 from jacaros.env import OperationFailed, Out, Structure
 from jacaros.ros.drivers.memory.backend import MemoryBackend
+from jacaros.trace import Cause
 
 
 def test_verbose_odometry_gives_one_change_and_no_signal_for_each_new_message() -> None:
@@ -33,10 +34,16 @@ def test_verbose_odometry_gives_one_change_and_no_signal_for_each_new_message() 
     in_lab(body)
 
 
+class Causes:
+    def link(self, kind: str, what: str, parent: Cause | None = None) -> Cause:
+        return Cause(1, 0, kind, what)
+
+
 def test_properties_change_in_steps_of_the_artifact_with_the_cause_of_the_message() -> None:
     """Defect 4: the original changed properties outside of the lock, from the threads of ROS."""
 
     async def body(lab: Lab) -> None:
+        lab.backend.tracer = Causes()
         odometry = await lab.make(ArtOdometry)
         watcher = lab.watch(odometry)
         motion = await lab.make(ArtCmdVel)

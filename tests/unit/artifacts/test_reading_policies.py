@@ -37,7 +37,7 @@ class Slow:
         self.note(values)
         self.behind = True
 
-    def refuse(self, number: float, cause: Cause | None) -> None:
+    def refuse(self, number: float) -> None:
         self.note(f"refused {number}")
 
 

@@ -9,7 +9,7 @@ from jacaros.env.values import Atom, Structure
 from jacaros.terms.order import annotation_set
 from jacaros.terms.text import text
 from jacaros.terms.values import Reference, atom, structure
-from jacaros.trace import cause
+from jacaros.trace import Cause
 
 LAMP = ArtifactId("Lamp", "Lamp", "/main/lab", 1, None)
 MAIN = object()
@@ -80,7 +80,7 @@ def test_a_missing_value_is_the_atom_null() -> None:
 
 
 def test_a_percept_carries_the_cause_of_its_observation() -> None:
-    why = cause("sample", "odom")
+    why = Cause(1, 0, "sample", "odom")
     assert writer().percepts(Observation(LAMP, added=(observable("on"),), cause=why))[0].cause is why
 
 

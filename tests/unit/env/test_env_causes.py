@@ -1,15 +1,17 @@
 """Causes: why a property changed, and the tracer that is told of every link."""
 
 from jacaros.env import Artifact, Environment, OperationRequest, internal_operation, link, operation
-from jacaros.trace import cause
+from jacaros.trace import Cause
 
 
 class Recorder:
-    def __init__(self):
-        self.links = []
+    def __init__(self, clock):
+        self.clock, self.links = clock, []
 
-    def record(self, cause, time):
-        self.links.append((cause, time))
+    def link(self, kind, what, parent=None):
+        made = Cause(len(self.links) + 100, parent.id if parent is not None else 0, kind, what)
+        self.links.append((made, self.clock.now()))
+        return made
 
     def chain(self, cause):
         """What led to *cause*, the latest first."""
@@ -54,7 +56,7 @@ def test_without_a_tracer_the_cause_of_the_request_is_passed_on(play):
     async def scene(stage):
         lamp = await stage.make(Lamp)
         watcher = stage.watch(lamp)
-        why = cause("act", "switch")
+        why = Cause(1, 0, "act", "switch")
         stage.call(lamp, "switch", cause=why)
         await stage.clock.sleep(2.0)
         assert [observation.cause for observation in watcher.observations] == [None, why, why]
@@ -64,11 +66,11 @@ def test_without_a_tracer_the_cause_of_the_request_is_passed_on(play):
 
 def test_with_a_tracer_each_operation_and_each_commit_is_a_link(play):
     async def scene(stage):
-        stage.environment.tracer = recorder = Recorder()
+        stage.environment.tracer = recorder = Recorder(stage.clock)
         assert stage.environment.tracer is recorder
         lamp = await stage.make(Lamp)
         watcher = stage.watch(lamp)
-        why = cause("act", "agent acts")
+        why = Cause(1, 0, "act", "agent acts")
         stage.call(lamp, "switch", cause=why)
         await stage.clock.sleep(2.0)
         changed, signalled = (observation.cause for observation in watcher.observations[1:])
@@ -83,7 +85,7 @@ def test_with_a_tracer_each_operation_and_each_commit_is_a_link(play):
 
 def test_the_chain_goes_through_links(play):
     async def scene(stage):
-        stage.environment.tracer = recorder = Recorder()
+        stage.environment.tracer = recorder = Recorder(stage.clock)
         first, second = await stage.make(Lamp, name="first"), await stage.make(Lamp, name="second")
         stage.main.link(first, "next", second)
         watcher = stage.watch(second)
@@ -108,7 +110,7 @@ def test_a_process_started_by_a_callback_is_caused_by_its_sample(play):
     async def scene(stage):
         sensor = await stage.make(Sensor)
         watcher = stage.watch(sensor)
-        sample = cause("sample", "/power")
+        sample = Cause(1, 0, "sample", "/power")
         kept[0].start(kept[0].sample, 7, cause=sample)
         assert watcher.observations[-1].cause == sample
 
@@ -118,7 +120,7 @@ def test_a_process_started_by_a_callback_is_caused_by_its_sample(play):
 def test_commits_are_traced_even_when_nobody_focuses(play):
     async def scene(stage):
         lamp = await stage.make(Lamp)
-        stage.environment.tracer = recorder = Recorder()
+        stage.environment.tracer = recorder = Recorder(stage.clock)
         stage.call(lamp, "switch")
         assert [each.kind for each, _ in recorder.links] == ["operation", "property"]
 

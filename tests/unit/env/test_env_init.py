@@ -12,7 +12,7 @@ from jacaros.env import (
     internal_operation,
     operation,
 )
-from jacaros.trace import cause
+from jacaros.trace import Cause
 
 
 def test_create_tells_a_plain_init_at_once(play):
@@ -42,7 +42,7 @@ def test_the_cause_of_the_making_is_that_of_its_processes(play):
             self.signal("beat")
 
     async def scene(stage):
-        why, made = cause("act", "make"), []
+        why, made = Cause(1, 0, "act", "make"), []
         stage.main.create("it", Alive, on_done=lambda artifact, _: made.append(artifact), cause=why)
         watcher = stage.watch(made[0])
         await stage.clock.sleep(2.0)

@@ -3,7 +3,7 @@
 import pytest
 
 from jacaros.env import Artifact, InvalidArtifact, OperationFailed, internal_operation, operation
-from jacaros.trace import cause
+from jacaros.trace import Cause
 
 
 class Clock(Artifact):
@@ -268,7 +268,7 @@ def test_a_callback_starts_a_process_which_runs_at_once_when_the_artifact_is_fre
         assert watcher.notes == ["+sample(7)", "-sample(7) +sample(8)", "-sample(8) +sample(9)"]
         stage.main.dispose_artifact(sensor)
         kept[0].on_sample(10)
-        kept[0].start("receive", 11, cause=cause("sample", "late"))
+        kept[0].start("receive", 11, cause=Cause(1, 0, "sample", "late"))
         with pytest.raises(InvalidArtifact, match="receive with 0 arguments"):
             kept[0].start("receive")
 

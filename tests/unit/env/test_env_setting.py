@@ -6,7 +6,7 @@ from jacaros.clock import VirtualClock
 from jacaros.env import Artifact, Environment, OperationRequest, operation
 from jacaros.env.kernel.setting import Setting
 from jacaros.errors import InternalError
-from jacaros.trace import cause
+from jacaros.trace import Cause
 
 
 class Thing(Artifact):
@@ -37,7 +37,7 @@ def test_an_error_that_has_no_trace_is_logged_too():
 
 
 def test_without_a_tracer_the_parent_stays_the_cause():
-    parent = cause("act", "x")
+    parent = Cause(1, 0, "act", "x")
     assert Setting(VirtualClock()).trace("operation", "y", parent) is parent
 
 

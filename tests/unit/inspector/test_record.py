@@ -107,3 +107,32 @@ def test_what_agents_in_python_work_at_and_agents_that_come_later_are_recorded(t
     assert [goal["why"] for goal in goals if goal["state"] == "failed"] == ["too far"]
     assert [goal["state"] for goal in goals if goal["agent"] == "late"] == ["pursued", "achieved"]
     assert not ended.value.code
+
+
+def test_what_led_to_an_act_is_recorded_from_the_message_on(tmp_path: Path) -> None:
+    program = """
+        !start.
+        +!start
+          <- makeArtifact(odometry, "ArtOdometry", [], O); focus(O);
+             makeArtifact(wheels, "ArtCmdVel", [], _); moveForward(1).
+        +odom(X, _, _) : X > 0.5 & not told <- +told; lookupArtifact(wheels, _).
+    """
+
+    async def main() -> None:
+        async with Mas(seed=1, on_print=lambda agent, text: None) as mas:
+            with record(mas, tmp_path / "run.jsonl", replay=tmp_path / "run.html"):
+                mas.add_agent("ann", program)
+                await mas.sleep(5)
+
+    jacaros.run(main(), clock="fast")
+    lines = [json.loads(line) for line in (tmp_path / "run.jsonl").read_text().splitlines()]
+    causes = {line["data"]["id"]: line["data"] for line in lines if line.get("event") == "cause"}
+    [link] = [cause for cause in causes.values() if cause["what"] == "ann lookupArtifact/2"]
+    chain = [link]
+    while link["parent"]:
+        link = causes[link["parent"]]
+        chain.append(link)
+    assert [each["kind"] for each in chain] == ["act", "property", "sample"]
+    assert chain[-1]["what"] == "/odom"
+    assert chain[-1]["at"] <= chain[0]["at"] < 5
+    assert '"cause"' not in (tmp_path / "run.html").read_text(encoding="utf-8")

@@ -118,7 +118,7 @@ class Outlet:
     """
 
     withdraw: Callable[[], None] = lambda: None
-    refuse: Callable[[float, Cause | None], None] = lambda number, cause: None
+    refuse: Callable[[float], None] = lambda number: None
     behind: Callable[[], bool] = lambda: False
 
 
@@ -164,7 +164,7 @@ class Reading:
     def take(self, values: Values, cause: Cause | None = None) -> None:
         """Take a message's values, and pass them on now, later or never."""
         if self.policy.finite and (why := not_finite(values)) is not None:
-            self._outlet.refuse(why, cause)
+            self._outlet.refuse(why)
         else:
             self.take_finite(values, cause)
 

@@ -5,7 +5,6 @@ from collections.abc import Callable, Iterable
 from functools import partial
 
 from jacaros.artifacts.kit.connected_artifact import ConnectedArtifact
-from jacaros.artifacts.kit.faults import Faults
 from jacaros.artifacts.kit.reading import Outlet, Reading, ReadingPolicy, Values
 from jacaros.env.artifact import internal_operation
 from jacaros.trace import Cause
@@ -17,7 +16,7 @@ FIRST_MESSAGE = 5.0
 class SensingArtifact(ConnectedArtifact):
     """An artifact with readings of sensors; see `jacaros.artifacts.kit.ros_artifact.RosArtifact`."""
 
-    def reading(self, name: str, policy: ReadingPolicy, *initial: object) -> Reading:
+    def reading(self, name: str, policy: ReadingPolicy, *initial: object, topic: str = "") -> Reading:
         """Let the property *name* follow a sensor by *policy*; ends with the artifact.
 
         The callback of the sensor gives its values to `Reading.take`; an operation that refreshes the
@@ -28,20 +27,19 @@ class SensingArtifact(ConnectedArtifact):
             name: of the property.
             policy: when it is updated.
             initial: values before the first message, which are shown unless they would have to expire.
+            topic: of the robot, whose messages with numbers that are none are told of; else they go by *name*.
         """
         if initial and policy.expire is None:
             self.define_property(name, *initial)
-        faults: dict[str, Faults] = {}
+        faults = self.faults_of(topic) if topic else self.faults_at(name)
 
         def deliver(values: Values, cause: Cause | None) -> None:
             self._tell_readings([(name, values)], cause)
 
-        def refuse(number: float, cause: Cause | None) -> None:
-            topic = cause.what if cause is not None else name
-            faults.setdefault(topic, self.faults_at(topic)).not_finite(name, number)
-
         behind = partial(self._steps.publication.has_untaken, name)
-        outlet = Outlet(partial(self.start, self.withdraw_reading, name), refuse, behind)
+        outlet = Outlet(
+            partial(self.start, self.withdraw_reading, name), partial(faults.not_finite, name), behind
+        )
         return self.kept(Reading(policy, self.clock, deliver, outlet, name))
 
     def take_together(self, cause: Cause | None, *taken: tuple[Reading, Values]) -> None:

@@ -39,10 +39,9 @@ class ArtBaseScan(RosArtifact):
 
     def open(self) -> None:
         """Define the property and listen."""
-        self._ranges = self.reading(
-            "laserrange", ReadingPolicy.from_options(self.options), *[0] * len(SHARES)
-        )
         topic = str(self.options.get("topic", "scan"))
+        policy = ReadingPolicy.from_options(self.options)
+        self._ranges = self.reading("laserrange", policy, *[0] * len(SHARES), topic=topic)
         self._header = Header(self.faults_of(topic), self.clock, str(self.options.get("frame", "")))
         self.subscription(topic, "sensor_msgs/msg/LaserScan", self._take, SENSOR_DATA)
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 
 from jacaros.clock import Clock
 from jacaros.errors import InternalError
-from jacaros.trace import Cause, Tracer, cause
+from jacaros.trace import Cause, Tracer
 
 
 def log_to_stderr(text: str) -> None:
@@ -82,8 +82,4 @@ class Setting:
 
     def trace(self, kind: str, what: str, parent: Cause | None) -> Cause | None:
         """The next link after *parent*; *parent* itself while nobody watches."""
-        if self.tracer is None:
-            return parent
-        arisen = cause(kind, what, parent)
-        self.tracer.record(arisen, self.clock.now())
-        return arisen
+        return parent if self.tracer is None else self.tracer.link(kind, what, parent)
