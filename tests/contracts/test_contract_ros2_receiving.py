@@ -14,7 +14,7 @@ pytestmark = pytest.mark.ros2
 BEGIN = """
 import asyncio, sys
 from jacaros.clock import WallClock, run
-from jacaros.ros.drivers.ros2 import receiving as ros2_receiving
+from jacaros.ros.drivers.ros2 import inner, receiving as ros2_receiving
 from jacaros.ros.open import open_backend
 
 STRING = "std_msgs/msg/String"
@@ -58,9 +58,9 @@ def _ros2(request: pytest.FixtureRequest) -> None:
         pytest.skip("no ROS 2 here; see test_contract_presence")
 
 
-def passes(folder: Path, test: str) -> None:
+def passes(folder: Path, test: str, before: str = "") -> None:
     done = subprocess.run(
-        [sys.executable, "-c", BEGIN + test + END],
+        [sys.executable, "-c", before + BEGIN + test + END],
         env=os.environ | ros2_environment(folder),
         capture_output=True,
         text=True,
@@ -105,7 +105,7 @@ async def test(backend, publisher, hear):
     def changed(*_):
         raise TypeError("incompatible function arguments")
 
-    ros2_receiving.WaitSet = changed
+    inner.wait_set = changed
     second = backend.subscription("/a", STRING, hear)
     await until(lambda: told)
     assert told == ["waiting for messages the fast way failed, rclpy's executor does it now: "
@@ -114,6 +114,40 @@ async def test(backend, publisher, hear):
     second.close()
     await talk(publisher, "c")
     await until(lambda: len(list(backend.rcl.subscriptions)) == 1)
+""",
+    )
+
+
+@pytest.mark.parametrize("names", [["WaitSet"], ["RCLError", "InvalidHandle", "WaitSet"]])
+def test_without_rclpys_inner_names_all_goes_through_its_executor(tmp_path: Path, names: list[str]) -> None:
+    passes(
+        tmp_path,
+        """
+from jacaros.ros.errors import RosError
+
+async def test(backend, publisher, hear):
+    backend.subscription("/a", STRING, hear)
+    await talk(publisher, "a")
+    assert told == ["waiting for messages the fast way failed, rclpy's executor does it now: "
+                    "NotImplementedError: rclpy shows no wait sets"], told
+    try:
+        backend.subscription("/a", "std_msgs/msg/Int32", hear)
+    except RosError as problem:
+        assert "uses it with type std_msgs/msg/String already" in str(problem), problem
+    else:
+        sys.exit("a topic has two types")
+""",
+        f"""
+from rclpy.impl.implementation_singleton import rclpy_implementation
+
+class Without:
+    def __getattr__(self, name):
+        if name in {names}:
+            raise AttributeError(name)
+        return getattr(rclpy_implementation, name)
+
+import rclpy, rclpy.node, rclpy.executors
+rclpy.impl.implementation_singleton.rclpy_implementation = Without()
 """,
     )
 

@@ -20,6 +20,7 @@ from jacaros.ros.backend import (
 from jacaros.ros.drivers.ros2 import graph as ros2_graph
 from jacaros.ros.drivers.ros2.actions import Ros2ActionServer
 from jacaros.ros.drivers.ros2.goals import Ros2GoalWire
+from jacaros.ros.drivers.ros2.inner import RCLError
 from jacaros.ros.drivers.ros2.node import Ros2Node
 from jacaros.ros.drivers.ros2.parameters import OtherParameters, OwnParameters, read_value
 from jacaros.ros.drivers.ros2.services import Ros2Client, Ros2Service
@@ -56,7 +57,7 @@ def _joining(what: str, make: Callable[..., T]) -> Callable[..., T]:
     def join(node: Ros2Node, name: str, type_name: str, *more: Any) -> T:
         try:
             return make(node, name, type_name, *more)
-        except ros2_graph.RCLError as problem:
+        except RCLError as problem:
             other = "incompatible type" in str(problem)
             because = "this node uses it with another type already" if other else str(problem)
             raise RosError(f"{what} {name} cannot be joined with type {type_name}: {because}") from None
@@ -114,7 +115,7 @@ class Ros2Backend(Ros2Node):
             return await within(self.clock, seen, timeout)
         except TimeoutError:
             raise CallTimedOut(f"rclpy did not tell within {timeout:g} s what is in the graph") from None
-        except ros2_graph.RCLError as problem:  # a node that went while it was looked at
+        except RCLError as problem:  # a node that went while it was looked at
             raise CallFailed(f"rclpy cannot tell what is in the graph: {problem}") from None
 
 

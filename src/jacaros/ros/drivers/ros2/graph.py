@@ -4,14 +4,11 @@ from typing import Any
 
 import rclpy.duration  # type: ignore[import-not-found]
 import rclpy.qos  # type: ignore[import-not-found]
-from rclpy.impl.implementation_singleton import rclpy_implementation  # type: ignore[import-not-found]
 
 from jacaros.ros.drivers.ros2.node import Ros2Node
 from jacaros.ros.graph import Endpoint, GraphContents, TopicInfo
 from jacaros.ros.qos import QoS
 
-RCLError = rclpy_implementation.RCLError
-"""What rclpy raises when the middleware refuses."""
 ACTION = "/_action/"
 """Stands in the names of the topics and services that an action is made of."""
 SEND_GOAL, FEEDBACK = f"{ACTION}send_goal", f"{ACTION}feedback"

@@ -12,10 +12,9 @@ from typing import Any
 
 from rclpy.callback_groups import CallbackGroup  # type: ignore[import-not-found]
 from rclpy.guard_condition import GuardCondition  # type: ignore[import-not-found]
-from rclpy.impl.implementation_singleton import rclpy_implementation  # type: ignore[import-not-found]
 
-WaitSet = rclpy_implementation.WaitSet
-InvalidHandle = rclpy_implementation.InvalidHandle
+from jacaros.ros.drivers.ros2 import inner
+
 Take = Callable[[Any], None]
 
 
@@ -138,7 +137,7 @@ class Receiver:
             handles, events, sources = [], [], {}
             for subscription, take in takers:
                 handle = subscription.handle
-                with suppress(InvalidHandle):  # gone with its node
+                with suppress(inner.InvalidHandle):  # gone with its node
                     held.enter_context(handle)
                     handles.append(handle)
                     sources[handle.pointer] = (handle, subscription.msg_type, take)
@@ -152,7 +151,7 @@ class Receiver:
     def _receive(
         self, handles: list[Any], events: list[Any], sources: dict[int, tuple[Any, Any, Take]]
     ) -> None:
-        wait_set: Any = WaitSet(len(handles), 1, 0, 0, 0, len(events), self._context.handle)
+        wait_set = inner.wait_set(len(handles), 1, len(events), self._context.handle)
         guard = self._guard.handle
 
         def arm() -> None:

@@ -13,13 +13,13 @@ from rclpy.event_handler import (  # type: ignore[import-not-found]
 
 from jacaros.ros.backend import Sample
 from jacaros.ros.drivers.ros2.graph import (
-    RCLError,
     endpoint,
     foreign_types,
     own_types,
     profile,
     publishers_in,
 )
+from jacaros.ros.drivers.ros2.inner import RCLError
 from jacaros.ros.drivers.ros2.node import Ros2Node
 from jacaros.ros.errors import RosError
 from jacaros.ros.handoff import Handoff, post
