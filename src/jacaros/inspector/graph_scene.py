@@ -15,8 +15,8 @@ from jacaros.ros.backend import TRANSFORMS, Backend, Sample, Subscription
 from jacaros.ros.errors import RosError, TransformUnavailable
 from jacaros.ros.graph import GraphContents
 from jacaros.ros.message import constant
+from jacaros.ros.protocols.transform import Transform
 from jacaros.ros.qos import QoS
-from jacaros.ros.transform import Transform
 from jacaros.sim.description import Rectangle, WorldDescription
 
 LOOK_PERIOD = 3.0

@@ -8,7 +8,10 @@ from typing import Any
 from jacaros.clock import Timer
 from jacaros.ros.action import ActionPolicy, Execute, GoalStatus, Outcome
 from jacaros.ros.action_serving import ServedGoals
-from jacaros.ros.actionlib_states import (
+from jacaros.ros.actionlib_client import ActionTopicsNode
+from jacaros.ros.backend import Sample
+from jacaros.ros.names import result_type
+from jacaros.ros.protocols.actionlib import (
     COMMANDS,
     GOAL_STATUS_TYPE,
     ID_TYPE,
@@ -17,13 +20,10 @@ from jacaros.ros.actionlib_states import (
     STATUS_KEPT,
     STATUS_PERIOD,
     STATUS_TYPE,
-    ActionTopicsNode,
     State,
     part_type,
     time_of,
 )
-from jacaros.ros.backend import Sample
-from jacaros.ros.names import result_type
 
 NO_TIME = (0, 0)
 AFTER_FEEDBACK = 0.01

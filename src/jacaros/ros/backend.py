@@ -14,8 +14,8 @@ from jacaros.ros.action import ActionClient, ActionPolicy, ActionServer, Execute
 from jacaros.ros.fields import FieldType
 from jacaros.ros.graph import GraphContents
 from jacaros.ros.parameter import GivenParameters, Parameters
+from jacaros.ros.protocols.transform import Transform
 from jacaros.ros.qos import DEFAULT_QOS, QoS
-from jacaros.ros.transform import Transform
 from jacaros.trace import Cause, Tracer
 
 TOPICS = "topics"

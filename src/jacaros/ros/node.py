@@ -31,10 +31,10 @@ from jacaros.ros.names import NodeNames, action_type, message_type, service_type
 from jacaros.ros.orphans import OrphanPolicy, Orphans
 from jacaros.ros.parameter import GivenParameters, Parameters, ParameterValue
 from jacaros.ros.pending_goal import LeavingGoals
+from jacaros.ros.protocols.transform import Transform
 from jacaros.ros.qos import DEFAULT_QOS, QoS
 from jacaros.ros.rosout import RosoutWriter
 from jacaros.ros.tf import TransformBroadcaster, TransformListener
-from jacaros.ros.transform import Transform
 from jacaros.ros.waiting import Waiting
 from jacaros.trace import Tracer
 

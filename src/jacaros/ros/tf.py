@@ -8,9 +8,9 @@ from jacaros.clock import Clock
 from jacaros.ros.backend import Publisher, Sample, Subscription
 from jacaros.ros.errors import CapabilityMissing, TransformUnavailable, UnknownInterface
 from jacaros.ros.message import to_seconds
+from jacaros.ros.protocols.tf_buffer import TransformBuffer
+from jacaros.ros.protocols.transform import Transform
 from jacaros.ros.qos import QoS
-from jacaros.ros.tf_buffer import TransformBuffer
-from jacaros.ros.transform import Transform
 from jacaros.ros.waiting import Waiting, within
 
 TF = QoS(depth=100)

@@ -11,13 +11,13 @@ from jacaros.clock import VirtualClock, run
 from jacaros.ros.action import ActionPolicy, GoalStatus
 from jacaros.ros.action_calling import GoalSender
 from jacaros.ros.action_serving import GoalUnderWay
-from jacaros.ros.actionlib_client import OVERTAKEN, ActionlibWire
+from jacaros.ros.actionlib_client import ActionlibWire
 from jacaros.ros.actionlib_server import ActionlibServer
-from jacaros.ros.actionlib_states import STATUS_PERIOD, part_type
 from jacaros.ros.drivers.memory.backend import MemoryBackend, MemoryGraph
 from jacaros.ros.errors import CallTimedOut, GoalRejected
 from jacaros.ros.open import open_backend
 from jacaros.ros.orphans import OrphanPolicy
+from jacaros.ros.protocols.actionlib import OVERTAKEN, STATUS_PERIOD, part_type
 from jacaros.ros.protocols.rosbridge_types import BridgeSchema
 
 COUNT = "jacaros_interfaces/action/Count"

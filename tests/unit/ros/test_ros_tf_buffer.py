@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from jacaros.ros.errors import TransformUnavailable
-from jacaros.ros.tf_buffer import TransformBuffer
-from jacaros.ros.transform import Quaternion, Transform, interpolate
+from jacaros.ros.protocols.tf_buffer import TransformBuffer
+from jacaros.ros.protocols.transform import Quaternion, Transform, interpolate
 
 
 def buffer(lines: list[str] | None = None) -> TransformBuffer:

@@ -8,7 +8,7 @@ from jacaros.artifacts.mapping.decoding import converted
 from jacaros.artifacts.mapping.host import Host
 from jacaros.env.values import Structure
 from jacaros.ros.errors import CapabilityMissing, TransformUnavailable
-from jacaros.ros.transform import Transform
+from jacaros.ros.protocols.transform import Transform
 from jacaros.ros.waiting import MISSING_AFTER
 
 GLOBAL_FRAMES = ("map", "earth", "world")

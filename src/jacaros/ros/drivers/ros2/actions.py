@@ -5,35 +5,34 @@ goal before their callback returns, and on Jazzy an answer that comes too early 
 article "Actions" (design.ros2.org), which every client library speaks.
 """
 
-import uuid
 from collections.abc import Callable
 from typing import Any
 
-from action_msgs.msg import GoalInfo, GoalStatusArray  # type: ignore[import-not-found]
-from action_msgs.msg import GoalStatus as Status  # pyright: ignore[reportMissingImports]
+from action_msgs.msg import GoalInfo, GoalStatus, GoalStatusArray  # type: ignore[import-not-found]
 from action_msgs.srv import CancelGoal  # type: ignore[import-not-found]
 from unique_identifier_msgs.msg import UUID  # type: ignore[import-not-found]
 
-from jacaros.ros.action import ActionPolicy, Execute, GoalStatus, Outcome
+from jacaros.ros.action import ActionPolicy, Execute, Outcome
 from jacaros.ros.action_serving import ServedGoals
-from jacaros.ros.drivers.ros2.graph import ACTION, FEEDBACK, SEND_GOAL, profile
+from jacaros.ros.drivers.ros2.graph import profile
 from jacaros.ros.drivers.ros2.node import Ros2Node
 from jacaros.ros.drivers.ros2.services import LateService
-from jacaros.ros.qos import QoS
+from jacaros.ros.protocols.ros2_actions import (
+    ACCEPTED,
+    CANCEL_GOAL,
+    CANCELING,
+    EXECUTING,
+    FEEDBACK,
+    FEEDBACK_QUALITY,
+    GET_RESULT,
+    NUMBERS,
+    RESULT_KEPT,
+    SEND_GOAL,
+    STATUS,
+    STATUS_QUALITY,
+    UNKNOWN,
+)
 
-GET_RESULT, CANCEL_GOAL, STATUS = f"{ACTION}get_result", f"{ACTION}cancel_goal", f"{ACTION}status"
-FEEDBACK_QUALITY, STATUS_QUALITY = QoS(), QoS(durability="transient_local", depth=1)
-"""ROS 2's profiles of these topics."""
-RESULT_KEPT = 10.0
-"""Seconds for which a server remembers a goal that is over, as rcl does."""
-
-STATUSES = {
-    Status.STATUS_SUCCEEDED: GoalStatus.SUCCEEDED,
-    Status.STATUS_CANCELED: GoalStatus.CANCELED,
-    Status.STATUS_ABORTED: GoalStatus.ABORTED,
-}
-UNDER_WAY = (Status.STATUS_ACCEPTED, Status.STATUS_EXECUTING, Status.STATUS_CANCELING)
-_NUMBERS = {ours: number for number, ours in STATUSES.items()}
 Respond = Callable[[Any], None]
 
 
@@ -47,17 +46,12 @@ def id_message(identity: str) -> Any:
     return UUID(uuid=list(bytes.fromhex(identity)))
 
 
-def new_goal_id() -> str:
-    """Make up the id of a goal."""
-    return uuid.uuid4().hex
-
-
 class _ServedGoal:
     """What the graph is told about one goal: its status, feedback and end."""
 
     def __init__(self, server: "Ros2ActionServer", info: Any) -> None:
         self.info = info
-        self.status = Status.STATUS_ACCEPTED
+        self.status = ACCEPTED
         self.response: Any = None
         self.asking: list[Respond] = []
         self._server = server
@@ -105,7 +99,7 @@ class Ros2ActionServer:
         """Tell a goal's end to those who asked, and keep it for those who will."""
         if self._node.ended:
             return
-        goal.status = _NUMBERS[outcome.status]
+        goal.status = NUMBERS[outcome.status]
         goal.response = self._impl.GetResultService.Response(status=goal.status, result=outcome.result)
         for respond in goal.asking:
             respond(goal.response)
@@ -136,7 +130,7 @@ class Ros2ActionServer:
             return
         goal = self._goals[identity] = _ServedGoal(self, GoalInfo(goal_id=request.goal_id, stamp=stamp))
         self._publish_status()
-        goal.status = Status.STATUS_EXECUTING
+        goal.status = EXECUTING
         self._under_way.begin(identity, request.goal, goal)
         self._publish_status()
 
@@ -146,7 +140,7 @@ class Ros2ActionServer:
         agreed = [goal for goal in meant if self._under_way.cancel(goal_id(goal.info.goal_id))]
         for goal in agreed:
             if goal.response is None:
-                goal.status = Status.STATUS_CANCELING
+                goal.status = CANCELING
         respond(self._cancel_response(request.goal_info, meant, agreed))
         if agreed:
             self._publish_status()
@@ -183,7 +177,7 @@ class Ros2ActionServer:
     def _tell_result(self, request: Any, respond: Respond) -> None:
         goal = self._goals.get(goal_id(request.goal_id))
         if goal is None:
-            respond(self._impl.GetResultService.Response(status=Status.STATUS_UNKNOWN))
+            respond(self._impl.GetResultService.Response(status=UNKNOWN))
         elif goal.response is None:
             goal.asking.append(respond)
         else:
@@ -192,5 +186,5 @@ class Ros2ActionServer:
     def _publish_status(self) -> None:
         if self._closed or self._node.ended:
             return
-        listed = [Status(goal_info=goal.info, status=goal.status) for goal in self._goals.values()]
+        listed = [GoalStatus(goal_info=goal.info, status=goal.status) for goal in self._goals.values()]
         self._status.publish(GoalStatusArray(status_list=listed))

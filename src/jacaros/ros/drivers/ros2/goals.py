@@ -12,31 +12,25 @@ from rclpy.event_handler import SubscriptionEventCallbacks  # type: ignore[impor
 from jacaros.ros.action import Outcome
 from jacaros.ros.action_calling import GoalSender
 from jacaros.ros.action_serving import text_of
-from jacaros.ros.drivers.ros2.actions import (
-    CANCEL_GOAL,
-    FEEDBACK_QUALITY,
-    GET_RESULT,
-    STATUS,
-    STATUS_QUALITY,
-    STATUSES,
-    UNDER_WAY,
-    goal_id,
-    id_message,
-    new_goal_id,
-)
-from jacaros.ros.drivers.ros2.graph import (
-    FEEDBACK,
-    SEND_GOAL,
-    action_mismatch,
-    action_servers,
-    action_servers_in,
-    profile,
-)
+from jacaros.ros.drivers.ros2.actions import goal_id, id_message
+from jacaros.ros.drivers.ros2.graph import action_mismatch, action_servers, action_servers_in, profile
 from jacaros.ros.drivers.ros2.node import Ros2Node
 from jacaros.ros.drivers.ros2.services import SETTLING
-from jacaros.ros.drivers.ros2.signs import SignsOfLife
 from jacaros.ros.errors import CallFailed, ServerLost
 from jacaros.ros.handoff import Handoff, post
+from jacaros.ros.protocols.ros2_actions import (
+    CANCEL_GOAL,
+    ENDS,
+    FEEDBACK,
+    FEEDBACK_QUALITY,
+    GET_RESULT,
+    SEND_GOAL,
+    STATUS,
+    STATUS_QUALITY,
+    UNDER_WAY,
+    SignsOfLife,
+    new_goal_id,
+)
 
 LOOKING = 0.1
 """Seconds between two looks at the server, while a goal is under way or the server is waited for."""
@@ -236,7 +230,7 @@ class Ros2GoalWire:
         if identity not in self._goals:
             return
         self._feedback.deliver_all()
-        status = STATUSES.get(answer.status)
+        status = ENDS.get(answer.status)
         if status is None:
             text = f"the server of action {self.name} does not know goal {identity} any more: it was started anew"
             self.sender.fail(identity, ServerLost(text))
@@ -266,7 +260,7 @@ class Ros2GoalWire:
             goal = self._goals.get(identity)
             if goal is not None:
                 self._signs.heard()
-                goal.over = entry.status in STATUSES
+                goal.over = entry.status in ENDS
                 self._accept(identity)
 
     # Looking after the server:

@@ -7,11 +7,9 @@ import rclpy.qos  # type: ignore[import-not-found]
 
 from jacaros.ros.drivers.ros2.node import Ros2Node
 from jacaros.ros.graph import Endpoint, GraphContents, TopicInfo
+from jacaros.ros.protocols.ros2_actions import ACTION, FEEDBACK, SEND_GOAL
 from jacaros.ros.qos import QoS
 
-ACTION = "/_action/"
-"""Stands in the names of the topics and services that an action is made of."""
-SEND_GOAL, FEEDBACK = f"{ACTION}send_goal", f"{ACTION}feedback"
 INFRASTRUCTURE = frozenset({"/rosout", "/parameter_events"})
 NODE_SERVICES = frozenset(
     {

@@ -20,14 +20,12 @@ from jacaros.ros.drivers.rosbridge.node import BridgeNode
 from jacaros.ros.drivers.rosbridge.topics import ActionTopics, BridgeSubscription
 from jacaros.ros.errors import CallFailed, ServerLost, ServerUnavailable
 from jacaros.ros.names import feedback_type, goal_type, result_type
+from jacaros.ros.protocols.ros2_actions import CANCELING, ENDS, NUMBERS, STATUS, UNDER_WAY
 from jacaros.ros.protocols.rosbridge_requests import LOOK_AGAIN, Sight
 from jacaros.ros.qos import QoS
 
-STATUS_TYPE, STATUS = "action_msgs/msg/GoalStatusArray", QoS(durability="transient_local", depth=100)
-_ALIVE, _CANCELING = (1, 2, 3), 3
-_ENDS = {4: GoalStatus.SUCCEEDED, 5: GoalStatus.CANCELED, 6: GoalStatus.ABORTED}
-_NUMBERS = {status: number for number, status in _ENDS.items()}
-"""Numbers of ``action_msgs/msg/GoalStatus``."""
+STATUS_TYPE = "action_msgs/msg/GoalStatusArray"
+STATUS_QUALITY = QoS(durability="transient_local", depth=100)
 TOLD_WITHIN = 10.0
 """Seconds after which a goal of which nothing was heard was not sent: the bridge looks for a server for one of them."""
 UNTOLD = f"nothing was heard of the goal within {TOLD_WITHIN:g} s"
@@ -102,7 +100,7 @@ class Ros2Goals:
         self._known: set[str] = set()
         self._watch = PresenceWatch(node, sender)
         self._status = BridgeSubscription(
-            node, f"{sender.name}/_action/status", STATUS_TYPE, self._status_changed, STATUS, None
+            node, f"{sender.name}{STATUS}", STATUS_TYPE, self._status_changed, STATUS_QUALITY, None
         )
         node.keep(self._status)
         self._forget_hook = node.add_exit_hook(self._cancel_all)
@@ -178,13 +176,13 @@ class Ros2Goals:
     def result(self, goal_id: str, message: dict[str, Any]) -> None:
         """The end of a goal, or why it did not begin."""
         values, number = message.get("values"), message.get("status")
-        if not message.get("result", True) and not (number in _ENDS and isinstance(values, dict)):
+        if not message.get("result", True) and not (number in ENDS and isinstance(values, dict)):
             self._refused(goal_id, str(values))
             return
         if number is None and isinstance(values, dict) and "status" in values:  # older servers
             number, values = values["status"], values.get("result")
         self._accept(goal_id)
-        status = _ENDS.get(number or 4, GoalStatus.ABORTED)
+        status = ENDS.get(number or 4, GoalStatus.ABORTED)
         result = self._decoded(result_type(self._sender.type_name), values or {})
         if result is not None:
             self._sender.ended(goal_id, Outcome(status, result, text_of(result)))
@@ -216,11 +214,11 @@ class Ros2Goals:
             bytes(each.goal_info.goal_id.uuid).hex(): int(each.status) for each in sample.message.status_list
         }
         for key, number in seen.items():
-            if key not in self._known and number in _ALIVE:
+            if key not in self._known and number in UNDER_WAY:
                 self._appeared(key)
         self._known = set(seen)
         for goal_id, sent in list(self._goals.items()):
-            if sent.cancel_asked and sent.key is not None and seen.get(sent.key) == _CANCELING:
+            if sent.cancel_asked and sent.key is not None and seen.get(sent.key) == CANCELING:
                 sent.cancel_asked = False
                 self._sender.cancel_answered(goal_id, True)
 
@@ -314,7 +312,7 @@ class Ros2GoalService:
                 "id": goal_id,
                 "action": self.name,
                 "values": self._node.translator.encode(result_type(self._type_name), outcome.result),
-                "status": _NUMBERS[outcome.status],
+                "status": NUMBERS[outcome.status],
                 "result": True,
             }
         )

@@ -2,8 +2,8 @@
 
 import pytest
 
-from jacaros.ros.drivers.ros2 import signs as ros2_signs
-from jacaros.ros.drivers.ros2.signs import SignsOfLife
+from jacaros.ros.protocols import ros2_actions
+from jacaros.ros.protocols.ros2_actions import SignsOfLife
 
 
 class Watched:
@@ -14,7 +14,7 @@ class Watched:
         self.probes = 0
         self.looks = 0
         self.told: list[bool] = []
-        monkeypatch.setattr(ros2_signs.time, "monotonic", lambda: self.now)
+        monkeypatch.setattr(ros2_actions.time, "monotonic", lambda: self.now)
         self.signs = SignsOfLife(self._probed, self.told.append, self._look)
         self.answering = True
         self.telling = False

@@ -1,7 +1,37 @@
-"""Whether a server is alive that the graph still lists: after a crash or in a dead spot that takes DDS 10 to 20 seconds."""
+"""ROS 2's actions, without input and output: what they are made of, and whether the server of a goal is still alive.
+
+An action is three services and two topics below ``<name>/_action``, as the design article "Actions" says (design.ros2.org),
+and ``action_msgs``.
+"""
 
 import time
+import uuid
 from collections.abc import Callable
+
+from jacaros.ros.action import GoalStatus
+from jacaros.ros.qos import QoS
+
+ACTION = "/_action/"
+"""Stands in the names of the topics and services that an action is made of."""
+SEND_GOAL, GET_RESULT, CANCEL_GOAL = f"{ACTION}send_goal", f"{ACTION}get_result", f"{ACTION}cancel_goal"
+FEEDBACK, STATUS = f"{ACTION}feedback", f"{ACTION}status"
+FEEDBACK_QUALITY, STATUS_QUALITY = QoS(), QoS(durability="transient_local", depth=1)
+"""ROS 2's profiles of these topics."""
+RESULT_KEPT = 10.0
+"""Seconds for which a server remembers a goal that is over, as rcl does."""
+
+ENDS = {4: GoalStatus.SUCCEEDED, 5: GoalStatus.CANCELED, 6: GoalStatus.ABORTED}
+"""What the numbers of ``action_msgs/msg/GoalStatus`` for goals that are over are called in the port."""
+NUMBERS = {ours: number for number, ours in ENDS.items()}
+UNKNOWN, ACCEPTED, EXECUTING, CANCELING = 0, 1, 2, 3
+UNDER_WAY = (ACCEPTED, EXECUTING, CANCELING)
+"""Those of goals that are not over."""
+
+
+def new_goal_id() -> str:
+    """Make up the id of a goal, as 32 hexadecimal digits."""
+    return uuid.uuid4().hex
+
 
 SILENCE = 1.0
 """Seconds without a sign after which the server is asked for one, and for an answer to that."""

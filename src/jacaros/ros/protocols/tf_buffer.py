@@ -10,7 +10,7 @@ from bisect import bisect_left
 from collections.abc import Callable
 
 from jacaros.ros.errors import TransformUnavailable
-from jacaros.ros.transform import Transform, interpolate
+from jacaros.ros.protocols.transform import Transform, interpolate
 
 HISTORY = 10.0
 """Seconds for which moving transforms are kept, as in tf2."""
