@@ -157,7 +157,7 @@ class Lab:
         seen: dict[int, Any] = {}
         loop = asyncio.get_running_loop()
 
-        def fate(message: Any) -> tuple[float, ...]:
+        def disturbance(message: Any) -> tuple[float, ...]:
             if id(message) in forged:
                 return (0.0,)
             if id(message) not in seen:
@@ -169,7 +169,7 @@ class Lab:
                 loop.call_soon(publisher.publish, false)
             return ()
 
-        end = self.graph.disturb(topic, fate)
+        end = self.graph.disturb(topic, disturbance)
 
         def over() -> None:
             end()

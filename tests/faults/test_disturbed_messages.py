@@ -5,12 +5,12 @@ from collections.abc import Callable
 import pytest
 from faults_lab import Lab, in_lab
 
-from jacaros.ros.drivers.memory.graph import Fate, both, delayed, dropped, duplicated
+from jacaros.ros.drivers.memory.graph import Disturbance, both, delayed, dropped, duplicated
 
 
 @pytest.mark.parametrize("topic", ["/odom", "/cmd_vel"])
 @pytest.mark.parametrize(
-    "fate",
+    "disturbance",
     [
         delayed(0.05),
         delayed(0.0, jitter=0.3, seed=1),
@@ -20,8 +20,8 @@ from jacaros.ros.drivers.memory.graph import Fate, both, delayed, dropped, dupli
     ],
     ids=["late", "overtaking", "repeated", "lost", "all of it"],
 )
-def test_a_robot_arrives_over_a_bad_line(topic: str, fate: Fate) -> None:
-    lab = in_lab("driving.asl", lambda lab: lab.at(1, lambda: lab.graph.disturb(topic, fate)))
+def test_a_robot_arrives_over_a_bad_line(topic: str, disturbance: Disturbance) -> None:
+    lab = in_lab("driving.asl", lambda lab: lab.at(1, lambda: lab.graph.disturb(topic, disturbance)))
     assert [line for line in lab.lines if not line.startswith("bad /odom out_of_order")] == [
         "connected /odom",
         "at 2 0",

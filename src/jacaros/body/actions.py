@@ -17,7 +17,7 @@ from jacaros.body.call import Call, name_of, unreachable
 from jacaros.body.completion import failed, of_operation, refused, succeeded
 from jacaros.body.filtering import Filter, filter_of
 from jacaros.body.focus import FocusedArtifacts
-from jacaros.body.selection import Selection, Whereabouts, not_joined
+from jacaros.body.selection import JoinedWorkspaces, Selection, not_joined
 from jacaros.body.values import References, to_value
 from jacaros.env.errors import OperationFailed, UnknownArtifact
 from jacaros.env.ids import ArtifactId, resolve_path
@@ -41,7 +41,7 @@ class Situation:
     Attributes:
         agent: its name.
         environment: all there is.
-        whereabouts: its workspaces.
+        workspaces: its workspaces.
         focused: its focused artifacts.
         selection: how it finds artifacts.
         references: opaque references of the run.
@@ -51,7 +51,7 @@ class Situation:
 
     agent: str
     environment: Environment
-    whereabouts: Whereabouts
+    workspaces: JoinedWorkspaces
     focused: FocusedArtifacts
     selection: Selection
     references: References
@@ -111,14 +111,14 @@ def _base(situation: Situation, call: Call) -> Workspace:
     Raises:
         OperationFailed: it has not been joined.
     """
-    whereabouts, intention = situation.whereabouts, call.act.intention
+    workspaces, intention = situation.workspaces, call.act.intention
     wanted = call.direction.workspace
     if wanted is None:
-        return whereabouts.current(intention)
+        return workspaces.current(intention)
     try:
         if isinstance(wanted, str):
-            return whereabouts.named(wanted, intention)
-        if not whereabouts.has_joined(wanted.path):
+            return workspaces.named(wanted, intention)
+        if not workspaces.has_joined(wanted.path):
             raise not_joined(wanted.path)
     except OperationFailed as failure:
         raise unreachable(call.act, failure) from None
@@ -153,7 +153,7 @@ def _artifact(situation: Situation, call: Call) -> ArtifactId:
         hint = " (lookupArtifact gives the id for a name)" if name_of(term) is not None else ""
         what = f"argument 1 wants the id of an artifact{hint}"
         raise _wrong(call, situation.focused.body_in(_base(situation, call)), what, 0)
-    if not situation.whereabouts.has_joined(artifact.workspace):
+    if not situation.workspaces.has_joined(artifact.workspace):
         raise not_joined(artifact.workspace)
     return artifact
 
@@ -241,7 +241,7 @@ def focus_when_available(situation: Situation, call: Call, finish: Finish) -> Un
     name = _name(call, 0, situation.focused.body_in(here))
     only = _filter(situation, call)
     workspace, wanted = _place(situation, here, name)
-    if not situation.whereabouts.has_joined(workspace.path):
+    if not situation.workspaces.has_joined(workspace.path):
         raise not_joined(workspace.path)
     present = next((a for a in workspace.artifacts() if a.name == wanted), None)
     if present is not None:
@@ -251,7 +251,7 @@ def focus_when_available(situation: Situation, call: Call, finish: Finish) -> Un
     def look(artifact: ArtifactId, is_there: bool) -> None:
         if not is_there or artifact.name != wanted:
             return
-        if not situation.whereabouts.has_joined(workspace.path):
+        if not situation.workspaces.has_joined(workspace.path):
             stop()
             finish(refused(not_joined(workspace.path), situation.references))
             return
@@ -279,9 +279,9 @@ def join_workspace(situation: Situation, call: Call, finish: Finish) -> None:
     intention, session = call.act.intention, situation.session()
     workspace = _workspace(call, session)
     if workspace is None:
-        workspace = situation.whereabouts.find(_name(call, 0, session), intention)
+        workspace = situation.workspaces.find(_name(call, 0, session), intention)
     output = _give(situation, call, session, 1, workspace)
-    if situation.whereabouts.join(workspace, intention):
+    if situation.workspaces.join(workspace, intention):
         situation.joined(workspace, True)
     finish(succeeded(*output))
 
@@ -306,10 +306,10 @@ def quit_workspace(situation: Situation, call: Call, finish: Finish) -> None:
         workspace = _base(situation, call)
     else:
         session = situation.session()
-        workspace = _workspace(call, session) or situation.whereabouts.named(
+        workspace = _workspace(call, session) or situation.workspaces.named(
             _name(call, 0, session), intention
         )
-    if not situation.whereabouts.has_joined(workspace.path):
+    if not situation.workspaces.has_joined(workspace.path):
         raise not_joined(workspace.path)
     _quit(situation, workspace)
     finish(succeeded())
@@ -318,12 +318,12 @@ def quit_workspace(situation: Situation, call: Call, finish: Finish) -> None:
 @_action("quitFromEnvironment", 0)
 def quit_from_environment(situation: Situation, call: Call, finish: Finish) -> None:
     """``quitFromEnvironment``: leave all workspaces; ``joinWorkspace`` leads back."""
-    for workspace in reversed(situation.whereabouts.joined()):
+    for workspace in reversed(situation.workspaces.joined()):
         _quit(situation, workspace)
     finish(succeeded())
 
 
 def _quit(situation: Situation, workspace: Workspace) -> None:
     situation.focused.end_all(workspace)
-    situation.whereabouts.quit(workspace)
+    situation.workspaces.quit(workspace)
     situation.joined(workspace, False)

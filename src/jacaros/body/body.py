@@ -11,7 +11,7 @@ from jacaros.body.completion import SUCCEEDED, Deadline, of_operation, refused, 
 from jacaros.body.focus import FocusedArtifacts
 from jacaros.body.percepts import ADD, REMOVE, PerceptWriter
 from jacaros.body.personal import AgentBodyArtifact, AgentSessionArtifact
-from jacaros.body.selection import Selection, Whereabouts
+from jacaros.body.selection import JoinedWorkspaces, Selection
 from jacaros.body.values import Outputs, References, atom_of, to_value
 from jacaros.env.artifact import Artifact
 from jacaros.env.errors import OperationFailed
@@ -87,13 +87,13 @@ class AgentBody:
         self._pending: dict[int, UnderWay | None] = {}
         self._entered = False
         self._session: ArtifactId | None = None
-        self._whereabouts = Whereabouts(environment, home)
+        self._workspaces = JoinedWorkspaces(environment, home)
         focused = FocusedArtifacts(agent, writer, references, mind.perceive, mind.has_untaken)
-        self._selection = Selection(agent, self._whereabouts, focused, keys())
+        self._selection = Selection(agent, self._workspaces, focused, keys())
         self._situation = Situation(
             agent,
             environment,
-            self._whereabouts,
+            self._workspaces,
             focused,
             self._selection,
             references,
@@ -115,7 +115,7 @@ class AgentBody:
         """Believe in the workspace where the agent begins; done by its first action at the latest."""
         if not self._entered:
             self._entered = True
-            for workspace in self._whereabouts.joined():
+            for workspace in self._workspaces.joined():
                 self._joined(workspace, True)
 
     def join(self, path: str) -> None:
@@ -126,7 +126,7 @@ class AgentBody:
         """
         self.enter()
         workspace = self._environment.workspace(path)
-        if self._whereabouts.join(workspace):
+        if self._workspaces.join(workspace):
             self._joined(workspace, True)
 
     def focus(self, artifact: ArtifactId, namespace: str | None = None) -> None:
@@ -137,7 +137,7 @@ class AgentBody:
         """
         self.enter()
         workspace = self._environment.workspace(artifact.workspace)
-        if not self._whereabouts.has_joined(workspace.path):
+        if not self._workspaces.has_joined(workspace.path):
             self.join(workspace.path)
         self._situation.focused.begin(workspace, artifact, namespace)
 
@@ -184,10 +184,10 @@ class AgentBody:
         if self._session is None:
             return
         focused = self._situation.focused
-        for workspace in self._whereabouts.joined():
+        for workspace in self._workspaces.joined():
             focused.end_all(workspace)
             self._withdraw(workspace, focused.body_in(workspace))
-        self._withdraw(self._whereabouts.home, self._session)
+        self._withdraw(self._workspaces.home, self._session)
 
     def _begin(self, call: Call) -> UnderWay | None:
         action = ACTIONS.get((call.name, len(call.arguments)))
@@ -271,8 +271,8 @@ class AgentBody:
 
     def _session_id(self) -> ArtifactId:
         if self._session is None:
-            made = (self._agent, self._whereabouts)
-            self._session = self._offer("session", self._whereabouts.home, AgentSessionArtifact, *made)
+            made = (self._agent, self._workspaces)
+            self._session = self._offer("session", self._workspaces.home, AgentSessionArtifact, *made)
         return self._session
 
     def _offer(

@@ -7,7 +7,7 @@ looks them up.  What the agent itself does with them its `AgentBody` does.
 from typing import NoReturn
 
 from jacaros.body.focus import FocusedArtifacts
-from jacaros.body.selection import Whereabouts
+from jacaros.body.selection import JoinedWorkspaces
 from jacaros.env.artifact import Artifact, Out, internal_operation, operation
 from jacaros.env.ids import ArtifactId
 from jacaros.env.ports import Workspace
@@ -60,12 +60,12 @@ class AgentSessionArtifact(Artifact):
         joinedWsp(WspId, Name, Path): one for each workspace that the agent has joined.
     """
 
-    def init(self, agent: str, whereabouts: Whereabouts) -> None:
+    def init(self, agent: str, workspaces: JoinedWorkspaces) -> None:
         """Show where the agent is, and what it joins and quits."""
         self._agent = agent
-        for workspace in whereabouts.joined():
+        for workspace in workspaces.joined():
             self._show(workspace, True)
-        whereabouts.watcher = lambda workspace, joined: self.start(self._show, workspace, joined)
+        workspaces.watcher = lambda workspace, joined: self.start(self._show, workspace, joined)
 
     @internal_operation
     def _show(self, workspace: Workspace, joined: bool) -> None:

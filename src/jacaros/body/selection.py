@@ -25,7 +25,7 @@ from jacaros.env.standard_artifacts import DEFAULT_TYPES
 from jacaros.env.values import Structure
 
 
-class Whereabouts:
+class JoinedWorkspaces:
     """The workspaces of one agent.
 
     An intention that has joined a workspace stays there; others use the workspace that the agent joined last.
@@ -147,7 +147,7 @@ class Selection:
 
     Args:
         agent: name of the agent.
-        whereabouts: its workspaces.
+        workspaces: its workspaces.
         focused: its focused artifacts.
         own_actions: names with numbers of arguments of what its body does without any artifact, for hints.
     """
@@ -155,12 +155,12 @@ class Selection:
     def __init__(
         self,
         agent: str,
-        whereabouts: Whereabouts,
+        workspaces: JoinedWorkspaces,
         focused: FocusedArtifacts,
         own_actions: tuple[str, ...] = (),
     ) -> None:
         self._agent = agent
-        self._whereabouts = whereabouts
+        self._workspaces = workspaces
         self._focused = focused
         self._own_actions = own_actions
 
@@ -175,7 +175,7 @@ class Selection:
         direction = call.direction
         if direction is ANYWHERE and call.namespace is None:
             # Nearly always it is the only one of the current workspace.
-            candidates = self._whereabouts.current(intention).providers(call.name, len(call.arguments))
+            candidates = self._workspaces.current(intention).providers(call.name, len(call.arguments))
             if len(candidates) == 1:
                 return candidates[0]
         if direction.artifact is not None:
@@ -209,23 +209,23 @@ class Selection:
             OperationFailed: there is no such artifact, or its workspace has not been joined.
         """
         if isinstance(wanted, ArtifactId):
-            if not self._whereabouts.has_joined(wanted.workspace):
+            if not self._workspaces.has_joined(wanted.workspace):
                 raise not_joined(wanted.workspace)
             return wanted
         if "/" in wanted:
             above, _, wanted = resolve_path(places[0].path, wanted).rpartition("/")
-            places = [self._whereabouts.at(above)]
+            places = [self._workspaces.at(above)]
         return artifact_named(places, wanted)
 
     def _places(self, call: Call) -> tuple[Workspace, ...]:
         """The workspaces where the artifact may be."""
         wanted, intention = call.direction.workspace, call.act.intention
         if wanted is None:
-            return tuple(self._whereabouts.in_order(intention))
+            return tuple(self._workspaces.in_order(intention))
         try:
             if isinstance(wanted, str):
-                return (self._whereabouts.named(wanted, intention),)
-            if not self._whereabouts.has_joined(wanted.path):
+                return (self._workspaces.named(wanted, intention),)
+            if not self._workspaces.has_joined(wanted.path):
                 raise not_joined(wanted.path)
         except OperationFailed as failure:
             raise unreachable(call.act, failure) from None

@@ -200,5 +200,5 @@ def _current_workspaces(ctx: Context, result: Term) -> bool:
         raise ActionError("the project has no environment")
     body.enter()
     situation = body.situation
-    ids = [situation.references.of(workspace) for workspace in situation.whereabouts.joined()]
+    ids = [situation.references.of(workspace) for workspace in situation.workspaces.joined()]
     return ctx.unify(result, make_list(ids))

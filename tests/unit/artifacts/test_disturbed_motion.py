@@ -7,16 +7,16 @@ from robot_lab import STANDSTILL, Lab, assert_at, in_lab
 
 from jacaros.artifacts.robots.odometry import ArtOdometry
 from jacaros.artifacts.robots.velocity import ArtCmdVel
-from jacaros.ros.drivers.memory.graph import Fate, both, delayed, dropped, duplicated
+from jacaros.ros.drivers.memory.graph import Disturbance, both, delayed, dropped, duplicated
 
 
-def disturb(lab: Lab, topic: str, fate: Fate) -> None:
+def disturb(lab: Lab, topic: str, disturbance: Disturbance) -> None:
     backend: Any = lab.backend
-    backend.graph.disturb(topic, fate)
+    backend.graph.disturb(topic, disturbance)
 
 
 @pytest.mark.parametrize(
-    "fate",
+    "disturbance",
     [
         delayed(0.02),
         delayed(0.0, jitter=0.1, seed=3),
@@ -26,9 +26,9 @@ def disturb(lab: Lab, topic: str, fate: Fate) -> None:
     ],
     ids=["delayed", "overtaking", "repeated", "lost", "all of it"],
 )
-def test_a_square_is_driven_with_bad_odometry(fate: Fate) -> None:
+def test_a_square_is_driven_with_bad_odometry(disturbance: Disturbance) -> None:
     async def body(lab: Lab) -> None:
-        disturb(lab, "/odom", fate)
+        disturb(lab, "/odom", disturbance)
         artifact = await lab.make(ArtCmdVel)
         for _ in range(4):
             await lab.do(artifact, "moveForward", 1)

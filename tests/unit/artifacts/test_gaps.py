@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 from robot_lab import STANDSTILL, Lab, assert_at, in_lab
 
-from jacaros.artifacts.robots.lane import GUARD_TRIPPED
+from jacaros.artifacts.robots.motion_queue import GUARD_TRIPPED
 from jacaros.artifacts.robots.velocity import ArtCmdVel
 from jacaros.clock import VirtualClock
 from jacaros.env.values import Structure
@@ -21,9 +21,9 @@ def freeze(lab: Lab, seconds: int) -> None:
     lab.clock.busy(seconds * A_SECOND)
 
 
-def disturb(lab: Lab, fate: Any) -> Any:
+def disturb(lab: Lab, disturbance: Any) -> Any:
     backend: Any = lab.backend
-    return backend.graph.disturb("/odom", fate)
+    return backend.graph.disturb("/odom", disturbance)
 
 
 def test_a_motion_by_odometry_continues_after_a_freeze_and_arrives() -> None:

@@ -256,4 +256,4 @@ async def test_a_project_can_let_agents_join_and_focus(one: Robot, two: Robot, c
     made = one.make("lab/c", "Counter", 5)
     two.body.focus(made.value, "ns")
     assert two.beliefs == ["ns::count(5)"]
-    assert [w.path for w in two.body.situation.whereabouts.joined()] == ["/main", "/main/lab"]
+    assert [w.path for w in two.body.situation.workspaces.joined()] == ["/main", "/main/lab"]

@@ -200,19 +200,19 @@ class Matching:
         """
         if self.exists():
             return
-        ticket = object()
-        self._line.append(ticket)
+        claim = object()
+        self._line.append(claim)
         try:
             for _ in range(math.ceil(self._timeout / TURN)):
-                if self._line[0] is ticket:
+                if self._line[0] is claim:
                     break
                 yield TURN
-            while self._line[0] is not ticket:  # those in front are suspended, and lose their place
+            while self._line[0] is not claim:  # those in front are suspended, and lose their place
                 self._line.popleft()
             yield from self._first_pauses(always)
         finally:
-            if ticket in self._line:
-                self._line.remove(ticket)
+            if claim in self._line:
+                self._line.remove(claim)
 
     def _first_pauses(self, always: bool) -> Iterator[float]:
         """Give the pauses of the first message in line."""

@@ -10,7 +10,7 @@ from jacaros.artifacts.mapping.declared import OperationPart, Source, ValuePart
 from jacaros.artifacts.mapping.encoding import Fill, WrongValue, filler, fitting
 from jacaros.artifacts.mapping.host import Host
 from jacaros.artifacts.mapping.type_search import ask_type
-from jacaros.artifacts.robots.lane import GUARD_TRIPPED, Lane, Ticket, lane_of
+from jacaros.artifacts.robots.motion_queue import GUARD_TRIPPED, Claim, MotionQueue, motion_queue_of
 from jacaros.env.artifact import Out
 from jacaros.ros.backend import Publisher
 from jacaros.ros.errors import MessageMismatch
@@ -33,7 +33,7 @@ class Publishing:
         self._matching: Matching | None = None
         self._fill: Fill | None = None
         self._fill_end: Fill | None = None
-        self._lane = Lane()
+        self._motions = MotionQueue()
         self._drives = self._moves = self._moved = False
         self._arguments: Sequence[object] = ()
         if part.type_name is not None:
@@ -55,7 +55,7 @@ class Publishing:
         )
         self._drives = type_name in VELOCITIES
         if self._drives:
-            self._lane = lane_of(host.ros, host.robot_prefix)
+            self._motions = motion_queue_of(host.ros, host.robot_prefix)
             host.at_dispose(host.ros.add_exit_hook(self._stand))
             host.at_dispose(self._halt)
 
@@ -73,11 +73,11 @@ class Publishing:
         if self._part.rate is not None:
             await self._repeat(inputs, self._seconds(inputs), 1.0 / self._part.rate)
             return
-        stops = self._lane.stops
+        stops = self._motions.stops
         for pause in self._pauses(inputs):
             await self._host.sleep(pause)
             await self._host.pause_point()
-            if self._lane.stops != stops:
+            if self._motions.stops != stops:
                 self._host.fail(f"{self._part.name} was aborted", "aborted", 0.0)
         self._send_once(inputs)
 
@@ -114,43 +114,43 @@ class Publishing:
 
     async def _repeat(self, inputs: Sequence[object], seconds: float, period: float) -> None:
         """Publish until the time is over; pauses do not count, and one motion of a robot waits for another."""
-        host, lane = self._host, self._lane
+        host, motions = self._host, self._motions
 
         def stop() -> None:
             halt()
-            lane.leave(ticket)
-            ticket.wake()
+            motions.leave(claim)
+            claim.wake()
 
         def halt() -> None:
-            if lane.holds(ticket):  # else another motion drives the robot, if any
+            if motions.holds(claim):  # else another motion drives the robot, if any
                 self._end(inputs)
 
-        ticket = Ticket(halt)
+        claim = Claim(halt)
         host.current.on_pause(stop)
-        ignore = guarded_by(host.ros).on_interruption(lambda: ticket.interrupt(GUARD_TRIPPED))
+        ignore = guarded_by(host.ros).on_interruption(lambda: claim.interrupt(GUARD_TRIPPED))
         left = seconds
         pauses = self._pauses(inputs) if seconds > 0.0 else iter(())
         try:
             while left > 1e-9:
                 await host.pause_point()
-                if not lane.enter(ticket):
-                    await host.step(ticket.wait(host.clock, None))
-                elif not ticket.aborted and (pause := next(pauses, None)) is not None:
-                    await host.step(ticket.wait(host.clock, pause))
-                elif not ticket.aborted:
-                    began, ticket.gap = host.clock.elapsed, None
+                if not motions.enter(claim):
+                    await host.step(claim.wait(host.clock, None))
+                elif not claim.aborted and (pause := next(pauses, None)) is not None:
+                    await host.step(claim.wait(host.clock, pause))
+                elif not claim.aborted:
+                    began, claim.gap = host.clock.elapsed, None
                     self._send(inputs)
-                    await host.step(ticket.wait(host.clock, min(period, left)))
+                    await host.step(claim.wait(host.clock, min(period, left)))
                     left -= host.clock.elapsed - began
-                    if ticket.gap is not None and self._drives:
-                        text = f"{self._part.name} was interrupted ({ticket.gap}), and goes by time alone"
+                    if claim.gap is not None and self._drives:
+                        text = f"{self._part.name} was interrupted ({claim.gap}), and goes by time alone"
                         host.fail(text, "interrupted", round(seconds - left, 3))
-                if ticket.aborted:
+                if claim.aborted:
                     host.fail(f"{self._part.name} was aborted", "aborted", round(seconds - left, 3))
         finally:
             ignore()
             halt()
-            lane.leave(ticket)
+            motions.leave(claim)
 
     def _warn_unmatched(self, message: str, cure: str) -> None:
         """Warn once of a topic without subscribers: its name or type may be wrong."""
@@ -184,7 +184,7 @@ class Publishing:
             self._host.fail(str(error), "wrong_value", error.field)
         self._moves = moves
         if self._drives and not moves:
-            self._lane.stops += 1
+            self._motions.stops += 1
 
     def _end(self, inputs: Sequence[object]) -> None:
         """Publish the last message, if there is to be one."""

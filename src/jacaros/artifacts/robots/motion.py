@@ -10,8 +10,8 @@ from typing import Any, Protocol
 
 from jacaros.artifacts.kit.connection import Matching
 from jacaros.artifacts.robots.control import STANDSTILL, Limits, Pose, Velocity, distance
-from jacaros.artifacts.robots.lane import GUARD_TRIPPED, Lane, Ticket
 from jacaros.artifacts.robots.maneuver import Maneuver
+from jacaros.artifacts.robots.motion_queue import GUARD_TRIPPED, Claim, MotionQueue
 from jacaros.artifacts.robots.odometry import Odometer
 from jacaros.env.values import Atom, Structure
 
@@ -70,7 +70,7 @@ class Wheels(Protocol):
     """The artifact that drives, as a motion sees it."""
 
     clock: Any
-    lane: Lane
+    motions: MotionQueue
     matching: Matching
     odometer: Odometer
     settings: MotionSettings
@@ -107,7 +107,7 @@ class Motion:
         self._wheels = wheels
         self._maneuver = maneuver
         self._execution = wheels.current
-        self._ticket = Ticket(self.halt)
+        self._claim = Claim(self.halt)
         self._before = STANDSTILL
         self._begun = False
         self._due = 0.0
@@ -122,13 +122,13 @@ class Motion:
     def halt(self) -> None:
         """Command zero velocity here and now, if it is this motion that drives."""
         self._before = STANDSTILL
-        if self._wheels.lane.holds(self._ticket):
+        if self._wheels.motions.holds(self._claim):
             self._wheels.command(STANDSTILL)
 
     def end(self) -> None:
         """Stop, and let the next motion have the robot; again is harmless."""
         self.halt()
-        self._wheels.lane.leave(self._ticket)
+        self._wheels.motions.leave(self._claim)
         self._wheels.show(self, None)
 
     async def run(self) -> None:
@@ -138,7 +138,7 @@ class Motion:
             MotionFailed: ``aborted``, ``no_odometry``, ``blocked``, ``interrupted`` or ``timeout``.
         """
         forget = self._execution.on_pause(self._on_pause)
-        ignore = self._wheels.on_interruption(lambda: self._ticket.interrupt(GUARD_TRIPPED))
+        ignore = self._wheels.on_interruption(lambda: self._claim.interrupt(GUARD_TRIPPED))
         try:
             await self._enter_lane()
             await self._drive()
@@ -149,7 +149,7 @@ class Motion:
 
     def _on_pause(self) -> None:
         self.halt()
-        self._ticket.wake()
+        self._claim.wake()
 
     async def _drive(self) -> None:
         ended = False
@@ -172,10 +172,10 @@ class Motion:
             ready = await self._stand()
 
     async def _enter_lane(self) -> None:
-        lane, ticket = self._wheels.lane, self._ticket
-        while self._execution.paused or not lane.enter(ticket):
+        motions, claim = self._wheels.motions, self._claim
+        while self._execution.paused or not motions.enter(claim):
             if self._execution.paused:
-                lane.leave(ticket)
+                motions.leave(claim)
                 self._wheels.show(self, "paused")
                 await self._wheels.step(self._execution.resumed())
             else:
@@ -249,8 +249,8 @@ class Motion:
         return max(0.0, self._due - now)
 
     async def _wait(self, seconds: float | None) -> None:
-        await self._wheels.step(self._ticket.wait(self._wheels.clock, seconds))
-        if self._ticket.aborted:
+        await self._wheels.step(self._claim.wait(self._wheels.clock, seconds))
+        if self._claim.aborted:
             if self._begun:
                 self._maneuver.rest(self._pose())
             raise MotionFailed("the motion was aborted", "aborted", self._maneuver.covered)
@@ -289,8 +289,8 @@ class Motion:
         if self._sees():
             self._watched = True
         elif self._watched and not self._maneuver.needs_odometry:
-            self._ticket.interrupt(self._silence())
-        why, self._ticket.gap = self._ticket.gap, None
+            self._claim.interrupt(self._silence())
+        why, self._claim.gap = self._claim.gap, None
         if why is None:
             return
         self._before = STANDSTILL
@@ -326,7 +326,7 @@ class Motion:
         if self._blind_since is None:
             self._blind_since = self._active
             if self._begun and odometer.trusted and odometer.count >= self._fresh:
-                self._ticket.gap = self._silence()
+                self._claim.gap = self._silence()
         limit = self._wheels.settings.odometry_timeout
         if self._active - self._blind_since >= limit:
             bad = f" ({odometer.faults} messages were bad)" if odometer.faults else ""

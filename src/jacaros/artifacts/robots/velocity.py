@@ -14,9 +14,9 @@ from jacaros.artifacts.kit.reading import READING_OPTIONS, Reading, ReadingPolic
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.artifacts.robots.control import STANDSTILL, Limits, Velocity
 from jacaros.artifacts.robots.journey import DriveTo, TurnTo, go_to
-from jacaros.artifacts.robots.lane import Lane, lane_of
 from jacaros.artifacts.robots.maneuver import Maneuver, Straight, Timed, Turn
 from jacaros.artifacts.robots.motion import Motion, MotionFailed, MotionSettings
+from jacaros.artifacts.robots.motion_queue import MotionQueue, motion_queue_of
 from jacaros.artifacts.robots.odometry import NO_ODOMETRY, ODOMETRY, Odometer, Odometry, pose_values
 from jacaros.env.artifact import Out, operation
 from jacaros.env.values import Atom, Structure
@@ -57,7 +57,7 @@ class WheeledArtifact(RosArtifact):
             (the process was frozen or stuck), ``no_odometry(Seconds)``, ``clock_jumped(Seconds)`` or ``guard_tripped``.
 
     Attributes:
-        lane: who drives the robot; shared with all artifacts of the same robot.
+        motions: who drives the robot; shared with all artifacts of the same robot.
         matching: lets motions wait until the robot's base receives commands.
         odometer: the newest odometry.
         settings: speeds and time-outs.
@@ -81,7 +81,7 @@ class WheeledArtifact(RosArtifact):
     robot_in_properties = True
     command_topic: ClassVar[str] = "cmd_vel"
 
-    lane: Lane
+    motions: MotionQueue
     matching: Matching
     odometer: Odometer
     settings: MotionSettings
@@ -92,7 +92,7 @@ class WheeledArtifact(RosArtifact):
         self.settings = self._settings()
         self._motions: dict[Motion, str] = {}
         self.define_property(self.robot_property("moving"), Atom("stopped"))
-        self.lane = lane_of(self.ros, self.robot_prefix)
+        self.motions = motion_queue_of(self.ros, self.robot_prefix)
         self.newest_pose = Reading(ReadingPolicy(on_demand=True), self.clock)
         self._commands = self.publisher(str(self.options.get("command_topic", self.command_topic)), TWIST)
         self.matching = self.matching_of(self._commands)
@@ -286,7 +286,7 @@ class ArtCmdVel(WheeledArtifact):
 
         Suspended motions are not concerned.  Without a motion it does nothing.
         """
-        self.lane.abort()
+        self.motions.abort()
 
     @operation(name="getCurrentPose")
     async def get_current_pose(self, x: Out, y: Out, heading: Out) -> None:

@@ -145,11 +145,11 @@ class GraphActionServer(Vanishing, Protocol):
         ...
 
 
-Fate = Callable[[Any], Sequence[float]]
+Disturbance = Callable[[Any], Sequence[float]]
 """Takes a message; gives the delays in seconds after which copies of it arrive: none when it is lost."""
 
 
-def delayed(seconds: float, jitter: float = 0.0, seed: int = 0) -> Fate:
+def delayed(seconds: float, jitter: float = 0.0, seed: int = 0) -> Disturbance:
     """Let every message come late.
 
     Args:
@@ -161,7 +161,7 @@ def delayed(seconds: float, jitter: float = 0.0, seed: int = 0) -> Fate:
     return lambda message: (seconds + chance.uniform(0.0, jitter) if jitter else seconds,)
 
 
-def dropped(share: float = 1.0, seed: int = 0) -> Fate:
+def dropped(share: float = 1.0, seed: int = 0) -> Disturbance:
     """Lose messages.
 
     Args:
@@ -172,7 +172,7 @@ def dropped(share: float = 1.0, seed: int = 0) -> Fate:
     return lambda message: () if chance.random() < share else (0.0,)
 
 
-def duplicated(copies: int = 2, apart: float = 0.0) -> Fate:
+def duplicated(copies: int = 2, apart: float = 0.0) -> Disturbance:
     """Let every message come several times.
 
     Args:
@@ -182,7 +182,7 @@ def duplicated(copies: int = 2, apart: float = 0.0) -> Fate:
     return lambda message: [number * apart for number in range(copies)]
 
 
-def both(first: Fate, second: Fate) -> Fate:
+def both(first: Disturbance, second: Disturbance) -> Disturbance:
     """Let two things happen to each message: each copy that *first* lets through suffers *second*."""
     return lambda message: [late + later for late in first(message) for later in second(message)]
 
@@ -197,7 +197,7 @@ class Topic:
 
     publishers: list[GraphPublisher] = field(default_factory=list)
     subscriptions: list[GraphSubscription] = field(default_factory=list)
-    fate: Fate | None = None
+    disturbance: Disturbance | None = None
 
     def info(self, name: str) -> TopicInfo:
         """What others are told of it."""
@@ -363,12 +363,12 @@ class MemoryGraph:
 
     # Faults, for tests
 
-    def disturb(self, topic: str, fate: Fate) -> Callable[[], None]:
+    def disturb(self, topic: str, disturbance: Disturbance) -> Callable[[], None]:
         """Delay, duplicate or drop the messages of a topic from now on.
 
         Args:
             topic: absolute name.
-            fate: for each message and subscription, the delays in seconds after which copies arrive; see
+            disturbance: for each message and subscription, the delays in seconds after which copies arrive; see
                 `jacaros.ros.drivers.memory.faults`.
 
         Returns:
@@ -376,12 +376,12 @@ class MemoryGraph:
         """
         disturbed = self.topic(topic)
 
-        def become(fate: Fate | None) -> None:
-            disturbed.fate = fate
+        def become(disturbance: Disturbance | None) -> None:
+            disturbed.disturbance = disturbance
             for subscription in disturbed.subscriptions:
                 subscription.choose_way()
 
-        become(fate)
+        become(disturbance)
         return lambda: become(None)
 
     def vanish(self, name: str) -> None:

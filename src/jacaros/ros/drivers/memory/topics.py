@@ -111,8 +111,8 @@ class MemorySubscription(TopicSubscription[MemoryNode]):
     def choose_way(self) -> None:
         """Let messages come in with what is to be done to them on the way, and no more."""
         put = self.put if self._deadline is None else self._put_in_time
-        fate = self._shared.fate
-        if fate is None:
+        disturbance = self._shared.disturbance
+        if disturbance is None:
             self.arrive = put
             return
 
@@ -121,7 +121,7 @@ class MemorySubscription(TopicSubscription[MemoryNode]):
                 put(message)
 
         def suffer(message: Any) -> None:
-            for delay in fate(message):
+            for delay in disturbance(message):
                 if delay <= 0.0:
                     put(message)
                 else:

@@ -1,7 +1,7 @@
-"""The lane of a robot: its wheels obey one motion at a time, whichever artifact asks.
+"""The queue of a robot's motions: its wheels obey one motion at a time, whichever artifact asks.
 
-Artifacts that drive the same robot share its lane.  Motions pass in the order of their requests; one that
-is suspended leaves the lane, and queues again when its agent resumes it.
+Artifacts that drive the same robot share its queue.  Motions pass in the order of their requests; one that
+is suspended leaves the queue, and stands at its end when its agent resumes it.
 """
 
 import asyncio
@@ -21,8 +21,8 @@ GUARD_TRIPPED = Atom("guard_tripped")
 """The gap of a robot that a guard has stopped."""
 
 
-class Ticket:
-    """One motion's claim to the lane.
+class Claim:
+    """One motion's claim to the wheels.
 
     Args:
         stop: commands zero velocity at once.
@@ -86,7 +86,7 @@ class Ticket:
         self.stop()
 
 
-class Lane:
+class MotionQueue:
     """Who drives, and who waits to drive.
 
     Attributes:
@@ -95,41 +95,41 @@ class Lane:
 
     def __init__(self) -> None:
         self.stops = 0
-        self._holder: Ticket | None = None
-        self._queue: deque[Ticket] = deque()
+        self._holder: Claim | None = None
+        self._queue: deque[Claim] = deque()
 
-    def holds(self, ticket: Ticket) -> bool:
-        """Whether the motion of *ticket* may drive."""
-        return self._holder is ticket
+    def holds(self, claim: Claim) -> bool:
+        """Whether the motion of *claim* may drive."""
+        return self._holder is claim
 
-    def enter(self, ticket: Ticket) -> bool:
-        """Ask for the lane; False: wait (`Ticket.wait`) until `holds` says yes."""
+    def enter(self, claim: Claim) -> bool:
+        """Ask for the wheels; False: wait (`Claim.wait`) until `holds` says yes."""
         if self._holder is None:
-            self._holder = ticket
-        elif self._holder is not ticket and ticket not in self._queue:
-            self._queue.append(ticket)
-        return self._holder is ticket
+            self._holder = claim
+        elif self._holder is not claim and claim not in self._queue:
+            self._queue.append(claim)
+        return self._holder is claim
 
-    def leave(self, ticket: Ticket) -> None:
-        """Give the lane, or the place in its queue, back."""
-        if ticket in self._queue:
-            self._queue.remove(ticket)
-        if self._holder is ticket:
+    def leave(self, claim: Claim) -> None:
+        """Give the wheels, or the place in the queue, back."""
+        if claim in self._queue:
+            self._queue.remove(claim)
+        if self._holder is claim:
             self._holder = self._queue.popleft() if self._queue else None
             if self._holder is not None:
                 self._holder.wake()
 
     def abort(self) -> None:
-        """Abort the motion that drives and all that wait; those that left the lane are not concerned."""
+        """Abort the motion that drives and all that wait; those that left the queue are not concerned."""
         self.stops += 1
         concerned = [*self._queue] if self._holder is None else [self._holder, *self._queue]
-        for ticket in concerned:
-            ticket.abort()
+        for claim in concerned:
+            claim.abort()
 
 
-_lanes: WeakKeyDictionary[Backend, dict[str, Lane]] = WeakKeyDictionary()
+_queues: WeakKeyDictionary[Backend, dict[str, MotionQueue]] = WeakKeyDictionary()
 
 
-def lane_of(backend: Backend, robot: str) -> Lane:
-    """The lane of the robot with the topic prefix *robot*: always the same for the same backend."""
-    return _lanes.setdefault(backend, {}).setdefault(robot, Lane())
+def motion_queue_of(backend: Backend, robot: str) -> MotionQueue:
+    """The queue of the robot with the topic prefix *robot*: always the same for the same backend."""
+    return _queues.setdefault(backend, {}).setdefault(robot, MotionQueue())
