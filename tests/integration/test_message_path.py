@@ -20,7 +20,7 @@ COUNT = re.compile(r"the message passes (\d+) functions of (\d+) files")
 OTHERS = frozenset(
     {
         # the motion that is under way, and what wakes it
-        *("Steps._drive", "Motion._drive", "Ticket.wait", "Ticket.wake"),
+        *("Steps._drive", "Motion._drive", "Claim.wait", "Claim.wake"),
         *("WheeledArtifact.perform", "WheeledArtifact.on_odometry"),
         # done once for each operation, not for each message
         *("Workspace._offer_of", "Offering.__init__", "Offering.add", "Offering.providers"),

@@ -254,7 +254,7 @@ class AgentHost:
         """Begin an external action; without an environment it fails at once."""
         if self.intercept is not None and self.intercept(act):
             return
-        body = self.situated()
+        body = self.body or self.situated()
         if body is not None:
             body.act(act)
             self._scheduler.poll_soon()

@@ -122,7 +122,7 @@ class Publishing:
             claim.wake()
 
         def halt() -> None:
-            if motions.holds(claim):  # else another motion drives the robot, if any
+            if motions.holder is claim:  # else another motion drives the robot, if any
                 self._end(inputs)
 
         claim = Claim(halt)

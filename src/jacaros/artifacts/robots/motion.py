@@ -122,7 +122,7 @@ class Motion:
     def halt(self) -> None:
         """Command zero velocity here and now, if it is this motion that drives."""
         self._before = STANDSTILL
-        if self._wheels.motions.holds(self._claim):
+        if self._wheels.motions.holder is self._claim:
             self._wheels.command(STANDSTILL)
 
     def end(self) -> None:

@@ -90,39 +90,36 @@ class MotionQueue:
     """Who drives, and who waits to drive.
 
     Attributes:
+        holder: whose motion drives, None while nobody's does.
         stops: how often the robot was told to stop, for a command that waits to be sent and must not follow.
     """
 
     def __init__(self) -> None:
         self.stops = 0
-        self._holder: Claim | None = None
+        self.holder: Claim | None = None
         self._queue: deque[Claim] = deque()
 
-    def holds(self, claim: Claim) -> bool:
-        """Whether the motion of *claim* may drive."""
-        return self._holder is claim
-
     def enter(self, claim: Claim) -> bool:
-        """Ask for the wheels; False: wait (`Claim.wait`) until `holds` says yes."""
-        if self._holder is None:
-            self._holder = claim
-        elif self._holder is not claim and claim not in self._queue:
+        """Ask for the wheels; False: wait (`Claim.wait`) until it is the `holder`."""
+        if self.holder is None:
+            self.holder = claim
+        elif self.holder is not claim and claim not in self._queue:
             self._queue.append(claim)
-        return self._holder is claim
+        return self.holder is claim
 
     def leave(self, claim: Claim) -> None:
         """Give the wheels, or the place in the queue, back."""
         if claim in self._queue:
             self._queue.remove(claim)
-        if self._holder is claim:
-            self._holder = self._queue.popleft() if self._queue else None
-            if self._holder is not None:
-                self._holder.wake()
+        if self.holder is claim:
+            self.holder = self._queue.popleft() if self._queue else None
+            if self.holder is not None:
+                self.holder.wake()
 
     def abort(self) -> None:
         """Abort the motion that drives and all that wait; those that left the queue are not concerned."""
         self.stops += 1
-        concerned = [*self._queue] if self._holder is None else [self._holder, *self._queue]
+        concerned = [*self._queue] if self.holder is None else [self.holder, *self._queue]
         for claim in concerned:
             claim.abort()
 

@@ -18,9 +18,9 @@ def test_the_lane_goes_from_one_to_the_next_in_the_order_of_asking() -> None:
     assert not motions.enter(c)
     motions.leave(b)
     motions.leave(a)
-    assert motions.holds(c)
+    assert motions.holder is c
     motions.leave(a)
-    assert motions.holds(c)
+    assert motions.holder is c
     motions.leave(c)
     assert motions.enter(b)
 
@@ -35,7 +35,7 @@ def test_a_wake_up_before_the_wait_is_not_lost() -> None:
         assert not motions.enter(second)
         motions.leave(first)
         await second.wait(clock, None)
-        assert motions.holds(second)
+        assert motions.holder is second
         await second.wait(clock, 1.0)
         assert clock.elapsed == 1
 
