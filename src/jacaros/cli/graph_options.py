@@ -3,7 +3,7 @@
 import asyncio
 import sys
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from jacaros.errors import UsageError
+from jacaros.ros.middleware import ROS_KINDS
 
 if TYPE_CHECKING:
     from jacaros.ros.orphans import OrphanPolicy
@@ -24,6 +25,20 @@ class RosKind(click.Choice[str]):
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """Give the name of a class as it is written."""
         return value if ":" in value else super().convert(value, param, ctx)
+
+
+def ros_option(told: str, kinds: Sequence[str] = ROS_KINDS, required: bool = False) -> Callable[[F], F]:
+    """The option that says which kind of graph; *told* is its help, and it is ``memory`` unless it is required."""
+    return click.option(
+        "--ros",
+        type=RosKind(kinds),
+        default=None if required else "memory",
+        required=required,
+        envvar="JACAROS_ROS",
+        show_default=not required,
+        show_envvar=True,
+        help=told,
+    )
 
 
 _ADDRESS = (

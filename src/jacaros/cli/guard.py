@@ -7,7 +7,7 @@ from typing import Any
 
 import click
 
-from jacaros.cli.graph_options import RosKind, address_options
+from jacaros.cli.graph_options import address_options, ros_option
 from jacaros.clock import WallClock, run
 from jacaros.ros.middleware import ROS_KINDS
 
@@ -17,14 +17,7 @@ LEAST_TIMEOUT = 0.15
 
 @click.command("guard", short_help="Stop the robot when its agents no longer can.")
 @click.argument("name")
-@click.option(
-    "--ros",
-    type=RosKind(ROS_KINDS[1:]),
-    required=True,
-    envvar="JACAROS_ROS",
-    show_envvar=True,
-    help="ROS graph to join.",
-)
+@ros_option("ROS graph to join.", ROS_KINDS[1:], required=True)
 @address_options
 @click.option("--node-name", metavar="NODE", help="Name of the guard's node (default: NAME_guard).")
 @click.option(

@@ -8,24 +8,16 @@ from typing import Any, TypeVar
 
 import click
 
-from jacaros.cli.graph_options import RosKind, address_options
+from jacaros.cli.graph_options import address_options, ros_option
 from jacaros.errors import UsageError
 from jacaros.mas.options import RunOptions
-from jacaros.ros.middleware import MIDDLEWARES, ROS_KINDS
+from jacaros.ros.middleware import MIDDLEWARES
 
 F = TypeVar("F", bound=Callable[..., Any])
 T = TypeVar("T")
 
 _OPTIONS = (
-    click.option(
-        "--ros",
-        type=RosKind(ROS_KINDS),
-        default="memory",
-        envvar="JACAROS_ROS",
-        show_default=True,
-        show_envvar=True,
-        help="The ROS graph: that of the embedded world, or a real one.",
-    ),
+    ros_option("The ROS graph: that of the embedded world, or a real one."),
     click.option(
         "--world",
         metavar="FILE",

@@ -12,12 +12,12 @@ import click
 
 from jacaros.bdi.mind import Mind
 from jacaros.cli.graph_options import (
-    RosKind,
     graph_options,
     orphan_policy,
     orphans_option,
     parameter_options,
     read_remaps,
+    ros_option,
 )
 from jacaros.cli.outputs import OUTPUT_GONE, RECORD_LIMIT, Outputs
 from jacaros.errors import UsageError
@@ -29,7 +29,6 @@ from jacaros.mas.loading import load_deployment
 from jacaros.mas.options import RunOptions
 from jacaros.mas.system import System
 from jacaros.output import CLOSING, PATIENCE
-from jacaros.ros.middleware import ROS_KINDS
 from jacaros.text_files import is_file
 
 FAST_PATIENCE = 1.0
@@ -52,15 +51,7 @@ SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
     "real ROS graph says.",
 )
 @click.option("--seed", type=int, help="Makes random numbers repeatable; with --clock fast the whole run.")
-@click.option(
-    "--ros",
-    type=RosKind(ROS_KINDS),
-    default="memory",
-    envvar="JACAROS_ROS",
-    show_default=True,
-    show_envvar=True,
-    help="The ROS graph: inside the process, or a real one.",
-)
+@ros_option("The ROS graph: inside the process, or a real one.")
 @click.option(
     "--world",
     metavar="FILE",

@@ -7,26 +7,18 @@ from typing import Any
 
 import click
 
-from jacaros.cli.graph_options import RosKind, read_remaps, world_options
+from jacaros.cli.graph_options import read_remaps, ros_option, world_options
 from jacaros.cli.outputs import check_output
 from jacaros.clock import Clock, VirtualClock, WallClock, run
 from jacaros.errors import UsageError
 from jacaros.ros.address import GraphAddress
-from jacaros.ros.middleware import ROS_KINDS
 from jacaros.sim.description import BatterySettings, WorldDescription
 from jacaros.text_files import is_file
 
 
 @click.command("sim", short_help="Run a robot world as a ROS node of its own.")
 @click.argument("world")
-@click.option(
-    "--ros",
-    type=RosKind(ROS_KINDS),
-    required=True,
-    envvar="JACAROS_ROS",
-    show_envvar=True,
-    help="The ROS graph to join.",
-)
+@ros_option("The ROS graph to join.", required=True)
 @world_options
 @click.option("--for", "seconds", type=float, metavar="S", help="End after S seconds.")
 @click.option(

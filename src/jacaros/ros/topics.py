@@ -18,22 +18,14 @@ N = TypeVar("N", bound=Node)
 OnEvent = Callable[[TopicEvent], None] | None
 
 
-class TopicPublisher(Generic[N]):
-    """A publisher; a driver defines `_send` and `_leave`.
-
-    Args:
-        node: whose it is.
-        topic: absolute name.
-        type_name: message type in full form.
-        qos: what is offered to subscriptions.
-    """
+class _TopicEnd(Generic[N]):
+    """What publishers and subscriptions have in common."""
 
     def __init__(self, node: N, topic: str, type_name: str, qos: QoS) -> None:
         self.topic = topic
         self.type_name = type_name
         self.qos = qos
         self._node = node
-        self._class = node.factory.message_class(type_name)
         self._closed = False
         self._told: set[object] = set()
 
@@ -47,6 +39,32 @@ class TopicPublisher(Generic[N]):
         """Whether late subscriptions get what was said last."""
         return self.qos.durability == "transient_local"
 
+    def close(self) -> None:
+        """Leave the topic."""
+        if not self._closed:
+            self._closed = True
+            self._node.forget(self)
+            self._leave()
+
+    def _leave(self) -> None:
+        """Leave the topic, once."""
+        raise NotImplementedError
+
+
+class TopicPublisher(_TopicEnd[N]):
+    """A publisher; a driver defines `_send` and `_leave`.
+
+    Args:
+        node: whose it is.
+        topic: absolute name.
+        type_name: message type in full form.
+        qos: what is offered to subscriptions.
+    """
+
+    def __init__(self, node: N, topic: str, type_name: str, qos: QoS) -> None:
+        super().__init__(node, topic, type_name, qos)
+        self._class = node.factory.message_class(type_name)
+
     def message(self, **fields: Any) -> Any:
         """Make a message of the topic's type."""
         return self._node.factory.make(self.type_name, fields)
@@ -58,13 +76,6 @@ class TopicPublisher(Generic[N]):
         if not self._closed:
             self._node.lifetime.send(self._send, message)
 
-    def close(self) -> None:
-        """Leave the topic."""
-        if not self._closed:
-            self._closed = True
-            self._node.forget(self)
-            self._leave()
-
     def tell(self, text: str, key: object = None) -> None:
         """Log why what is published reaches nobody, once for each *key* (the text by default)."""
         if not self._closed and (key or text) not in self._told:
@@ -75,12 +86,8 @@ class TopicPublisher(Generic[N]):
         """Send a message of the topic's class; from any thread when the process ends."""
         raise NotImplementedError
 
-    def _leave(self) -> None:
-        """Leave the topic, once."""
-        raise NotImplementedError
 
-
-class TopicSubscription(Generic[N]):
+class TopicSubscription(_TopicEnd[N]):
     """A subscription; a driver hands messages to `deliver`, or to `put` when each is to wait for its turn.
 
     Args:
@@ -101,26 +108,11 @@ class TopicSubscription(Generic[N]):
         qos: QoS,
         on_event: OnEvent,
     ) -> None:
-        self.topic = topic
-        self.type_name = type_name
-        self.qos = qos
-        self._node = node
+        super().__init__(node, topic, type_name, qos)
         self._callback = callback
         self._on_event = on_event
-        self._closed = False
-        self._told: set[object] = set()
         self._waiting: deque[Any] = deque(maxlen=qos.depth)
         self._loop = node.loop
-
-    @property
-    def node_name(self) -> str:
-        """Absolute name of the node."""
-        return self._node.node_name
-
-    @property
-    def latched(self) -> bool:
-        """Whether what was said last is to come at once."""
-        return self.qos.durability == "transient_local"
 
     def put(self, message: Any) -> None:
         """Queue *message* for a turn of the loop, on the loop; the oldest is dropped when the queue is full."""
@@ -179,10 +171,7 @@ class TopicSubscription(Generic[N]):
     def close(self) -> None:
         """Leave the topic; the callback is not called any more."""
         self._waiting.clear()
-        if not self._closed:
-            self._closed = True
-            self._node.forget(self)
-            self._leave()
+        super().close()
 
     def _tell_now(self, event: TopicEvent) -> None:
         if self._on_event is not None and not self._closed:
@@ -192,10 +181,6 @@ class TopicSubscription(Generic[N]):
         # Empty when a later message pushed this turn's one out, or when the subscription was closed.
         if self._waiting:
             self.deliver(self._waiting.popleft())
-
-    def _leave(self) -> None:
-        """Leave the topic, once."""
-        raise NotImplementedError
 
 
 class Reader(Protocol):
