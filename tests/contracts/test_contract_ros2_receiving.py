@@ -118,6 +118,45 @@ async def test(backend, publisher, hear):
     )
 
 
+def _without(*names: str) -> str:
+    """Return a program that removes *names* from rclpy's extension module."""
+    return f"""
+from rclpy.impl.implementation_singleton import rclpy_implementation
+import threading
+
+class Without:
+    def __getattr__(self, name):
+        if name in {names}:
+            raise AttributeError(name)
+        return getattr(rclpy_implementation, name)
+
+import rclpy, rclpy.node, rclpy.executors
+rclpy.impl.implementation_singleton.rclpy_implementation = Without()
+"""
+
+
+@pytest.mark.parametrize("name", ["RCLError", "InvalidHandle", "WaitSet"])
+def test_a_node_receives_serves_and_stops_without_an_inner_name_of_rclpy(tmp_path: Path, name: str) -> None:
+    passes(
+        tmp_path,
+        """
+async def serve(request):
+    return {"success": request.data, "message": "served"}
+
+async def test(backend, publisher, hear):
+    backend.subscription("/a", STRING, hear)
+    await talk(publisher, "a")
+    backend.service("/s", "std_srvs/srv/SetBool", serve)
+    response = await backend.client("/s", "std_srvs/srv/SetBool").call({"data": True}, timeout=30)
+    assert (response.success, response.message) == (True, "served"), response
+    await backend.close()
+    threads = [thread.name for thread in threading.enumerate() if thread.name.startswith("ros2")]
+    assert not threads, threads
+""",
+        _without(name),
+    )
+
+
 @pytest.mark.parametrize("names", [["WaitSet"], ["RCLError", "InvalidHandle", "WaitSet"]])
 def test_without_rclpys_inner_names_all_goes_through_its_executor(tmp_path: Path, names: list[str]) -> None:
     passes(
@@ -137,18 +176,7 @@ async def test(backend, publisher, hear):
     else:
         sys.exit("a topic has two types")
 """,
-        f"""
-from rclpy.impl.implementation_singleton import rclpy_implementation
-
-class Without:
-    def __getattr__(self, name):
-        if name in {names}:
-            raise AttributeError(name)
-        return getattr(rclpy_implementation, name)
-
-import rclpy, rclpy.node, rclpy.executors
-rclpy.impl.implementation_singleton.rclpy_implementation = Without()
-""",
+        _without(*names),
     )
 
 
