@@ -14,7 +14,7 @@ pytestmark = pytest.mark.ros2
 BEGIN = """
 import asyncio, sys
 from jacaros.clock import WallClock, run
-from jacaros.ros.drivers.ros2 import inner, receiving as ros2_receiving
+from jacaros.ros.drivers.ros2 import receiving as ros2_receiving
 from jacaros.ros.open import open_backend
 
 STRING = "std_msgs/msg/String"
@@ -105,7 +105,7 @@ async def test(backend, publisher, hear):
     def changed(*_):
         raise TypeError("incompatible function arguments")
 
-    inner.wait_set = changed
+    ros2_receiving.wait_set = changed
     second = backend.subscription("/a", STRING, hear)
     await until(lambda: told)
     assert told == ["waiting for messages the fast way failed, rclpy's executor does it now: "

@@ -9,15 +9,16 @@ from typing import Any
 import rospy  # type: ignore[import-not-found]
 import rospy.impl.registration as registration  # type: ignore[import-not-found]
 
-from jacaros.ros.drivers.ros1.connections import Takers, connect_streams
-from jacaros.ros.drivers.ros1.master import Heard, MasterLink, MismatchWatch, NodeActions, Offers, stay_local
-from jacaros.ros.drivers.ros1.repairs import (
+from jacaros.ros.drivers.ros1.connections import (
+    Takers,
+    connect_streams,
     let_closed_nodes_rest,
     let_parameters_tell,
     let_subscribers_hear,
     log_to_standard_error,
     print_to_standard_error,
 )
+from jacaros.ros.drivers.ros1.master import Heard, MasterLink, MismatchWatch, NodeActions, Offers, stay_local
 from jacaros.ros.drivers.ros1.types import GenpySchema
 from jacaros.ros.errors import RosError
 from jacaros.ros.handoff import post

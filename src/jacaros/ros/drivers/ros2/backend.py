@@ -20,9 +20,9 @@ from jacaros.ros.backend import (
 from jacaros.ros.drivers.ros2 import graph as ros2_graph
 from jacaros.ros.drivers.ros2.actions import Ros2ActionServer
 from jacaros.ros.drivers.ros2.goals import Ros2GoalWire
-from jacaros.ros.drivers.ros2.inner import RCLError
 from jacaros.ros.drivers.ros2.node import Ros2Node
 from jacaros.ros.drivers.ros2.parameters import OtherParameters, OwnParameters, read_value
+from jacaros.ros.drivers.ros2.receiving import RCLError
 from jacaros.ros.drivers.ros2.services import Ros2Client, Ros2Service
 from jacaros.ros.drivers.ros2.topics import Ros2Publisher, Ros2Subscription
 from jacaros.ros.errors import CallFailed, CallTimedOut, RosError, UnknownInterface

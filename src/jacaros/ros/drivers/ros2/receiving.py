@@ -3,17 +3,51 @@
 For each message rclpy's executor goes three times, in Python, through all that the node has: publishers' and subscriptions'
 events, services, clients.  Together with the change of threads that made an agent's reaction half as slow again as a bare
 callback.  Here a wait costs a few calls for each topic, and nothing else is looked at.
+
+All that we use of rclpy's inner side is in this file.  Any release may change it: when something is another one, or there
+no more, rclpy's executor does what is done here.
 """
 
 import threading
 from collections.abc import Callable
 from contextlib import ExitStack, suppress
+from importlib import import_module
 from typing import Any
 
 from rclpy.callback_groups import CallbackGroup  # type: ignore[import-not-found]
 from rclpy.guard_condition import GuardCondition  # type: ignore[import-not-found]
 
-from jacaros.ros.drivers.ros2 import inner
+
+def _inner(name: str) -> Any:
+    """Something of rclpy's extension module; None when it is there no more."""
+    try:
+        module = import_module("rclpy.impl.implementation_singleton")
+        return getattr(module.rclpy_implementation, name, None)
+    except (ImportError, AttributeError):
+        return None
+
+
+RCLError: type[Exception] = _inner("RCLError") or RuntimeError
+"""What rclpy raises when rcl refuses something; a `RuntimeError` in all releases."""
+InvalidHandle: type[Exception] = _inner("InvalidHandle") or RuntimeError
+"""Raised by the handle of something that has been destroyed."""
+
+
+def wait_set(subscriptions: int, guards: int, events: int, context: Any) -> Any:
+    """Make a wait set of rcl.
+
+    Args:
+        subscriptions, guards, events: how many of each will be waited for.
+        context: the handle of rclpy's context.
+
+    Raises:
+        NotImplementedError: rclpy has none.
+    """
+    made = _inner("WaitSet")
+    if made is None:
+        raise NotImplementedError("rclpy shows no wait sets")
+    return made(subscriptions, guards, 0, 0, 0, events, context)
+
 
 Take = Callable[[Any], None]
 
@@ -137,7 +171,7 @@ class Receiver:
             handles, events, sources = [], [], {}
             for subscription, take in takers:
                 handle = subscription.handle
-                with suppress(inner.InvalidHandle):  # gone with its node
+                with suppress(InvalidHandle):  # gone with its node
                     held.enter_context(handle)
                     handles.append(handle)
                     sources[handle.pointer] = (handle, subscription.msg_type, take)
@@ -151,27 +185,27 @@ class Receiver:
     def _receive(
         self, handles: list[Any], events: list[Any], sources: dict[int, tuple[Any, Any, Take]]
     ) -> None:
-        wait_set = inner.wait_set(len(handles), 1, len(events), self._context.handle)
+        waiting = wait_set(len(handles), 1, len(events), self._context.handle)
         guard = self._guard.handle
 
         def arm() -> None:
-            wait_set.clear_entities()
+            waiting.clear_entities()
             for handle in handles:
-                wait_set.add_subscription(handle)
-            wait_set.add_guard_condition(guard)
+                waiting.add_subscription(handle)
+            waiting.add_guard_condition(guard)
             for event in events:
-                event.add_to_wait_set(wait_set)
+                event.add_to_wait_set(waiting)
 
         arm()
         while not self._changed:
-            wait_set.wait(-1)
-            ready = [sources[pointer] for pointer in wait_set.get_ready_entities("subscription")]
+            waiting.wait(-1)
+            ready = [sources[pointer] for pointer in waiting.get_ready_entities("subscription")]
             arrived = [
                 (take, found[0])
                 for handle, kind, take in ready
                 if (found := self._taken(handle, kind)) is not None
             ]
-            happened = [(event, event.take_data()) for event in events if event.is_ready(wait_set)]
+            happened = [(event, event.take_data()) for event in events if event.is_ready(waiting)]
             # First all that is left to do here: once the loop is awake it shares the interpreter with this thread.
             arm()
             for take, message in arrived:

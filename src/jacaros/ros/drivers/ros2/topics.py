@@ -19,8 +19,8 @@ from jacaros.ros.drivers.ros2.graph import (
     profile,
     publishers_in,
 )
-from jacaros.ros.drivers.ros2.inner import RCLError
 from jacaros.ros.drivers.ros2.node import Ros2Node
+from jacaros.ros.drivers.ros2.receiving import RCLError
 from jacaros.ros.errors import RosError
 from jacaros.ros.handoff import Handoff, post
 from jacaros.ros.qos import QoS, incompatibility

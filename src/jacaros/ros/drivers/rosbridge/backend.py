@@ -23,8 +23,7 @@ from jacaros.ros.backend import (
 from jacaros.ros.drivers.rosbridge.actions import BridgeActionClient, BridgeActionServer
 from jacaros.ros.drivers.rosbridge.link import checked_url
 from jacaros.ros.drivers.rosbridge.node import BridgeNode
-from jacaros.ros.drivers.rosbridge.parameters import BridgeParameters, read
-from jacaros.ros.drivers.rosbridge.services import BridgeClient, BridgeService, look
+from jacaros.ros.drivers.rosbridge.services import BridgeClient, BridgeParameters, BridgeService, look, read
 from jacaros.ros.drivers.rosbridge.topics import BridgePublisher, BridgeSubscription
 from jacaros.ros.errors import CapabilityMissing
 from jacaros.ros.graph import GraphContents
