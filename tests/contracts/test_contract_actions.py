@@ -43,6 +43,8 @@ def test_a_goal_gives_feedback_and_a_result(graph: Any, pair: Pair, topic: str) 
     graph.wait_until(lambda: len(left.feedback(topic)) == 3, "all feedback arrives")
     assert left.feedback(topic) == [1, 2, 3]
     assert right.deeds(topic) == [["begin", 3], ["end", 3, False]]
+    told = [line for peer in (left, right) for line in peer.log() if f"topic {topic}/" in line]
+    assert told == [], "the topics of an action carry what they should"
 
 
 def test_the_outcome_is_known_to_all_who_wait_and_who_ask_later(graph: Any, pair: Pair, topic: str) -> None:

@@ -208,6 +208,8 @@ class TopicFeed(Generic[R]):
     def __init__(self, topic: str, type_name: str) -> None:
         self.topic = topic
         self.type_name = type_name
+        self.known_as = type_name
+        """What the graph calls the type: actionlib's, for one, have names of their own there."""
         self.readers: tuple[R, ...] = ()
         self.lock = threading.Lock()
         """Held while readers or what is latched change."""
@@ -248,9 +250,9 @@ class TopicFeed(Generic[R]):
         for reader in self.readers:
             reader.put(message)
 
-    def see_type(self, type_name: str) -> None:
-        """Be told which type the topic has in the graph."""
-        if type_name != self.type_name:
+    def see_type(self, type_name: str | None) -> None:
+        """Be told which type the topic has in the graph, if that is known."""
+        if type_name not in (None, self.known_as):
             self.tell(
                 f"topic {self.topic} carries {type_name}, but {self.type_name} was asked for: nothing will be received; "
                 f"write {type_name}"

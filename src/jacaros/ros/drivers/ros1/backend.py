@@ -85,7 +85,7 @@ class Ros1Backend(Ros1Node):
         """Tell subscriptions whose topic has another type."""
         self.types = {topic: message_type(kind) for topic, kind in types.items() if kind != "*"}
         for topic, feed in self.feeds.items():
-            feed.see_type(self.types.get(topic, feed.type_name))
+            feed.see_type(self.types.get(topic))
 
     def definition_differs(self, topic: str, kind: str, theirs: str, ours: str) -> None:
         """Tell subscriptions whose publisher has another definition of the type: another md5 sum."""

@@ -3,7 +3,7 @@
 import threading
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import Any
+from typing import Any, cast
 
 import rospy  # type: ignore[import-not-found]
 
@@ -11,6 +11,7 @@ from jacaros.ros.backend import Sample
 from jacaros.ros.drivers.ros1.node import Ros1Node, wait_until_sent
 from jacaros.ros.errors import MessageMismatch
 from jacaros.ros.handoff import Handoff, post
+from jacaros.ros.names import message_type
 from jacaros.ros.qos import QoS
 from jacaros.ros.topics import OnEvent, SharedSubscription, TopicFeed, TopicPublisher
 
@@ -84,7 +85,8 @@ class Ros1Feed(TopicFeed["Ros1Subscription"]):
     def __init__(self, node: Ros1Node, topic: str, type_name: str) -> None:
         super().__init__(topic, type_name)
         self._node = node
-        self._class: Any = node.factory.message_class(type_name)
+        self._class = cast("Any", node.factory.message_class(type_name))
+        self.known_as = message_type(self._class._type)
         self._latched: dict[str, Any] = {}
         self._subscriber: Any = None
         node.takers[topic] = self._take
@@ -148,7 +150,7 @@ class Ros1Subscription(SharedSubscription[Ros1Node]):
         self.queue: Handoff[Any] = Handoff(node.loop, qos.depth, self.deliver)
         super().__init__(node, topic, type_name, callback, qos, on_event, node.feeds, Ros1Feed)
         if self._feed is not None:
-            self._feed.see_type(node.types.get(topic, type_name))
+            self._feed.see_type(node.types.get(topic))
 
     def put(self, message: Any) -> None:
         """Queue a message, from any thread of rospy's."""
