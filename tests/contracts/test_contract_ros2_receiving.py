@@ -150,7 +150,7 @@ async def test(backend, publisher, hear):
     response = await backend.client("/s", "std_srvs/srv/SetBool").call({"data": True}, timeout=30)
     assert (response.success, response.message) == (True, "served"), response
     await backend.close()
-    threads = [thread.name for thread in threading.enumerate() if thread.name.startswith("ros2")]
+    threads = [thread.name for thread in threading.enumerate() if thread.name.startswith(("ros2", "rclpy"))]
     assert not threads, threads
 """,
         _without(name),
