@@ -79,13 +79,32 @@ class Member(Protocol):
 M = TypeVar("M", bound=Member)
 
 
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """What is wanted of a topic.
+
+    Attributes:
+        topic: absolute name.
+        type_name: message type in full form.
+        callback: takes each message, on the loop.
+        qos: what is asked of publishers.
+        on_event: takes news of trouble, on the loop; without it they are logged.
+    """
+
+    topic: str
+    type_name: str
+    callback: Callable[[Sample], None]
+    qos: QoS = DEFAULT_QOS
+    on_event: Callable[[TopicEvent], None] | None = None
+
+
 @dataclass(frozen=True)
 class Parts:
     """What a driver makes for its node; each is called with the node, an absolute name and a type in full form.
 
     Attributes:
         publisher: with the quality of service too.
-        subscription: with callback, quality of service, and what takes news of trouble.
+        subscription: with `Wanted` in place of name and type.
         service: with the handler.
         client: of a service.
         action_client: with no more.
@@ -271,7 +290,7 @@ class Node:
         full_type = message_type(type_name)
         self.factory.fields(full_type)
         name = self.resolve(topic)
-        return self.keep(self.parts.subscription(self, name, full_type, callback, qos, on_event))
+        return self.keep(self.parts.subscription(self, Wanted(name, full_type, callback, qos, on_event)))
 
     def service(self, name: str, type_name: str, handler: Handler) -> Service:
         """Offer a service."""

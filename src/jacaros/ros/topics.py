@@ -9,13 +9,11 @@ from collections.abc import Callable, Iterable
 from typing import Any, Generic, Protocol, TypeVar
 
 from jacaros.ros.backend import Sample, TopicEvent, TopicTrouble
-from jacaros.ros.node import Node
+from jacaros.ros.node import Node, Wanted
 from jacaros.ros.qos import QoS
 from jacaros.ros.serving import published_message
 
 N = TypeVar("N", bound=Node)
-
-OnEvent = Callable[[TopicEvent], None] | None
 
 
 class _TopicEnd(Generic[N]):
@@ -92,26 +90,14 @@ class TopicSubscription(_TopicEnd[N]):
 
     Args:
         node: whose it is.
-        topic: absolute name.
-        type_name: message type in full form.
-        callback: takes each message, on the loop.
-        qos: what is asked of publishers.
-        on_event: takes news of trouble, on the loop; without it they are logged.
+        wanted: what of which topic.
     """
 
-    def __init__(
-        self,
-        node: N,
-        topic: str,
-        type_name: str,
-        callback: Callable[[Sample], None],
-        qos: QoS,
-        on_event: OnEvent,
-    ) -> None:
-        super().__init__(node, topic, type_name, qos)
-        self._callback = callback
-        self._on_event = on_event
-        self._waiting: deque[Any] = deque(maxlen=qos.depth)
+    def __init__(self, node: N, wanted: Wanted) -> None:
+        super().__init__(node, wanted.topic, wanted.type_name, wanted.qos)
+        self._callback = wanted.callback
+        self._on_event = wanted.on_event
+        self._waiting: deque[Any] = deque(maxlen=wanted.qos.depth)
         self._loop = node.loop
 
     def put(self, message: Any) -> None:
@@ -274,21 +260,14 @@ class SharedSubscription(TopicSubscription[N]):
     Args:
         feeds: those of the node by topic.
         new_feed: makes one for a node, a topic and a type.
-        others: as for `TopicSubscription`.
+        node, wanted: as for `TopicSubscription`.
     """
 
     def __init__(
-        self,
-        node: N,
-        topic: str,
-        type_name: str,
-        callback: Callable[[Sample], None],
-        qos: QoS,
-        on_event: OnEvent,
-        feeds: dict[str, F],
-        new_feed: Callable[[N, str, str], F],
+        self, node: N, wanted: Wanted, feeds: dict[str, F], new_feed: Callable[[N, str, str], F]
     ) -> None:
-        super().__init__(node, topic, type_name, callback, qos, on_event)
+        super().__init__(node, wanted)
+        topic, type_name = wanted.topic, wanted.type_name
         self._feeds = feeds
         if topic not in feeds:
             feeds[topic] = new_feed(node, topic, type_name)

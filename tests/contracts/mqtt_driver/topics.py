@@ -1,13 +1,13 @@
 """Topics over MQTT: a message is JSON at the broker's topic of that name and type."""
 
 import json
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
-from jacaros.ros.backend import Sample
 from jacaros.ros.message import plain
+from jacaros.ros.node import Wanted
 from jacaros.ros.qos import QoS
-from jacaros.ros.topics import OnEvent, SharedSubscription, TopicFeed, TopicPublisher
+from jacaros.ros.topics import SharedSubscription, TopicFeed, TopicPublisher
 
 if TYPE_CHECKING:
     from mqtt_driver.backend import MqttBackend
@@ -103,16 +103,8 @@ class MqttFeed(TopicFeed["MqttSubscription"]):
 class MqttSubscription(SharedSubscription["MqttBackend"]):
     """Subscription of `MqttBackend`; messages are decoded when it is their turn."""
 
-    def __init__(
-        self,
-        node: "MqttBackend",
-        topic: str,
-        type_name: str,
-        callback: Callable[[Sample], None],
-        qos: QoS,
-        on_event: OnEvent,
-    ) -> None:
-        super().__init__(node, topic, type_name, callback, qos, on_event, node.feeds, MqttFeed)
+    def __init__(self, node: "MqttBackend", wanted: Wanted) -> None:
+        super().__init__(node, wanted, node.feeds, MqttFeed)
 
     def deliver(self, message: bytes) -> None:
         """Decode a message and hand it over."""

@@ -10,11 +10,11 @@ from functools import partial
 from typing import Any
 
 from jacaros.clock import Timer
-from jacaros.ros.backend import Sample
 from jacaros.ros.drivers.memory.graph import GraphPublisher, GraphSubscription
 from jacaros.ros.drivers.memory.node import MemoryNode
+from jacaros.ros.node import Wanted
 from jacaros.ros.qos import QoS, incompatibility
-from jacaros.ros.topics import OnEvent, TopicPublisher, TopicSubscription
+from jacaros.ros.topics import TopicPublisher, TopicSubscription
 
 
 class MemoryPublisher(TopicPublisher[MemoryNode]):
@@ -72,18 +72,11 @@ class MemoryPublisher(TopicPublisher[MemoryNode]):
 class MemorySubscription(TopicSubscription[MemoryNode]):
     """Subscription of `MemoryBackend`."""
 
-    def __init__(
-        self,
-        node: MemoryNode,
-        topic: str,
-        type_name: str,
-        callback: Callable[[Sample], None],
-        qos: QoS,
-        on_event: OnEvent,
-    ) -> None:
-        super().__init__(node, topic, type_name, callback, qos, on_event)
-        self._deadline = None if qos.deadline is None else _Deadline(node, qos.deadline, self.tell_deadline)
-        self._shared = node.graph.topic(topic)
+    def __init__(self, node: MemoryNode, wanted: Wanted) -> None:
+        super().__init__(node, wanted)
+        deadline = wanted.qos.deadline
+        self._deadline = None if deadline is None else _Deadline(node, deadline, self.tell_deadline)
+        self._shared = node.graph.topic(self.topic)
         self.arrive: Callable[[Any], None] = self.put
         """Takes a message from a publisher."""
         self._shared.subscriptions.append(self)

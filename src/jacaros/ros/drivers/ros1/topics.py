@@ -2,18 +2,18 @@
 
 import threading
 from collections import deque
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, cast
 
 import rospy  # type: ignore[import-not-found]
 
-from jacaros.ros.backend import Sample
 from jacaros.ros.drivers.ros1.node import Ros1Node, wait_until_sent
 from jacaros.ros.errors import MessageMismatch
 from jacaros.ros.handoff import Handoff, post
 from jacaros.ros.names import message_type
+from jacaros.ros.node import Wanted
 from jacaros.ros.qos import QoS
-from jacaros.ros.topics import OnEvent, SharedSubscription, TopicFeed, TopicPublisher
+from jacaros.ros.topics import SharedSubscription, TopicFeed, TopicPublisher
 
 
 class Ros1Publisher(TopicPublisher[Ros1Node]):
@@ -138,19 +138,11 @@ class Ros1Feed(TopicFeed["Ros1Subscription"]):
 class Ros1Subscription(SharedSubscription[Ros1Node]):
     """Subscription of `Ros1Backend`."""
 
-    def __init__(
-        self,
-        node: Ros1Node,
-        topic: str,
-        type_name: str,
-        callback: Callable[[Sample], None],
-        qos: QoS,
-        on_event: OnEvent,
-    ) -> None:
-        self.queue: Handoff[Any] = Handoff(node.loop, qos.depth, self.deliver)
-        super().__init__(node, topic, type_name, callback, qos, on_event, node.feeds, Ros1Feed)
+    def __init__(self, node: Ros1Node, wanted: Wanted) -> None:
+        self.queue: Handoff[Any] = Handoff(node.loop, wanted.qos.depth, self.deliver)
+        super().__init__(node, wanted, node.feeds, Ros1Feed)
         if self._feed is not None:
-            self._feed.see_type(node.types.get(topic))
+            self._feed.see_type(node.types.get(self.topic))
 
     def put(self, message: Any) -> None:
         """Queue a message, from any thread of rospy's."""

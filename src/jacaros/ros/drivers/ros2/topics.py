@@ -11,7 +11,6 @@ from rclpy.event_handler import (  # type: ignore[import-not-found]
     SubscriptionEventCallbacks,
 )
 
-from jacaros.ros.backend import Sample
 from jacaros.ros.drivers.ros2.graph import (
     endpoint,
     foreign_types,
@@ -23,8 +22,9 @@ from jacaros.ros.drivers.ros2.node import Ros2Node
 from jacaros.ros.drivers.ros2.receiving import RCLError
 from jacaros.ros.errors import RosError
 from jacaros.ros.handoff import Handoff, post
+from jacaros.ros.node import Wanted
 from jacaros.ros.qos import QoS, incompatibility
-from jacaros.ros.topics import OnEvent, TopicPublisher, TopicSubscription
+from jacaros.ros.topics import TopicPublisher, TopicSubscription
 
 LOOKING = 2.0
 """Seconds between two looks at who publishes on a topic that is silent: ROS 2 tells of no other type by itself."""
@@ -95,29 +95,21 @@ class Ros2Publisher(TopicPublisher[Ros2Node]):
 class Ros2Subscription(TopicSubscription[Ros2Node]):
     """Subscription of the ``ros2`` backend."""
 
-    def __init__(
-        self,
-        node: Ros2Node,
-        topic: str,
-        type_name: str,
-        callback: Callable[[Sample], None],
-        qos: QoS,
-        on_event: OnEvent,
-    ) -> None:
-        super().__init__(node, topic, type_name, callback, qos, on_event)
-        self._queue: Handoff[Any] = Handoff(node.loop, qos.depth, self.deliver)
+    def __init__(self, node: Ros2Node, wanted: Wanted) -> None:
+        super().__init__(node, wanted)
+        self._queue: Handoff[Any] = Handoff(node.loop, self.qos.depth, self.deliver)
         self._silent = True
         self._lively = 0
         self._missing: frozenset[bytes] = frozenset()
         self._trusted_until = 0.0
         self._deadline_missed = False
-        kind = node.factory.message_class(type_name)
-        with _at_topic(node, topic, type_name):
+        kind = node.factory.message_class(self.type_name)
+        with _at_topic(node, self.topic, self.type_name):
             self._subscription: Any = node.rcl.create_subscription(
                 kind,
-                topic,
+                self.topic,
                 self._queue.put,
-                profile(qos),
+                profile(self.qos),
                 callback_group=node.receiver.group,
                 event_callbacks=self._events(),
             )

@@ -20,6 +20,7 @@ from jacaros.ros.drivers.rosbridge.node import BridgeNode
 from jacaros.ros.drivers.rosbridge.topics import ActionTopics, BridgeSubscription
 from jacaros.ros.errors import CallFailed, ServerLost, ServerUnavailable
 from jacaros.ros.names import feedback_type, goal_type, result_type
+from jacaros.ros.node import Wanted
 from jacaros.ros.protocols.ros2_actions import CANCELING, ENDS, NUMBERS, STATUS, UNDER_WAY
 from jacaros.ros.protocols.rosbridge_requests import LOOK_AGAIN, Sight
 from jacaros.ros.qos import QoS
@@ -100,7 +101,7 @@ class Ros2Goals:
         self._known: set[str] = set()
         self._watch = PresenceWatch(node, sender)
         self._status = BridgeSubscription(
-            node, f"{sender.name}{STATUS}", STATUS_TYPE, self._status_changed, STATUS_QUALITY, None
+            node, Wanted(f"{sender.name}{STATUS}", STATUS_TYPE, self._status_changed, STATUS_QUALITY)
         )
         node.keep(self._status)
         self._forget_hook = node.add_exit_hook(self._cancel_all)

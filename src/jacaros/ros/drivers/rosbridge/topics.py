@@ -6,10 +6,11 @@ from typing import Any
 
 from jacaros.ros.backend import Sample, TopicTrouble
 from jacaros.ros.drivers.rosbridge.node import BridgeNode
+from jacaros.ros.node import Wanted
 from jacaros.ros.orphans import Orphans
 from jacaros.ros.protocols.rosbridge_requests import Sight
 from jacaros.ros.qos import DEFAULT_QOS, QoS
-from jacaros.ros.topics import OnEvent, SharedSubscription, TopicFeed, TopicPublisher
+from jacaros.ros.topics import SharedSubscription, TopicFeed, TopicPublisher
 
 WAITING = 300
 """Messages of each of an action's topics that may wait for the loop: none is dropped, so their order stays."""
@@ -167,17 +168,8 @@ class BridgeSubscription(SharedSubscription[BridgeNode]):
         waiting: messages that may wait for their turn; as many as *qos* says by default.
     """
 
-    def __init__(
-        self,
-        node: BridgeNode,
-        topic: str,
-        type_name: str,
-        callback: Callable[[Sample], None],
-        qos: QoS,
-        on_event: OnEvent,
-        waiting: int | None = None,
-    ) -> None:
-        super().__init__(node, topic, type_name, callback, qos, on_event, node.feeds, BridgeFeed)
+    def __init__(self, node: BridgeNode, wanted: Wanted, waiting: int | None = None) -> None:
+        super().__init__(node, wanted, node.feeds, BridgeFeed)
         if waiting is not None:
             self._waiting = deque(self._waiting, waiting)
 
@@ -239,7 +231,9 @@ class ActionTopics:
         self, topic: str, type_name: str, callback: Callable[[Sample], None], qos: QoS = DEFAULT_QOS
     ) -> BridgeSubscription:
         """Have *callback* called for every message."""
-        return self._node.keep(BridgeSubscription(self._node, topic, type_name, callback, qos, None, WAITING))
+        return self._node.keep(
+            BridgeSubscription(self._node, Wanted(topic, type_name, callback, qos), WAITING)
+        )
 
     def add_exit_hook(self, hook: Callable[[], None]) -> Callable[[], None]:
         """Have *hook* called when the process stops."""
