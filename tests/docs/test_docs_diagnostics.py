@@ -22,6 +22,7 @@ OF_FILES = {
     "unknown-operation",
     "unreadable-file",
     "wrong-mapping",
+    "wrong-world",
     "wrong-project",
 }
 TOO_LONG = {"nested-too-deeply"}

@@ -57,7 +57,7 @@ def command(
     imports: bool,
 ) -> int:
     """Tell what is wrong in each FILE: an agent program (.asl, or .py for an agent in Python), a project (.mas2j, .jcm)
-    with the programs of its agents, a mapping file (.yaml), or a folder with all of them.
+    with the programs of its agents, a mapping file or a world file (.yaml), or a folder with programs and projects.
 
     All problems are told at once. Each kind has a code; the reference page "Diagnostics" explains them. A comment
     `// jacaros: ignore CODE` switches a warning off for its line, or, on a line of its own, for the clause below

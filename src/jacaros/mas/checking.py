@@ -64,7 +64,7 @@ def check_files(paths: Sequence[Path], mappings: Sequence[str] = (), imports: bo
         elif path.suffix == ".py":
             _check_python_agent(path, findings)
         elif path.suffix in MAPPINGS:
-            _check_mapping(path, findings)
+            _check_yaml(path, findings)
         elif mappings:
             _check_program_with_mappings(path, mappings, findings)
         else:
@@ -253,6 +253,19 @@ def _is_of_wrong_mapping(diagnostic: Diagnostic, folders: tuple[Path, ...]) -> b
         return False
     written = span.file.lines[span.line - 1][span.column - 1 : span.end_column - 1].strip("\"'")
     return _is_wrong_mapping(written, folders)
+
+
+def _check_yaml(path: Path, findings: Findings) -> None:
+    """Check a world file, or a mapping file."""
+    from jacaros.sim.world_file import is_world, world_problems  # here: see `_check_mapping`
+
+    if not is_world(path):
+        _check_mapping(path, findings)
+    elif path.resolve() not in findings.files:
+        from jacaros.mas.mappings import WRONG_WORLD, diagnostics_of
+
+        findings.files.add(path.resolve())
+        findings.diagnostics += diagnostics_of(str(path), *world_problems(path), wrong=WRONG_WORLD)
 
 
 def _check_mapping(path: Path, findings: Findings) -> None:

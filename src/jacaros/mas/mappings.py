@@ -5,7 +5,6 @@ from dataclasses import replace
 from pathlib import Path
 
 from jacaros.artifacts.mapping.checking import UNCERTAIN, type_problems
-from jacaros.artifacts.mapping.declared import MappingFile
 from jacaros.artifacts.mapping.file import find_mapping, read_with_problems, shipped_mappings
 from jacaros.artifacts.mapping.interfaces import stored_interfaces
 from jacaros.asl.diagnostics import Diagnostic
@@ -18,6 +17,7 @@ MAIN = "main"
 """The workspace of mapped artifacts."""
 
 WRONG = "wrong-mapping"
+WRONG_WORLD = "wrong-world"
 UNKNOWN_TYPE = "unknown-message-type"
 
 
@@ -42,16 +42,16 @@ def read_mapping_file(
         ArtifactSpec(each, f"{path.resolve()}#{each}", span=span, type_span=span)
         for each in mapping.artifacts
     ]
-    return specs, [] if not problems else diagnostics_of(mapping, problems)
+    return specs, diagnostics_of(mapping.file, mapping.text, problems)
 
 
-def diagnostics_of(mapping: MappingFile, problems: Iterable[Problem]) -> list[Diagnostic]:
-    """What is wrong with a file, as the rest of a project tells it."""
-    source = SourceFile(mapping.file, mapping.text)
-    return [_diagnostic(source, problem) for problem in problems]
+def diagnostics_of(file: str, text: str, problems: Iterable[Problem], wrong: str = WRONG) -> list[Diagnostic]:
+    """What is wrong with a YAML file, as the rest of a project tells it; *wrong* is the code of mistakes."""
+    source = SourceFile(file, text)
+    return [_diagnostic(source, problem, wrong) for problem in problems]
 
 
-def _diagnostic(source: SourceFile, problem: Problem) -> Diagnostic:
+def _diagnostic(source: SourceFile, problem: Problem, wrong: str) -> Diagnostic:
     end = problem.column + 1
     if 0 < problem.line <= len(source.lines):
         rest = source.lines[problem.line - 1][problem.column - 1 :]
@@ -60,7 +60,7 @@ def _diagnostic(source: SourceFile, problem: Problem) -> Diagnostic:
     span = Span(source, problem.line, problem.column, problem.line, end)
     # The robot's own middleware may know more types than the package.
     uncertain = UNCERTAIN in problem.message and "did you mean" not in problem.cure
-    level, code = ("warning", UNKNOWN_TYPE) if uncertain else ("error", WRONG)
+    level, code = ("warning", UNKNOWN_TYPE) if uncertain else ("error", wrong)
     return Diagnostic(
         "warning" if level == "warning" else "error", problem.message, span, problem.cure or None, code
     )
@@ -77,7 +77,7 @@ def check_mapping_file(path: Path) -> list[Diagnostic]:
         for each in type_problems(part, stored_interfaces(part.interfaces))
     ]
     problems += [each for each in told if each.line not in wrong]
-    return diagnostics_of(mapping, problems)
+    return diagnostics_of(mapping.file, mapping.text, problems)
 
 
 def is_wrong(name: str, folders: Sequence[Path]) -> bool:

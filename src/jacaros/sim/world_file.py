@@ -24,6 +24,7 @@ radians.  Every key but ``robots`` may be left out; what a robot may say is in `
 """
 
 import itertools
+import math
 import re
 from pathlib import Path
 
@@ -44,6 +45,9 @@ from jacaros.yaml_syntax import read_text
 
 _WORLDS = Path(__file__).parent / "worlds"
 _KEYS = ("name", "size", "bounds", "border", "seed", "walls", "rooms", "docks", "doors", "robots")
+_TOP_KEY = re.compile(r"^(\w+)[ \t]*:", re.MULTILINE)
+_TOUCHING = 0.001
+"""Metres that a robot may stand in a wall: so much is lost when its place is rounded."""
 _DOOR_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 
 
@@ -72,13 +76,25 @@ def load_world(name: str) -> WorldDescription:
         WorldError: the file is missing, or wrong; with all mistakes at once.
     """
     path = find_world(name)
+    text, problems, description = _read(path)
+    if description is None:
+        raise WorldError(str(path), text, problems)
+    return description
+
+
+def is_world(path: Path) -> bool:
+    """Whether a YAML file is a world file: it has robots and no artifacts."""
     try:
-        text, wrong = read_text(path)
-    except OSError as error:
-        raise WorldError(str(path), "", [Problem(1, 1, f"it cannot be read: {error}")]) from None
-    if wrong is not None:
-        raise WorldError(str(path), text, [wrong])
-    return read_world(text, str(path))
+        keys = set(_TOP_KEY.findall(read_text(path)[0]))
+    except OSError:
+        return False
+    return "robots" in keys and "artifacts" not in keys
+
+
+def world_problems(path: Path) -> tuple[str, list[Problem]]:
+    """The text of a world file, and all that is wrong with it."""
+    text, problems, _ = _read(path)
+    return text, problems
 
 
 def read_world(text: str, name: str = "world") -> WorldDescription:
@@ -87,14 +103,27 @@ def read_world(text: str, name: str = "world") -> WorldDescription:
     Raises:
         WorldError: with all mistakes at once.
     """
+    problems, description = _described(text)
+    if description is None:
+        raise WorldError(name, text, problems)
+    return description
+
+
+def _read(path: Path) -> tuple[str, list[Problem], WorldDescription | None]:
+    try:
+        text, wrong = read_text(path)
+    except OSError as error:
+        return "", [Problem(1, 1, f"it cannot be read: {error}")], None
+    return (text, [wrong], None) if wrong is not None else (text, *_described(text))
+
+
+def _described(text: str) -> tuple[list[Problem], WorldDescription | None]:
     problems: list[Problem] = []
     document = read_document(text, problems, "a world")
     if problems:
-        raise WorldError(name, text, problems)
+        return problems, None
     description = _world(document)
-    if problems:
-        raise WorldError(name, text, problems)
-    return description
+    return problems, None if problems else description
 
 
 def _world(document: Node) -> WorldDescription:
@@ -110,7 +139,7 @@ def _world(document: Node) -> WorldDescription:
     robots = list(entries["robots"].sequence()) if "robots" in entries else []
     if "robots" in entries:
         _check_robots(entries["robots"], robots)
-    return WorldDescription(
+    world = WorldDescription(
         name=entries["name"].text() if "name" in entries else "world",
         bounds=bounds,
         segments=tuple(segments),
@@ -121,6 +150,29 @@ def _world(document: Node) -> WorldDescription:
         robots=tuple(read_robot(robot) for robot in robots),
         seed=entries["seed"].whole(0, 0) if "seed" in entries else 0,
     )
+    if not document.problems:  # else places may be made up
+        _check_places(robots, world, walled="border" in entries and entries["border"].value == "walls")
+    return world
+
+
+def _check_places(items: list[Node], world: WorldDescription, walled: bool) -> None:
+    """Each robot must stand in the world, and neither in furniture nor in a wall or a closed door."""
+    closed = [door.segment for door in world.doors if not door.open]
+    for item, robot in zip(items, world.robots, strict=True):
+        x, y, _ = robot.pose
+        where = f"the robot '{robot.name}' stands at [{x:g}, {y:g}]"
+        cure = "write another place under 'pose'"
+        near = min((wall.distance(x, y) for wall in (*world.segments, *closed)), default=math.inf)
+        if walled and not world.bounds.contains(x, y):
+            left, bottom, right, top = world.bounds
+            item.wrong(
+                f"{where}, outside of the world",
+                f"the world goes from [{left:g}, {bottom:g}] to [{right:g}, {top:g}]",
+            )
+        elif any(box.contains(x, y) for box in world.boxes):
+            item.wrong(f"{where}, inside of a box", cure)
+        elif near < robot.radius - _TOUCHING:
+            item.wrong(f"{where}, in a wall: {near:.2f} m from it, with a radius of {robot.radius:g} m", cure)
 
 
 def _bounds(entries: dict[str, Node]) -> Rectangle:

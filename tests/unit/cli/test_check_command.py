@@ -270,3 +270,17 @@ def test_mistakes_in_such_a_mapping_are_told_once_and_stand_before_those_of_the_
     assert code == 1
     assert "there is no mapping file nav3.yaml" in output
     assert "did you mean nav2.yaml?" in output
+
+
+def test_a_world_file_is_checked_as_a_world(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "flat.yaml").write_text(
+        "size: [4, 4]\nborder: walls\nrobots:\n  - {name: r}\n", encoding="utf-8"
+    )
+    assert found(capsys, "flat.yaml") == []
+    text = (
+        "size: [4, 4]\nborder: walls\nrobots:\n  - {name: r, pose: {x: 9}, colour: red}\n  - {namespace: b, pose: {x: 9}}\n"
+    )
+    (folder / "flat.yaml").write_text(text, encoding="utf-8")
+    assert found(capsys, "flat.yaml") == [("flat.yaml", 4, "wrong-world")]
+    (folder / "flat.yaml").write_text(text.replace(", colour: red", ""), encoding="utf-8")
+    assert found(capsys, "flat.yaml") == [("flat.yaml", 4, "wrong-world"), ("flat.yaml", 5, "wrong-world")]

@@ -185,3 +185,45 @@ def test_a_value_that_cannot_be_made_has_its_place(value: str) -> None:
 def test_a_name_that_no_file_can_have_is_an_unknown_world() -> None:
     with pytest.raises(WorldError, match="there is no such world file"):
         World.load("x" * 300)
+
+
+WALLED = """\
+size: [4, 4]
+border: walls
+walls:
+  - box: {from: [-1, -1], to: [1, 1]}
+  - segment: [[1.5, -2], [1.5, 2]]
+doors:
+  - {name: cellar, segment: [[-2, 1.5], [-1, 1.5]], open: false}
+  - {name: garden, segment: [[-1, 1.5], [0, 1.5]], open: true}
+robots:
+"""
+
+
+def test_robots_that_stand_where_they_cannot_are_told_all_at_once() -> None:
+    robots = {"far": (9, 0), "boxed": (0, 0), "walled": (1.4, 0.5), "stuck": (-1.5, 1.6)}
+    lines = [
+        f"  - {{name: {name}, namespace: {name}, pose: {{x: {x}, y: {y}}}}}"
+        for name, (x, y) in robots.items()
+    ]
+    with pytest.raises(WorldError) as wrong:
+        read_world(WALLED + "\n".join(lines))
+    assert [(problem.line, problem.message) for problem in wrong.value.problems] == [
+        (10, "the robot 'far' stands at [9, 0], outside of the world"),
+        (11, "the robot 'boxed' stands at [0, 0], inside of a box"),
+        (12, "the robot 'walled' stands at [1.4, 0.5], in a wall: 0.10 m from it, with a radius of 0.17 m"),
+        (13, "the robot 'stuck' stands at [-1.5, 1.6], in a wall: 0.10 m from it, with a radius of 0.17 m"),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("border", "place"),
+    [
+        ("walls", "{x: -0.5, y: 1.5}"),  # in a door that is open
+        ("walls", "{x: 1.33, y: 0}"),  # at a wall, without touching it
+        ("open", "{x: 9, y: 0}"),  # nothing keeps robots in such a world
+    ],
+)
+def test_robots_may_stand_wherever_they_can_drive(border: str, place: str) -> None:
+    text = WALLED.replace("border: walls", f"border: {border}")
+    assert len(read_world(f"{text}  - {{pose: {place}}}").robots) == 1
