@@ -15,11 +15,13 @@ _STYLE = """
   .floor{fill:#fdfcf9;stroke:#dedbd2} .grid{stroke:#eceae2} .wall{stroke:#3c434b;fill:none} .box{fill:#e6e2d8}
   .room{fill:#77746a;font:500 13px system-ui,sans-serif}
   .name{fill:#23282e;font:600 12px system-ui,sans-serif}
-  .door{stroke:#b7791f;stroke-width:4} .dock{fill:#f2c14e} .bolt{fill:#7a5b0c}
+  .area{fill:none;stroke:#d3d0c6;stroke-dasharray:4 4}
+  .door{stroke:#b7791f;stroke-width:4} .open{stroke:#b7791f;stroke-width:2;stroke-dasharray:2 6}
+  .dock{fill:#f2c14e} .bolt{fill:#7a5b0c}
   .robot{fill:#fff;stroke:#1f6f8b} .heading{fill:#1f6f8b}
   @media (prefers-color-scheme: dark) {
     .floor{fill:#1f242a;stroke:#313840} .grid{stroke:#272d34} .wall{stroke:#b9c0c8} .box{fill:#2d343c}
-    .room{fill:#8b95a0} .name{fill:#e7e9ec} .dock{fill:#d9a93a} .bolt{fill:#2b2108}
+    .area{stroke:#3b434c} .room{fill:#8b95a0} .name{fill:#e7e9ec} .dock{fill:#d9a93a} .bolt{fill:#2b2108}
     .robot{fill:#1c2026;stroke:#6cc0d8} .heading{fill:#6cc0d8}
   }
 """
@@ -44,11 +46,12 @@ def picture_svg(recording: Recording, width: int = 640) -> str:
     sheet = _Sheet(recording, width)
     parts = [
         *_floor(sheet, recording.drawing),
+        *(sheet.rectangle(room["area"], "area") for room in recording.drawing["rooms"]),
         *_docks(sheet, recording.drawing),
         *_walls(sheet, recording.drawing),
     ]
     parts += [
-        *_closed_doors(sheet, recording),
+        *_doors(sheet, recording),
         *_paths(sheet, recording),
         *_room_names(sheet, recording),
         *_robots(sheet, recording),
@@ -115,16 +118,17 @@ def _docks(sheet: _Sheet, world: dict[str, Any]) -> Iterator[str]:
         yield f'<path class="bolt" transform="translate({x} {y}) scale({size})" d="{bolt}"/>'
 
 
-def _closed_doors(sheet: _Sheet, recording: Recording) -> Iterator[str]:
-    """The doors that are closed at the end."""
+def _doors(sheet: _Sheet, recording: Recording) -> Iterator[str]:
+    """The doors as they are at the end."""
     doors = {door["name"]: door for door in recording.drawing["doors"]}
     moves = {
         data["door"]: kind for _, kind, data in recording.events if kind in ("door_opened", "door_closed")
     }
     for name, door in doors.items():
-        if moves.get(name, "door_opened" if door["open"] else "") != "door_opened":
-            ax, ay, bx, by = door["segment"]
-            yield f'<path class="door" d="M{sheet.x(ax)} {sheet.y(ay)}L{sheet.x(bx)} {sheet.y(by)}"/>'
+        opened = moves.get(name, "door_opened" if door["open"] else "") == "door_opened"
+        ax, ay, bx, by = door["segment"]
+        line = f"M{sheet.x(ax)} {sheet.y(ay)}L{sheet.x(bx)} {sheet.y(by)}"
+        yield f'<path class="{"open" if opened else "door"}" d="{line}"/>'
 
 
 def _walls(sheet: _Sheet, world: dict[str, Any]) -> Iterator[str]:
@@ -193,13 +197,17 @@ def _robots(sheet: _Sheet, recording: Recording) -> Iterator[str]:
     rows: Sequence[tuple[Any, ...]] = [robot["pose"] for robot in described if "pose" in robot]
     if recording.frames:
         rows = recording.frames[-1].robots
-    for robot, row in zip(described, rows, strict=False):
+    for number, (robot, row) in enumerate(zip(described, rows, strict=False)):
         x, y, size = sheet.x(row[0]), sheet.y(row[1]), sheet.size(robot.get("radius", _RADIUS))
         turn = round(-math.degrees(row[2]), 1)
+        colour = _PATH_COLOURS[number % len(_PATH_COLOURS)]
+        edge, inside = (
+            (f' style="stroke:{colour}"', f' style="fill:{colour}"') if len(described) > 1 else ("", "")
+        )
         yield (
             f'<g transform="translate({x} {y}) rotate({turn}) scale({size})">'
-            '<circle class="robot" r="1" stroke-width=".12"/>'
-            '<path class="heading" d="M.72 0L-.38 .5L-.12 0L-.38-.5Z"/></g>'
+            f'<circle class="robot" r="1" stroke-width=".12"{edge}/>'
+            f'<path class="heading" d="M.72 0L-.38 .5L-.12 0L-.38-.5Z"{inside}/></g>'
         )
         if len(described) > 1:
             name = html.escape(str(robot["name"]))

@@ -277,9 +277,8 @@ def test_a_world_file_is_checked_as_a_world(folder: Path, capsys: pytest.Capture
         "size: [4, 4]\nborder: walls\nrobots:\n  - {name: r}\n", encoding="utf-8"
     )
     assert found(capsys, "flat.yaml") == []
-    text = (
-        "size: [4, 4]\nborder: walls\nrobots:\n  - {name: r, pose: {x: 9}, colour: red}\n  - {namespace: b, pose: {x: 9}}\n"
-    )
+    text = "size: [4, 4]\nborder: walls\nrobots:\n  - {name: r, pose: {x: 9}, colour: red}\n"
+    text += "  - {namespace: b, pose: {x: 9}}\n"
     (folder / "flat.yaml").write_text(text, encoding="utf-8")
     assert found(capsys, "flat.yaml") == [("flat.yaml", 4, "wrong-world")]
     (folder / "flat.yaml").write_text(text.replace(", colour: red", ""), encoding="utf-8")

@@ -35,12 +35,13 @@ def test_closed_doors_are_in_the_terminal() -> None:
     assert upper < lower
 
 
-def test_the_picture_shows_the_doors_that_are_closed_at_the_end() -> None:
+def test_the_picture_shows_the_doors_as_they_are_at_the_end() -> None:
     recorder = Recorder()
     recorder.world(World.load(WORLD).description.drawing())
     assert picture_svg(recorder.recording).count('class="door"') == 1
     recorder.event(1.0, "door_opened", {"door": "a", "robot": ""})
     assert picture_svg(recorder.recording).count('class="door"') == 0
+    assert picture_svg(recorder.recording).count('class="open"') == 2
     recorder.event(2.0, "door_closed", {"door": "a", "robot": ""})
     recorder.event(2.0, "door_closed", {"door": "b", "robot": ""})
     assert picture_svg(recorder.recording).count('class="door"') == 2

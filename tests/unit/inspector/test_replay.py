@@ -131,6 +131,7 @@ def test_the_picture_is_svg_with_path_dock_and_rooms() -> None:
         "bathroom",
     ]
     assert len(root.findall(f".//{name}circle[@class='dock']")) == 2
+    assert len(root.findall(f".//{name}rect[@class='area']")) == 4
 
 
 def test_the_picture_of_two_robots_names_them(tmp_path: Path) -> None:
@@ -138,6 +139,9 @@ def test_the_picture_of_two_robots_names_them(tmp_path: Path) -> None:
     text = (tmp_path / "run.svg").read_text()
     assert ">robot_0<" in text
     assert ">robot_1<" in text
+    colours = re.findall(r'class="heading"[^>]*style="fill:(#\w+)"', text)
+    assert len(set(colours)) == 2
+    assert all(f'stroke="{colour}"' in text for colour in colours), "a robot has the colour of its path"
     assert "http" not in text.replace("http://www.w3.org/2000/svg", "")
 
 
