@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType, ModuleType
 
+from jacaros.artifacts.map.slam_data import ArtSlamData
 from jacaros.artifacts.robots.battery import ArtSimBattery
 from jacaros.artifacts.robots.connection_artifact import ArtRos
 from jacaros.artifacts.robots.laser import ArtBaseScan, ArtScan
@@ -17,7 +18,6 @@ from jacaros.artifacts.robots.velocity import (
     ArtCmdVelMuxAndOdometry,
 )
 from jacaros.artifacts.thesis.cleaning import ArtCleaning
-from jacaros.artifacts.thesis.map import ArtSlamData
 from jacaros.artifacts.thesis.tutorial import ArtTutorial
 from jacaros.artifacts.tools import Barrier, Clock, Latch
 from jacaros.env import Artifact, InvalidArtifact, UnknownArtifactType

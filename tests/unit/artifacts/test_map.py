@@ -6,9 +6,11 @@ from collections import deque
 from itertools import pairwise
 
 import pytest
-from robot_lab import Lab, in_lab
+from robot_lab import Lab, Watcher, in_lab
 
-from jacaros.artifacts.thesis.map import ArtSlamData, Cell, route
+from jacaros.artifacts.map.cells import Cell
+from jacaros.artifacts.map.route import route
+from jacaros.artifacts.map.slam_data import ArtSlamData
 from jacaros.env import ArtifactId, Atom, Out, Structure
 
 
@@ -36,7 +38,7 @@ def test_a_range_of_view_tells_all_its_cells() -> None:
         seen = [(0, 0, "free"), (0, 1, "free"), (1, 0, "free"), (1, 1, "obstacle")]
         assert watcher.holds("cell") == seen
         assert watcher.holds("currentRange") == [([cell(*each) for each in seen],)]
-        assert watcher.signals == []
+        assert watcher.signals == [("currentRange", each) for each in seen]
 
     in_lab(body, None)
 
@@ -84,11 +86,115 @@ def test_the_agents_cell_is_shown_and_the_map_can_be_forgotten() -> None:
         await lab.do(artifact, "updatePos", 1, 0)
         await lab.do(artifact, "getVisionRange", 1, 0, 1)
         await lab.do(artifact, "getRoute")
-        assert watcher.holds("pos2d") == [(1, 0)]
+        assert watcher.holds("pos2d") == [(1, 0), ("me", 1, 0), ("goal", 2, 0)]
         await lab.do(artifact, "clear")
+        assert watcher.holds("pos2d") == [(1, 0), ("me", 1, 0)]
         assert watcher.holds("cell") == []
         assert watcher.holds("route") == [([],)]
         assert (await lab.call(artifact, "getRoute")).reason == "no_goal"
+
+    in_lab(body, None)
+
+
+def test_the_range_of_view_signals_each_cell_as_in_the_thesis() -> None:
+    """Listing B.1: column by column, and again for a cell that was in view before."""
+
+    async def body(lab: Lab) -> None:
+        artifact = await lab.make(ArtSlamData)
+        watcher = lab.watch(artifact)
+        await label(lab, artifact, ["..", ".#"])
+        await lab.do(artifact, "getVisionRange", 0, 0, 1)
+        await lab.do(artifact, "getVisionRange", 1, 1, 0)
+        assert [arguments for _, arguments in watcher.signals] == [
+            (0, 0, "free"),
+            (0, 1, "free"),
+            (1, 0, "free"),
+            (1, 1, "obstacle"),
+            (1, 1, "obstacle"),
+        ]
+        assert watcher.holds("currentRange") == [([cell(1, 1, "obstacle")],)]
+
+    in_lab(body, None)
+
+
+def test_objects_have_their_cells_and_obstacles_while_they_are_in_view() -> None:
+    async def body(lab: Lab) -> None:
+        artifact = await lab.make(ArtSlamData)
+        watcher = lab.watch(artifact)
+        await label(lab, artifact, ["..G", ".#."])
+        await lab.do(artifact, "updateSlamData", 0, 1, "home")
+        await lab.do(artifact, "updateObject", "robot_2", 5, 5)
+        places = {("me", 0, 0), ("goal", 2, 0), ("home", 0, 1)}
+        assert objects(watcher) == places | {("robot_2", 5, 5)}
+        await lab.do(artifact, "updateObject", "robot_2", 5, 6)
+        await lab.do(artifact, "getVisionRange", 0, 0, 1)
+        assert objects(watcher) == places | {("robot_2", 5, 6), ("obstacle", 1, 1)}
+        await lab.do(artifact, "removeObject", "robot_2")
+        await lab.do(artifact, "removeObject", "robot_3")
+        await lab.do(artifact, "updateSlamData", 0, 1, "free")
+        await lab.do(artifact, "getVisionRange", 9, 9, 1)
+        assert objects(watcher) == {("me", 0, 0), ("goal", 2, 0)}
+        await lab.do(artifact, "updateSlamData", 1, 0, "free")
+        assert isinstance(next(iter(objects(watcher)))[0], Atom)
+
+    in_lab(body, None)
+
+
+def objects(watcher: Watcher) -> set[tuple[object, ...]]:
+    return {values for values in watcher.holds("pos2d") if len(values) == 3}
+
+
+def test_steps_move_the_agent_and_turn_it() -> None:
+    async def body(lab: Lab) -> None:
+        artifact = await lab.make(ArtSlamData)
+        watcher = lab.watch(artifact)
+        await label(lab, artifact, ["...", "..."])
+        for step, here in [("moveUp", (0, 1)), ("moveRight", (1, 1)), ("moveDown", (1, 0))]:
+            await lab.do(artifact, step)
+            assert watcher.holds("pos2d") == [here, ("me", *here)]
+        await lab.do(artifact, "getRoute", 2, 0)
+        assert watcher.holds("direction") == [("east",)]
+        assert watcher.holds("degrees") == [(90,)]
+        await lab.do(artifact, "moveLeft")
+        await lab.do(artifact, "getRoute", 1, 0)
+        assert watcher.holds("degrees") == [(180,)]
+        await lab.do(artifact, "updatePos", "north", 1, 0)
+        await lab.do(artifact, "getRoute", 2, 0)
+        assert watcher.holds("degrees") == [(-90,)]
+        await lab.do(artifact, "getRoute", 1, 0)
+        assert watcher.holds("direction") == [("reached",)]
+        assert (await lab.call(artifact, "updatePos", "up", 1, 0)).reason == 'unknown_direction("up")'
+
+    in_lab(body, None)
+
+
+def test_the_distance_is_that_since_the_last_question() -> None:
+    async def body(lab: Lab) -> None:
+        artifact = await lab.make(ArtSlamData, Structure("cell_size", (0.5,)))
+        out = Out()
+        for _ in range(3):
+            await lab.do(artifact, "moveUp")
+        await lab.do(artifact, "updatePos", 4, 3)
+        await lab.do(artifact, "getDistance", out)
+        assert out.value == 3.5
+        await lab.do(artifact, "getDistance", out)
+        assert out.value == 0
+        await lab.do(artifact, "updatePos", 1, 7)
+        await lab.do(artifact, "getDistance", out)
+        assert out.value == 2.5
+
+    in_lab(body, None)
+
+
+def test_the_map_is_printed_north_at_the_top() -> None:
+    async def body(lab: Lab) -> None:
+        artifact = await lab.make(ArtSlamData, name="map")
+        await label(lab, artifact, [".#G", ". .", "..."])
+        await lab.do(artifact, "updateSlamData", 2, 2, "unknown")
+        await lab.do(artifact, "updateObject", "robot_2", 1, 2)
+        await lab.do(artifact, "updatePos", -1, 1)
+        await lab.do(artifact, "printSlamData")
+        assert lab.logged == ["[map]    2  .R", "[map]    1 @. .", "[map]    0  .#G", "[map]    x -1"]
 
     in_lab(body, None)
 

@@ -1,1 +1,1 @@
-"""Artifacts of the thesis's scenarios: the household, the map of labelled cells, the ROS tutorial."""
+"""Artifacts of the thesis's scenarios: the household, the ROS tutorial."""

@@ -1,0 +1,267 @@
+"""``ArtSlamData`` of the thesis: the ground as labelled cells, of which an agent perceives what is in its range of view,
+and routes over them.
+"""
+
+import math
+from collections.abc import Sequence
+from typing import ClassVar
+
+from jacaros.artifacts.kit.options import positive, text
+from jacaros.artifacts.kit.ros_artifact import RosArtifact
+from jacaros.artifacts.map.cells import GOAL, OBSTACLE, UNKNOWN, Cell, LabelledCells
+from jacaros.artifacts.map.picture import picture
+from jacaros.artifacts.map.route import DEGREES, compass, route
+from jacaros.env.artifact import Out, operation
+from jacaros.env.values import Atom, Structure
+
+ME = Atom("me")
+"""The agent, as the first argument of ``pos2d(Object, X, Y)``."""
+
+
+class ArtSlamData(RosArtifact):
+    """A map of cells with whole-number coordinates and a label each, such as free, obstacle, goal, home.
+
+    It needs no ROS: agents write what they learn and read what is near (range of view), so that no belief
+    base has to hold the whole map.  x grows to the east, y to the north (thesis, chapter 9 and listing B.1).
+
+    Options:
+        obstacle(Label): another label for cells that no route enters.
+        cell_size(S): side of a cell in metres (1), the unit of `getDistance`.
+
+    Properties:
+        pos2d(X, Y): the agent's cell, 0, 0 at first.
+        pos2d(Object, X, Y): the cell of an object, an atom: `me`, the agent; each place, which is a cell with any other
+            label than free, obstacle and unknown, such as `home` and `goal`; each thing of `updateObject`; and
+            `obstacle`, one for each obstacle in the newest range of view.
+        cell(X, Y, Label): one for each labelled cell of the newest range of view.
+        currentRange(List): the same as a list of ``cell(X, Y, Label)``.
+        route(List): the newest route, a list of ``cell(X, Y)`` from the agent's cell to the goal.
+        direction(D): where the route leads next, an atom: `east`, `northeast`, `north` ..., or `reached` at its end.
+        degrees(D): how far to turn for that, in (-180, 180], to the left if positive.  An agent that has not moved
+            looks to the east.
+
+    Signals:
+        currentRange(X, Y, Label): after `getVisionRange`, one for each labelled cell, column by column.
+    """
+
+    known_options: ClassVar = {"obstacle": text, "cell_size": positive}
+
+    def open(self) -> None:
+        """Begin with an empty map."""
+        self.size = float(str(self.options.get("cell_size", 1.0)))
+        self.cells = self.new_cells(str(self.options.get("obstacle", OBSTACLE)))
+        self.here: Cell = (0, 0)
+        self.heading = 0.0
+        self._driven = 0.0
+        self._asked_at = 0.0
+        self._things: dict[str, Cell] = {}
+        self._obstacles: list[Cell] = []
+        self.define_property("pos2d", *self.here)
+        self.define_property("pos2d", ME, *self.here)
+        self.define_property("currentRange", [])
+        self.define_property("route", [])
+        self.define_property("direction", Atom("reached"))
+        self.define_property("degrees", 0)
+
+    def new_cells(self, obstacle: str) -> LabelledCells:
+        """Return the cells to begin with; for subclasses with sensors."""
+        return LabelledCells(obstacle)
+
+    # ---- labels
+
+    @operation(name="updateSlamData")
+    def update_slam_data(self, x: int, y: int, label: str) -> None:
+        """Label a cell; an earlier label is replaced."""
+        if self.cells.put((x, y), str(label)):
+            self.show_objects()
+
+    @operation(name="updateObject")
+    def update_object(self, thing: str, x: int, y: int) -> None:
+        """Note where a thing is that can move, such as another robot; its former cell is forgotten."""
+        self._things[str(thing)] = (x, y)
+        self.show_objects()
+
+    @operation(name="removeObject")
+    def remove_object(self, thing: str) -> None:
+        """Forget a thing; nothing happens if it is unknown."""
+        self._things.pop(str(thing), None)
+        self.show_objects()
+
+    @operation(name="getSlamData")
+    def get_slam_data(self, x: int, y: int, label: Out) -> None:
+        """Give a cell's label, the atom ``unknown`` when it has none."""
+        label.set(self.cells.label((x, y)) or Atom(UNKNOWN))
+
+    @operation
+    @operation(name="clearSlamData")
+    def clear(self) -> None:
+        """Forget all labels and things, and the range of view and route that came from them."""
+        self.cells.clear()
+        self._things.clear()
+        self._show_range([])
+        self.update_property("route", [])
+
+    @operation(name="printSlamData")
+    def print_slam_data(self) -> None:
+        """Print the map, north at the top.
+
+        ``.`` is free, ``#`` an obstacle, ``@`` the agent, a capital the first letter of a place's or thing's name.
+        """
+        things = {cell: name for name, cell in self._things.items()}
+        for line in picture(self.cells, things, self.here):
+            self.log(line)
+
+    # ---- the agent's place
+
+    @operation(name="updatePos")
+    def update_pos(self, x: int, y: int) -> None:
+        """Note the agent's cell."""
+        self.stand((x, y), self.heading)
+
+    @operation(name="updatePos")
+    def update_pos_and_direction(self, direction: str, x: int, y: int) -> None:
+        """Note where the agent looks, such as ``east``, and its cell; ``unknown_direction(D)`` for another word."""
+        degrees = DEGREES.get(str(direction))
+        if degrees is None:
+            known = ", ".join(DEGREES)
+            self.fail(
+                f"unknown direction {direction}: expected one of {known}", "unknown_direction", direction
+            )
+        self.stand((x, y), degrees)
+
+    @operation(name="moveUp")
+    def move_up(self) -> None:
+        """Note that the agent has moved to the next cell in the north (y + 1), and looks there."""
+        self._step(0, 1)
+
+    @operation(name="moveDown")
+    def move_down(self) -> None:
+        """Note that the agent has moved to the next cell in the south (y - 1), and looks there."""
+        self._step(0, -1)
+
+    @operation(name="moveLeft")
+    def move_left(self) -> None:
+        """Note that the agent has moved to the next cell in the west (x - 1), and looks there."""
+        self._step(-1, 0)
+
+    @operation(name="moveRight")
+    def move_right(self) -> None:
+        """Note that the agent has moved to the next cell in the east (x + 1), and looks there."""
+        self._step(1, 0)
+
+    def _step(self, dx: int, dy: int) -> None:
+        x, y = self.here
+        there = (x + dx, y + dy)
+        self.stand(there, DEGREES[compass(self.here, there)])
+
+    def stand(self, cell: Cell, heading: float, distance: float | None = None) -> None:
+        """Have the agent in *cell*.
+
+        Args:
+            cell: where it is.
+            heading: where it looks, in degrees.
+            distance: metres driven since the last call; None: the straight line.
+        """
+        self._driven += self.size * math.dist(self.here, cell) if distance is None else distance
+        self.heading = heading
+        if cell != self.here:
+            self.here = cell
+            self.update_property("pos2d", *cell, where=(None, None))
+            self.update_property("pos2d", ME, *cell, where=(ME, None, None))
+
+    @operation(name="getDistance")
+    def get_distance(self, metres: Out) -> None:
+        """Give the distance that the agent has moved since the last call, in metres."""
+        metres.set(self._driven - self._asked_at)
+        self._asked_at = self._driven
+
+    # ---- the range of view
+
+    @operation(name="getVisionRange")
+    def get_vision_range(self, x: int, y: int, reach: int) -> None:
+        """Show all labelled cells up to *reach* cells from *x*, *y*, and none of the range before."""
+        near = self.cells.near((x, y), max(0, reach))
+        self._show_range(near)
+        for cell in near:
+            self.signal("currentRange", *cell, self.cells.label(cell))
+
+    def _show_range(self, cells: Sequence[Cell]) -> None:
+        """Replace the cells shown; one that stays as it was gives no event."""
+        shown = [(*cell, self.cells.label(cell)) for cell in cells]
+        self._show("cell", 3, shown)
+        self.update_property("currentRange", [Structure("cell", each) for each in shown])
+        self._obstacles = [cell for cell in cells if self.cells.label(cell) == self.cells.obstacle]
+        self.show_objects()
+
+    def show_objects(self) -> None:
+        """Show what is where as ``pos2d(Object, X, Y)``."""
+        objects: list[tuple[object, ...]] = [(ME, *self.here)]
+        objects += [(Atom(label), *cell) for cell, label in self.cells.places().items()]
+        objects += [(Atom(name), *cell) for name, cell in self._things.items()]
+        objects += [(Atom(OBSTACLE), *cell) for cell in self._obstacles]
+        self._show("pos2d", 3, objects)
+
+    def _show(self, name: str, arity: int, wanted: Sequence[tuple[object, ...]]) -> None:
+        """Have one property called *name* for each of some tuples, and no other with *arity* values."""
+        shown = [each.values for each in self.find_properties(name) if len(each.values) == arity]
+        kept, keep = set(shown), set(wanted)
+        for old in shown:
+            if old not in keep:
+                self.remove_property(name, *old)
+        for new in dict.fromkeys(wanted):
+            if new not in kept:
+                self.define_property(name, *new)
+
+    # ---- routes
+
+    @operation(name="getRoute")
+    def get_route(self) -> None:
+        """Show the shortest route from the agent's cell to the nearest cell labelled ``goal``.
+
+        Fails with ``no_goal``, or with ``no_route(X, Y)`` when the goal cannot be reached over known cells.
+        """
+        self.find_route(self._goal())
+
+    @operation(name="getRoute")
+    def give_route(self, found: Out) -> None:
+        """As `get_route`, and give the route to the caller."""
+        found.set(self.find_route(self._goal()))
+
+    @operation(name="getRoute")
+    def get_route_to(self, x: int, y: int) -> None:
+        """Show the shortest route from the agent's cell to the cell *x*, *y*."""
+        self.find_route((x, y))
+
+    @operation(name="getRoute")
+    def give_route_to(self, x: int, y: int, found: Out) -> None:
+        """As `get_route_to`, and give the route to the caller."""
+        found.set(self.find_route((x, y)))
+
+    def _goal(self) -> Cell:
+        x, y = self.here
+        goals = [cell for cell, label in self.cells.places().items() if label == GOAL]
+        if not goals:
+            self.fail("no cell is labelled goal", "no_goal")
+        return min(goals, key=lambda cell: (math.hypot(cell[0] - x, cell[1] - y), cell))
+
+    def find_route(self, goal: Cell) -> list[Structure]:
+        """Show the route to *goal*, and return it."""
+        free = self.cells.passable()
+        if goal not in free:
+            self.fail(f"cell {goal[0]}, {goal[1]} is not free", "no_route", *goal)
+        way = route(free, self.here, goal)
+        if way is None:
+            self.fail(f"there is no route to cell {goal[0]}, {goal[1]}", "no_route", *goal)
+        cells = [Structure("cell", cell) for cell in way]
+        self.update_property("route", cells)
+        self._show_direction(way)
+        return cells
+
+    def _show_direction(self, way: list[Cell]) -> None:
+        if len(way) < 2:
+            self.update_property("direction", Atom("reached"))
+            return
+        word = compass(way[0], way[1])
+        turn = math.remainder(DEGREES[word] - self.heading, 360.0)
+        self.update_property("direction", Atom(word))
+        self.update_property("degrees", 180.0 if turn == -180.0 else turn)
