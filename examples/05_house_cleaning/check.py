@@ -1,6 +1,7 @@
-"""Were the tasks of each room done in that room, in order, and the battery never empty?
+"""Were the tasks of each room done in that room, in order, the rooms cleaned, and the battery never empty?
 
-Judged from the ground truth: the world takes note of every task with the room that the robot is truly in.
+Judged from the ground truth: the world takes note of every task with the room that the robot is truly in, and of the dirt
+that is left.
 """
 
 import sys
@@ -21,6 +22,9 @@ HALLWAY = (0.0, 0.0)
 PLACES = {"living_room": (2.0, 0.0), "kitchen": (2.0, 2.0), "bathroom": (0.0, 2.0)}
 """The corner of each room that is cleaned, in metres."""
 
+ROUNDS_TO_CLEAN = 4
+"""Each round removes at least that part of the dirt, a quarter."""
+
 
 def check(truth: GroundTruth, rounds: int = 4, recharges: int = 1) -> Verdict:
     """Judge a run of so many rounds and at least so many recharges."""
@@ -36,6 +40,8 @@ def check(truth: GroundTruth, rounds: int = 4, recharges: int = 1) -> Verdict:
         far = distance(event, *PLACES[room])
         verdict.expect(far <= 0.3, f"the robot did '{text}' {far:.1f} m from the corner of the {room}")
 
+    judge_dirt(verdict, truth, rounds)
+
     # A round is over when the robot is in the hallway: after the last task, and before the first one of the next.
     ends = [event.time for event in tasks[len(ROUND) - 1 :: len(ROUND)]]
     begins = [event.time for event in tasks[len(ROUND) :: len(ROUND)]]
@@ -49,6 +55,22 @@ def check(truth: GroundTruth, rounds: int = 4, recharges: int = 1) -> Verdict:
     verdict.expect(len(stays) >= recharges, f"{len(stays)} recharges, not {recharges}")
     verdict.expect(not truth.events_of("bump", "collision"), "the robot bumped into something")
     return verdict
+
+
+def judge_dirt(verdict: Verdict, truth: GroundTruth, rounds: int) -> None:
+    """Judge what is left of the dirt, and where the robot was when it removed the rest."""
+    for room in truth.world["rooms"]:
+        for dirt in room.get("dirt", []):
+            kind, before = dirt["kind"], dirt["grams"]
+            left = truth.dirt[room["name"], kind]
+            most = before * max(0.0, 1.0 - rounds / ROUNDS_TO_CLEAN)
+            verdict.expect(
+                left <= most, f"{left:.1f} g of the {kind} in the {room['name']} are left, not {most:.1f}"
+            )
+    verdict.measure("grams_left", round(sum(truth.dirt.values()), 1))
+    for event in truth.events_of("cleaned"):
+        far = distance(event, *PLACES[event.data["room"]])
+        verdict.expect(far <= 0.3, f"the robot cleaned the {event.data['room']} {far:.1f} m from its corner")
 
 
 if __name__ == "__main__":

@@ -86,7 +86,54 @@ def test_the_checker_sees_a_robot_that_does_not_go_back_into_the_room(tmp_path: 
     world = world_with(tmp_path, HOUSE, "level: 100", "level: 37.8")
     result = run_project(project, world=world, seconds=68)
     complaints = check(result.ground_truth, rounds=1).complaints
-    assert complaints == ["the robot did 'mop floor bathroom' 1.4 m from the corner of the bathroom"]
+    assert complaints == [
+        "the robot did 'mop floor bathroom' 1.4 m from the corner of the bathroom",
+        "12.2 g of the limescale in the bathroom are left, not 10.5",
+        "36.0 g of the stains in the bathroom are left, not 27.0",
+    ]
+
+
+def cleaned(event: Event, room: str, dirt: str) -> bool:
+    return event.kind == "cleaned" and (event.data["room"], event.data["dirt"]) == (room, dirt)
+
+
+def test_the_house_is_clean_at_the_end() -> None:
+    assert truth_of_example().dirt == {
+        ("living_room", "dust"): 0.0,
+        ("kitchen", "stains"): 0.0,
+        ("bathroom", "limescale"): 0.0,
+        ("bathroom", "stains"): 0.0,
+    }
+
+
+@pytest.mark.slow
+def test_nothing_is_cleaned_between_leaving_for_the_dock_and_the_return(tmp_path: Path) -> None:
+    world = world_with(tmp_path, HOUSE, "level: 100", "level: 31.5")  # leaves while it mops the kitchen
+    truth = run(PROJECT, "rounds(1)", world).ground_truth
+    (stopped, started) = [
+        event.time for event in truth.events_of("tool_stopped", "tool_started") if event.data["tool"] == "mop"
+    ][1:3]
+    mopped = [event for event in truth.events if cleaned(event, "kitchen", "stains")]
+    assert started - stopped > 20.0
+    assert [event for event in mopped if stopped < event.time < started] == []
+    assert {round(event.data["grams"]) for event in mopped if event.time == stopped} != {26}
+    assert round(mopped[-1].data["grams"], 1) == 26.0, "2.5 s at 4 g/s, the pause not counted"
+
+
+def test_the_checker_sees_dirt_that_is_left() -> None:
+    truth = truth_of_example()
+    false = falsified(
+        truth,
+        event=lambda e: e if not cleaned(e, "kitchen", "stains") or e.data["percent"] > 2 else None,
+    )
+    assert check(false).complaints == ["1.0 g of the stains in the kitchen are left, not 0.0"]
+
+
+def test_the_checker_sees_a_robot_that_cleans_from_afar() -> None:
+    truth = truth_of_example()
+    wrong = next(event for event in truth.events if cleaned(event, "kitchen", "stains"))
+    false = falsified(truth, event=lambda e: e._replace(y=1.5) if e is wrong else e)
+    assert check(false).complaints == ["the robot cleaned the kitchen 0.5 m from its corner"]
 
 
 def tasks(truth: GroundTruth) -> list[Event]:

@@ -112,20 +112,24 @@ class OperationExecution:
             return
         pause = self._pauses(self._turns)
         pause.since = self._turns.clock.elapsed
-        for callback in list(pause.callbacks):
+        self._call(pause.callbacks, self._turns)
+        self._turns.reconsider()
+
+    def _call(self, callbacks: list[Callable[[], None]], turns: Turns) -> None:
+        for callback in list(callbacks):
             try:
                 callback()
             except BaseException as error:
                 if is_interruption(error):
                     raise
-                self._turns.complain(f"a pause callback of {self.request.operation} failed", error)
-        self._turns.reconsider()
+                turns.complain(f"a pause callback of {self.request.operation} failed", error)
 
     def resume(self) -> None:
         """Let it go on after `pause`."""
         for each in self.linked:
             each.resume()
         if self._pause is not None and self._turns is not None and self._pause.end():
+            self._call(self._pause.resumers, self._turns)
             self._turns.reconsider()
 
     @property
@@ -152,6 +156,11 @@ class OperationExecution:
             callback()
         return lambda: callbacks.remove(callback) if callback in callbacks else None
 
+    def on_resume(self, callback: Callable[[], None]) -> None:
+        """Call *callback* at the end of every pause from now on; like that of `on_pause`, it must not change properties."""
+        if self._turns is not None:
+            self._pauses(self._turns).resumers.append(callback)
+
     async def resumed(self) -> None:
         """Wait until it is not paused; to be awaited through `Artifact.pause_point` or `Artifact.step`."""
         while self._pause is not None and self._pause.since is not None:
@@ -173,14 +182,16 @@ class Pause:
     Attributes:
         since: when the present pause began, None while there is none.
         callbacks: called when one begins.
+        resumers: called when one ends.
     """
 
-    __slots__ = ("_clock", "_spent", "_waiting", "callbacks", "since")
+    __slots__ = ("_clock", "_spent", "_waiting", "callbacks", "resumers", "since")
 
     def __init__(self, clock: Clock) -> None:
         self._clock = clock
         self.since: float | None = None
         self.callbacks: list[Callable[[], None]] = []
+        self.resumers: list[Callable[[], None]] = []
         self._spent = 0.0
         self._waiting: list[asyncio.Future[None]] = []
 

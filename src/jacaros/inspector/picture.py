@@ -17,11 +17,12 @@ _STYLE = """
   .name{fill:#23282e;font:600 12px system-ui,sans-serif}
   .area{fill:none;stroke:#d3d0c6;stroke-dasharray:4 4}
   .door{stroke:#b7791f;stroke-width:4} .open{stroke:#b7791f;stroke-width:2;stroke-dasharray:2 6}
-  .dock{fill:#f2c14e} .bolt{fill:#7a5b0c}
+  .dock{fill:#f2c14e} .bolt{fill:#7a5b0c} .dirt{fill:#8a6238}
   .robot{fill:#fff;stroke:#1f6f8b} .heading{fill:#1f6f8b}
   @media (prefers-color-scheme: dark) {
     .floor{fill:#1f242a;stroke:#313840} .grid{stroke:#272d34} .wall{stroke:#b9c0c8} .box{fill:#2d343c}
     .area{stroke:#3b434c} .room{fill:#8b95a0} .name{fill:#e7e9ec} .dock{fill:#d9a93a} .bolt{fill:#2b2108}
+    .dirt{fill:#b98a58}
     .robot{fill:#1c2026;stroke:#6cc0d8} .heading{fill:#6cc0d8}
   }
 """
@@ -47,6 +48,7 @@ def picture_svg(recording: Recording, width: int = 640) -> str:
     parts = [
         *_floor(sheet, recording.drawing),
         *(sheet.rectangle(room["area"], "area") for room in recording.drawing["rooms"]),
+        *_dirt(sheet, recording),
         *_docks(sheet, recording.drawing),
         *_walls(sheet, recording.drawing),
     ]
@@ -87,10 +89,10 @@ class _Sheet:
     def size(self, metres: float) -> float:
         return round(metres * self.scale, 1)
 
-    def rectangle(self, box: Any, kind: str) -> str:
+    def rectangle(self, box: Any, kind: str, more: str = "") -> str:
         ax, ay, bx, by = box
         return (
-            f'<rect class="{kind}" x="{self.x(ax)}" y="{self.y(by)}" '
+            f'<rect class="{kind}"{more} x="{self.x(ax)}" y="{self.y(by)}" '
             f'width="{self.size(bx - ax)}" height="{self.size(by - ay)}"/>'
         )
 
@@ -107,6 +109,18 @@ def _floor(sheet: _Sheet, world: dict[str, Any]) -> Iterator[str]:
         for y in range(math.ceil(bottom), math.floor(top) + 1)
     ]
     yield f'<path class="grid" d="{"".join(lines)}"/>'
+
+
+def _dirt(sheet: _Sheet, recording: Recording) -> Iterator[str]:
+    """The dirt that is left at the end, the darker the more."""
+    left = {
+        (data["room"], data["dirt"]): data["grams"] for _, kind, data in recording.events if kind == "cleaned"
+    }
+    for room in recording.drawing["rooms"]:
+        for dirt in room.get("dirt", ()):
+            grams = left.get((room["name"], dirt["kind"]), dirt["grams"])
+            if grams > 0.0:
+                yield sheet.rectangle(dirt["area"], "dirt", f' opacity="{0.3 * grams / dirt["grams"]:.2f}"')
 
 
 def _docks(sheet: _Sheet, world: dict[str, Any]) -> Iterator[str]:

@@ -60,11 +60,29 @@ DEFAULT_BOUNDS = Rectangle(-3.0, -3.0, 3.0, 3.0)
 
 
 @dataclass(frozen=True, slots=True)
+class Dirt:
+    """Dirt of one kind in a room, in grams, spread evenly over *area* (None: the floor of the room, furniture excepted)."""
+
+    kind: str
+    grams: float
+    area: Rectangle | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class Room:
     """A named part of the floor; rooms may not say anything about walls."""
 
     name: str
     area: Rectangle
+    dirt: tuple[Dirt, ...] = ()
+
+    def drawing(self) -> dict[str, Any]:
+        """The room as plain JSON data; dirt only where there is some."""
+        shown = [
+            {"kind": dirt.kind, "grams": dirt.grams, "area": list(dirt.area or self.area)}
+            for dirt in self.dirt
+        ]
+        return {"name": self.name, "area": list(self.area), **({"dirt": shown} if shown else {})}
 
 
 @dataclass(frozen=True, slots=True)
@@ -157,6 +175,19 @@ class NavigationSettings:
 
 
 @dataclass(frozen=True, slots=True)
+class CleaningTool:
+    """A tool that removes dirt of some kinds (``removes``) within ``reach`` metres of the robot's centre.
+
+    It takes ``rate`` grams a second, the nearest dirt first, as a brush does that is led by hand or by an arm.
+    """
+
+    name: str
+    removes: tuple[str, ...]
+    rate: float = 5.0
+    reach: float = 0.3
+
+
+@dataclass(frozen=True, slots=True)
 class RobotDescription:
     """One robot: its name, the namespace of its topics ("" for none), where it starts and how it is made."""
 
@@ -169,6 +200,7 @@ class RobotDescription:
     odometry: OdometrySettings = OdometrySettings()
     laser: LaserSettings = LaserSettings()
     navigation: NavigationSettings = NavigationSettings()
+    tools: tuple[CleaningTool, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -192,7 +224,7 @@ class WorldDescription:
             "bounds": list(self.bounds),
             "walls": [list(segment) for segment in self.segments],
             "boxes": [list(box) for box in self.boxes],
-            "rooms": [{"name": room.name, "area": list(room.area)} for room in self.rooms],
+            "rooms": [room.drawing() for room in self.rooms],
             "docks": [
                 {"name": dock.name, "pose": list(dock.pose), "radius": dock.radius} for dock in self.docks
             ],

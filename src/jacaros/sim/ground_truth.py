@@ -25,7 +25,9 @@ class Event(NamedTuple):
     Kinds, with what their data hold: ``docked`` and ``undocked`` (dock), ``charging``, ``charged``,
     ``battery_empty`` and ``battery`` at each whole percent (level), ``bump`` against a wall (side),
     ``collision`` (with, side), ``command_timeout`` and ``bad_command`` (speed, turn_rate), ``task`` (task as
-    text, room).  Of no robot (``""``): ``door_opened`` and ``door_closed`` (door), in the middle of the door.
+    text, room), ``tool_started`` and ``tool_stopped`` (tool), ``cleaned`` at each whole percent of a room's dirt, and
+    when the tool stops (room, dirt, and what is left: grams, percent).  Of no robot (``""``): ``door_opened`` and
+    ``door_closed`` (door), in the middle of the door.
     """
 
     time: float
@@ -56,6 +58,7 @@ class GroundTruth:
     Attributes:
         events: all events, oldest first.
         world: the drawing of the world (see `jacaros.sim.description.WorldDescription.drawing`).
+        dirt: grams of dirt that are left, by room and kind: ``dirt["kitchen", "stains"]``.
         keep: how many points of each path and how many events are kept at least, None for all.  Whoever lets a world
             run for days sets it; listeners are told of everything all the same.
     """
@@ -63,6 +66,11 @@ class GroundTruth:
     def __init__(self, robots: Iterable[str] = (), world: Record | None = None) -> None:
         self.events: list[Event] = []
         self.world: Record = world or {}
+        self.dirt: dict[tuple[str, str], float] = {
+            (room["name"], dirt["kind"]): dirt["grams"]
+            for room in self.world.get("rooms", ())
+            for dirt in room.get("dirt", ())
+        }
         self._paths: dict[str, list[Sample]] = {robot: [] for robot in robots}
         self._latest: dict[str, Sample] = {}
         self._listeners: list[Callable[[Record], None]] = []
@@ -121,6 +129,8 @@ class GroundTruth:
     def record_event(self, event: Event) -> None:
         """Take note of an event."""
         self.events.append(event)
+        if event.kind == "cleaned":
+            self.dirt[event.data["room"], event.data["dirt"]] = event.data["grams"]
         self._forget(self.events)
         if self._listeners:
             self._tell({**event._asdict(), "kind": "event", "event": event.kind})

@@ -15,6 +15,7 @@ Every key may be left out; these are the defaults, but for the errors of odometr
       laser: {enabled: true, beams_per_turn: 360, field_degrees: 360, range_min: 0.1, range_max: 10,
               noise: 0.01, publish: on demand}    # or always
       navigation: {enabled: true, speed: 0.4}    # or true, or false
+      tools: {vacuum: {removes: [dust], rate: 5, reach: 0.3}}    # no tools by default
 """
 
 import math
@@ -22,6 +23,7 @@ import re
 
 from jacaros.sim.description import (
     BatterySettings,
+    CleaningTool,
     LaserSettings,
     NavigationSettings,
     OdometrySettings,
@@ -38,7 +40,7 @@ _NAMESPACE = re.compile(r"/?[A-Za-z][A-Za-z0-9_]*(/[A-Za-z][A-Za-z0-9_]*)*")
 def read_robot(node: Node) -> RobotDescription:
     """Read one robot; what is not said is a TurtleBot at the origin."""
     entries = node.mapping(
-        "name", "namespace", "pose", "radius", "limits", "battery", "odometry", "laser", "navigation"
+        "name", "namespace", "pose", "radius", "limits", "battery", "odometry", "laser", "navigation", "tools"
     )
     return RobotDescription(
         name=entries["name"].text() if "name" in entries else "turtlebot",
@@ -50,6 +52,9 @@ def read_robot(node: Node) -> RobotDescription:
         odometry=_odometry(entries.get("odometry")),
         laser=_laser(entries.get("laser")),
         navigation=_navigation(entries.get("navigation")),
+        tools=tuple(_tool(name, tool) for name, tool in entries["tools"].entries())
+        if "tools" in entries
+        else (),
     )
 
 
@@ -164,4 +169,19 @@ def _navigation(node: Node | None) -> NavigationSettings:
     section = _Section(node, "enabled", "speed")
     return NavigationSettings(
         enabled=section.truth("enabled", usual.enabled), speed=section.number("speed", usual.speed, 0.05, 5.0)
+    )
+
+
+def _tool(name: Node, node: Node) -> CleaningTool:
+    entries = node.mapping("removes", "rate", "reach", required=("removes",))
+    usual = CleaningTool(name.text(), ())
+    if "removes" in entries and not entries["removes"].value:
+        entries["removes"].wrong(
+            "a tool removes at least one kind of dirt", "write the kinds: [dust, crumbs]"
+        )
+    return CleaningTool(
+        usual.name,
+        tuple(kind.text() for kind in entries["removes"].sequence()) if "removes" in entries else (),
+        entries["rate"].number(0.0, 1e6, usual.rate) if "rate" in entries else usual.rate,
+        entries["reach"].number(0.01, 10.0, usual.reach) if "reach" in entries else usual.reach,
     )

@@ -7,7 +7,8 @@ topic (below the robot's namespace)         type                          direct
 ``/battery_state``                          ``sensor_msgs/msg/BatteryState`` out, 1 Hz and on changes
 ``/scan``                                   ``sensor_msgs/msg/LaserScan`` out, 5 Hz when subscribed
 ``/cmd_vel``, ``/cmd_vel_mux/input/navi``   ``geometry_msgs/msg/Twist``   in, the last message wins
-``/cleaning/task``                          ``std_msgs/msg/String``       in, logged with the true pose
+``/cleaning/task``                          ``std_msgs/msg/String``       in, logged with the true pose, starts a tool
+``/cleaning/tool``                          ``std_msgs/msg/String``       in, starts a tool, "" stops; with tools only
 ``/initialpose``                            ``geometry_msgs/msg/PoseWithCovarianceStamped`` in, for localisation
 ``/amcl_pose``                              the same                      out, latched, see `jacaros.sim.robot_transforms`
 =========================================== ============================= ==========================
@@ -67,7 +68,7 @@ class RobotNode:
 
     def _subscribe(self) -> list[Subscription]:
         twist, text = "geometry_msgs/msg/Twist", "std_msgs/msg/String"
-        return [
+        heard = [
             self.backend.subscription(self.prefix + "/cmd_vel", twist, self._command),
             self.backend.subscription(self.prefix + "/cmd_vel_mux/input/navi", twist, self._command),
             self.backend.subscription(self.prefix + "/cleaning/task", text, self._task),
@@ -75,6 +76,9 @@ class RobotNode:
                 self.prefix + "/initialpose", "geometry_msgs/msg/PoseWithCovarianceStamped", self._told_pose
             ),
         ]
+        if self.robot.description.tools:
+            heard.append(self.backend.subscription(self.prefix + "/cleaning/tool", text, self._use_tool))
+        return heard
 
     def _command(self, sample: Sample) -> None:
         self.time.catch_up()
@@ -84,6 +88,10 @@ class RobotNode:
     def _task(self, sample: Sample) -> None:
         self.time.catch_up()
         self.time.world.log_task(self.robot.name, str(sample.message.data))
+
+    def _use_tool(self, sample: Sample) -> None:
+        self.time.catch_up()
+        self.time.world.use_tool(self.robot.name, str(sample.message.data))
 
     def _told_pose(self, sample: Sample) -> None:
         """Somebody says where the robot is, as rviz does; AMCL, too, hears of poses on the map only."""

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from jacaros.errors import UsageError
+from jacaros.sim.cleaning import Cleaning
 from jacaros.sim.contact import WallIndex, push_apart
 from jacaros.sim.description import WorldDescription
 from jacaros.sim.ground_truth import Event, GroundTruth
@@ -33,6 +34,7 @@ class World:
         robots: the robots by name, in the order of the file.
         doors: whether the doors, by name, are open.
         segments: all walls, and the doors that are closed.
+        cleaning: the dirt, and the robots' tools that are at work.
     """
 
     def __init__(self, description: WorldDescription, seed: int | None = None) -> None:
@@ -46,6 +48,7 @@ class World:
         self._lasers: dict[str, Laser] = {}
         self.doors = {door.name: door.open for door in description.doors}
         self._put_up_walls()
+        self.cleaning = Cleaning(self.description, self.room_at, self._note)
         self._truth = GroundTruth(self.robots, description.drawing())
         self._charge_shown = {robot.name: (False, math.ceil(robot.battery.level)) for robot in self._row}
         self._next_sample = 0.0
@@ -97,9 +100,17 @@ class World:
         self.robot(name).command(speed, turn_rate)
 
     def log_task(self, name: str, text: str) -> None:
-        """Take note that the robot says it does a cleaning task, with the room it truly is in."""
+        """Take note that the robot says it does a cleaning task, with the room it truly is in.
+
+        The first word of *text* names the tool that it uses from now on, if it has such a tool.
+        """
         robot = self.robot(name)
         self._note(robot, "task", {"task": text, "room": self.room_at(robot.x, robot.y)})
+        self.cleaning.use(robot, text.partition(" ")[0])
+
+    def use_tool(self, name: str, tool: str) -> None:
+        """Start a cleaning tool of a robot, instead of the one before; "", or what is not a tool of it, stops."""
+        self.cleaning.use(self.robot(name), tool)
 
     def _put_up_walls(self) -> None:
         closed = tuple(door.segment for door in self.description.doors if not self.doors[door.name])
@@ -157,6 +168,8 @@ class World:
             robot.step(dt, self._walls)
         if len(self._row) > 1:
             self._part_robots(dt)
+        if self.cleaning.at_work:
+            self.cleaning.step(dt, self.robots)
         for robot in self._row:
             robot.settle_contacts()
             robot.settle_dock(self.description.docks)

@@ -13,7 +13,7 @@ radians.  Every key but ``robots`` may be left out; what a robot may say is in `
         closed: true
       - box: {from: [2, 2], to: [2.5, 3]}
     rooms:
-      kitchen: {from: [1, 1], to: [3, 3]}
+      kitchen: {from: [1, 1], to: [3, 3]}    # and dirt, see `jacaros.sim.room_file`
     docks:
       - {name: dock, x: 1, y: 1, yaw_degrees: 0, radius: 0.25}
     doors:
@@ -33,12 +33,12 @@ from jacaros.sim.description import (
     Door,
     Problem,
     Rectangle,
-    Room,
     Segment,
     WorldDescription,
     WorldError,
 )
 from jacaros.sim.robot_file import read_pose, read_robot
+from jacaros.sim.room_file import read_rectangle, read_rooms
 from jacaros.text_files import is_file
 from jacaros.yaml_nodes import Node, read_document
 from jacaros.yaml_syntax import read_text
@@ -144,7 +144,7 @@ def _world(document: Node) -> WorldDescription:
         bounds=bounds,
         segments=tuple(segments),
         boxes=tuple(boxes),
-        rooms=_rooms(entries.get("rooms")),
+        rooms=read_rooms(entries["rooms"]) if "rooms" in entries else (),
         docks=_docks(entries.get("docks")),
         doors=_doors(entries.get("doors")),
         robots=tuple(read_robot(robot) for robot in robots),
@@ -179,24 +179,13 @@ def _bounds(entries: dict[str, Node]) -> Rectangle:
     if "bounds" in entries:
         if "size" in entries:
             entries["size"].wrong("'size' and 'bounds' say the same thing", "leave one of them out")
-        return _rectangle(entries["bounds"])
+        return read_rectangle(entries["bounds"])
     if "size" not in entries:
         return Rectangle(-3.0, -3.0, 3.0, 3.0)
     width, height = entries["size"].pair()
     if width <= 0 or height <= 0:
         entries["size"].wrong("a size must be positive", "write [width, height], in metres")
     return Rectangle(-width / 2, -height / 2, width / 2, height / 2)
-
-
-def _rectangle(node: Node) -> Rectangle:
-    entries = node.mapping("from", "to", required=("from", "to"))
-    if len(entries) < 2:
-        return Rectangle(0.0, 0.0, 1.0, 1.0)
-    ax, ay = entries["from"].pair()
-    bx, by = entries["to"].pair()
-    if ax == bx or ay == by:
-        node.wrong(f"{node.what} has no area", "'from' and 'to' are opposite corners")
-    return Rectangle(min(ax, bx), min(ay, by), max(ax, bx), max(ay, by))
 
 
 def _wall(node: Node, segments: list[Segment], boxes: list[Rectangle]) -> None:
@@ -209,7 +198,7 @@ def _wall(node: Node, segments: list[Segment], boxes: list[Rectangle]) -> None:
         return
     shape = entries[kinds[0]]
     if kinds[0] == "box":
-        box = _rectangle(shape)
+        box = read_rectangle(shape)
         boxes.append(box)
         segments.extend(box.edges())
         return
@@ -237,12 +226,6 @@ def _straight(shape: Node, segments: list[Segment], several: bool = False, close
             )
         else:
             segments.append(Segment(ax, ay, bx, by))
-
-
-def _rooms(node: Node | None) -> tuple[Room, ...]:
-    if node is None:
-        return ()
-    return tuple(Room(name, _rectangle(area)) for name, area in node.mapping().items())
 
 
 def _docks(node: Node | None) -> tuple[Dock, ...]:

@@ -69,6 +69,35 @@ def test_work_rests_while_the_intention_is_suspended() -> None:
     in_lab(body, None)
 
 
+def test_a_tool_rests_while_the_intention_is_suspended_and_stops_at_the_end() -> None:
+    async def body(lab: Lab) -> None:
+        tools: list[tuple[float, str]] = []
+        lab.backend.subscription(
+            "/cleaning/tool",
+            "std_msgs/msg/String",
+            lambda sample: tools.append((round(lab.clock.elapsed, 2), sample.message.data)),
+        )
+        cleaner = await lab.make(ArtCleaning)
+        cleaning = lab.begin(cleaner, "clean", 3)
+        await lab.sleep(0.4)
+        cleaning.execution.pause()
+        await lab.sleep(0.1)  # shorter than the sleep that goes on
+        cleaning.execution.resume()
+        await lab.sleep(2.0)
+        cleaning.execution.pause()
+        await lab.sleep(10)
+        cleaning.execution.resume()
+        await cleaning.done
+        assert tools == [(0.4, ""), (0.5, "scrub"), (2.5, ""), (12.5, "mop"), (13.6, "")]
+        dropped = lab.begin(cleaner, "clean", 1)
+        await lab.sleep(1)
+        dropped.execution.cancel()
+        await lab.sleep(5)
+        assert tools[5:] == [(14.6, "")]
+
+    in_lab(body, None)
+
+
 def test_the_world_logs_each_task_with_the_true_place() -> None:
     async def body(lab: Lab) -> None:
         assert lab.world is not None

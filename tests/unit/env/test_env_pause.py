@@ -8,6 +8,7 @@ class Robot(Artifact):
         self.define_property("units", 0)
         self._step = step
         self.commands = []
+        self.resumed = []
         self._motion = None
 
     def is_free(self, *_: object):
@@ -17,6 +18,7 @@ class Robot(Artifact):
     async def move(self, units: int):
         self._motion = motion = self.current
         motion.on_pause(lambda: self.commands.append(("halt", self.clock.elapsed)))
+        motion.on_resume(lambda: self.resumed.append(self.clock.elapsed))
         try:
             for _ in range(units):
                 lost = await self.pause_point(lambda: self.commands.append("pause point"))
@@ -104,6 +106,7 @@ def test_a_paused_motion_halts_at_once_and_goes_on_with_what_remains(play):
         assert not move.execution.paused
         await move.wait()
         assert stage.robot.commands == [("halt", 1.5), "pause point", ("lost", 10.0)]
+        assert stage.robot.resumed == [11.5]
         assert units(stage, robot) == 5
         assert move.ended_at == 14.5
 

@@ -31,7 +31,9 @@ class ArtCleaning(RosArtifact):
     """Tells the tasks of a room and what room comes next.
 
     Every task is also published as text, such as ``vacuum carpet living_room``, on ``/cleaning/task`` when
-    the system has ROS: the embedded world logs it with the robot's true place.
+    the system has ROS: the embedded world logs it with the robot's true place, and a robot with a tool of the first
+    word's name starts it.  An empty text on ``/cleaning/tool`` stops it at the
+    end and at the moment of a pause, and its name starts it again when the pause ends.
 
     Options:
         match_timeout(S): how long the first task waits for a subscriber of ``/cleaning/task`` (3 s).
@@ -46,6 +48,7 @@ class ArtCleaning(RosArtifact):
 
     known_options: ClassVar = MATCH_OPTIONS
     _tasks: Publisher | None = None
+    _tools: Publisher | None = None
 
     def open(self) -> None:
         """Define the properties; the robot begins in the hallway."""
@@ -54,6 +57,7 @@ class ArtCleaning(RosArtifact):
             self.define_property(task, "", "")
         if self.resources.get("ros") is not None:
             self._tasks = self.publisher("cleaning/task", "std_msgs/msg/String")
+            self._tools = self.publisher("cleaning/tool", "std_msgs/msg/String")
 
     @operation(name="whereAmI")
     def where_am_i(self) -> None:
@@ -82,12 +86,19 @@ class ArtCleaning(RosArtifact):
             self.fail(f"there is no room {room}; rooms are 0 to {len(ROOMS) - 1}", "unknown_room", room)
         if self._tasks is not None and TASKS[room]:
             await self.matched(self._tasks)
-        for number, (task, thing) in enumerate(TASKS[room]):
-            if number:
-                await self._work(BETWEEN_TASKS)
-            self.update_property(task, thing, ROOMS[room])
-            self._publish(f"{task} {thing} {ROOMS[room].replace(' ', '_')}".lower())
-        await self._work(CLEANING)
+        tool = ""
+        self.current.on_pause(lambda: self._use(""))
+        self.current.on_resume(lambda: self._use(tool))
+        try:
+            for number, (task, thing) in enumerate(TASKS[room]):
+                if number:
+                    await self._work(BETWEEN_TASKS)
+                tool = task
+                self.update_property(task, thing, ROOMS[room])
+                self._publish(f"{task} {thing} {ROOMS[room].replace(' ', '_')}".lower())
+            await self._work(CLEANING)
+        finally:
+            self._use("")
 
     async def _work(self, seconds: float) -> None:
         """Take so many seconds, pauses not counted."""
@@ -101,3 +112,7 @@ class ArtCleaning(RosArtifact):
     def _publish(self, task: str) -> None:
         if self._tasks is not None:
             self._tasks.publish(self._tasks.message(data=task))
+
+    def _use(self, tool: str) -> None:
+        if self._tools is not None:
+            self._tools.publish(self._tools.message(data=tool))
