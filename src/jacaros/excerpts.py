@@ -37,6 +37,11 @@ def _cut(line: str) -> str:
     return line if len(line) <= LONGEST else f"{line[: LONGEST - 3]}..."
 
 
+def help_line(text: str) -> str:
+    """Return the line below a message that says what to do about it."""
+    return f"  = help: {printable(text)}"
+
+
 def marked(line: str, column: int, end: int | None = None) -> tuple[str, str]:
     """Return the part of a line around a place, and the carets below it.
 

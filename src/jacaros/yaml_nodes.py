@@ -17,7 +17,7 @@ from ruamel.yaml.error import YAMLError
 from ruamel.yaml.nodes import MappingNode, SequenceNode
 
 from jacaros.errors import JacarosError
-from jacaros.excerpts import MOST, escaped, marked, printable
+from jacaros.excerpts import MOST, escaped, help_line, marked, printable
 from jacaros.yaml_syntax import Problem, syntax_problem
 
 __all__ = ["Node", "Problem", "YamlFileError", "plain_values", "read_document", "shown"]
@@ -38,21 +38,21 @@ class YamlFileError(JacarosError):
         self.file = file
         self.problems = sorted(problems, key=lambda problem: (problem.line, problem.column))
         lines = text.splitlines()
-        told = [shown(file, lines, problem) for problem in self.problems[:MOST]]
+        told = [shown(file, lines, problem, "error: ") for problem in self.problems[:MOST]]
         if len(self.problems) > MOST:
             told.append(f"{escaped(file)}: {len(self.problems) - MOST} more problems")
         super().__init__("\n".join(told))
 
 
-def shown(file: str, lines: list[str], problem: Problem) -> str:
-    """A mistake in the *lines* of a file, as people read it."""
-    told = [f"{escaped(file)}:{problem.line}:{problem.column}: {printable(problem.message)}"]
+def shown(file: str, lines: list[str], problem: Problem, level: str = "") -> str:
+    """A mistake in the *lines* of a file, as people read it; *level* such as ``error: `` stands before the message."""
+    told = [f"{escaped(file)}:{problem.line}:{problem.column}: {level}{printable(problem.message)}"]
     if 0 < problem.line <= len(lines):
         number = f"{problem.line:>5} | "
         excerpt, caret = marked(lines[problem.line - 1], problem.column)
         told += [number + excerpt, " " * len(number) + caret]
     if problem.cure:
-        told.append(f"  cure: {printable(problem.cure)}")
+        told.append(help_line(problem.cure))
     return "\n".join(told)
 
 

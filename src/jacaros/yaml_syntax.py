@@ -19,6 +19,7 @@ class Problem:
     cure: str = ""
 
 
+_TOP_KEY = re.compile(r"^([\w-]+)[ \t]*:", re.MULTILINE)
 _QUOTES = 'put texts with such characters in quotes: "..."'
 _INDENT = "begin it in the same column as its neighbours, or further right than what it belongs to"
 _EXPLAINED = (
@@ -81,6 +82,17 @@ def _explained(told: str, line: int, column: int) -> Problem:
                 line, column, f"not YAML: {message.format(*parts, problem=told)}", cure.format(*parts)
             )
     return Problem(line, column, f"not YAML: {told.splitlines()[0]}", "mind indents, colons and quotes")
+
+
+def top_keys(path: Path) -> frozenset[str]:
+    """Return the keys of a file's outermost mapping as far as they are written in block style; none of an unreadable file.
+
+    It tells kinds of YAML files apart without parsing them, and of files with mistakes, too.
+    """
+    try:
+        return frozenset(_TOP_KEY.findall(read_text(path)[0]))
+    except OSError:
+        return frozenset()
 
 
 def read_text(path: Path) -> tuple[str, Problem | None]:

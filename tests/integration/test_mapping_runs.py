@@ -85,11 +85,11 @@ def test_a_check_knows_what_is_mapped(folder: Path, capsys: pytest.CaptureFixtur
     write(folder, "drive.asl", "!start.\n\n+!start\n  <- driv(1, 2);\n     drive(1).\n")
     code, lines, _ = output(capsys, "check", "--strict", "p.jcm")
     assert code == 1
-    assert [line for line in lines if ": warning:" in line or line.startswith("hint")] == [
+    assert [line for line in lines if ": warning:" in line or line.startswith("  = help")] == [
         "drive.asl:4:6: warning: no artifact of the project offers driv/2 [unknown-operation]",
-        "hint: did you mean drive?",
+        "  = help: did you mean drive?",
         "drive.asl:5:6: warning: no artifact of the project offers drive/1 [unknown-operation]",
-        "hint: there is drive/2",
+        "  = help: there is drive/2",
     ]
 
 
@@ -117,7 +117,7 @@ def test_a_check_of_a_project_covers_its_mapping_once(
 def test_a_mapping_that_is_not_there(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     code, lines, errors = output(capsys, "run", "drive.asl", "--mapping", "robto.yaml", "--clock", "fast")
     assert (code, lines) == (1, [])
-    assert errors == "error: there is no mapping file robto.yaml\nhint: did you mean robot.yaml?\n"
+    assert errors == "error: there is no mapping file robto.yaml\n  = help: did you mean robot.yaml?\n"
 
 
 def test_a_wrong_mapping_is_told_before_anything_runs(
@@ -130,9 +130,10 @@ def test_a_wrong_mapping_is_told_before_anything_runs(
     )
     code, lines, errors = output(capsys, "run", "drive.asl", "--mapping", "robot.yaml", "--clock", "fast")
     assert (code, lines) == (1, [])
-    assert "robot.yaml:2:72: 'x': geometry_msgs/msg/Twist has no field 'x'" in errors
+    assert "robot.yaml:2:72: error: 'x': geometry_msgs/msg/Twist has no field 'x'" in errors
     assert (
-        "cure: its fields: linear (geometry_msgs/msg/Vector3), angular (geometry_msgs/msg/Vector3)" in errors
+        "  = help: its fields: linear (geometry_msgs/msg/Vector3), angular (geometry_msgs/msg/Vector3)"
+        in errors
     )
 
 

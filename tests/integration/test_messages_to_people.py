@@ -95,7 +95,7 @@ def test_a_syntax_error_in_a_program(project: Project) -> None:
             |            ^
           6 |      .print("c").
             |      ^^^^^^
-        hint: it was opened at line 5, column 12
+          = help: it was opened at line 5, column 12
         """,
     )
 
@@ -119,7 +119,7 @@ def test_a_syntax_error_in_a_jcm_file(project: Project) -> None:
         house.jcm:4:24: error: ':' is expected, not 'Clock'
           4 |         artifact clock Clock(1)
             |                        ^^^^^
-        hint: artifact name : Class(arguments)
+          = help: artifact name : Class(arguments)
         """,
     )
 
@@ -133,7 +133,7 @@ def test_a_syntax_error_in_a_mas2j_file(project: Project) -> None:
         house.mas2j:3:1: error: a ';' is expected behind the agent 'robot'
           3 | }
             | ^
-        hint: each agent of the list ends with ';'
+          = help: each agent of the list ends with ';'
         """,
     )
 
@@ -312,10 +312,32 @@ def test_a_world_that_is_not_there(project: Project) -> None:
     project.write("robot.asl", "!start. +!start <- .print(done).")
     assert project.run("run", "robot.asl", "--world", "nowhere") == told(
         1,
-        "jacaros: nowhere:1:1: there is no such world file\n"
-        "  cure: give the path of a world file, or one of the shipped worlds: "
+        "error: world not found: `nowhere`\n"
+        "  = help: give the path of a world file, or one of the shipped worlds: "
         "empty, house, patrol, three_robots, two_robots\n",
     )
+
+
+def test_a_project_that_names_no_world(project: Project) -> None:
+    project.write("robot.asl", "!start. +!start <- .print(done).")
+    project.write(
+        "practice.jcm",
+        """\
+        mas practice {
+          agent robot
+          world: "patrl"
+        }
+        """,
+    )
+    wrong = (
+        "practice.jcm:3:10: error: world not found: `patrl`{}\n"
+        '  3 |   world: "patrl"\n'
+        "    |          ^^^^^^^\n"
+        "  = help: did you mean `patrol`?\n"
+    )
+    assert project.run("run", "practice.jcm") == told(1, wrong.format(""))
+    code, output, _ = project.run("check", "practice.jcm")
+    assert (code, output) == (1, wrong.format(" [wrong-project]") + "\n")
 
 
 def test_a_mistake_in_a_world_file(project: Project) -> None:
@@ -323,10 +345,10 @@ def test_a_mistake_in_a_world_file(project: Project) -> None:
     project.write("yard.yaml", "robots:\n  - name: a\n    pos: {x: 1}\n")
     assert project.run("run", "robot.asl", "--world", "yard.yaml") == told(
         1,
-        "jacaros: yard.yaml:3:5: item 1 of 'robots' has no key 'pos'\n"
+        "yard.yaml:3:5: error: item 1 of 'robots' has no key 'pos'\n"
         "    3 |     pos: {x: 1}\n"
         "            ^\n"
-        "  cure: did you mean 'pose'?\n",
+        "  = help: did you mean 'pose'?\n",
     )
 
 
@@ -352,5 +374,5 @@ def test_commands_that_nobody_hears_are_told_once(project: Project) -> None:
         "[robot] robot.yaml:3:14: no subscriber on /cmd_velo; publishing anyway\n"
         "    3 |     publish: cmd_velo\n"
         "                     ^\n"
-        "  cure: start the node that subscribes to it; `jacaros ros list` shows the topics of the graph\n"
+        "  = help: start the node that subscribes to it; `jacaros ros list` shows the topics of the graph\n"
     )

@@ -7,7 +7,7 @@ from typing import Literal as OneOf
 
 from jacaros.asl.source import Span
 from jacaros.errors import JacarosError
-from jacaros.excerpts import MOST, escaped, marked, printable
+from jacaros.excerpts import MOST, escaped, help_line, marked, printable
 
 Severity = OneOf["error", "warning", "note"]
 """An error refuses the program; a warning is nearly always a mistake; a note is worth knowing."""
@@ -29,7 +29,7 @@ class Diagnostic:
     opened: Span | None = None
 
     def render(self, with_code: bool = False) -> str:
-        """Return the message as printed: place, message (with its code, if wanted), excerpt with carets, hint.
+        """Return the message as printed: place, message (with its code, if wanted), excerpt with carets, help.
 
         Characters that a terminal would obey are escaped, and long lines are cut: see `jacaros.excerpts`.
         """
@@ -40,7 +40,7 @@ class Diagnostic:
                 lines.extend(excerpt(self.opened))
             lines.extend(excerpt(self.span))
         if self.hint is not None:
-            lines.append(f"hint: {printable(self.hint)}")
+            lines.append(help_line(self.hint))
         return "\n".join(lines)
 
     def place(self) -> str:

@@ -13,8 +13,11 @@ from jacaros.cli.files import existing, no_programs
 from jacaros.cli.reports import as_json, as_sarif
 from jacaros.errors import UsageError
 from jacaros.mas.checking import Findings, check_files
+from jacaros.text_files import is_file
 
 _KINDS = (".asl", ".mas2j", ".jcm", ".py", ".yaml", ".yml")
+MOST_NAMES = 8
+"""Skipped files that are named."""
 _COLOURS: dict[Severity, str] = {"error": "red", "warning": "yellow", "note": "cyan"}
 
 
@@ -57,7 +60,7 @@ def command(
     imports: bool,
 ) -> int:
     """Tell what is wrong in each FILE: an agent program (.asl, or .py for an agent in Python), a project (.mas2j, .jcm)
-    with the programs of its agents, a mapping file or a world file (.yaml), or a folder with programs and projects.
+    with the programs of its agents, a mapping file or a world file (.yaml), or a folder with any of them.
 
     All problems are told at once. Each kind has a code; the reference page "Diagnostics" explains them. A comment
     `// jacaros: ignore CODE` switches a warning off for its line, or, on a line of its own, for the clause below
@@ -68,7 +71,8 @@ def command(
     unknown = [code for code in ignore if code not in KINDS]
     if unknown:
         raise UsageError(f"there is no code {unknown[0]}")
-    findings = check_files([existing(file, _KINDS) for file in files], mappings, imports)
+    supported = _supported(files)
+    findings = check_files([existing(file, _KINDS) for file in supported], mappings, imports)
     if not findings.files and not findings.diagnostics:
         raise no_programs(files)
     findings.diagnostics = bounded(
@@ -80,6 +84,16 @@ def command(
         click.echo((as_json if style == "json" else as_sarif)(findings))
     counts = Counter(each.severity for each in findings.diagnostics)
     return 1 if counts["error"] or (strict and counts["warning"]) else 0
+
+
+def _supported(files: Sequence[Path]) -> Sequence[Path]:
+    """Skip files of other kinds, which a shell's ``*`` names, too; but not if there is no other file."""
+    foreign = [file for file in files if is_file(file) and file.suffix not in _KINDS]
+    if not foreign or len(foreign) == len(files):
+        return files
+    names = ", ".join(map(str, foreign[:MOST_NAMES])) + (", ..." if len(foreign) > MOST_NAMES else "")
+    click.echo(f"note: skipped because of their file types: {names}", err=True)
+    return [file for file in files if file not in foreign]
 
 
 def tell(findings: Findings) -> None:

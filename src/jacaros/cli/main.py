@@ -141,6 +141,7 @@ def _own(arguments: list[str]) -> list[str]:
 
 def _tell(error: JacarosError, code: int) -> int:
     # Diagnostics begin with file and line, where editors look for them.
-    prefix = "" if hasattr(error, "diagnostics") or str(error).startswith("error: ") else "jacaros: "
+    located = hasattr(error, "diagnostics") or hasattr(error, "problems")
+    prefix = "" if located or str(error).startswith("error: ") else "jacaros: "
     print(f"{prefix}{error}", file=sys.stderr)
     return code

@@ -49,6 +49,7 @@ def check_files(paths: Sequence[Path], mappings: Sequence[str] = (), imports: bo
     """Check programs, projects with the programs of their agents, and whole folders.
 
     In a folder a program is checked by itself only if no project there names it and no other program includes it.
+    World files and mapping files are checked, too; other YAML files are skipped.
 
     Args:
         paths: files and folders.
@@ -109,6 +110,8 @@ def _check_folder(folder: Path, findings: Findings) -> None:
         if file not in included:
             findings.diagnostics += own.diagnostics
         findings.files |= own.files
+    for path in files_below(folder, MAPPINGS):
+        _check_yaml(path, findings, named=False)
 
 
 def _check_projects(folder: Path, findings: Findings) -> None:
@@ -148,6 +151,7 @@ def _check_project(path: Path, findings: Findings) -> frozenset[Path]:
                 programs.append((agent, program))
     for mapping in _mapping_files(deployment, programs, folders):
         _check_mapping(mapping, findings)
+    _check_world(deployment, findings)
     if deployment.artifact_environment:
         # What agents in Python make, and what programs with errors would make, is not known.
         known = programs if len(programs) == len(different) else []
@@ -255,17 +259,43 @@ def _is_of_wrong_mapping(diagnostic: Diagnostic, folders: tuple[Path, ...]) -> b
     return _is_wrong_mapping(written, folders)
 
 
-def _check_yaml(path: Path, findings: Findings) -> None:
-    """Check a world file, or a mapping file."""
-    from jacaros.sim.world_file import is_world, world_problems  # here: see `_check_mapping`
+def _check_world(deployment: Deployment, findings: Findings) -> None:
+    """Check the world that a project names."""
+    if deployment.world is None:
+        return
+    from jacaros.mas.ros_graph import NO_WORLD  # here: most projects name none
+    from jacaros.sim.description import UnknownWorld
+    from jacaros.sim.world_file import find_world, shipped_worlds
 
-    if not is_world(path):
+    if deployment.world in (NO_WORLD, *shipped_worlds()):
+        return
+    try:
+        _check_world_file(find_world(deployment.world), findings)
+    except UnknownWorld as unknown:
+        findings.diagnostics.append(
+            Diagnostic("error", unknown.message, deployment.world_span, unknown.cure, "wrong-project")
+        )
+
+
+def _check_yaml(path: Path, findings: Findings, named: bool = True) -> None:
+    """Check a world file or a mapping file; one that is neither only if it is *named* on the command line."""
+    from jacaros.artifacts.mapping.file import is_mapping  # here: see `_check_mapping`
+    from jacaros.sim.world_file import is_world
+
+    if is_world(path):
+        _check_world_file(path, findings)
+    elif named or is_mapping(path):  # other programs have YAML files, too
         _check_mapping(path, findings)
-    elif path.resolve() not in findings.files:
-        from jacaros.mas.mappings import WRONG_WORLD, diagnostics_of
 
-        findings.files.add(path.resolve())
-        findings.diagnostics += diagnostics_of(str(path), *world_problems(path), wrong=WRONG_WORLD)
+
+def _check_world_file(path: Path, findings: Findings) -> None:
+    if path.resolve() in findings.files:
+        return
+    from jacaros.mas.mappings import WRONG_WORLD, diagnostics_of  # here: see `_check_mapping`
+    from jacaros.sim.world_file import world_problems
+
+    findings.files.add(path.resolve())
+    findings.diagnostics += diagnostics_of(str(path), *world_problems(path), wrong=WRONG_WORLD)
 
 
 def _check_mapping(path: Path, findings: Findings) -> None:

@@ -127,6 +127,7 @@ class Deployment:
             with one of the known environment classes.
         infrastructure: of a `.mas2j` file, or the platforms of a `.jcm` file, as written.
         world: the world file (a path that exists, or the name as written).
+        world_span: where the project names it.
         source_paths: folders in which agent programs and included files are looked for, in order.
         ignored: warnings about what is declared and has no effect here.
     """
@@ -139,5 +140,6 @@ class Deployment:
     artifact_environment: bool = False
     infrastructure: tuple[str, ...] = ()
     world: str | None = None
+    world_span: Span | None = field(default=None, compare=False, repr=False)
     source_paths: tuple[Path, ...] = ()
     ignored: tuple[Diagnostic, ...] = ()

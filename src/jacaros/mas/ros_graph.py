@@ -9,10 +9,13 @@ from contextlib import AsyncExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from jacaros.asl.diagnostics import Diagnostic
 from jacaros.clock import Clock
+from jacaros.mas.deployment import ProjectError
 from jacaros.mas.options import RunOptions
 
 if TYPE_CHECKING:
+    from jacaros.asl.source import Span
     from jacaros.mas.graph_warnings import EmptyGraph, GraphTime, UndeclaredParameters
     from jacaros.mas.guarding import RunGuard
     from jacaros.ros.backend import Backend
@@ -44,6 +47,7 @@ class RosGraph:
         log: takes a line for people.
         hurry: called when messages of other processes have been delivered: agents need not wait for the next round of the
             loop.
+        world_span: where the project names its world.
 
     Attributes:
         world: the embedded world, None while there is none.
@@ -57,12 +61,14 @@ class RosGraph:
         world: str | Path | None,
         log: Callable[[str], None],
         hurry: Callable[[], None] = lambda: None,
+        world_span: "Span | None" = None,
     ) -> None:
         self._hurry = hurry
         self._options = options
         self._clock = clock
         self._name = node_name(name)
         self._source = options.world if options.world is not None else world
+        self._source_span = world_span if options.world is None else None
         self._log = log
         self._backend: Backend | None = None
         self._tracer: Tracer | None = None
@@ -83,6 +89,7 @@ class RosGraph:
         Raises:
             BackendUnavailable: the library for the graph is missing; the text tells the cure.
             WorldError: the world file is wrong.
+            ProjectError: the project names a world that does not exist.
         """
         if self._options.ros != "memory":
             backend = self._open()
@@ -205,11 +212,19 @@ class RosGraph:
         self._log(f"[ros] {text}")
 
     def _start_world(self, backend: "Backend") -> None:
+        from jacaros.sim.description import UnknownWorld
         from jacaros.sim.node import SimNode
         from jacaros.sim.world import World
 
         source = self._source if self._source is not None else DEFAULT_WORLD
-        self.world = World.load(source, self._options.seed)
+        try:
+            self.world = World.load(source, self._options.seed)
+        except UnknownWorld as unknown:
+            if self._source_span is None:
+                raise
+            raise ProjectError(
+                [Diagnostic("error", unknown.message, self._source_span, unknown.cure)]
+            ) from unknown
         self.world.ground_truth.keep = None if self._options.keep_ground_truth else _GROUND_TRUTH
         self._node = SimNode(self.world, backend, self._clock)
         self._node.start()

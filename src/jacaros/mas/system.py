@@ -117,7 +117,13 @@ class System:
 
             self.console = RosoutConsole(self.console, lambda: self.ros.joined)
         return RosGraph(
-            options, self.clock, deployment.name, deployment.world, self.console.log, self.scheduler.hurry
+            options,
+            self.clock,
+            deployment.name,
+            deployment.world,
+            self.console.log,
+            self.scheduler.hurry,
+            deployment.world_span,
         )
 
     def _found(

@@ -8,6 +8,7 @@ import math
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
+from jacaros.excerpts import help_line, printable
 from jacaros.sim.trigonometry import PI
 from jacaros.yaml_nodes import Problem, YamlFileError
 
@@ -238,8 +239,25 @@ class WorldDescription:
         }
 
 
-__all__ = ["Problem", "WorldError"]
+__all__ = ["Problem", "UnknownWorld", "WorldError"]
 
 
 class WorldError(YamlFileError):
     """A wrong world file."""
+
+
+class UnknownWorld(WorldError):
+    """A name that is neither that of a file nor that of a shipped world.
+
+    Attributes:
+        message: what is wrong, without the help.
+        cure: the world that was probably meant, or the known ones.
+    """
+
+    def __init__(self, name: str, cure: str) -> None:
+        super().__init__(name, "", [])
+        self.message = f"world not found: `{printable(name)}`"
+        self.cure = cure
+
+    def __str__(self) -> str:
+        return f"error: {self.message}\n{help_line(self.cure)}"

@@ -23,6 +23,7 @@ radians.  Every key but ``robots`` may be left out; what a robot may say is in `
         pose: {x: 0, y: 0, yaw_degrees: 0}
 """
 
+import difflib
 import itertools
 import math
 import re
@@ -34,6 +35,7 @@ from jacaros.sim.description import (
     Problem,
     Rectangle,
     Segment,
+    UnknownWorld,
     WorldDescription,
     WorldError,
 )
@@ -41,11 +43,12 @@ from jacaros.sim.robot_file import read_pose, read_robot
 from jacaros.sim.room_file import read_rectangle, read_rooms
 from jacaros.text_files import is_file
 from jacaros.yaml_nodes import Node, read_document
-from jacaros.yaml_syntax import read_text
+from jacaros.yaml_syntax import read_text, top_keys
 
 _WORLDS = Path(__file__).parent / "worlds"
 _KEYS = ("name", "size", "bounds", "border", "seed", "walls", "rooms", "docks", "doors", "robots")
-_TOP_KEY = re.compile(r"^(\w+)[ \t]*:", re.MULTILINE)
+_TELLING = frozenset(_KEYS) - {"name", "seed"}
+"""Keys that few other YAML files have."""
 _TOUCHING = 0.001
 """Metres that a robot may stand in a wall: so much is lost when its place is rounded."""
 _DOOR_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
@@ -60,13 +63,24 @@ def find_world(name: str) -> Path:
     """The file of a shipped world's *name* or of a path.
 
     Raises:
-        WorldError: when there is neither.
+        UnknownWorld: when there is neither.
     """
     for path in (Path(name), _WORLDS / f"{name}.yaml"):
         if is_file(path):
             return path
-    cure = f"give the path of a world file, or one of the shipped worlds: {', '.join(shipped_worlds())}"
-    raise WorldError(name, "", [Problem(1, 1, "there is no such world file", cure)])
+    raise UnknownWorld(name, _meant(name))
+
+
+def _meant(name: str) -> str:
+    """Say which world was probably meant, or which there are."""
+    try:
+        beside = [str(path) for path in Path(name).parent.glob("*.y*ml")]
+    except (OSError, ValueError):
+        beside = []
+    near = difflib.get_close_matches(name, [*shipped_worlds(), *beside], 1)
+    if near:
+        return f"did you mean `{near[0]}`?"
+    return f"give the path of a world file, or one of the shipped worlds: {', '.join(shipped_worlds())}"
 
 
 def load_world(name: str) -> WorldDescription:
@@ -83,12 +97,9 @@ def load_world(name: str) -> WorldDescription:
 
 
 def is_world(path: Path) -> bool:
-    """Whether a YAML file is a world file: it has robots and no artifacts."""
-    try:
-        keys = set(_TOP_KEY.findall(read_text(path)[0]))
-    except OSError:
-        return False
-    return "robots" in keys and "artifacts" not in keys
+    """Whether a YAML file is a world file, wrong as it may be: it has robots, or two other keys of a world."""
+    keys = top_keys(path)
+    return "artifacts" not in keys and ("robots" in keys or len(keys & _TELLING) > 1)
 
 
 def world_problems(path: Path) -> tuple[str, list[Problem]]:

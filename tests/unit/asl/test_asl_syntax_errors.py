@@ -28,7 +28,7 @@ def test_a_missing_final_dot_is_reported_where_the_next_plan_begins():
         robot.asl:3:1: error: the plan before has no final '.'; the next plan begins here
           3 | +!other <- .print(b).
             | ^
-        hint: put a '.' behind line 2"""
+          = help: put a '.' behind line 2"""
     )
 
 
@@ -51,32 +51,32 @@ def test_all_errors_of_a_file_are_reported_at_once_in_order():
             |        ^
           2 | !patrol.
             | ^
-        hint: it was opened at line 1, column 8
+          = help: it was opened at line 1, column 8
 
         robot.asl:3:23: error: a plan has only one context
           3 | +!patrol : battery(B) : B > 20
             |                       ^
-        hint: join the conditions with &
+          = help: join the conditions with &
 
         robot.asl:5:7: error: a ';' is missing before this step
           5 |       .print("here);
             |       ^^^^^^
-        hint: steps are separated by ';', the last one is followed by '.'
+          = help: steps are separated by ';', the last one is followed by '.'
 
         robot.asl:5:14: error: the string does not end on its line
           5 |       .print("here);
             |              ^^^^^^^
-        hint: close it: "text"; a line break inside is \\n
+          = help: close it: "text"; a line break inside is \\n
 
         robot.asl:7:9: error: the body behind '<-' is missing
           7 | +!go(R) <- .
             |         ^^
-        hint: write the steps, or leave out '<-' if there is nothing to do
+          = help: write the steps, or leave out '<-' if there is nothing to do
 
         robot.asl:8:10: error: there is no '->'
           8 | +!charge -> dock.
             |          ^
-        hint: the body of a plan begins with <-"""
+          = help: the body of a plan begins with <-"""
     )
 
 

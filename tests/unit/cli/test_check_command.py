@@ -49,7 +49,7 @@ def test_warnings_are_told_and_matter_only_when_strict(
         "warned.asl:2:21: warning: there is no internal action .prnt [unknown-internal-action]\n"
         "  2 | +!go <- .print(hi); .prnt(X).\n"
         "    |                     ^^^^^^^^\n"
-        "hint: did you mean .print?\n"
+        "  = help: did you mean .print?\n"
     )
     assert errors == "2 warnings in 1 file\n"
     assert outcome(capsys, "warned.asl", "--strict")[0] == 1
@@ -283,3 +283,52 @@ def test_a_world_file_is_checked_as_a_world(folder: Path, capsys: pytest.Capture
     assert found(capsys, "flat.yaml") == [("flat.yaml", 4, "wrong-world")]
     (folder / "flat.yaml").write_text(text.replace(", colour: red", ""), encoding="utf-8")
     assert found(capsys, "flat.yaml") == [("flat.yaml", 4, "wrong-world"), ("flat.yaml", 5, "wrong-world")]
+
+
+def test_a_folder_is_checked_with_its_worlds_and_mappings(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for name, text in (
+        ("flat", "border: walls\nrobots:\n  - {nam: r}\n"),
+        ("half", "walls: []\nrooms: {}\nrobtos: [{name: r}]\n"),
+        ("robot", "operations:\n  go: {publish: x, typo: y}\n"),
+        ("compose", "name: other\nservices: {db: {image: sql}}\n"),
+    ):
+        (folder / f"{name}.yaml").write_text(text, encoding="utf-8")
+    codes = {(file, code) for file, _, code in found(capsys, ".") if str(file).endswith(".yaml")}
+    assert codes == {
+        ("flat.yaml", "wrong-world"),
+        ("half.yaml", "wrong-world"),
+        ("robot.yaml", "wrong-mapping"),
+    }
+
+
+def test_files_of_other_kinds_are_skipped_among_others(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "a.html").write_text("")
+    (folder / "notes.txt").write_text("")
+    code, output, errors = outcome(capsys, "a.html", "good.asl", "notes.txt", "warned.asl")
+    assert code == 0
+    assert "warned.asl" in output
+    assert errors == ("note: skipped because of their file types: a.html, notes.txt\n2 warnings in 2 files\n")
+
+
+@pytest.mark.parametrize(
+    ("world", "codes"),
+    [
+        ("patrol", []),
+        ("none", []),
+        ("patrl", [("p.jcm", 1, "wrong-project")]),
+        ("yard.yaml", [("yard.yaml", 1, "wrong-world")]),
+    ],
+)
+def test_the_world_of_a_project_is_checked(
+    folder: Path, capsys: pytest.CaptureFixture[str], world: str, codes: list[tuple[str, int, str]]
+) -> None:
+    (folder / "yard.yaml").write_text("robots: []", encoding="utf-8")
+    (folder / "p.jcm").write_text(f'mas p {{ agent good world: "{world}" }}', encoding="utf-8")
+    (folder / "p.mas2j").write_text(f'MAS p {{ world: "{world}" agents: good; }}', encoding="utf-8")
+    assert found(capsys, "p.jcm") == codes
+    as_mas2j = [(str(file).replace(".jcm", ".mas2j"), line, code) for file, line, code in codes]
+    assert found(capsys, "p.mas2j") == as_mas2j

@@ -143,9 +143,14 @@ def test_values_that_do_not_fit_are_told_all_at_once(
 ) -> None:
     assert run(folder, "--param", "speed:=1", "--param", "places:=1") == 1
     told = capsys.readouterr().err
-    assert "robot.yaml:3:3: parameter speed of /guard is of type float; 1 is of type int; write 1.0" in told
+    assert (
+        "robot.yaml:3:3: error: parameter speed of /guard is of type float; 1 is of type int; write 1.0"
+        in told
+    )
     assert "such as --param speed:=0.4" in told
-    assert "robot.yaml:4:3: parameter places of /guard is of type list of text; 1 is of type int" in told
+    assert (
+        "robot.yaml:4:3: error: parameter places of /guard is of type list of text; 1 is of type int" in told
+    )
     assert "--param 'places:=[\"hall\"]'" in told
     assert "has no effect" not in told
 

@@ -431,7 +431,7 @@ def test_a_name_that_leads_nowhere_gets_a_hint_and_is_an_action(tmp_path: Path, 
     assert result.of("t") == ["action_failed"]
     assert len(result.errors) == 1
     assert f"there is no internal action {call.partition('(')[0]}" in result.errors[0]
-    assert f"hint: {hint}" in result.errors[0] or hint in result.errors[0]
+    assert f"  = help: {hint}" in result.errors[0] or hint in result.errors[0]
 
 
 def test_an_agent_made_later_brings_its_modules(tmp_path: Path) -> None:

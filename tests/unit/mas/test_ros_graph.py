@@ -11,6 +11,7 @@ from jacaros.clock import VirtualClock, WallClock, run
 from jacaros.mas.options import RunOptions
 from jacaros.mas.ros_graph import RosGraph
 from jacaros.ros.errors import BackendUnavailable
+from jacaros.ros.open import open_backend as _open
 from jacaros.sim import Event, WorldError
 
 
@@ -85,7 +86,7 @@ def test_a_wrong_world_is_told_at_the_start() -> None:
     clock = VirtualClock()
 
     async def main() -> None:
-        with pytest.raises(WorldError, match="no such world file"):
+        with pytest.raises(WorldError, match="world not found: `nowhere`"):
             await graph(clock, "nowhere").start()
 
     run(main, clock)
@@ -179,6 +180,19 @@ def test_what_happens_in_the_world_is_kept_on_request_only(asked: bool, kept: in
             truth.record_event(Event(number, "", "door_opened", 0.0, 0.0, 0.0, {}))
         assert (len(truth.events) >= 3000) == asked
         assert len(truth.events) <= kept
+        await ros.close()
+
+    run(main, clock)
+
+
+def test_a_real_graph_has_no_use_for_the_world_of_the_project(monkeypatch: pytest.MonkeyPatch) -> None:
+    clock = VirtualClock()
+    monkeypatch.setattr("jacaros.ros.open.open_backend", lambda _, *args, **kw: _open("memory", *args, **kw))
+
+    async def main() -> None:
+        ros = graph(clock, "nowhere", ros="ros1")
+        await ros.start()
+        assert ros.world is None
         await ros.close()
 
     run(main, clock)

@@ -238,7 +238,7 @@ def test_all_types_that_there_are_not_are_told_at_their_places_before_anything_i
     assert "p.jcm:6:29: error" in text
     assert "did you mean Counter?" in text
     assert "p.jcm:7:29: error" in text
-    assert "hint: write a class Zz(Artifact) in q.py or artifacts.py beside the project file" in text
+    assert "  = help: write a class Zz(Artifact) in q.py or artifacts.py beside the project file" in text
     assert "made c" not in text
 
 

@@ -71,9 +71,9 @@ def test_all_mistakes_are_told_at_once_with_line_excerpt_and_cure() -> None:
         read_world(text, "bad.yaml")
     assert [problem.line for problem in caught.value.problems] == [1, 2, 4, 5, 7, 8, 8]
     told = str(caught.value)
-    assert "bad.yaml:2:1: a world has no key 'wals'" in told
+    assert "bad.yaml:2:1: error: a world has no key 'wals'" in told
     assert "    2 | wals: []" in told
-    assert "cure: did you mean 'walls'?" in told
+    assert "  = help: did you mean 'walls'?" in told
     assert "'x' must be a number, not 'left'" in told
     assert "the robot of line 7 has the same name 'a'" in told
     assert "'2bad' is no ROS namespace" in told
@@ -131,6 +131,15 @@ def test_a_world_that_is_not_there_names_the_shipped_ones() -> None:
         World.load("nowhere")
 
 
+@pytest.mark.parametrize(("name", "meant"), [("huose", "house"), ("{}/yrad.yaml", "{}/yard.yaml")])
+def test_a_misspelt_world_is_answered_with_the_one_meant(tmp_path: Path, name: str, meant: str) -> None:
+    (tmp_path / "yard.yaml").write_text("")
+    name, meant = name.format(tmp_path), meant.format(tmp_path)
+    with pytest.raises(WorldError) as unknown:
+        World.load(name)
+    assert str(unknown.value) == f"error: world not found: `{name}`\n  = help: did you mean `{meant}`?"
+
+
 @pytest.mark.parametrize("name", ["empty", "house", "patrol", "three_robots", "two_robots"])
 def test_a_shipped_world_loads_and_its_robots_stand_free(name: str) -> None:
     assert name in shipped_worlds()
@@ -162,9 +171,9 @@ def test_navigation_is_switched_off_or_given_a_speed() -> None:
     assert settings("navigation: true") == (True, 0.4)
     assert settings("navigation: {speed: 0.2}") == (True, 0.2)
     for wrong, told in (
-        ("navigation: {sped: 1}", "3:18: 'navigation' has no key 'sped'"),
-        ("navigation: fast", "3:17: 'navigation' must be true or false, not 'fast'"),
-        ("navigation: {speed: 9}", "3:25: 'speed' is 9, but must lie between 0.05 and 5"),
+        ("navigation: {sped: 1}", "3:18: error: 'navigation' has no key 'sped'"),
+        ("navigation: fast", "3:17: error: 'navigation' must be true or false, not 'fast'"),
+        ("navigation: {speed: 9}", "3:25: error: 'speed' is 9, but must lie between 0.05 and 5"),
     ):
         with pytest.raises(WorldError) as error:
             settings(wrong)
@@ -178,12 +187,12 @@ def test_a_misspelt_key_that_a_merge_brings_in_is_told() -> None:
 
 @pytest.mark.parametrize("value", ["2001-99-99", "!!int x", "!!float q", "9" * 5000])
 def test_a_value_that_cannot_be_made_has_its_place(value: str) -> None:
-    with pytest.raises(WorldError, match="world:2:7: not YAML: not a valid"):
+    with pytest.raises(WorldError, match="world:2:7: error: not YAML: not a valid"):
         read_world(f"robots: [{{name: r}}]\nname: {value}\n")
 
 
 def test_a_name_that_no_file_can_have_is_an_unknown_world() -> None:
-    with pytest.raises(WorldError, match="there is no such world file"):
+    with pytest.raises(WorldError, match="world not found"):
         World.load("x" * 300)
 
 

@@ -22,7 +22,7 @@ from jacaros.artifacts.mapping.read_parameters import read_parameter
 from jacaros.artifacts.mapping.read_topics import read_frame, read_property, read_signal
 from jacaros.text_files import is_file
 from jacaros.yaml_nodes import Node, Problem, read_document
-from jacaros.yaml_syntax import read_text
+from jacaros.yaml_syntax import read_text, top_keys
 
 SHIPPED = Path(__file__).parent.parent / "mappings"
 """Where the mappings are that come with the package."""
@@ -56,6 +56,11 @@ def find_mapping(name: str, folders: Sequence[Path] = (Path(),)) -> Path | None:
             return path
     shipped = SHIPPED / name
     return shipped if "/" not in name and is_file(shipped) else None
+
+
+def is_mapping(path: Path) -> bool:
+    """Whether a YAML file is a mapping file, wrong as it may be: it declares artifacts or parts of one."""
+    return bool(top_keys(path) & {"artifacts", "properties", "signals", "operations"})
 
 
 def load_mapping(path: Path) -> MappingFile:

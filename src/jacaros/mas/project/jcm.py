@@ -119,7 +119,8 @@ class _JcmReader(JcmValues):
         elif key.text == "world":
             if cursor.token.kind not in NAME:
                 cursor.fail("the name of a world file is expected")
-            self.part.world = text_of(cursor.advance())
+            name = cursor.advance()
+            self.part.world, self.part.world_span = text_of(name), cursor.span_of(name)
         elif key.text == "mapping":
             self.part.mappings += self._some(key)
         elif key.text == "platform":

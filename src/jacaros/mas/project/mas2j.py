@@ -72,7 +72,8 @@ class _Mas2jReader:
             case "aslSourcePath":
                 self.source_path()
             case "world":
-                self.part.world = text_of(self.value("the name of a world file"))
+                name = self.value("the name of a world file")
+                self.part.world, self.part.world_span = text_of(name), cursor.span_of(name)
                 cursor.accept(";")
             case "mapping":
                 token = self.value("the name of a mapping file")

@@ -110,6 +110,7 @@ class ProjectPart:
     environment: str | None = None
     infrastructure: list[str] = field(default_factory=list)
     world: str | None = None
+    world_span: Span | None = None
     mappings: list[Written] = field(default_factory=list)
     mapped: list[ArtifactPart] = field(default_factory=list)
     source_paths: list[str] = field(default_factory=list)

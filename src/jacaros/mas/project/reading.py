@@ -163,7 +163,8 @@ def _import(part: ProjectPart, used: ProjectPart) -> None:
     part.unsupported[:0] = used.unsupported
     part.folders = tuple(dict.fromkeys([*part.folders, *used.folders]))
     part.infrastructure = part.infrastructure or used.infrastructure
-    part.world = part.world or used.world
+    if not part.world:
+        part.world, part.world_span = used.world, used.world_span
     part.mapped[:0] = used.mapped
 
 
@@ -183,6 +184,7 @@ def _deployment(path: Path, part: ProjectPart, remarks: Remarks) -> Deployment:
         artifact_environment=path.suffix == _JCM or cartago or bool(part.mapped),
         infrastructure=tuple(part.infrastructure),
         world=part.world,
+        world_span=part.world_span,
         source_paths=part.folders,
     )
 

@@ -564,5 +564,5 @@ def test_operations_of_one_name_with_as_many_arguments_are_refused() -> None:
     text = (
         "operations:\n  say:\n    - {parameters: [a], publish: s}\n    - {service: t, outputs: [message]}\n"
     )
-    with pytest.raises(MappingError, match=r"4:7: 'say' with 1 arguments is in line 3 already"):
+    with pytest.raises(MappingError, match=r"4:7: error: 'say' with 1 arguments is in line 3 already"):
         read_mapping(text, "m.yaml")

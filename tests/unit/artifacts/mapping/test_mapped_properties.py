@@ -168,7 +168,7 @@ def test_a_number_that_is_not_finite_is_told_once_with_the_line() -> None:
         assert t.held == [(1,)]
         [line] = t.lab.logged
         assert "m.yaml:1:14: a is not shown: x is nan" in line
-        assert "cure: say what to show instead: {path: x, otherwise: 0}" in line
+        assert "  = help: say what to show instead: {path: x, otherwise: 0}" in line
         assert t.watcher.signals == [("bad_message", ("/p", Structure("not_finite", ("x",))))]
 
     talk(points(""), body)
@@ -359,7 +359,7 @@ def test_a_type_that_was_found_and_does_not_fit_is_told_with_the_line() -> None:
         await t.lab.sleep(1)
         [line] = [line for line in t.lab.logged if "no field" in line]
         assert "m.yaml:1:36: 'x': std_msgs/msg/String has no field 'x'" in line
-        assert "cure: its fields: data (string)" in line
+        assert "  = help: its fields: data (string)" in line
 
     talk("properties: {a: {topic: p, fields: x}}", body)
 
@@ -429,7 +429,7 @@ def test_a_wrong_mapping_cannot_be_made_into_an_artifact() -> None:
             lab.logged.append(failure.message)
 
     [message] = in_lab(body, None).logged
-    assert f"m.yaml:1:68: 'u': {POINT} has no field 'u'" in message
+    assert f"m.yaml:1:68: error: 'u': {POINT} has no field 'u'" in message
     assert "'v'" in message
 
 
@@ -503,7 +503,7 @@ def test_parameters_of_a_node_that_is_not_there_are_told_of_once() -> None:
             "m.yaml:1:14: a is not known so far: nobody answers for node /lob; still trying\n"
             "    1 | parameters: {a: {node: lob, parameter: speed}}\n"
             "                     ^\n"
-            "  cure: is that node running, and is this its name?"
+            "  = help: is that node running, and is this its name?"
         )
 
     talk("parameters: {a: {node: lob, parameter: speed}}", body)
@@ -558,8 +558,8 @@ def test_an_element_that_is_not_there_is_told_with_a_cure() -> None:
         await t.say("s", "sensor_msgs/msg/LaserScan")
         await t.say("h", "nav_msgs/msg/Path")
         told = "\n".join(t.lab.logged)
-        assert 'cure: say what to show instead: {path: "ranges[0]", otherwise: 0}' in told
-        assert "cure: ask for the list, or for an element that is always there" in told
+        assert '  = help: say what to show instead: {path: "ranges[0]", otherwise: 0}' in told
+        assert "  = help: ask for the list, or for an element that is always there" in told
 
     talk(text, body)
 
@@ -571,7 +571,7 @@ def test_a_weak_publisher_is_told_with_what_to_write() -> None:
         await t.say("s", "std_msgs/msg/String", data="x")
         told = "\n".join(t.lab.logged)
         assert "asks for transient_local, the publisher offers volatile" in told
-        assert "cure: write qos: sensor_data, which hears any publisher" in told
+        assert "  = help: write qos: sensor_data, which hears any publisher" in told
 
     talk(text, body)
 

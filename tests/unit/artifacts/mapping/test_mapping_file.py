@@ -458,10 +458,10 @@ def test_a_mistake_is_shown_with_its_line() -> None:
     with pytest.raises(MappingError) as caught:
         read_mapping("properties:\n  pose: {topic: odom, unit: 3}\n", "m.yaml")
     assert str(caught.value).startswith(
-        "m.yaml:2:23: 'pose' has no key 'unit'\n"
+        "m.yaml:2:23: error: 'pose' has no key 'unit'\n"
         "    2 |   pose: {topic: odom, unit: 3}\n"
         "                              ^\n"
-        "  cure: known keys: topic, type, frame, fields, "
+        "  = help: known keys: topic, type, frame, fields, "
     )
 
 

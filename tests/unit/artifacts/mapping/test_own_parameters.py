@@ -120,8 +120,8 @@ def test_one_that_is_declared_already_is_told_with_its_line() -> None:
         with pytest.raises(OperationFailed) as failed:
             await lab.make(mapped(TUNED))
         told = failed.value.message
-        assert "m.yaml:3:3: parameter speed of /lab is declared already" in told
-        assert "cure: give it another name: parameter: NAME" in told
+        assert "m.yaml:3:3: error: parameter speed of /lab is declared already" in told
+        assert "  = help: give it another name: parameter: NAME" in told
         assert await lab.backend.parameters().names() == ["speed"]
 
     in_lab(body, None)

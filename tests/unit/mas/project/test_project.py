@@ -211,7 +211,7 @@ def test_an_error_shows_the_line_and_a_hint(folder: Path):
         p.mas2j:3:13: error: a ';' is missing behind the agent 'bob'
           3 |             alice;
             |             ^^^^^
-        hint: each agent of the list ends with ';'"""
+          = help: each agent of the list ends with ';'"""
     )
 
 
@@ -406,12 +406,12 @@ def test_slips_in_names_are_told_with_what_may_be_meant(folder: Path):
         ("2:47", "the artifact 'clok' is not declared in the project"),
         ("3:56", "there is no agent 'bop' in the project"),
     ]
-    hints = [line for line in found.splitlines() if line.startswith("hint")]
+    hints = [line for line in found.splitlines() if line.startswith("  = help")]
     assert hints == [
-        "hint: did you mean 'lab'?",
-        "hint: did you mean 'clock'?",
-        "hint: it is focused when an agent has made it",
-        "hint: did you mean 'bob'?",
+        "  = help: did you mean 'lab'?",
+        "  = help: did you mean 'clock'?",
+        "  = help: it is focused when an agent has made it",
+        "  = help: did you mean 'bob'?",
     ]
 
 
