@@ -48,9 +48,9 @@ def picture_svg(recording: Recording, width: int = 640) -> str:
     parts = [
         *_floor(sheet, recording.drawing),
         *(sheet.rectangle(room["area"], "area") for room in recording.drawing["rooms"]),
-        *_dirt(sheet, recording),
         *_docks(sheet, recording.drawing),
         *_walls(sheet, recording.drawing),
+        *_dirt(sheet, recording),
     ]
     parts += [
         *_doors(sheet, recording),
@@ -147,6 +147,9 @@ def _doors(sheet: _Sheet, recording: Recording) -> Iterator[str]:
 
 def _walls(sheet: _Sheet, world: dict[str, Any]) -> Iterator[str]:
     yield from (sheet.rectangle(box, "box") for box in world["boxes"])
+    for each in world["furniture"]:
+        fill = f' style="fill:{html.escape(each["color"])}" opacity=".6"' if each["color"] else ""
+        yield f"<g><title>{html.escape(each['kind'])}</title>{sheet.rectangle(each['area'], 'box', fill)}</g>"
     lines = "".join(
         f"M{sheet.x(ax)} {sheet.y(ay)}L{sheet.x(bx)} {sheet.y(by)}" for ax, ay, bx, by in world["walls"]
     )

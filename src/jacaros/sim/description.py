@@ -61,6 +61,15 @@ DEFAULT_BOUNDS = Rectangle(-3.0, -3.0, 3.0, 3.0)
 
 
 @dataclass(frozen=True, slots=True)
+class Furniture:
+    """A box of which more is known: what it is ("" if unknown), and its colour as ``#rrggbb`` ("" for that of boxes)."""
+
+    area: Rectangle
+    kind: str = ""
+    color: str = ""
+
+
+@dataclass(frozen=True, slots=True)
 class Dirt:
     """Dirt of one kind in a room, in grams, spread evenly over *area* (None: the floor of the room, furniture excepted)."""
 
@@ -206,12 +215,17 @@ class RobotDescription:
 
 @dataclass(frozen=True, slots=True)
 class WorldDescription:
-    """A whole world.  ``segments`` are all walls, those of ``boxes`` (solid furniture) included and ``doors`` not."""
+    """A whole world.
+
+    ``segments`` are all walls, those of ``boxes`` (solid furniture) included and ``doors`` not; ``furniture`` are those of
+    the boxes that have a kind or a colour.
+    """
 
     name: str = "empty"
     bounds: Rectangle = DEFAULT_BOUNDS
     segments: tuple[Segment, ...] = ()
     boxes: tuple[Rectangle, ...] = ()
+    furniture: tuple[Furniture, ...] = ()
     rooms: tuple[Room, ...] = ()
     docks: tuple[Dock, ...] = ()
     doors: tuple[Door, ...] = ()
@@ -225,6 +239,9 @@ class WorldDescription:
             "bounds": list(self.bounds),
             "walls": [list(segment) for segment in self.segments],
             "boxes": [list(box) for box in self.boxes],
+            "furniture": [
+                {"kind": each.kind, "color": each.color, "area": list(each.area)} for each in self.furniture
+            ],
             "rooms": [room.drawing() for room in self.rooms],
             "docks": [
                 {"name": dock.name, "pose": list(dock.pose), "radius": dock.radius} for dock in self.docks

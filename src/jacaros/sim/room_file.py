@@ -26,7 +26,7 @@ def read_rooms(node: Node) -> tuple[Room, ...]:
 
 def _room(name: str, node: Node) -> Room:
     entries = node.mapping("from", "to", "dirt", required=("from", "to"))
-    area = _corners(node, entries)
+    area = corners_of(node, entries)
     if "dirt" not in entries:
         return Room(name, area)
     return Room(name, area, tuple(_dirt(kind, dirt, area) for kind, dirt in entries["dirt"].entries()))
@@ -36,7 +36,7 @@ def _dirt(kind: Node, node: Node, room: Rectangle) -> Dirt:
     if isinstance(node.value, dict):
         entries = node.mapping("grams", "from", "to", required=("grams", "from", "to"))
         grams = entries["grams"].number(0.0, _MOST) if "grams" in entries else 0.0
-        area: Rectangle | None = _corners(node, entries)
+        area: Rectangle | None = corners_of(node, entries)
     else:
         grams, area = node.number(0.0, _MOST), None
     x_min, y_min, x_max, y_max = area or room
@@ -50,10 +50,11 @@ def _dirt(kind: Node, node: Node, room: Rectangle) -> Dirt:
 
 def read_rectangle(node: Node) -> Rectangle:
     """Read the opposite corners ``from`` and ``to``, in metres."""
-    return _corners(node, node.mapping("from", "to", required=("from", "to")))
+    return corners_of(node, node.mapping("from", "to", required=("from", "to")))
 
 
-def _corners(node: Node, entries: dict[str, Node]) -> Rectangle:
+def corners_of(node: Node, entries: dict[str, Node]) -> Rectangle:
+    """The rectangle between the opposite corners ``from`` and ``to`` among the *entries* of a node."""
     if not {"from", "to"} <= entries.keys():
         return Rectangle(0.0, 0.0, 1.0, 1.0)
     ax, ay = entries["from"].pair()

@@ -11,7 +11,7 @@ radians.  Every key but ``robots`` may be left out; what a robot may say is in `
       - segment: [[0, 0], [1, 0]]
       - polyline: [[0, 0], [1, 0], [1, 1]]
         closed: true
-      - box: {from: [2, 2], to: [2.5, 3]}
+      - box: {from: [2, 2], to: [2.5, 3], kind: table, color: brown}
     rooms:
       kitchen: {from: [1, 1], to: [3, 3]}    # and dirt, see `jacaros.sim.room_file`
     docks:
@@ -29,9 +29,11 @@ import math
 import re
 from pathlib import Path
 
+from jacaros.sim.box_file import read_box
 from jacaros.sim.description import (
     Dock,
     Door,
+    Furniture,
     Problem,
     Rectangle,
     Segment,
@@ -141,7 +143,7 @@ def _world(document: Node) -> WorldDescription:
     entries = document.mapping(*_KEYS, required=("robots",))
     bounds = _bounds(entries)
     segments: list[Segment] = []
-    boxes: list[Rectangle] = []
+    boxes: list[Furniture] = []
     if "border" in entries and entries["border"].choice("open", "walls") == "walls":
         segments.extend(bounds.edges())
     if "walls" in entries:
@@ -154,7 +156,8 @@ def _world(document: Node) -> WorldDescription:
         name=entries["name"].text() if "name" in entries else "world",
         bounds=bounds,
         segments=tuple(segments),
-        boxes=tuple(boxes),
+        boxes=tuple(box.area for box in boxes),
+        furniture=tuple(box for box in boxes if box.kind or box.color),
         rooms=read_rooms(entries["rooms"]) if "rooms" in entries else (),
         docks=_docks(entries.get("docks")),
         doors=_doors(entries.get("doors")),
@@ -199,7 +202,7 @@ def _bounds(entries: dict[str, Node]) -> Rectangle:
     return Rectangle(-width / 2, -height / 2, width / 2, height / 2)
 
 
-def _wall(node: Node, segments: list[Segment], boxes: list[Rectangle]) -> None:
+def _wall(node: Node, segments: list[Segment], boxes: list[Furniture]) -> None:
     entries = node.mapping("segment", "polyline", "box", "closed")
     kinds = [kind for kind in ("segment", "polyline", "box") if kind in entries]
     if len(kinds) != 1:
@@ -209,9 +212,9 @@ def _wall(node: Node, segments: list[Segment], boxes: list[Rectangle]) -> None:
         return
     shape = entries[kinds[0]]
     if kinds[0] == "box":
-        box = read_rectangle(shape)
+        box = read_box(shape)
         boxes.append(box)
-        segments.extend(box.edges())
+        segments.extend(box.area.edges())
         return
     closed = "closed" in entries and entries["closed"].truth()
     _straight(shape, segments, kinds[0] == "polyline", closed)

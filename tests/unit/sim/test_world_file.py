@@ -93,6 +93,11 @@ def test_all_mistakes_are_told_at_once_with_line_excerpt_and_cure() -> None:
         ("robots: [{name: a}]\nwalls: [{box: {from: [0, 0], to: [0, 1]}}]", "has no area"),
         ("robots: [{name: a}]\nwalls: [{polyline: [[0, 0]]}]", "has 1 points"),
         ("robots: [{name: a}]\nwalls: [{segment: [[0, 0], [0, 0]]}]", "twice in a row"),
+        (
+            "robots: [{name: a}]\nwalls: [{box: {from: [1, 1], to: [2, 2], color: sky}}]",
+            "'sky' is not a colour",
+        ),
+        ("robots: [{name: a}]\nwalls: [{box: {from: [1, 1], to: [2, 2], kind: 3}}]", "must be a text"),
         ("robots: [{name: a}]\nwalls: [{closed: true}]", "must be one segment, polyline or box"),
         ("robots: [{name: a, laser: {enabled: 1}}]", "must be true or false"),
         ("robots: [{name: a, laser: {beams_per_turn: 2}}]", "whole number of at least 4"),
@@ -106,6 +111,21 @@ def test_all_mistakes_are_told_at_once_with_line_excerpt_and_cure() -> None:
 def test_a_wrong_world_says_what_is_wrong(text: str, message: str) -> None:
     with pytest.raises(WorldError, match=message):
         read_world(text)
+
+
+def test_boxes_may_have_a_kind_and_a_colour() -> None:
+    world = read_world(
+        """
+robots: [{}]
+walls:
+  - box: {from: [1, 1], to: [2, 2]}
+  - box: {from: [2, 2], to: [1, 3], kind: table, color: Brown}
+  - box: {from: [2, 0], to: [3, 1], color: "#00FF7f"}
+"""
+    )
+    assert world.boxes == ((1, 1, 2, 2), (1, 2, 2, 3), (2, 0, 3, 1))
+    assert [(each.kind, each.color) for each in world.furniture] == [("table", "#8b5a2b"), ("", "#00ff7f")]
+    assert [each.area for each in world.furniture] == list(world.boxes[1:])
 
 
 def test_a_file_that_is_no_text_is_told_so(tmp_path: Path) -> None:

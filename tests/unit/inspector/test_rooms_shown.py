@@ -1,4 +1,4 @@
-"""Dirt on the still picture: as much as is left at the end."""
+"""Dirt and furniture on the still picture: as much dirt as is left at the end, furniture in its colour."""
 
 from jacaros.inspector.picture import picture_svg
 from jacaros.inspector.recorder import Recorder
@@ -25,3 +25,19 @@ def test_the_picture_shows_what_is_left_of_the_dirt() -> None:
     assert picture.count('class="dirt"') == picture.count('class="dirt" opacity="0.15"') == 1
     (room,) = payload(recorder.recording)["world"]["rooms"]
     assert [dirt["kind"] for dirt in room["dirt"]] == ["dust", "stains"]
+
+
+def test_the_picture_shows_furniture_in_its_colour() -> None:
+    recorder = Recorder()
+    box = "{from: [0, 0], to: [1, 1], kind: <table>, color: red}"
+    recorder.world(World.load(f"walls:\n  - box: {box}\nrobots: [{{pose: {{x: -1}}}}]").description.drawing())
+    picture = picture_svg(recorder.recording)
+    assert '<g><title>&lt;table&gt;</title><rect class="box" style="fill:#c0392b"' in picture
+    assert payload(recorder.recording)["world"]["furniture"][0]["color"] == "#c0392b"
+
+
+def test_a_colour_of_a_recording_is_no_way_into_a_picture() -> None:
+    recorder = Recorder()
+    furniture = [{"kind": "", "color": '"><script>', "area": [0, 0, 1, 1]}]
+    recorder.world({"name": "", "bounds": [0, 0, 1, 1], "furniture": furniture})
+    assert "<script>" not in picture_svg(recorder.recording)
