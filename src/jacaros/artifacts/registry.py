@@ -9,6 +9,7 @@ from types import MappingProxyType, ModuleType
 from jacaros.artifacts.map.slam_data import ArtSlamData
 from jacaros.artifacts.robots.battery import ArtSimBattery
 from jacaros.artifacts.robots.connection_artifact import ArtRos
+from jacaros.artifacts.robots.kobuki_events import ArtBumper, ArtCliff
 from jacaros.artifacts.robots.laser import ArtBaseScan, ArtScan
 from jacaros.artifacts.robots.odometry import ArtOdometry, ArtOdometryOnDemand
 from jacaros.artifacts.robots.velocity import (
@@ -16,8 +17,10 @@ from jacaros.artifacts.robots.velocity import (
     ArtCmdVelAndOdometry,
     ArtCmdVelMux,
     ArtCmdVelMuxAndOdometry,
+    ArtVelocity,
 )
 from jacaros.artifacts.thesis.cleaning import ArtCleaning
+from jacaros.artifacts.thesis.perception import ArtPerception
 from jacaros.artifacts.thesis.tutorial import ArtTutorial
 from jacaros.artifacts.tools import Barrier, Clock, Latch
 from jacaros.env import Artifact, InvalidArtifact, UnknownArtifactType
@@ -29,18 +32,22 @@ BUILT_IN: Mapping[str, type[Artifact]] = MappingProxyType(
         cls.__name__: cls
         for cls in (
             ArtBaseScan,
+            ArtBumper,
             ArtCleaning,
+            ArtCliff,
             ArtCmdVel,
             ArtCmdVelAndOdometry,
             ArtCmdVelMux,
             ArtCmdVelMuxAndOdometry,
             ArtOdometry,
             ArtOdometryOnDemand,
+            ArtPerception,
             ArtRos,
             ArtScan,
             ArtSimBattery,
             ArtSlamData,
             ArtTutorial,
+            ArtVelocity,
             Barrier,
             Blackboard,
             Clock,

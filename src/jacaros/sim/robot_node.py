@@ -7,6 +7,7 @@ topic (below the robot's namespace)         type                          direct
 ``/battery_state``                          ``sensor_msgs/msg/BatteryState`` out, 1 Hz and on changes
 ``/scan``                                   ``sensor_msgs/msg/LaserScan`` out, 5 Hz when subscribed
 ``/cmd_vel``, ``/cmd_vel_mux/input/navi``   ``geometry_msgs/msg/Twist``   in, the last message wins
+``/mobile_base/commands/velocity``          the same                      in, the same
 ``/cleaning/task``                          ``std_msgs/msg/String``       in, logged with the true pose, starts a tool
 ``/cleaning/tool``                          ``std_msgs/msg/String``       in, starts a tool, "" stops; with tools only
 ``/initialpose``                            ``geometry_msgs/msg/PoseWithCovarianceStamped`` in, for localisation
@@ -40,6 +41,9 @@ SENSORS: Final[Sequence[Callable[[RobotOnGraph], Sensor]]] = (
 )
 """What every robot tells the graph, in the order of publishing."""
 
+COMMANDS: Final = ("/cmd_vel", "/cmd_vel_mux/input/navi", "/mobile_base/commands/velocity")
+"""Topics of velocity commands: those of most robots, of the Kobuki's multiplexer, and of its base."""
+
 
 class RobotNode:
     """The topics of one robot.
@@ -69,8 +73,7 @@ class RobotNode:
     def _subscribe(self) -> list[Subscription]:
         twist, text = "geometry_msgs/msg/Twist", "std_msgs/msg/String"
         heard = [
-            self.backend.subscription(self.prefix + "/cmd_vel", twist, self._command),
-            self.backend.subscription(self.prefix + "/cmd_vel_mux/input/navi", twist, self._command),
+            *(self.backend.subscription(self.prefix + topic, twist, self._command) for topic in COMMANDS),
             self.backend.subscription(self.prefix + "/cleaning/task", text, self._task),
             self.backend.subscription(
                 self.prefix + "/initialpose", "geometry_msgs/msg/PoseWithCovarianceStamped", self._told_pose

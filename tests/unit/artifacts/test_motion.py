@@ -11,6 +11,7 @@ from jacaros.artifacts.robots.velocity import (
     ArtCmdVelAndOdometry,
     ArtCmdVelMux,
     ArtCmdVelMuxAndOdometry,
+    ArtVelocity,
 )
 from jacaros.env import OperationFailed, Out, Structure
 from jacaros.ros.backend import Sample
@@ -170,6 +171,7 @@ robots:
         (ArtCmdVelAndOdometry, "/cmd_vel"),
         (ArtCmdVelMux, "/cmd_vel_mux/input/navi"),
         (ArtCmdVelMuxAndOdometry, "/cmd_vel_mux/input/navi"),
+        (ArtVelocity, "/mobile_base/commands/velocity"),
     ],
 )
 def test_each_artifact_drives_on_its_topic(kind: type[ArtCmdVel], topic: str) -> None:
@@ -180,6 +182,35 @@ def test_each_artifact_drives_on_its_topic(kind: type[ArtCmdVel], topic: str) ->
         await lab.do(artifact, "moveForward", 0.3)
         assert lab.commands
         assert lab.last_command == STANDSTILL
+
+    in_lab(body)
+
+
+def test_a_number_among_the_arguments_is_the_speed() -> None:
+    """``makeArtifact("Velocity", "ArtVelocity", [1], Id)``, and ``[robot_0, 0.3]`` as the original's agents write it."""
+
+    async def body(lab: Lab) -> None:
+        lab.record("/robot_0/cmd_vel_mux/input/navi")
+        artifact = await lab.make(ArtCmdVelMux, "robot_0", 0.3)
+        await lab.do(artifact, "move", 5)
+        assert max(linear for _, linear, _ in lab.commands) == pytest.approx(0.3)
+        with pytest.raises(OperationFailed, match="a number above zero"):
+            await lab.make(ArtVelocity, -1)
+
+    in_lab(body, "two_robots")
+
+
+@pytest.mark.parametrize("count", [6, -6])
+def test_rotate_d_turns_by_time_for_half_seconds(count: int) -> None:
+    async def body(lab: Lab) -> None:
+        lab.record("/cmd_vel_mux/input/navi")
+        artifact = await lab.make(ArtCmdVelMuxAndOdometry)
+        await lab.do(artifact, "rotateD", count)
+        turning = [angular for _, linear, angular in lab.commands if angular]
+        assert turning == [math.copysign(0.5, count)] * 30
+        assert lab.last_command == STANDSTILL
+        await lab.sleep(1)
+        assert_at(lab, 0, 0, math.degrees(0.25 * count), degrees=4)
 
     in_lab(body)
 

@@ -96,8 +96,8 @@ def test_stamps_are_the_time_of_the_state() -> None:
     assert stamps == pytest.approx([0.04, 0.1, 0.14, 0.2][: len(stamps)], abs=1e-5)
 
 
-@pytest.mark.parametrize("topic", ["/cmd_vel", "/cmd_vel_mux/input/navi"])
-def test_the_robot_obeys_both_command_topics(topic: str) -> None:
+@pytest.mark.parametrize("topic", ["/cmd_vel", "/cmd_vel_mux/input/navi", "/mobile_base/commands/velocity"])
+def test_the_robot_obeys_all_command_topics(topic: str) -> None:
     done = in_world("empty", lambda run: run.drive(3.0, 0.2, topic=topic))
     assert done.world.ground_truth.pose().x == pytest.approx(0.2 * 3.0, abs=0.04)
 

@@ -27,6 +27,11 @@ TWIST = "geometry_msgs/msg/Twist"
 
 TURTLEBOT = Limits()
 
+BLIND_TURN = Velocity(0.0, 0.5)
+"""How fast `rotateD` turns (rad/s), as in the original system."""
+BLIND_TURN_PERIOD = 0.5
+"""Seconds for which it turns by each of its commands."""
+
 STATES = ("driving", "turning", "waiting", "paused")
 """What a motion does, the most important first: the property ``moving`` shows one of them."""
 
@@ -36,7 +41,8 @@ class WheeledArtifact(RosArtifact):
 
     Options:
         speed(V), turn_speed(D): cruise speeds, metres and degrees per second (1 m/s and 57 degrees/s as in
-            the thesis, cut to what the robot can do).
+            the thesis, cut to what the robot can do).  A number among the arguments is the speed too, as in
+            ``makeArtifact("wheels", "ArtVelocity", [0.4], Id)``.
         max_speed(V), max_turn_speed(D), acceleration(A), turn_acceleration(D): what the robot can do; a
             TurtleBot by default.
         timeout(S): longest time of driving for one motion; four times the time needed plus half a minute by
@@ -86,6 +92,10 @@ class WheeledArtifact(RosArtifact):
     odometer: Odometer
     settings: MotionSettings
     newest_pose: Reading
+
+    def init(self, *arguments: object) -> None:
+        """Take the robot's name, a speed in m/s, and options; all of them may be left out."""
+        super().init(*(_speed(argument) for argument in arguments))
 
     def open(self) -> None:
         """Open the command topic and odometry; nothing is published before the first motion."""
@@ -195,6 +205,13 @@ class WheeledArtifact(RosArtifact):
             raise
 
 
+def _speed(argument: object) -> object:
+    """A plain number as the option that it stands for."""
+    if isinstance(argument, int | float) and not isinstance(argument, bool):
+        return Structure("speed", (argument,))
+    return argument
+
+
 class ArtCmdVel(WheeledArtifact):
     """Drives by velocity commands on ``/cmd_vel``; closed loops follow ``/odom``.
 
@@ -261,6 +278,14 @@ class ArtCmdVel(WheeledArtifact):
         """Turn 90 degrees to the right."""
         await self.perform(Turn(-math.pi / 2.0))
 
+    @operation(name="rotateD", pausable=True)
+    async def rotate_by_time(self, duration: int) -> None:
+        """Turn left by time: 0.5 rad/s for *duration* half seconds, some 14 degrees each; to the right when negative."""
+        turn = math.copysign(self.settings.limits.clip(BLIND_TURN).angular, duration)
+        await self.perform(
+            Timed(Velocity(0.0, turn), round(abs(duration) * BLIND_TURN_PERIOD / Timed.period))
+        )
+
     @operation(name="turnTo", pausable=True)
     async def turn_to(self, heading: float) -> None:
         """Turn the short way round to *heading*, degrees from the x axis of odometry."""
@@ -304,6 +329,12 @@ class ArtCmdVelMux(ArtCmdVel):
     """Drives by velocity commands on ``/cmd_vel_mux/input/navi``, the navigation input of a Kobuki base."""
 
     command_topic = "cmd_vel_mux/input/navi"
+
+
+class ArtVelocity(ArtCmdVel):
+    """Drives by velocity commands on ``/mobile_base/commands/velocity``, the direct input of a Kobuki base."""
+
+    command_topic = "mobile_base/commands/velocity"
 
 
 class ArtCmdVelAndOdometry(ArtCmdVel):

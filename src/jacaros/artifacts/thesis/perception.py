@@ -1,0 +1,48 @@
+"""``ArtPerception``: percepts that another program sends as texts."""
+
+from typing import ClassVar
+
+from jacaros.artifacts.kit.options import text
+from jacaros.artifacts.kit.ros_artifact import RosArtifact
+from jacaros.env.artifact import Out, operation
+from jacaros.ros.backend import Sample
+
+
+class ArtPerception(RosArtifact):
+    """Shows the texts of ``/jason/perception`` (``perception_msgs/msg/perception``, a list of texts).
+
+    Each message replaces the percepts of the one before; a text that stays gives no event.
+
+    Options:
+        topic(T): another topic.
+
+    Properties:
+        perception(Text): one for each text of the newest message, such as ``"box1,1.0,2.0,3.1"``.
+
+    Signals:
+        tick_perception: `getPerception` was called.
+    """
+
+    known_options: ClassVar = {"topic": text}
+
+    def open(self) -> None:
+        """Listen; there are no percepts before the first message."""
+        self._texts: list[str] = []
+        self.subscription(
+            str(self.options.get("topic", "jason/perception")), "perception_msgs/msg/perception", self._take
+        )
+
+    def _take(self, sample: Sample) -> None:
+        self._texts = [str(each) for each in sample.message.perception]
+        elements = [(each,) for each in self._texts]
+        self.start(self.show_elements, "perception", elements, cause=sample.cause)
+
+    @operation(name="getPerception")
+    def get_perception(self) -> None:
+        """Signal ``tick_perception``; the properties are current at any time."""
+        self.signal("tick_perception")
+
+    @operation(name="getPerception")
+    def give_perception(self, texts: Out) -> None:
+        """Give the texts of the newest message to the caller, as a list; empty before the first."""
+        texts.set(self._texts)
