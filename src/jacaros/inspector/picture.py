@@ -150,6 +150,9 @@ def _walls(sheet: _Sheet, world: dict[str, Any]) -> Iterator[str]:
     for each in world["furniture"]:
         fill = f' style="fill:{html.escape(each["color"])}" opacity=".6"' if each["color"] else ""
         yield f"<g><title>{html.escape(each['kind'])}</title>{sheet.rectangle(each['area'], 'box', fill)}</g>"
+    for cliff in world["cliffs"]:
+        edge = sheet.rectangle(cliff, "wall", ' stroke-dasharray="3 3"')
+        yield f"<g><title>cliff</title>{edge}</g>"
     lines = "".join(
         f"M{sheet.x(ax)} {sheet.y(ay)}L{sheet.x(bx)} {sheet.y(by)}" for ax, ay, bx, by in world["walls"]
     )

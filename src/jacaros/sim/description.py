@@ -218,7 +218,7 @@ class WorldDescription:
     """A whole world.
 
     ``segments`` are all walls, those of ``boxes`` (solid furniture) included and ``doors`` not; ``furniture`` are those of
-    the boxes that have a kind or a colour.
+    the boxes that have a kind or a colour.  Over ``cliffs`` there is no floor.
     """
 
     name: str = "empty"
@@ -229,6 +229,7 @@ class WorldDescription:
     rooms: tuple[Room, ...] = ()
     docks: tuple[Dock, ...] = ()
     doors: tuple[Door, ...] = ()
+    cliffs: tuple[Rectangle, ...] = ()
     robots: tuple[RobotDescription, ...] = field(default_factory=lambda: (RobotDescription(),))
     seed: int = 0
 
@@ -249,6 +250,7 @@ class WorldDescription:
             "doors": [
                 {"name": door.name, "segment": list(door.segment), "open": door.open} for door in self.doors
             ],
+            "cliffs": [list(cliff) for cliff in self.cliffs],
             "robots": [
                 {"name": robot.name, "pose": list(robot.pose), "radius": robot.radius}
                 for robot in self.robots

@@ -26,8 +26,8 @@ class Event(NamedTuple):
     ``battery_empty`` and ``battery`` at each whole percent (level), ``bump`` against a wall (side),
     ``collision`` (with, side), ``command_timeout`` and ``bad_command`` (speed, turn_rate), ``task`` (task as
     text, room), ``tool_started`` and ``tool_stopped`` (tool), ``cleaned`` at each whole percent of a room's dirt, and
-    when the tool stops (room, dirt, and what is left: grams, percent).  Of no robot (``""``): ``door_opened`` and
-    ``door_closed`` (door), in the middle of the door.
+    when the tool stops (room, dirt, and what is left: grams, percent), ``fell`` down a cliff (nothing).  Of no robot
+    (``""``): ``door_opened`` and ``door_closed`` (door), in the middle of the door.
     """
 
     time: float

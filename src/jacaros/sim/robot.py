@@ -5,7 +5,7 @@ from collections.abc import Callable
 from typing import Any
 
 from jacaros.sim.contact import WallIndex, push_out
-from jacaros.sim.description import BatterySettings, Dock, Pose, RobotDescription
+from jacaros.sim.description import BatterySettings, Dock, Pose, Rectangle, RobotDescription
 from jacaros.sim.ground_truth import Sample
 from jacaros.sim.motion import Odometry, advance, ramp
 from jacaros.sim.trigonometry import sine_cosine
@@ -26,6 +26,7 @@ class Robot:
         x, y, yaw: the true pose (metres, radians); speed, turn_rate: of the base (m/s, rad/s).
         odometry: where it believes to be.  odometer: metres truly driven.
         battery: its battery.  dock: the dock it stands in, or None.
+        fallen: whether it fell down a cliff, after which it does not move.
         touching: names of what it touches: ``wall`` or other robots.  contacts: on which side, by those names.
     """
 
@@ -40,6 +41,7 @@ class Robot:
         self.odometry = Odometry(description.odometry, description.pose, f"{seed}/{self.name}/odometry")
         self.battery = Battery(description.battery)
         self.dock: Dock | None = None
+        self.fallen = False
         self.touching: frozenset[str] = frozenset()
         self.contacts: dict[str, str] = {}
         self._silence = math.inf
@@ -75,6 +77,8 @@ class Robot:
         if not (math.isfinite(speed) and math.isfinite(turn_rate)):
             self._tell(self, "bad_command", {"speed": repr(speed), "turn_rate": repr(turn_rate)})
             speed = turn_rate = 0.0
+        if self.fallen:
+            return
         self.wanted_speed, self.wanted_turn_rate = speed, turn_rate
         self._silence = 0.0
 
@@ -137,7 +141,7 @@ class Robot:
     def touch(self, other: str, push_x: float, push_y: float, side: str, walls: WallIndex, dt: float) -> None:
         """Be pushed (metres) by another robot that stands to one *side*."""
         self._touched[other] = side
-        if push_x == 0.0 and push_y == 0.0:
+        if self.fallen or (push_x == 0.0 and push_y == 0.0):
             return
         self.x += push_x
         self.y += push_y
@@ -170,6 +174,13 @@ class Robot:
                     self._tell(self, "collision", {"with": other, "side": side})
         self.touching = frozenset(self._touched)
         self.contacts = self._touched
+
+    def settle_fall(self, cliffs: tuple[Rectangle, ...]) -> None:
+        """End of a step: a robot whose centre is over a cliff has fallen, and stays there."""
+        if not self.fallen and any(cliff.contains(self.x, self.y) for cliff in cliffs):
+            self.fallen = True
+            self.speed = self.turn_rate = self.wanted_speed = self.wanted_turn_rate = 0.0
+            self._tell(self, "fell", {})
 
     def settle_dock(self, docks: tuple[Dock, ...]) -> None:
         """End of a step: in a dock or not?  Passing through one is not docking."""

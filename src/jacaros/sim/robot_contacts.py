@@ -1,4 +1,4 @@
-"""What a robot tells of its bumpers and its dock, in the messages of the robots that have them.
+"""What a robot tells of its bumpers, cliffs and its dock, in the messages of the robots that have them.
 
 =================================== ================================================= ===================
 topic (below the namespace)         type                                              like a
@@ -19,6 +19,7 @@ from typing import Any
 from jacaros.ros.backend import Publisher
 from jacaros.ros.message import constant
 from jacaros.sim.navigation.sight import hidden
+from jacaros.sim.robot_cliffs import sees_cliff
 from jacaros.sim.robot_sensors import RobotOnGraph
 
 _TICKS_PER_HAZARD = 2
@@ -30,6 +31,14 @@ _TICKS_PER_TURN = 4096
 _HALF_TRACK = 0.08
 _BUMPERS = {"left": "bump_left", "front": "bump_front_center", "right": "bump_right"}
 """Frames of the Create 3's bumper; it has none at the back."""
+_CLIFFS = {
+    "cliff_side_left": 60.0,
+    "cliff_front_left": 15.0,
+    "cliff_front_right": -15.0,
+    "cliff_side_right": -60.0,
+}
+"""Frames of its cliff sensors, with their bearings in degrees from straight ahead."""
+_WHEELS = ("wheel_drop_left", "wheel_drop_right")
 _KOBUKI = {"left": "LEFT", "front": "CENTER", "right": "RIGHT"}
 
 
@@ -45,8 +54,6 @@ class RobotContacts:
         self._state = at.publisher_if_known("/sensor_state", "turtlebot3_msgs/msg/SensorState")
         self._bumper = at.publisher_if_known("/mobile_base/events/bumper", "kobuki_msgs/msg/BumperEvent")
         self._core = at.publisher_if_known("/mobile_base/sensors/core", "kobuki_msgs/msg/SensorState")
-        # There is nothing to fall off, and so nothing is told.
-        self._cliff = at.publisher_if_known("/mobile_base/events/cliff", "kobuki_msgs/msg/CliffEvent")
         self._pressed: frozenset[str] = frozenset()
         self._docked: bool | None = None
 
@@ -78,15 +85,22 @@ class RobotContacts:
         publisher.publish(message)
 
     def _publish_hazards(self, publisher: Any, pressed: frozenset[str]) -> None:
-        detections = []
-        for side in sorted(pressed & _BUMPERS.keys()):
-            hazard = self._at.backend.message("irobot_create_msgs/msg/HazardDetection")
-            self._at.fill_header(hazard.header, _BUMPERS[side])
-            hazard.type = constant(hazard, "BUMP")
-            detections.append(hazard)
+        detections = [self._hazard("BUMP", _BUMPERS[side]) for side in sorted(pressed & _BUMPERS.keys())]
+        cliffs = self._time.world.description.cliffs
+        for frame, degrees in _CLIFFS.items():
+            if sees_cliff(self._robot, degrees, cliffs):
+                detections.append(self._hazard("CLIFF", frame))
+        if self._robot.fallen:
+            detections += [self._hazard("WHEEL_DROP", frame) for frame in _WHEELS]
         message = publisher.message(detections=detections)
         self._at.fill_header(message.header, "base_link")
         publisher.publish(message)
+
+    def _hazard(self, kind: str, frame: str) -> Any:
+        hazard = self._at.backend.message("irobot_create_msgs/msg/HazardDetection")
+        self._at.fill_header(hazard.header, frame)
+        hazard.type = constant(hazard, kind)
+        return hazard
 
     def _publish_dock(self, publisher: Any, docked: bool) -> None:
         message = publisher.message(is_docked=docked, dock_visible=docked or self._sees_dock())
@@ -126,7 +140,7 @@ class RobotContacts:
 
     def close(self) -> None:
         """Leave the topics."""
-        for publisher in (self._hazards, self._dock, self._state, self._bumper, self._core, self._cliff):
+        for publisher in (self._hazards, self._dock, self._state, self._bumper, self._core):
             if publisher is not None:
                 publisher.close()
 

@@ -14,8 +14,8 @@ topic (below the robot's namespace)         type                          direct
 ``/amcl_pose``                              the same                      out, latched, see `jacaros.sim.robot_transforms`
 =========================================== ============================= ==========================
 
-Bumpers and the dock are in `jacaros.sim.robot_contacts`, transforms in `jacaros.sim.robot_transforms`, and what the robot
-can be asked to do by itself in `jacaros.sim.navigation`.
+Bumpers and the dock are in `jacaros.sim.robot_contacts`, cliffs in `jacaros.sim.robot_cliffs`, transforms in
+`jacaros.sim.robot_transforms`, and what the robot can be asked to do by itself in `jacaros.sim.navigation`.
 """
 
 import math
@@ -26,6 +26,7 @@ from jacaros.ros.backend import Backend, Sample, Subscription
 from jacaros.sim.navigation.frames import MAP, pose_fault, pose_of
 from jacaros.sim.navigation.localisation import Localisation
 from jacaros.sim.robot import Robot
+from jacaros.sim.robot_cliffs import CliffSensors
 from jacaros.sim.robot_contacts import RobotContacts
 from jacaros.sim.robot_sensors import BatterySensor, LaserSensor, OdometrySensor, RobotOnGraph, Sensor
 from jacaros.sim.robot_transforms import AmclPose, RobotTransforms
@@ -36,6 +37,7 @@ SENSORS: Final[Sequence[Callable[[RobotOnGraph], Sensor]]] = (
     RobotTransforms,
     AmclPose,
     RobotContacts,
+    CliffSensors,
     BatterySensor,
     LaserSensor,
 )

@@ -170,6 +170,9 @@ class World:
             self._part_robots(dt)
         if self.cleaning.at_work:
             self.cleaning.step(dt, self.robots)
+        if self.description.cliffs:
+            for robot in self._row:
+                robot.settle_fall(self.description.cliffs)
         for robot in self._row:
             robot.settle_contacts()
             robot.settle_dock(self.description.docks)

@@ -18,6 +18,8 @@ radians.  Every key but ``robots`` may be left out; what a robot may say is in `
       - {name: dock, x: 1, y: 1, yaw_degrees: 0, radius: 0.25}
     doors:
       - {name: kitchen, segment: [[1, 0], [1, 1]], open: false}
+    cliffs:
+      - {from: [-3, -3], to: [-2, -2]}       # no floor, such as the head of stairs
     robots:
       - name: turtlebot
         pose: {x: 0, y: 0, yaw_degrees: 0}
@@ -27,6 +29,7 @@ import difflib
 import itertools
 import math
 import re
+from collections.abc import Iterable
 from pathlib import Path
 
 from jacaros.sim.box_file import read_box
@@ -48,7 +51,7 @@ from jacaros.yaml_nodes import Node, read_document
 from jacaros.yaml_syntax import read_text, top_keys
 
 _WORLDS = Path(__file__).parent / "worlds"
-_KEYS = ("name", "size", "bounds", "border", "seed", "walls", "rooms", "docks", "doors", "robots")
+_KEYS = ("name", "size", "bounds", "border", "seed", "walls", "rooms", "docks", "doors", "cliffs", "robots")
 _TELLING = frozenset(_KEYS) - {"name", "seed"}
 """Keys that few other YAML files have."""
 _TOUCHING = 0.001
@@ -161,6 +164,7 @@ def _world(document: Node) -> WorldDescription:
         rooms=read_rooms(entries["rooms"]) if "rooms" in entries else (),
         docks=_docks(entries.get("docks")),
         doors=_doors(entries.get("doors")),
+        cliffs=tuple(read_rectangle(cliff) for cliff in _items(entries.get("cliffs"))),
         robots=tuple(read_robot(robot) for robot in robots),
         seed=entries["seed"].whole(0, 0) if "seed" in entries else 0,
     )
@@ -185,6 +189,8 @@ def _check_places(items: list[Node], world: WorldDescription, walled: bool) -> N
             )
         elif any(box.contains(x, y) for box in world.boxes):
             item.wrong(f"{where}, inside of a box", cure)
+        elif any(cliff.contains(x, y) for cliff in world.cliffs):
+            item.wrong(f"{where}, over a cliff", cure)
         elif near < robot.radius - _TOUCHING:
             item.wrong(f"{where}, in a wall: {near:.2f} m from it, with a radius of {robot.radius:g} m", cure)
 
@@ -240,6 +246,10 @@ def _straight(shape: Node, segments: list[Segment], several: bool = False, close
             )
         else:
             segments.append(Segment(ax, ay, bx, by))
+
+
+def _items(node: Node | None) -> Iterable[Node]:
+    return node.sequence() if node is not None else ()
 
 
 def _docks(node: Node | None) -> tuple[Dock, ...]:

@@ -23,8 +23,8 @@ class Grid:
         resolution: side of a cell, in metres.
         width, height: columns and rows, the ring included.
         x_min, y_min: corner of the map proper, without the ring.
-        clearance: metres from the centre of each cell to the nearest wall, at most `REACH`; 0 inside furniture and in
-            the ring.
+        clearance: metres from the centre of each cell to the nearest wall or cliff, at most `REACH`; 0 inside furniture
+            and cliffs and in the ring.
     """
 
     def __init__(self, world: WorldDescription) -> None:
@@ -45,6 +45,10 @@ class Grid:
             self._measure(segment)
         for box in world.boxes:
             self._fill(box.x_min, box.y_min, box.x_max, box.y_max)
+        for cliff in world.cliffs:
+            for edge in cliff.edges():
+                self._measure(edge)
+            self._fill(cliff.x_min, cliff.y_min, cliff.x_max, cliff.y_max)
         self._close_ring()
 
     def _measure(self, segment: Segment) -> None:

@@ -273,6 +273,12 @@ def test_the_cliffs_of_a_kobuki() -> None:
         publisher.publish(publisher.message(sensor=2, state=1))
         await robot.lab.sleep(0.1)
         assert robot.signals("cliff") == [(Atom("right"), Atom("cliff"))]
+        publisher = robot.lab.backend.publisher(
+            "/mobile_base/events/wheel_drop", "kobuki_msgs/msg/WheelDropEvent"
+        )
+        publisher.publish(publisher.message(wheel=1, state=1))
+        await robot.lab.sleep(0.1)
+        assert robot.signals("wheel_drop") == [(Atom("right"), Atom("dropped"))]
 
     with_ready("turtlebot2.yaml", body, None)
 
