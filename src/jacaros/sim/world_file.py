@@ -4,6 +4,7 @@ Lengths are metres, times seconds, levels percent and angles degrees (the keys s
 radians.  Every key but ``robots`` may be left out; what a robot may say is in `jacaros.sim.robot_file`::
 
     name: patrol
+    map: office.yaml                  # of map_server, see `jacaros.sim.map_file`; its walls and bounds
     size: [6, 6]                      # centred at the origin; or bounds: {from: [x, y], to: [x, y]}
     border: walls                     # or open (the default)
     seed: 1
@@ -37,13 +38,16 @@ from jacaros.sim.description import (
     Dock,
     Door,
     Furniture,
+    Pose,
     Problem,
     Rectangle,
+    RobotDescription,
     Segment,
     UnknownWorld,
     WorldDescription,
     WorldError,
 )
+from jacaros.sim.map_file import OccupancyMap, is_map, near_file, read_map
 from jacaros.sim.robot_file import read_pose, read_robot
 from jacaros.sim.room_file import read_rectangle, read_rooms
 from jacaros.text_files import is_file
@@ -51,11 +55,26 @@ from jacaros.yaml_nodes import Node, read_document
 from jacaros.yaml_syntax import read_text, top_keys
 
 _WORLDS = Path(__file__).parent / "worlds"
-_KEYS = ("name", "size", "bounds", "border", "seed", "walls", "rooms", "docks", "doors", "cliffs", "robots")
+_KEYS = (
+    "name",
+    "map",
+    "size",
+    "bounds",
+    "border",
+    "seed",
+    "walls",
+    "rooms",
+    "docks",
+    "doors",
+    "cliffs",
+    "robots",
+)
 _TELLING = frozenset(_KEYS) - {"name", "seed"}
 """Keys that few other YAML files have."""
 _TOUCHING = 0.001
 """Metres that a robot may stand in a wall: so much is lost when its place is rounded."""
+_ROOM_FOR_ROBOT = 0.4
+"""Metres from a robot, for which a place is looked for, to anything that may be a wall."""
 _DOOR_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 
 
@@ -102,9 +121,9 @@ def load_world(name: str) -> WorldDescription:
 
 
 def is_world(path: Path) -> bool:
-    """Whether a YAML file is a world file, wrong as it may be: it has robots, or two other keys of a world."""
+    """Whether a YAML file is a world file, wrong as it may be: it has robots, or two other keys of a world; or a map."""
     keys = top_keys(path)
-    return "artifacts" not in keys and ("robots" in keys or len(keys & _TELLING) > 1)
+    return is_map(path) or ("artifacts" not in keys and ("robots" in keys or len(keys & _TELLING) > 1))
 
 
 def world_problems(path: Path) -> tuple[str, list[Problem]]:
@@ -114,39 +133,64 @@ def world_problems(path: Path) -> tuple[str, list[Problem]]:
 
 
 def read_world(text: str, name: str = "world") -> WorldDescription:
-    """Read the text of a world file; *name* is what errors call it.
+    """Read the text of a world file; *name* is what errors call it.  Paths in it count from the current folder.
 
     Raises:
         WorldError: with all mistakes at once.
     """
-    problems, description = _described(text)
+    problems, description = _described(text, Path())
     if description is None:
         raise WorldError(name, text, problems)
     return description
 
 
 def _read(path: Path) -> tuple[str, list[Problem], WorldDescription | None]:
+    if is_map(path):
+        return _read_as_world(path)
     try:
         text, wrong = read_text(path)
     except OSError as error:
         return "", [Problem(1, 1, f"it cannot be read: {error}")], None
-    return (text, [wrong], None) if wrong is not None else (text, *_described(text))
+    return (text, [wrong], None) if wrong is not None else (text, *_described(text, path.parent))
 
 
-def _described(text: str) -> tuple[list[Problem], WorldDescription | None]:
+def _read_as_world(path: Path) -> tuple[str, list[Problem], WorldDescription | None]:
+    """The world of a map: its walls, and a TurtleBot at the free place nearest to (0, 0)."""
+    text, problems, found = read_map(path)
+    if found is None:
+        return text, problems, None
+    place = found.free_place(_ROOM_FOR_ROBOT)
+    if place is None:
+        return (
+            text,
+            [Problem(1, 1, "the map has no free place for a robot", "see 'free_thresh' and 'negate'")],
+            None,
+        )
+    robot = RobotDescription(pose=Pose(*place, 0.0))
+    walls, boxes = tuple(found.walls()), tuple(found.boxes())
+    return text, [], WorldDescription(path.stem, found.bounds, walls, boxes, robots=(robot,))
+
+
+def _described(text: str, folder: Path) -> tuple[list[Problem], WorldDescription | None]:
     problems: list[Problem] = []
     document = read_document(text, problems, "a world")
     if problems:
         return problems, None
-    description = _world(document)
+    description = _world(document, folder)
     return problems, None if problems else description
 
 
-def _world(document: Node) -> WorldDescription:
+def _world(document: Node, folder: Path) -> WorldDescription:
     entries = document.mapping(*_KEYS, required=("robots",))
-    bounds = _bounds(entries)
+    found = _map(entries["map"], folder) if "map" in entries else None
+    bounds = (
+        found.bounds if found is not None and not entries.keys() & {"size", "bounds"} else _bounds(entries)
+    )
     segments: list[Segment] = []
     boxes: list[Furniture] = []
+    if found is not None:
+        segments.extend(found.walls())
+        boxes.extend(map(Furniture, found.boxes()))
     if "border" in entries and entries["border"].choice("open", "walls") == "walls":
         segments.extend(bounds.edges())
     if "walls" in entries:
@@ -193,6 +237,22 @@ def _check_places(items: list[Node], world: WorldDescription, walled: bool) -> N
             item.wrong(f"{where}, over a cliff", cure)
         elif near < robot.radius - _TOUCHING:
             item.wrong(f"{where}, in a wall: {near:.2f} m from it, with a radius of {robot.radius:g} m", cure)
+
+
+def _map(node: Node, folder: Path) -> OccupancyMap | None:
+    name = node.text()
+    if not name:
+        return None
+    path = folder / name
+    if not is_file(path):
+        node.wrong(
+            f"map not found: `{path}`", near_file(path, "*.y*ml") or "its path counts from the world file"
+        )
+        return None
+    _, problems, found = read_map(path)
+    for each in problems:
+        node.wrong(f"{path}:{each.line}:{each.column}: {each.message}", each.cure)
+    return found
 
 
 def _bounds(entries: dict[str, Node]) -> Rectangle:

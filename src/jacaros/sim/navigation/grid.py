@@ -77,10 +77,10 @@ class Grid:
                     clearance[index] = math.sqrt(apart)
 
     def _fill(self, x_min: float, y_min: float, x_max: float, y_max: float) -> None:
-        for row in range(1, self.height - 1):
+        for row in range(max(1, self._row(y_min)), min(self.height - 2, self._row(y_max)) + 1):
             if not y_min <= self.y_min + (row - 0.5) * self.resolution <= y_max:
                 continue
-            for column in range(1, self.width - 1):
+            for column in range(max(1, self._column(x_min)), min(self.width - 2, self._column(x_max)) + 1):
                 if x_min <= self.x_min + (column - 0.5) * self.resolution <= x_max:
                     self.clearance[row * self.width + column] = 0.0
 

@@ -1,0 +1,257 @@
+"""Maps of ROS's map_server (a YAML file and an image) as walls; and worlds as such maps.
+
+The keys and their meaning are those of Nav2's ``map_server`` and ROS 1's ``map_server``::
+
+    image: office.pgm           # PGM; its path counts from this file
+    resolution: 0.05            # metres a pixel
+    origin: [-10, -5, 0]        # of the lower left corner: metres, and radians, which must be 0
+    negate: 0                   # 1: black is free
+    occupied_thresh: 0.65       # what is at least so dark is a wall
+    free_thresh: 0.25           # what is at most so dark is free; the rest is unknown
+    mode: trinary               # or scale, which means the same here; or raw: pixels are percent
+
+A laser sees through unknown cells and a robot can drive there; its map shows no wall.
+"""
+
+import difflib
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from jacaros.sim.description import Rectangle, Segment, WorldDescription
+from jacaros.sim.map_image import GreyImage, ImageError, pgm_bytes, read_pgm
+from jacaros.sim.navigation.grid import Grid
+from jacaros.yaml_nodes import Node, Problem, read_document
+from jacaros.yaml_syntax import read_text, top_keys
+
+_KEYS = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh", "mode")
+_REQUIRED = ("image", "resolution", "origin")
+FREE, OCCUPIED, UNKNOWN = 0, 1, 2
+_LATTICE = 0.25
+"""Metres between places that are tried for a robot."""
+
+
+@dataclass(frozen=True, slots=True)
+class OccupancyMap:
+    """Cells in rows from the bottom, each `FREE`, `OCCUPIED` or `UNKNOWN`.
+
+    ``resolution`` is the side of a cell, ``x_min`` and ``y_min`` are the lower left corner, in metres.
+    """
+
+    resolution: float
+    x_min: float
+    y_min: float
+    width: int
+    height: int
+    cells: bytes
+
+    @property
+    def bounds(self) -> Rectangle:
+        """The whole map."""
+        return Rectangle(self.x_min, self.y_min, self._x(self.width), self._y(self.height))
+
+    def _x(self, column: int) -> float:
+        return self.x_min + column * self.resolution
+
+    def _y(self, row: int) -> float:
+        return self.y_min + row * self.resolution
+
+    def boxes(self) -> list[Rectangle]:
+        """Rectangles that cover the occupied cells, none of them twice."""
+        found: list[Rectangle] = []
+        open_runs: dict[tuple[int, int], int] = {}
+        for row in range(self.height + 1):
+            runs = _runs(self._row(row)) if row < self.height else []
+            for run in [run for run in open_runs if run not in runs]:
+                first = open_runs.pop(run)
+                found.append(Rectangle(self._x(run[0]), self._y(first), self._x(run[1]), self._y(row)))
+            for run in runs:
+                open_runs.setdefault(run, row)
+        return found
+
+    def walls(self) -> list[Segment]:
+        """The boundary of the occupied cells: horizontal pieces, then vertical ones, each as long as it goes."""
+        found: list[Segment] = []
+        before = bytes(self.width)
+        for row in range(self.height + 1):
+            after = self._row(row) if row < self.height else bytes(self.width)
+            y = self._y(row)
+            found += (Segment(self._x(a), y, self._x(b), y) for a, b in _changes(before, after))
+            before = after
+        before = bytes(self.height)
+        for column in range(self.width + 1):
+            after = self._column(column) if column < self.width else bytes(self.height)
+            x = self._x(column)
+            found += (Segment(x, self._y(a), x, self._y(b)) for a, b in _changes(before, after))
+            before = after
+        return found
+
+    def _row(self, row: int) -> bytes:
+        return self.cells[row * self.width : (row + 1) * self.width].translate(_SOLID)
+
+    def _column(self, column: int) -> bytes:
+        return self.cells[column :: self.width].translate(_SOLID)
+
+    def free_place(self, radius: float) -> tuple[float, float] | None:
+        """Find the point nearest to (0, 0), where maps usually begin, with *radius* metres of free cells around."""
+        reach = math.ceil(radius / self.resolution)
+        step = max(1, math.floor(_LATTICE / self.resolution))
+        places = [
+            (self._x(column) + 0.5 * self.resolution, self._y(row) + 0.5 * self.resolution, column, row)
+            for row in range(reach, self.height - reach, step)
+            for column in range(reach, self.width - reach, step)
+            if self.cells[row * self.width + column] == FREE
+        ]
+        for x, y, column, row in sorted(places, key=lambda place: place[0] * place[0] + place[1] * place[1]):
+            first, last = column - reach, column + reach + 1
+            if not any(
+                any(self.cells[each * self.width + first : each * self.width + last])
+                for each in range(row - reach, row + reach + 1)
+            ):
+                return x, y
+        return None
+
+
+_SOLID = bytes(1 if value == OCCUPIED else 0 for value in range(256))
+
+
+def _runs(row: bytes) -> list[tuple[int, int]]:
+    """Where solid cells begin, and where they end."""
+    found: list[tuple[int, int]] = []
+    begin = row.find(1)
+    while begin >= 0:
+        end = row.find(0, begin)
+        end = len(row) if end < 0 else end
+        found.append((begin, end))
+        begin = row.find(1, end)
+    return found
+
+
+def _changes(one: bytes, other: bytes) -> Iterator[tuple[int, int]]:
+    """Stretches along two lines of cells where one of them is solid and the other is not; the same one all along."""
+    if one == other:
+        return
+    begin, kind = 0, 0
+    for index, (a, b) in enumerate(zip(one, other, strict=True)):
+        if a - b != kind:
+            if kind:
+                yield begin, index
+            begin, kind = index, a - b
+    if kind:
+        yield begin, len(one)
+
+
+def is_map(path: Path) -> bool:
+    """Whether a YAML file is one of a map_server, wrong as it may be."""
+    keys = top_keys(path)
+    return "image" in keys and len(keys & set(_KEYS)) > 1
+
+
+def read_map(path: Path) -> tuple[str, list[Problem], OccupancyMap | None]:
+    """The text of a map file, all that is wrong with it and its image, and the map if nothing is."""
+    try:
+        text, wrong = read_text(path)
+    except OSError as error:
+        return "", [Problem(1, 1, f"it cannot be read: {error}")], None
+    if wrong is not None:
+        return text, [wrong], None
+    problems: list[Problem] = []
+    document = read_document(text, problems, "a map")
+    found = None if problems else _map(document, path.parent)
+    return text, problems, None if problems else found
+
+
+def _map(document: Node, folder: Path) -> OccupancyMap | None:
+    # Map servers ignore other keys; those that are like a known one are mistakes.
+    given = document.value if isinstance(document.value, dict) else {}
+    others = [str(key) for key in given if not difflib.get_close_matches(str(key), _KEYS, 1)]
+    entries = document.mapping(*_KEYS, *others, required=_REQUIRED)
+    resolution = entries["resolution"].number(0.001, 10.0, 1.0) if "resolution" in entries else 1.0
+    x_min, y_min = _origin(entries["origin"]) if "origin" in entries else (0.0, 0.0)
+    table = _meanings(entries)
+    image = _image(entries["image"], folder) if "image" in entries else None
+    if image is None:
+        return None
+    meant = image.pixels.translate(table)
+    rows = [meant[row * image.width : (row + 1) * image.width] for row in range(image.height)]
+    return OccupancyMap(resolution, x_min, y_min, image.width, image.height, b"".join(reversed(rows)))
+
+
+def _origin(node: Node) -> tuple[float, float]:
+    numbers = [item.number() for item in node.sequence()]
+    if not isinstance(node.value, list):
+        return 0.0, 0.0
+    if len(numbers) != 3:
+        node.wrong(f"{node.what} must be three numbers", "write [x, y, yaw] of the lower left corner")
+        return 0.0, 0.0
+    if numbers[2] != 0.0:
+        node.wrong(f"the map is rotated by {numbers[2]:g} radians", "rotate the image, and write 0 here")
+    return numbers[0], numbers[1]
+
+
+def _meanings(entries: dict[str, Node]) -> bytes:
+    """What each value of a pixel means."""
+    negate = entries.get("negate")
+    inverted = negate is not None and _truth(negate)
+    raw = "mode" in entries and entries["mode"].choice("trinary", "scale", "raw") == "raw"
+    occupied = entries["occupied_thresh"].number(0.0, 1.0, 0.65) if "occupied_thresh" in entries else 0.65
+    free = entries["free_thresh"].number(0.0, 1.0, 0.25) if "free_thresh" in entries else min(0.25, occupied)
+    if free > occupied:
+        entries.get("free_thresh", entries["occupied_thresh"]).wrong(
+            "'free_thresh' is more than 'occupied_thresh'",
+            "free cells are the bright ones: write 0.25 and 0.65",
+        )
+
+    def meaning(pixel: int) -> int:
+        if raw and pixel > 100:
+            return UNKNOWN
+        dark = pixel / 100 if raw else (pixel if inverted else 255 - pixel) / 255
+        return OCCUPIED if dark >= occupied else FREE if dark <= free else UNKNOWN
+
+    return bytes(meaning(pixel) for pixel in range(256))
+
+
+def _truth(node: Node) -> bool:
+    """``0`` or ``1``, as map_server writes it, or ``true`` or ``false``."""
+    return node.truth() if isinstance(node.value, bool) else node.number(0.0, 1.0) == 1.0
+
+
+def _image(node: Node, folder: Path) -> GreyImage | None:
+    name = node.text()
+    if not name:
+        return None
+    path = folder / name
+    try:
+        return read_pgm(path)
+    except FileNotFoundError:
+        node.wrong(
+            f"image not found: `{path}`", near_file(path, "*.pgm") or "its path counts from the map file"
+        )
+    except OSError as error:
+        node.wrong(f"image `{path}` cannot be read: {error}")
+    except ImageError as error:
+        node.wrong(f"image `{path}`: {error}", error.cure)
+    return None
+
+
+def near_file(path: Path, pattern: str) -> str:
+    """Ask whether a file beside *path* was meant that is called almost so; empty if there is none."""
+    try:
+        near = difflib.get_close_matches(path.name, [each.name for each in path.parent.glob(pattern)], 1)
+    except (OSError, ValueError):
+        return ""
+    return f"did you mean `{near[0]}`?" if near else ""
+
+
+def map_of_world(world: WorldDescription, image: str) -> tuple[str, bytes]:
+    """The map of a world as robots have it, with open doors: the text of its YAML file, and the image, called *image*."""
+    grid = Grid(world)
+    width, height = grid.width - 2, grid.height - 2
+    shades = bytes(0 if value else 254 for value in grid.occupancy())
+    rows = [shades[row * width : (row + 1) * width] for row in reversed(range(height))]
+    text = (
+        f"image: {image}\nmode: trinary\nresolution: {grid.resolution:g}\n"
+        f"origin: [{grid.x_min:g}, {grid.y_min:g}, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.25\n"
+    )
+    return text, pgm_bytes(GreyImage(width, height, b"".join(rows)))
