@@ -9,6 +9,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
+from jacaros.inspector.people import PeopleSeen
 from jacaros.inspector.recording import Recording
 
 _STYLE = """
@@ -18,6 +19,7 @@ _STYLE = """
   .area{fill:none;stroke:#d3d0c6;stroke-dasharray:4 4}
   .door{stroke:#b7791f;stroke-width:4} .open{stroke:#b7791f;stroke-width:2;stroke-dasharray:2 6}
   .dock{fill:#f2c14e} .bolt{fill:#7a5b0c} .dirt{fill:#8a6238}
+  .person{fill:#8e6bb0} .walk{fill:none;stroke:#8e6bb0;stroke-width:1.5;stroke-dasharray:2 6}
   .robot{fill:#fff;stroke:#1f6f8b} .heading{fill:#1f6f8b}
   @media (prefers-color-scheme: dark) {
     .floor{fill:#1f242a;stroke:#313840} .grid{stroke:#272d34} .wall{stroke:#b9c0c8} .box{fill:#2d343c}
@@ -55,6 +57,7 @@ def picture_svg(recording: Recording, width: int = 640) -> str:
     parts += [
         *_doors(sheet, recording),
         *_paths(sheet, recording),
+        *_people(sheet, recording),
         *_room_names(sheet, recording),
         *_robots(sheet, recording),
     ]
@@ -143,6 +146,24 @@ def _doors(sheet: _Sheet, recording: Recording) -> Iterator[str]:
         ax, ay, bx, by = door["segment"]
         line = f"M{sheet.x(ax)} {sheet.y(ay)}L{sheet.x(bx)} {sheet.y(by)}"
         yield f'<path class="{"open" if opened else "door"}" d="{line}"/>'
+
+
+def _people(sheet: _Sheet, recording: Recording) -> Iterator[str]:
+    """The people who are there at the end, with their paths."""
+    seen = PeopleSeen(recording.drawing)
+    for event in recording.events:
+        seen.event(*event)
+    for person in seen.at(recording.duration):
+        line = "L".join(f"{sheet.x(x)} {sheet.y(y)}" for x, y in person.path)
+        stroke, fill = (
+            f' style="{key}:{html.escape(person.color)}"' if person.color else ""
+            for key in ("stroke", "fill")
+        )
+        x, y, size = sheet.x(person.x), sheet.y(person.y), sheet.size(person.radius)
+        yield f'<path class="walk"{stroke} d="M{line}"/>'
+        yield f'<circle class="person"{fill} opacity=".8" cx="{x}" cy="{y}" r="{size}"/>'
+        name = html.escape(person.name)
+        yield f'<text class="name" text-anchor="middle" x="{x}" y="{y - size - 4:.1f}">{name}</text>'
 
 
 def _walls(sheet: _Sheet, world: dict[str, Any]) -> Iterator[str]:

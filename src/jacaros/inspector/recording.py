@@ -28,7 +28,10 @@ class Frame(NamedTuple):
 _NOWHERE: dict[str, Any] = {
     "name": "",
     "bounds": [-1, -1, 1, 1],
-    **{each: [] for each in ("walls", "boxes", "furniture", "rooms", "docks", "doors", "cliffs", "robots")},
+    **{
+        each: []
+        for each in ("walls", "boxes", "furniture", "rooms", "docks", "doors", "cliffs", "robots", "people")
+    },
 }
 """The drawing of a world of which nothing is known."""
 

@@ -19,6 +19,7 @@ from rich.live import Live
 from rich.text import Text
 
 from jacaros.inspector.braille import BrailleMap, character, draw_world
+from jacaros.inspector.people import PeopleSeen
 from jacaros.inspector.scene import UNKNOWN, RobotView
 from jacaros.output import Output
 
@@ -88,6 +89,7 @@ class TerminalView:
         self._screen = Screen(stream or sys.stderr) if console is None else None
         self._drawing: Mapping[str, Any] = {}
         self._open: dict[str, bool] = {}
+        self._people = PeopleSeen({})
         self._console = console if console is not None else Console(file=cast(TextIO, self._screen))
         self._wall = wall
         self._live: Live | None = None
@@ -113,6 +115,7 @@ class TerminalView:
         """The world; when it is another one than before, the path so far is lost."""
         self._drawing = drawing
         self._open = {door["name"]: door["open"] for door in drawing.get("doors", ())}
+        self._people = PeopleSeen(drawing)
         self._size = (0, 0)
 
     def frame(self, t: float, robots: Sequence[RobotView]) -> None:
@@ -138,7 +141,8 @@ class TerminalView:
             self._console.print(Text(f"[{agent}] {text}"), soft_wrap=True)
 
     def event(self, t: float, kind: str, data: Mapping[str, Any]) -> None:
-        """Something that happened; goals and doors are shown."""
+        """Something that happened; goals, doors and people are shown."""
+        self._people.event(t, kind, data)
         if kind in ("door_opened", "door_closed"):
             self._open[data["door"]] = kind == "door_opened"
         if kind != "goal":
@@ -246,13 +250,15 @@ class TerminalView:
         self._trail = BrailleMap(self._drawing["bounds"], max(20, size[0] - 2), rows)
 
     def _marks(self, shown: BrailleMap) -> dict[tuple[int, int], tuple[str, str]]:
-        """Characters that stand in place of dots: doors that are closed, docks, and robots over them."""
+        """Characters that stand in place of dots: doors that are closed, docks, people, and robots over them."""
         marks = {}
         for door in self._drawing.get("doors", ()):
             if not self._open[door["name"]]:
                 marks.update(dict.fromkeys(shown.cells_between(*door["segment"]), _DOOR))
         for dock in self._drawing["docks"]:
             marks[shown.cell_of(dock["pose"][0], dock["pose"][1])] = ("◎", "bold yellow")
+        for person in self._people.at(self._t):
+            marks[shown.cell_of(person.x, person.y)] = ("☻", "bold white")
         for index, robot in enumerate(self._robots):
             arrow = _ARROWS[round(robot.yaw / (math.pi / 4)) % 8]
             colour = "red" if robot.touching else _COLOURS[index % len(_COLOURS)]

@@ -29,6 +29,24 @@ class Segment(NamedTuple):
         ex, ey = x - (self.ax + place * dx), y - (self.ay + place * dy)
         return math.sqrt(ex * ex + ey * ey)
 
+    def gap(self, other: "Segment") -> float:
+        """Metres between the nearest points of two pieces; 0 where they cross."""
+        if self._parts(other) and other._parts(self):
+            return 0.0
+        return min(
+            self.distance(other.ax, other.ay),
+            self.distance(other.bx, other.by),
+            other.distance(self.ax, self.ay),
+            other.distance(self.bx, self.by),
+        )
+
+    def _parts(self, other: "Segment") -> bool:
+        """Whether the ends of another piece are on different sides of the line through this one."""
+        dx, dy = self.bx - self.ax, self.by - self.ay
+        of_a = dx * (other.ay - self.ay) - dy * (other.ax - self.ax)
+        of_b = dx * (other.by - self.ay) - dy * (other.bx - self.ax)
+        return (of_a > 0.0) != (of_b > 0.0)
+
 
 class Rectangle(NamedTuple):
     """An upright rectangle, in metres."""
@@ -214,6 +232,39 @@ class RobotDescription:
 
 
 @dataclass(frozen=True, slots=True)
+class PersonDescription:
+    """A person who walks from point to point of a path, in metres, and pauses for some seconds at each.
+
+    ``loop`` leads from the last point back to the first; without it the person stays at the last.  A ``careless`` person
+    does not stop before robots.  ``color`` is ``#rrggbb``, "" for any.
+    """
+
+    name: str
+    path: tuple[tuple[float, float], ...]
+    speed: float = 1.0
+    pause: float = 0.0
+    loop: bool = False
+    radius: float = 0.25
+    careless: bool = False
+    color: str = ""
+
+    def legs(self) -> tuple[Segment, ...]:
+        """The straight pieces of the path."""
+        ends = (*self.path[1:], self.path[0]) if self.loop else self.path[1:]
+        return tuple(Segment(*a, *b) for a, b in zip(self.path, ends, strict=False) if a != b)
+
+    def drawing(self) -> dict[str, Any]:
+        """All that a viewer needs, as plain JSON data."""
+        return {
+            "name": self.name,
+            "radius": self.radius,
+            "color": self.color,
+            "path": [list(point) for point in self.path],
+            "loop": self.loop,
+        }
+
+
+@dataclass(frozen=True, slots=True)
 class WorldDescription:
     """A whole world.
 
@@ -231,6 +282,7 @@ class WorldDescription:
     doors: tuple[Door, ...] = ()
     cliffs: tuple[Rectangle, ...] = ()
     robots: tuple[RobotDescription, ...] = field(default_factory=lambda: (RobotDescription(),))
+    people: tuple[PersonDescription, ...] = ()
     seed: int = 0
 
     def drawing(self) -> dict[str, Any]:
@@ -255,6 +307,7 @@ class WorldDescription:
                 {"name": robot.name, "pose": list(robot.pose), "radius": robot.radius}
                 for robot in self.robots
             ],
+            "people": [person.drawing() for person in self.people],
         }
 
 

@@ -12,8 +12,10 @@ from typing import Any
 from jacaros.errors import UsageError
 from jacaros.sim.cleaning import Cleaning
 from jacaros.sim.contact import WallIndex, push_apart
-from jacaros.sim.description import WorldDescription
+from jacaros.sim.description import PersonDescription, WorldDescription
 from jacaros.sim.ground_truth import Event, GroundTruth
+from jacaros.sim.laser import Circle
+from jacaros.sim.people import People, Person
 from jacaros.sim.robot import Robot
 from jacaros.sim.sensors import Laser
 from jacaros.sim.world_file import load_world, read_world
@@ -35,6 +37,7 @@ class World:
         doors: whether the doors, by name, are open.
         segments: all walls, and the doors that are closed.
         cleaning: the dirt, and the robots' tools that are at work.
+        people: the people who walk about, by name.
     """
 
     def __init__(self, description: WorldDescription, seed: int | None = None) -> None:
@@ -48,6 +51,8 @@ class World:
         self._lasers: dict[str, Laser] = {}
         self.doors = {door.name: door.open for door in description.doors}
         self._put_up_walls()
+        self._people = People(self.description.people, self._note_person)
+        self.people = self._people.by_name
         self.cleaning = Cleaning(self.description, self.room_at, self._note)
         self._truth = GroundTruth(self.robots, description.drawing())
         self._charge_shown = {robot.name: (False, math.ceil(robot.battery.level)) for robot in self._row}
@@ -113,8 +118,8 @@ class World:
         self.cleaning.use(self.robot(name), tool)
 
     def _put_up_walls(self) -> None:
-        closed = tuple(door.segment for door in self.description.doors if not self.doors[door.name])
-        self.segments = self.description.segments + closed
+        self._closed = tuple(door for door in self.description.doors if not self.doors[door.name])
+        self.segments = self.description.segments + tuple(door.segment for door in self._closed)
         radius = max((robot.radius for robot in self.description.robots), default=0.17)
         self._walls = WallIndex(self.segments, radius)
         for laser in self._lasers.values():
@@ -124,7 +129,7 @@ class World:
         """Open or close a door.
 
         Returns:
-            Why it cannot be closed: a robot is in it, or almost; None when it is done.
+            Why it cannot be closed: a robot or a person is in it, or almost; None when it is done.
 
         Raises:
             UsageError: there is no such door.
@@ -138,6 +143,9 @@ class World:
             for robot in self._row:
                 if door.segment.distance(robot.x, robot.y) < robot.description.radius + DOOR_ROOM:
                     return f"{robot.name} is in the way"
+            for person in self.people.values():
+                if door.segment.distance(person.x, person.y) < person.description.radius + DOOR_ROOM:
+                    return f"{person.name} is in the way"
         self.doors[name] = opened
         self._put_up_walls()
         ax, ay, bx, by = door.segment
@@ -149,8 +157,12 @@ class World:
     def scan(self, name: str) -> list[float]:
         """The ranges (metres) that a robot's laser measures now."""
         robot = self.robot(name)
-        others = [(other.x, other.y, other.description.radius) for other in self._row if other is not robot]
-        return self.laser(name).scan(robot.x, robot.y, robot.yaw, others)
+        return self.laser(name).scan(robot.x, robot.y, robot.yaw, self.others(robot))
+
+    def others(self, robot: Robot) -> list[Circle]:
+        """All other robots, and people: what *robot*'s laser sees where no wall hides it (metres)."""
+        robots = [(other.x, other.y, other.description.radius) for other in self._row if other is not robot]
+        return robots + self._people.circles() if self.people else robots
 
     def laser(self, name: str) -> Laser:
         """A robot's laser, made when it is first asked for."""
@@ -160,6 +172,29 @@ class World:
             self._lasers[name] = Laser(settings, self.segments, seed)
         return self._lasers[name]
 
+    def add_person(self, description: PersonDescription) -> Person:
+        """Let a person come, who stands at the first point of the path.
+
+        Raises:
+            UsageError: a person or a robot has that name, or a robot stands there.
+        """
+        if description.name in self.robots:
+            raise UsageError(f"there is a robot '{description.name}' already")
+        x, y = description.path[0]
+        for robot in self._row:
+            dx, dy, reach = robot.x - x, robot.y - y, robot.description.radius + description.radius
+            if dx * dx + dy * dy < reach * reach:
+                raise UsageError(f"{robot.name} stands where '{description.name}' is to come")
+        return self._people.add(description)
+
+    def remove_person(self, name: str) -> None:
+        """Let a person go.
+
+        Raises:
+            UsageError: there is no such person.
+        """
+        self._people.remove(name)
+
     def step(self, dt: float = STEP) -> None:
         """Let *dt* seconds pass."""
         # Rounded to a nanosecond: fifty steps make a second, not almost a second.
@@ -168,6 +203,8 @@ class World:
             robot.step(dt, self._walls)
         if len(self._row) > 1:
             self._part_robots(dt)
+        if self.people:
+            self._people.step(dt, self._row, self._closed, self._walls)
         if self.cleaning.at_work:
             self.cleaning.step(dt, self.robots)
         if self.description.cliffs:
@@ -220,3 +257,8 @@ class World:
 
     def _note(self, robot: Robot, kind: str, data: dict[str, Any]) -> None:
         self._truth.record_event(Event(self.time, robot.name, kind, robot.x, robot.y, robot.yaw, data))
+
+    def _note_person(self, person: Person, kind: str, data: dict[str, Any]) -> None:
+        # The place is in the data too: those who watch a run are not told the poses of events.
+        where = {"person": person.name, "x": person.x, "y": person.y}
+        self._truth.record_event(Event(self.time, "", kind, person.x, person.y, 0.0, {**where, **data}))

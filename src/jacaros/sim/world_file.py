@@ -24,6 +24,8 @@ radians.  Every key but ``robots`` may be left out; what a robot may say is in `
     robots:
       - name: turtlebot
         pose: {x: 0, y: 0, yaw_degrees: 0}
+    people:                           # see `jacaros.sim.people_file`
+      - {name: ann, path: [[0, 1], [2, 1]], loop: true}
 """
 
 import difflib
@@ -48,6 +50,7 @@ from jacaros.sim.description import (
     WorldError,
 )
 from jacaros.sim.map_file import OccupancyMap, is_map, near_file, read_map
+from jacaros.sim.people_file import check_people, read_person
 from jacaros.sim.robot_file import read_pose, read_robot
 from jacaros.sim.room_file import read_rectangle, read_rooms
 from jacaros.text_files import is_file
@@ -68,6 +71,7 @@ _KEYS = (
     "doors",
     "cliffs",
     "robots",
+    "people",
 )
 _TELLING = frozenset(_KEYS) - {"name", "seed"}
 """Keys that few other YAML files have."""
@@ -199,6 +203,7 @@ def _world(document: Node, folder: Path) -> WorldDescription:
     robots = list(entries["robots"].sequence()) if "robots" in entries else []
     if "robots" in entries:
         _check_robots(entries["robots"], robots)
+    people = list(entries["people"].sequence()) if "people" in entries else []
     world = WorldDescription(
         name=entries["name"].text() if "name" in entries else "world",
         bounds=bounds,
@@ -210,10 +215,13 @@ def _world(document: Node, folder: Path) -> WorldDescription:
         doors=_doors(entries.get("doors")),
         cliffs=tuple(read_rectangle(cliff) for cliff in _items(entries.get("cliffs"))),
         robots=tuple(read_robot(robot) for robot in robots),
+        people=tuple(read_person(person) for person in people),
         seed=entries["seed"].whole(0, 0) if "seed" in entries else 0,
     )
     if not document.problems:  # else places may be made up
-        _check_places(robots, world, walled="border" in entries and entries["border"].value == "walls")
+        walled = "border" in entries and entries["border"].value == "walls"
+        _check_places(robots, world, walled)
+        check_people(people, world, walled)
     return world
 
 

@@ -1,4 +1,4 @@
-"""What a robot sees with its laser: other robots, and doors."""
+"""What a robot sees with its laser: other robots, people, and doors."""
 
 import math
 from collections.abc import Iterable
@@ -32,13 +32,13 @@ class Sight:
         self._closed: set[str] = set()
 
     def robots(self, believed: Placement) -> list[Circle]:
-        """The robots that no wall hides."""
-        if len(self._world.robots) < 2 or self._reach <= 0.0:
+        """The robots and people that no wall hides."""
+        if self._reach <= 0.0 or (len(self._world.robots) < 2 and not self._world.people):
             return []
         true, seen = self._true(), []
-        for other in self._world.robots.values():
-            if other is not self._robot and self._sees(other.x, other.y, self._world.segments):
-                seen.append((*believed.point(*true.local(other.x, other.y)), other.description.radius))
+        for x, y, radius in self._world.others(self._robot):
+            if self._sees(x, y, self._world.segments):
+                seen.append((*believed.point(*true.local(x, y)), radius))
         return seen
 
     def closed_doors(self, believed: Placement) -> dict[str, list[Circle]]:

@@ -287,9 +287,9 @@ class Trip:
                 )
         for x, y, other in self._others:
             if in_the_way(self._route, [(x, y, other)], radius, self._route.remaining):
+                who = "another robot or a person" if self.navigator.time.world.people else "another robot"
                 raise NavigationFailure(
-                    NO_VALID_PATH,
-                    f"another robot stands in the way at {told((x, y))}, and there is no way round",
+                    NO_VALID_PATH, f"{who} stands in the way at {told((x, y))}, and there is no way round"
                 )
         raise NavigationFailure(FAILED_TO_MAKE_PROGRESS, f"the robot does not get any further at {here}")
 

@@ -1,0 +1,84 @@
+"""The ``people`` of a world file, who walk from point to point::
+
+people:
+  - name: ann
+    path: [[0, 0], [2, 0], [2, 2]]    # points; she stands at the first one at the beginning
+    speed: 1                          # m/s
+    pause: 0                          # seconds at each point
+    loop: true                        # from the last point to the first, and so on; false: ends at the last
+    radius: 0.25
+    careless: false                   # true: does not stop before robots
+    color: red
+"""
+
+import itertools
+
+from jacaros.sim.box_file import read_color
+from jacaros.sim.description import PersonDescription, Segment, WorldDescription
+from jacaros.yaml_nodes import Node
+
+_TOUCHING = 0.001
+
+
+def read_person(node: Node) -> PersonDescription:
+    """Read one person."""
+    entries = node.mapping(
+        "name", "path", "speed", "pause", "loop", "radius", "careless", "color", required=("name", "path")
+    )
+    usual = PersonDescription("", ((0.0, 0.0),))
+    return PersonDescription(
+        name=entries["name"].text() if "name" in entries else "",
+        path=_path(entries["path"]) if "path" in entries else usual.path,
+        speed=entries["speed"].number(0.01, 5.0, usual.speed) if "speed" in entries else usual.speed,
+        pause=entries["pause"].number(0.0, 1e6) if "pause" in entries else usual.pause,
+        loop="loop" in entries and entries["loop"].truth(),
+        radius=entries["radius"].number(0.05, 2.0, usual.radius) if "radius" in entries else usual.radius,
+        careless="careless" in entries and entries["careless"].truth(),
+        color=read_color(entries["color"]) if "color" in entries else "",
+    )
+
+
+def _path(node: Node) -> tuple[tuple[float, float], ...]:
+    points = tuple(point.pair() for point in node.sequence())
+    if not points:
+        node.wrong(f"{node.what} has no points", "write [[x, y], ...], in metres")
+        return ((0.0, 0.0),)
+    for before, after in itertools.pairwise(points):
+        if before == after:
+            node.wrong(
+                f"{node.what} has the point [{after[0]:g}, {after[1]:g}] twice in a row",
+                "leave one of them out",
+            )
+    return points
+
+
+def check_people(items: list[Node], world: WorldDescription, walled: bool) -> None:
+    """Note people with the name of another person or of a robot, and those whose path touches a wall or a robot's place.
+
+    Closed doors are allowed: people wait before them.
+    """
+    names = {robot.name for robot in world.robots}
+    for item, person in zip(items, world.people, strict=True):
+        if person.name in names:
+            item.wrong(f"the name '{person.name}' is taken", "give each person and robot a name of its own")
+        names.add(person.name)
+        _check_path(item, person, world, walled)
+
+
+def _check_path(item: Node, person: PersonDescription, world: WorldDescription, walled: bool) -> None:
+    x, y = person.path[0]
+    for robot in world.robots:
+        dx, dy, reach = robot.pose.x - x, robot.pose.y - y, robot.radius + person.radius
+        if dx * dx + dy * dy < reach * reach:
+            item.wrong(f"'{person.name}' begins where the robot '{robot.name}' stands", "begin elsewhere")
+    for ax, ay, bx, by in person.legs():
+        where = f"the path of '{person.name}' from [{ax:g}, {ay:g}] to [{bx:g}, {by:g}]"
+        if walled and not (world.bounds.contains(ax, ay) and world.bounds.contains(bx, by)):
+            item.wrong(f"{where} leaves the world", "the border has walls")
+        elif any(
+            Segment(ax, ay, bx, by).gap(wall) < person.radius - _TOUCHING for wall in world.segments
+        ) or any(box.contains(ax, ay) for box in world.boxes):
+            item.wrong(
+                f"{where} is nearer to a wall than the radius of {person.radius:g} m",
+                "lead the path around it",
+            )
