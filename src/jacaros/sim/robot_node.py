@@ -14,8 +14,9 @@ topic (below the robot's namespace)         type                          direct
 ``/amcl_pose``                              the same                      out, latched, see `jacaros.sim.robot_transforms`
 =========================================== ============================= ==========================
 
-Bumpers and the dock are in `jacaros.sim.robot_contacts`, cliffs in `jacaros.sim.robot_cliffs`, transforms in
-`jacaros.sim.robot_transforms`, and what the robot can be asked to do by itself in `jacaros.sim.navigation`.
+Other sensors have files of their own: bumpers and the dock `jacaros.sim.robot_contacts`, cliffs
+`jacaros.sim.robot_cliffs`, ``/imu`` `jacaros.sim.robot_imu`, ``/sonar`` `jacaros.sim.robot_sonar`, transforms
+`jacaros.sim.robot_transforms`.  What the robot can be asked to do by itself is in `jacaros.sim.navigation`.
 """
 
 import math
@@ -28,7 +29,9 @@ from jacaros.sim.navigation.localisation import Localisation
 from jacaros.sim.robot import Robot
 from jacaros.sim.robot_cliffs import CliffSensors
 from jacaros.sim.robot_contacts import RobotContacts
+from jacaros.sim.robot_imu import ImuSensor
 from jacaros.sim.robot_sensors import BatterySensor, LaserSensor, OdometrySensor, RobotOnGraph, Sensor
+from jacaros.sim.robot_sonar import SonarSensor
 from jacaros.sim.robot_transforms import AmclPose, RobotTransforms
 from jacaros.sim.world_time import WorldTime
 
@@ -40,6 +43,8 @@ SENSORS: Final[Sequence[Callable[[RobotOnGraph], Sensor]]] = (
     CliffSensors,
     BatterySensor,
     LaserSensor,
+    ImuSensor,
+    SonarSensor,
 )
 """What every robot tells the graph, in the order of publishing."""
 

@@ -1,0 +1,49 @@
+"""What a robot feels of its motion: an inertial measurement unit (IMU) at its centre."""
+
+from jacaros.sim.robot_sensors import RobotOnGraph
+from jacaros.sim.trigonometry import sine_cosine
+
+GRAVITY = 9.80665
+"""What an accelerometer measures upwards at rest, in m/s²."""
+_LONGEST_STEP = 0.2
+"""Seconds between two messages beyond which no acceleration is worked out: nobody listened in between."""
+
+
+class ImuSensor:
+    """``/imu``: heading, turn rate and acceleration, 20 Hz when somebody listens.
+
+    The heading is the true one, as of an ideal compass, whatever odometry believes.  The acceleration has that of
+    gravity, and is the mean since the message before.
+    """
+
+    def __init__(self, at: RobotOnGraph) -> None:
+        self._at = at
+        self._publisher = at.publisher("/imu", "sensor_msgs/msg/Imu")
+        self._speed = 0.0
+        self._time = -_LONGEST_STEP
+
+    def publish(self, ticks: int) -> None:
+        """Publish, if somebody listens."""
+        del ticks
+        if not self._publisher.subscription_count:
+            return
+        robot = self._at.robot
+        message = self._publisher.message()
+        self._at.fill_header(message.header, "base_link")
+        message.orientation.z, message.orientation.w = sine_cosine(0.5 * robot.yaw)
+        message.angular_velocity.z = robot.turn_rate
+        acceleration = message.linear_acceleration
+        acceleration.x, acceleration.y = self._gained(), robot.speed * robot.turn_rate
+        acceleration.z = GRAVITY
+        self._publisher.publish(message)
+
+    def _gained(self) -> float:
+        """The acceleration ahead since the message before, in m/s²."""
+        now, speed = self._at.time.world.time, self._at.robot.speed
+        passed, gained = now - self._time, speed - self._speed
+        self._time, self._speed = now, speed
+        return gained / passed if 0.0 < passed <= _LONGEST_STEP else 0.0
+
+    def close(self) -> None:
+        """Leave the topic."""
+        self._publisher.close()
