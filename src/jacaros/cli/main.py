@@ -25,6 +25,7 @@ COMMANDS = {
     "compile": ("jacaros.cli.compile", "Show the Python code that is made of a program."),
     "test": ("jacaros.cli.test", "Run the tests of agent programs."),
     "sim": ("jacaros.cli.sim", "Run a robot world as a ROS node of its own."),
+    "world": ("jacaros.cli.world", "Check, show, make and export world files."),
     "guard": ("jacaros.cli.guard", "Stop the robot when its agents no longer can."),
     "ros": ("jacaros.cli.ros", "Look at a live ROS graph, and write mapping files for it."),
     "describe": ("jacaros.cli.describe", "Tell what an artifact type, a mapping or a project offers."),

@@ -16,6 +16,9 @@ _BEGINNINGS = {
     "replay page": (b"<!doctype html>",),
     "ground truth": (b'{"kind": "',),
     "JUnit report": (b"<?xml", b"<testsuite"),
+    "picture": (b"<svg",),
+    "map": (b"image:",),
+    "map image": (b"p5",),
 }
 """How a file of each kind begins: no other file is overwritten."""
 

@@ -197,7 +197,7 @@ class TerminalView:
         head = Text(f"{self._drawing.get('name', '')}  ", style="bold")
         head.append(f"{_minutes(self._t)}  ×{self._factor:.0f}", style="not bold dim")
         # Where nothing is known of a world, goals and prints are worth a look all the same.
-        rows = [head, self._map()] if self._drawing else [head]
+        rows = [head, self.map()] if self._drawing else [head]
         rows += [self._gauge(robot, i) for i, robot in enumerate(self._robots)]
         rows += [Text(row, style="dim", no_wrap=True, overflow="ellipsis") for row in self._pursued()]
         for agent, text in self._prints:
@@ -220,7 +220,8 @@ class TerminalView:
                 rows.append(f"{who} {len(newest) - _INTENTIONS} more")
         return rows
 
-    def _map(self) -> Text:
+    def map(self) -> Text:
+        """The map alone, with docks, closed doors and robots."""
         self._fit()
         assert self._walls is not None
         assert self._trail is not None

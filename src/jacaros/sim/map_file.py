@@ -28,6 +28,8 @@ from jacaros.yaml_syntax import read_text, top_keys
 _KEYS = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh", "mode")
 _REQUIRED = ("image", "resolution", "origin")
 FREE, OCCUPIED, UNKNOWN = 0, 1, 2
+_ROOM_FOR_ROBOT = 0.4
+"""Metres from a robot, for which a place is looked for, to anything that may be a wall."""
 _LATTICE = 0.25
 """Metres between places that are tried for a robot."""
 
@@ -176,6 +178,16 @@ def _map(document: Node, folder: Path) -> OccupancyMap | None:
     meant = image.pixels.translate(table)
     rows = [meant[row * image.width : (row + 1) * image.width] for row in range(image.height)]
     return OccupancyMap(resolution, x_min, y_min, image.width, image.height, b"".join(reversed(rows)))
+
+
+def free_place(found: OccupancyMap | None, problems: list[Problem]) -> tuple[float, float] | None:
+    """Where a robot can stand on a map; None after a mistake, which is added to *problems*."""
+    place = found.free_place(_ROOM_FOR_ROBOT) if found is not None else None
+    if found is not None and place is None:
+        problems.append(
+            Problem(1, 1, "the map has no free place for a robot", "see 'free_thresh' and 'negate'")
+        )
+    return place
 
 
 def _origin(node: Node) -> tuple[float, float]:

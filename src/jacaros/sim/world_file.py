@@ -49,7 +49,7 @@ from jacaros.sim.description import (
     WorldDescription,
     WorldError,
 )
-from jacaros.sim.map_file import OccupancyMap, is_map, near_file, read_map
+from jacaros.sim.map_file import OccupancyMap, free_place, is_map, near_file, read_map
 from jacaros.sim.people_file import check_people, read_person
 from jacaros.sim.robot_file import read_pose, read_robot
 from jacaros.sim.room_file import read_rectangle, read_rooms
@@ -77,8 +77,6 @@ _TELLING = frozenset(_KEYS) - {"name", "seed"}
 """Keys that few other YAML files have."""
 _TOUCHING = 0.001
 """Metres that a robot may stand in a wall: so much is lost when its place is rounded."""
-_ROOM_FOR_ROBOT = 0.4
-"""Metres from a robot, for which a place is looked for, to anything that may be a wall."""
 _DOOR_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 
 
@@ -161,15 +159,9 @@ def _read(path: Path) -> tuple[str, list[Problem], WorldDescription | None]:
 def _read_as_world(path: Path) -> tuple[str, list[Problem], WorldDescription | None]:
     """The world of a map: its walls, and a TurtleBot at the free place nearest to (0, 0)."""
     text, problems, found = read_map(path)
-    if found is None:
+    place = free_place(found, problems)
+    if found is None or place is None:
         return text, problems, None
-    place = found.free_place(_ROOM_FOR_ROBOT)
-    if place is None:
-        return (
-            text,
-            [Problem(1, 1, "the map has no free place for a robot", "see 'free_thresh' and 'negate'")],
-            None,
-        )
     robot = RobotDescription(pose=Pose(*place, 0.0))
     walls, boxes = tuple(found.walls()), tuple(found.boxes())
     return text, [], WorldDescription(path.stem, found.bounds, walls, boxes, robots=(robot,))

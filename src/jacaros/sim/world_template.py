@@ -1,0 +1,87 @@
+"""New world files: text with comments that a person goes on with."""
+
+import os
+from pathlib import Path
+
+from jacaros.sim.description import WorldError
+from jacaros.sim.map_file import free_place, read_map
+
+_NEW = """\
+# A world of two rooms. Lengths are metres, angles degrees counter-clockwise from the x axis.
+name: {name}
+size: [6, 4]                                  # centred at (0, 0); or bounds: {{from: [x, y], to: [x, y]}}
+border: walls                                 # around all of it; or open
+walls:
+  - segment: [[0, -2], [0, -0.6]]             # a doorway of 1.2 m between the rooms
+  - segment: [[0, 0.6], [0, 2]]
+  - box: {{from: [2.2, 1.2], to: [3, 2]}}       # furniture
+rooms:
+  kitchen: {{from: [-3, -2], to: [0, 2]}}
+  living_room: {{from: [0, -2], to: [3, 2]}}
+# doors:                                      # agents open and close them, see /doors/hall/open
+#   - {{name: hall, segment: [[0, -0.6], [0, 0.6]], open: true}}
+docks:
+  - {{name: dock, x: -2.5, y: 0, yaw_degrees: 0}}
+robots:
+  - name: turtlebot
+    pose: {{x: -2, y: 0, yaw_degrees: 0}}
+    # namespace: robot_1                      # prefix of its topics; several robots need different ones
+    # battery: {{level: 100, drain_per_second: 0.01, drain_per_metre: 0.02}}
+"""
+
+_OF_MAP = """\
+# A world on a map of ROS's map_server, {width:g} x {height:g} m. Lengths are metres, angles degrees.
+name: {name}
+map: {map}
+# rooms:                                      # names for places: opposite corners
+#   lobby: {{from: [{x}, {y}], to: [{x_room}, {y_room}]}}
+docks:
+  - {{name: dock, x: {x}, y: {y}, yaw_degrees: 0}}
+robots:
+  - name: turtlebot
+    pose: {{x: {x}, y: {y}, yaw_degrees: 0}}
+"""
+
+
+def new_world(name: str) -> str:
+    """The text of a world with two rooms."""
+    return _NEW.format(name=_quoted(name))
+
+
+def world_of_map(path: Path, map_file: Path) -> str:
+    """The text of a world file that is to be written to *path*, with the walls of a map and a robot where it is free.
+
+    Raises:
+        WorldError: the map has mistakes, or no free place.
+    """
+    text, problems, found = read_map(map_file)
+    place = free_place(found, problems)
+    if found is None or place is None:
+        raise WorldError(str(map_file), text, problems)
+    left, bottom, right, top = found.bounds
+    x, y = (round(value, 3) for value in place)
+    return _OF_MAP.format(
+        width=round(right - left, 3),
+        height=round(top - bottom, 3),
+        name=_quoted(path.stem),
+        map=_quoted(_relative(map_file, path)),
+        x=x,
+        y=y,
+        x_room=round(x + 1.0, 3),
+        y_room=round(y + 1.0, 3),
+    )
+
+
+def described_map(image: Path, path: Path, resolution: float) -> str:
+    """The text of a map file that is to be written to *path* for an image; its lower left corner is the origin."""
+    return f"image: {_quoted(_relative(image, path))}\nresolution: {resolution:g}\norigin: [0, 0, 0]\n"
+
+
+def _relative(file: Path, path: Path) -> str:
+    """How *path* names another file."""
+    return Path(os.path.relpath(file.resolve(), path.resolve().parent)).as_posix()
+
+
+def _quoted(text: str) -> str:
+    r"""A text of YAML: quotes and backslashes are written as ``\"`` and ``\\``."""
+    return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'

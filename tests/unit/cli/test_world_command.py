@@ -1,0 +1,131 @@
+"""``jacaros world``: checks, pictures, new world files and exported maps."""
+
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+
+from jacaros.cli.main import call
+from jacaros.sim.world_file import load_world, shipped_worlds, world_problems
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def outcome(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str, str]:
+    code = call(["world", *arguments])
+    captured = capsys.readouterr()
+    return code, captured.out, captured.err
+
+
+def test_all_worlds_are_checked_and_all_mistakes_reported(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    Path("bad.yaml").write_text("wals: []\nrobots: [{nam: a}]\n")
+    assert outcome(capsys, "check", "house", "bad.yaml", "huose", "three_robots") == (
+        1,
+        (
+            "house: 4.4 x 4.4 m, 4 rooms, 24 walls, 0 doors, 1 dock, 1 robot\n"
+            "bad.yaml:1:1: error: a world has no key 'wals'\n"
+            "    1 | wals: []\n"
+            "        ^\n"
+            "  = help: did you mean 'walls'?\n"
+            "bad.yaml:2:11: error: item 1 of 'robots' has no key 'nam'\n"
+            "    2 | robots: [{nam: a}]\n"
+            "                  ^\n"
+            "  = help: did you mean 'name'?\n"
+            "error: world not found: `huose`\n"
+            "  = help: did you mean `house`?\n"
+            "three robots: 8 x 6 m, 3 rooms, 12 walls, 0 doors, 3 docks, 3 robots\n"
+        ),
+        "",
+    )
+
+
+def test_shipped_worlds_are_right(capsys: pytest.CaptureFixture[str]) -> None:
+    assert outcome(capsys, "check", *shipped_worlds())[0] == 0
+
+
+def test_a_world_is_drawn_as_text_where_there_is_no_terminal(capsys: pytest.CaptureFixture[str]) -> None:
+    code, output, errors = outcome(capsys, "show", "three_robots")
+    assert (code, errors) == (0, "")
+    assert output.count("◎") == output.count("→") == 3
+    assert output.endswith("3 docks, 3 robots\n")
+    assert "\x1b" not in output
+
+
+def test_a_picture_of_a_world_is_written(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert outcome(capsys, "show", "house", "--output", "house.svg", "--width", "300") == (
+        0,
+        "wrote house.svg\n",
+        "",
+    )
+    picture = ElementTree.parse("house.svg").getroot()
+    assert picture.get("width") == "300"
+    assert "living room" in (folder / "house.svg").read_text()
+
+
+def test_a_new_world_is_right_and_not_overwritten(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert outcome(capsys, "new", 'my "lab".yaml') == (0, 'wrote my "lab".yaml\n', "")
+    assert world_problems(Path('my "lab".yaml'))[1] == []
+    world = load_world('my "lab".yaml')
+    assert (world.name, len(world.rooms), len(world.docks)) == ('my "lab"', 2, 1)
+    code, _, errors = outcome(capsys, "new", 'my "lab".yaml')
+    assert code == 2
+    assert errors.startswith("error: file exists, and is not overwritten:")
+
+
+def test_a_world_goes_to_a_map_and_comes_back(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert outcome(capsys, "export", "house", "h.yaml") == (0, "wrote h.yaml\nwrote h.pgm\n", "")
+    (folder / "worlds").mkdir()
+    assert outcome(capsys, "new", "worlds/again.yaml", "--map", "h.yaml")[0] == 0
+    world = load_world("worlds/again.yaml")
+    assert world.bounds == load_world("house").bounds
+    (robot,) = world.robots
+    assert (robot.pose.x, robot.pose.y) == (world.docks[0].pose.x, world.docks[0].pose.y)
+    assert outcome(capsys, "export", "worlds/again.yaml", "h.yaml")[0] == 0
+
+
+def test_an_image_alone_gets_a_map_file(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    outcome(capsys, "export", "house", "h.yaml")
+    assert outcome(capsys, "new", "lab.yaml", "--map", "h.pgm", "--resolution", "0.1") == (
+        0,
+        "wrote lab_map.yaml\nwrote lab.yaml\n",
+        "",
+    )
+    assert load_world("lab.yaml").bounds == (0, 0, 8.8, 8.8)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "told"),
+    [
+        (("show", "house", "--output", "h.png"), 2, "not the name of an SVG picture: `h.png`"),
+        (("show", "house", "--output", "notes.svg"), 2, "not a picture, and not overwritten: `notes.svg`"),
+        (("show", "nowhere"), 1, "world not found: `nowhere`"),
+        (("export", "house", "h.png"), 2, "not the name of a map: `h.png`"),
+        (("export", "house", "notes.yaml"), 2, "not a map, and not overwritten: `notes.yaml`"),
+        (("export", "house", "away/h.yaml"), 2, "folder does not exist: `away`"),
+        (("new", "a.txt"), 2, "not the name of a world file: `a.txt`"),
+        (("new", "away/a.yaml"), 2, "cannot write `away/a.yaml`: No such file or directory"),
+        (("new", "a.yaml", "--resolution", "1"), 2, "--resolution is for the image of a map"),
+        (
+            ("new", "a.yaml", "--map", "broken.yaml"),
+            1,
+            "broken.yaml:1:1: error: a map lacks the key 'origin'",
+        ),
+        (("new", "a.yaml", "--map", "missing.yaml"), 1, "missing.yaml:1:1: error: it cannot be read"),
+    ],
+)
+def test_wrong_calls_say_what_to_do(
+    folder: Path, capsys: pytest.CaptureFixture[str], arguments: tuple[str, ...], code: int, told: str
+) -> None:
+    for name in ("notes.svg", "notes.yaml"):
+        Path(name).write_text("my notes")
+    Path("broken.yaml").write_text("image: h.pgm\nresolution: 0.1\n")
+    found, output, errors = outcome(capsys, *arguments)
+    assert (found, output) == (code, "")
+    assert told in errors
+    assert not Path("a.yaml").exists()
