@@ -156,7 +156,7 @@ robots:
         assert watcher.held == {}
         out = Out()
         await lab.do(battery, "getCurrentBattery", out)
-        assert out.value == 22
+        assert out.value == 21
         assert watcher.values("diagnostics") == [(MEDIUM,)]
         failed = await lab.call(battery, "operationRecharge")
         assert failed.reason == "not_docked"
@@ -225,6 +225,40 @@ def test_a_driver_that_charges_for_ever_is_full_all_the_same() -> None:
     in_lab(body, None)
 
 
+@pytest.mark.parametrize("status", ["CHARGING", "UNKNOWN"])
+def test_a_battery_that_is_almost_full_is_not_full(status: str) -> None:
+    """Rounding must not end a charge early."""
+
+    async def body(lab: Lab) -> None:
+        battery = await lab.make(ArtSimBattery, "bot")
+        watcher = lab.watch(battery)
+        publish = charge(lab.backend, "/bot/battery_state")
+        publish(0.994, status)
+        charging = lab.begin(battery, "operationRecharge")
+        for tenth in range(995, 1000):
+            await lab.sleep(4)
+            publish(tenth / 1000, status)
+        await lab.sleep(4)
+        assert watcher.holds("battery") == [(99,)]
+        assert not charging.done.done()
+        publish(1.0, "FULL")
+        await charging.done
+        assert watcher.holds("battery") == [(100,)]
+
+    in_lab(body, None)
+
+
+def test_an_old_battery_that_never_tells_that_it_is_full_is_full_when_it_rises_no_more() -> None:
+    async def body(lab: Lab) -> None:
+        battery = await lab.make(ArtSimBattery, "bot")
+        publish = charge(lab.backend, "/bot/battery_state")
+        publish(0.996, "NOT_CHARGING")
+        await lab.do(battery, "operationRecharge")
+        assert lab.clock.elapsed < 7
+
+    in_lab(body, None)
+
+
 def charge(backend: Backend, topic: str) -> Any:
     publisher = backend.publisher(topic, "sensor_msgs/msg/BatteryState")
 
@@ -277,7 +311,7 @@ def test_a_driver_that_counts_in_percent_is_understood() -> None:
         for percent in (98.2, 55.0, 19.6, 1.0):
             tell(percent, "DISCHARGING")
             await lab.sleep(0.1)
-        assert watcher.values("battery") == [(98,), (55,), (20,), (1,)]
+        assert watcher.values("battery") == [(98,), (55,), (19,), (1,)]
         assert watcher.values("diagnostics")[-1] == (LOW,)
         assert len(lab.logged) == 1
         assert "taken for percent" in lab.logged[0]

@@ -65,7 +65,7 @@ def shown(types: StoredInterfaces, type_name: str) -> str:
             "nav_msgs/msg/Odometry",
             ["{path: pose.pose.position.x, round: 2}", "as: yaw, unit: degrees, round: 1}", "rate: 5"],
         ),
-        ("sensor_msgs/msg/BatteryState", ["unit: percent, round: 0}", "power_supply_status, as: name}"]),
+        ("sensor_msgs/msg/BatteryState", ["unit: percent, round: down}", "power_supply_status, as: name}"]),
         (
             "sensor_msgs/msg/Range",
             ["# t(Range): metres", "fields:\n      - {path: range, round: 2}\n    rate: 5"],

@@ -54,6 +54,7 @@ class Conversion:
         knows_message_unit: the mapping says in which unit messages have it.
         line: of units, scale and offset; None when the number stays as it is.
         digits: decimals; None: as many as there are.
+        floor: whole numbers, rounded down instead of to the nearest.
     """
 
     kind: str = ""
@@ -63,6 +64,7 @@ class Conversion:
     digits: int | None = None
     unit: str = ""
     knows_message_unit: bool = False
+    floor: bool = False
 
 
 AS_IT_IS = Conversion()

@@ -242,13 +242,23 @@ _NAMED: dict[str, tuple[type, ...]] = {
 }
 
 
+_ALMOST = 1e-6
+"""So little below a whole number is the fault of the arithmetic, or of a message's 32 bits: 100 times 0.57 is 56.999…"""
+
+
+def _rounding(digits: int, floor: bool) -> Convert:
+    if floor:
+        return lambda value: math.floor(value + _ALMOST)
+    return round if digits == 0 else (lambda value: round(value, digits))
+
+
 def converted(conversion: Conversion) -> Convert:
     """The steps that follow: names, or else units and rounding."""
     steps: list[Convert] = []
     if (line := conversion.line) is not None:
         steps.append(line.there)
     if (digits := conversion.digits) is not None:
-        steps.append(round if digits == 0 else (lambda value: round(value, digits)))
+        steps.append(_rounding(digits, conversion.floor))
     number = _in_turn(steps)
     if not conversion.names and conversion.kind != "name":
         return number

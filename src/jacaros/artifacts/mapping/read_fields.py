@@ -11,6 +11,8 @@ ANGLES = ("yaw", "pitch", "roll")
 LISTS = ("count", "min", "max", "mean")
 KINDS = (*ANGLES, "name", "atom", "object", *LISTS)
 CONVERSION = ("as", "prefix", "names", "unit", "message_unit", "scale", "offset")
+DOWN = "down"
+"""As in ``round: down``: the whole number below, so that a battery at 99.7 % is not told to be full."""
 FIELD = ("path", *CONVERSION, "sample", "round", "otherwise", "dead_band", "name")
 
 
@@ -96,10 +98,15 @@ def read_conversion(entries: dict[str, Node]) -> Conversion:
         entries["prefix"].text() if "prefix" in entries else "",
         _names(entries["names"]) if "names" in entries else (),
         _line(entries, kind),
-        digits.whole(0, 0) if digits is not None else None,
+        _digits(digits) if digits is not None else None,
         str(unit.value) if unit is not None and isinstance(unit.value, str) and unit.value in UNITS else "",
         "message_unit" in entries,
+        digits is not None and digits.value == DOWN,
     )
+
+
+def _digits(node: Node) -> int:
+    return 0 if node.value == DOWN else node.whole(0, 0)
 
 
 def _names(node: Node) -> tuple[tuple[object, str], ...]:

@@ -21,6 +21,12 @@ CHARGE_STEP, CHARGE_PERIOD = 10, 0.5
 MORE_THAN_FULL = 1.5
 """A driver that tells more than this counts in percent: the message type wants a share of 1, but not all obey."""
 
+AS_GOOD_AS_FULL = 0.995
+"""A share of 1 from which on a charge that rises no more is the end: old batteries never tell 1."""
+
+_ALMOST = 1e-4
+"""So many percent are lost in the 32 bits of a message."""
+
 UNKNOWN = -1
 """Percent before the robot told its battery."""
 
@@ -49,7 +55,7 @@ class ArtSimBattery(RosArtifact):
         dock_timeout(S): how long `operation_recharge` waits for the dock's current (5 s).
 
     Properties:
-        battery(N): whole percent, 0 to 100.
+        battery(N): whole percent, 0 to 100; what a robot tells is rounded down, so that 100 is full.
         diagnostics(Text): "Full Battery", "Medium Battery" (50 % and less) or "Low Battery" (20 % and less).
             A robot's battery is unknown until its first message: then neither is there.
     """
@@ -149,14 +155,15 @@ class ArtSimBattery(RosArtifact):
         told = self._charge(float(state.percentage))
         share = self._share if told is None else told
         # Many drivers know no status: there, a charge that rises tells of the current.
-        if charging or full or share > self._share:
+        rises = share > self._share
+        if charging or full or rises:
             self._fed_at = self.clock.elapsed
         self._share = share
         if told is not None:
-            level = FULL if full else min(FULL, round(100.0 * share))
-            if level < FULL:
+            level = FULL if full else min(FULL, math.floor(100.0 * share + _ALMOST))
+            if level < FULL and share < AS_GOOD_AS_FULL:
                 self._full_since = math.inf
-            elif self._full_since == math.inf:
+            elif self._full_since == math.inf or (rises and level < FULL):
                 self._full_since = self.clock.elapsed
             self.start(self.show_battery, level, charging, cause=sample.cause)
             self._told.take((level,))
@@ -197,10 +204,10 @@ class ArtSimBattery(RosArtifact):
             await self.sleep(CHARGE_PERIOD)
 
     def _is_full(self, patience: float) -> bool:
-        """Whether the robot stopped to charge at 100 %, or goes on charging there for long."""
-        if self._level < FULL:
-            return False
-        return not self._charging or self.clock.elapsed - self._full_since > patience
+        """Whether the robot stopped to charge at the end, or goes on charging there for long without getting fuller."""
+        if self._level == FULL and not self._charging:
+            return True
+        return self.clock.elapsed - self._full_since > patience
 
     # Operations.
 

@@ -35,7 +35,7 @@ def _battery(name: str) -> Body:
         f"{name}(Percent, Status): such as {name}(80, discharging)",
         [
             "fields:",
-            "  - {path: percentage, unit: percent, round: 0}",
+            "  - {path: percentage, unit: percent, round: down}",
             "  - {path: power_supply_status, as: name}",
         ],
     )

@@ -54,6 +54,9 @@ def taken(type_name: str, fields: str, **message: Any) -> tuple[object, ...]:
             (90,),
         ),
         ("sensor_msgs/msg/BatteryState", {"percentage": 0.25}, "{path: percentage, unit: percent}", (25.0,)),
+        (BATTERY, {"percentage": 0.997}, "{path: percentage, unit: percent, round: down}", (99,)),
+        (BATTERY, {"percentage": 0.57}, "{path: percentage, unit: percent, round: down}", (57,)),
+        (BATTERY, {"percentage": 1.0}, "{path: percentage, unit: percent, round: down}", (100,)),
         ("sensor_msgs/msg/Temperature", {"temperature": 20.0}, "{path: temperature, unit: kelvin}", (293.15,)),
         (
             "sensor_msgs/msg/Temperature",
