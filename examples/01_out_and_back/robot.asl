@@ -9,7 +9,7 @@
 // A plan: to reach the goal `start`, do these steps one after the other.
 +!start
   <- // An artifact is a thing that the agent uses; this one drives the robot.
-     !use_artifact("wheels", "ArtCmdVel");
+     !use_artifact("wheels", "ArtCmdVel", [frame(map)]);
      for (.member(Leg, [out, back])) {
         .print("driving ", Leg);
         move(25);     // drive ahead for 2.6 seconds: 26 commands, ten a second

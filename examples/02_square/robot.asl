@@ -5,8 +5,9 @@
 !start.
 
 +!start
-  <- // Drives by odometry: an operation ends when the robot has come as far as it was told to.
-     !use_artifact("wheels", "ArtCmdVelMuxAndOdometry");
+  <- // Drives by odometry: an operation ends when the robot has come as far as it was told to.  With frame(map)
+     // localisation puts odometry right, which drifts, as wheels slip.
+     !use_artifact("wheels", "ArtCmdVelMuxAndOdometry", [frame(map)]);
      for (.range(Side, 1, 4)) {
         moveForward(1);  // metres
         rotate(90);      // degrees

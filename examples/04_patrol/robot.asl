@@ -21,13 +21,13 @@ lowest(100).  // percent, the least that it ever had in the dock
 !start.
 
 +!start
-  <- !use_artifact("wheels", "ArtCmdVelMuxAndOdometry");
+  <- !use_artifact("wheels", "ArtCmdVelMuxAndOdometry", [frame(map)]);
      !use_artifact("battery", "ArtSimBattery", [source(robot)]);
      !!patrol([1, 2, 3, 4]).  // !! : a goal of its own, apart from this one
 
 /* The patrol: its plans stand in a library, included at the end; here is what this robot does in its own way */
 
-// Going to a place: by odometry, and without caring where it looks then.
+// Going to a place: straight ahead, and without caring where it looks then.
 +!drive_there(X, Y, _)
   <- driveTo(X, Y).  // this plan waits here until the robot has arrived
 

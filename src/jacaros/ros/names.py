@@ -13,6 +13,17 @@ _SEGMENT = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 _PACKAGE = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 
 
+GLOBAL_FRAMES = ("map", "earth", "world")
+"""Frames that robots share (REP 105)."""
+
+
+def frame_name(frame: str, prefix: str) -> str:
+    """The name of a frame in the graph: those that begin with a slash, and those that robots share, stay as they are."""
+    if frame.startswith("/") or frame in GLOBAL_FRAMES or not frame or not prefix:
+        return frame.lstrip("/")
+    return f"{prefix}/{frame}"
+
+
 @cache
 def message_type(name: str) -> str:
     """Give the full form ``nav_msgs/msg/Odometry`` of a message type.

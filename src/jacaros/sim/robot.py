@@ -193,6 +193,8 @@ class Robot:
             if dock is not None:
                 self._tell(self, "docked", {"dock": dock.name})
             self.dock = dock
+            # At once, not in the next step: a robot in its dock that is not charged would be taken to be full.
+            self.battery.feed(dock is not None)
 
     def _within(self, dock: Dock) -> bool:
         dx, dy = self.x - dock.pose.x, self.y - dock.pose.y
@@ -229,6 +231,10 @@ class Battery:
             self.level = 100.0 if level > 100.0 else level
         else:
             self.level = self.level - drain if self.level > drain else 0.0
+        self.feed(docked)
+
+    def feed(self, docked: bool) -> None:
+        """Charge, or not any more."""
         self.charging = docked and self.level < 100.0
 
     @property

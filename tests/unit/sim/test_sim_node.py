@@ -73,7 +73,7 @@ def test_odometry_comes_twenty_times_a_second_with_pose_and_twist() -> None:
         run.listen("/odom", "nav_msgs/msg/Odometry")
         await run.drive(2.0, 0.3, 0.5)
 
-    done = in_world("empty", body)
+    done = in_world("robots:\n  - name: turtlebot\n", body)
     assert len(done.received) == pytest.approx(40, abs=1)
     assert done.times[:3] == [0.05, 0.1, 0.15]
     last, robot = done.received[-1], done.world.robot()

@@ -187,6 +187,15 @@ def test_a_robot_that_only_drives_through_the_dock_is_not_charged() -> None:
     assert world.ground_truth.events_of("docked", "charging") == []
 
 
+def test_a_robot_is_charged_from_the_moment_when_it_is_in_the_dock() -> None:
+    """In between it told that it was full, with 20 % in the battery."""
+    world = docking_world(0.2)
+    for _ in range(50):
+        world.step()
+        robot = world.robot()
+        assert robot.battery.charging == (robot.dock is not None)
+
+
 def test_leaving_the_dock_ends_charging() -> None:
     world = docking_world(0.0)
     world.run(2.0)
@@ -210,7 +219,7 @@ def test_an_empty_battery_stops_the_robot() -> None:
 
 
 def test_odometry_without_errors_is_the_true_pose_to_the_last_bit() -> None:
-    world = World.load("empty")
+    world = World.load("robots:\n  - name: turtlebot\n")
     drive(world, 7.0, 0.25, 0.4)
     robot = world.robot()
     assert (robot.odometry.x, robot.odometry.y, robot.odometry.yaw) == robot.pose

@@ -109,6 +109,11 @@ class ConnectedArtifact(Artifact):
         """The robot's own topic called *name*; a slash in front makes no difference."""
         return f"{self.robot_prefix}/{name.lstrip('/')}"
 
+    @property
+    def frame_prefix(self) -> str:
+        """What stands before the robot's frames: all that stands before its topics, the node's namespace included."""
+        return self.ros.resolve(self.robot_topic("frame")).rpartition("/")[0].strip("/")
+
     def robot_property(self, name: str) -> str:
         """The name of a property, with the robot's name in front where the thesis has it so."""
         return f"{self.robot}_{name}" if self.robot and self.robot_in_properties else name

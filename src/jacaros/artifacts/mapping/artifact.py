@@ -14,7 +14,7 @@ from jacaros.artifacts.mapping.checking import type_problems
 from jacaros.artifacts.mapping.declared import ArtifactPart, MappingError, MappingFile, Place
 from jacaros.artifacts.mapping.feeds import Feed, Topic
 from jacaros.artifacts.mapping.file import find_mapping, load_mapping, shipped_mappings
-from jacaros.artifacts.mapping.frames import FrameFeed, prefixed
+from jacaros.artifacts.mapping.frames import FrameFeed
 from jacaros.artifacts.mapping.host import Elements
 from jacaros.artifacts.mapping.manual import Documentation, parameter_words
 from jacaros.artifacts.mapping.operating import Operations
@@ -24,6 +24,7 @@ from jacaros.artifacts.mapping.type_search import TypeSearch
 from jacaros.env.artifact import internal_operation
 from jacaros.env.errors import UnknownArtifactType
 from jacaros.ros.backend import TopicEvent, TopicTrouble
+from jacaros.ros.names import frame_name
 from jacaros.yaml_nodes import Problem, shown
 
 
@@ -109,12 +110,11 @@ class MappedArtifact(RosArtifact):
         given = self.options.get("tf_prefix", self.part.tf_prefix)
         if given is not None:
             return str(given).strip("/")
-        # The namespace with that of the node in front: everything before a relative name.
-        return self.ros.resolve(self.robot_topic("frame")).rpartition("/")[0].strip("/")
+        return self.frame_prefix
 
     def frame(self, name: str) -> str:
         """The name of a frame in the graph."""
-        return prefixed(name, self.tf_prefix)
+        return frame_name(name, self.tf_prefix)
 
     def adapted(self, field: str, value: object) -> object:
         """A constant for the field of a message: names of frames get their prefix."""

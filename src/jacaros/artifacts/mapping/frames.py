@@ -11,16 +11,6 @@ from jacaros.ros.errors import CapabilityMissing, TransformUnavailable
 from jacaros.ros.protocols.transform import Transform
 from jacaros.ros.waiting import MISSING_AFTER
 
-GLOBAL_FRAMES = ("map", "earth", "world")
-"""Frames that robots share (REP 105)."""
-
-
-def prefixed(frame: str, prefix: str) -> str:
-    """The name of a frame in the graph: those that begin with a slash, and those that robots share, stay as they are."""
-    if frame.startswith("/") or frame in GLOBAL_FRAMES or not frame or not prefix:
-        return frame.lstrip("/")
-    return f"{prefix}/{frame}"
-
 
 class FrameFeed:
     """A property from a transform; it is there while the transform is known.

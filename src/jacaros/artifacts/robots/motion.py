@@ -12,7 +12,7 @@ from jacaros.artifacts.kit.connection import Matching
 from jacaros.artifacts.robots.control import STANDSTILL, Limits, Pose, Velocity, distance
 from jacaros.artifacts.robots.maneuver import Maneuver
 from jacaros.artifacts.robots.motion_queue import GUARD_TRIPPED, Claim, MotionQueue
-from jacaros.artifacts.robots.odometry import Odometer
+from jacaros.artifacts.robots.odometry import NO_TRANSFORM, Odometer
 from jacaros.env.values import Atom, Structure
 
 STALE = 0.5
@@ -135,7 +135,7 @@ class Motion:
         """Drive the maneuver to its end.
 
         Raises:
-            MotionFailed: ``aborted``, ``no_odometry``, ``blocked``, ``interrupted`` or ``timeout``.
+            MotionFailed: ``aborted``, ``no_odometry``, ``no_transform``, ``blocked``, ``interrupted`` or ``timeout``.
         """
         forget = self._execution.on_pause(self._on_pause)
         ignore = self._wheels.on_interruption(lambda: self._claim.interrupt(GUARD_TRIPPED))
@@ -329,8 +329,7 @@ class Motion:
                 self._claim.gap = self._silence()
         limit = self._wheels.settings.odometry_timeout
         if self._active - self._blind_since >= limit:
-            bad = f" ({odometer.faults} messages were bad)" if odometer.faults else ""
-            raise MotionFailed(f"no odometry came for {limit:g} s{bad}", "no_odometry", limit)
+            raise MotionFailed(f"{_lack(odometer)} for {limit:g} s", odometer.lacking, limit)
         return False
 
     def _check_leap(self) -> None:
@@ -362,6 +361,13 @@ class Motion:
         """Seconds without progress that are too long; slow cruising needs more of them."""
         limits = self._wheels.settings.limits
         return max(STUCK, 4.0 * LEAST_PROGRESS / min(limits.speed, limits.turn_speed))
+
+
+def _lack(odometer: Odometer) -> str:
+    if odometer.lacking == NO_TRANSFORM:
+        return "tf did not tell where odometry's frame is in the frame to drive in; is the robot localised?"
+    bad = f" ({odometer.faults} messages were bad)" if odometer.faults else ""
+    return f"no odometry came{bad}"
 
 
 class Progress:

@@ -17,6 +17,9 @@ from jacaros.ros.qos import SENSOR_DATA
 
 ODOMETRY = "nav_msgs/msg/Odometry"
 
+NO_ODOMETRY = "no_odometry"
+NO_TRANSFORM = "no_transform"
+
 STANDING = Velocity(0.02, 0.05)
 """A robot slower than this (metres and radians per second) stands still."""
 
@@ -80,11 +83,16 @@ class Odometer:
         clock: measures how late messages are.
         on_reading: told of every good message.
         frame: see `Header`.
+        placed: gives odometry in the frame in which the robot drives, None while that is not known; see
+            `jacaros.artifacts.robots.driving_frame`.
 
     Attributes:
         newest: None until the first message.
         count: good messages so far.
-        trusted: False when the newest message was no odometry at all: where the robot is now is not known.
+        trusted: False when the newest message was no odometry at all, or nobody knows where its frame is: where the
+            robot is now is not known.
+        lacking: the failure reason for want of good odometry: ``no_odometry``, or ``no_transform`` while messages come
+            and only the frame is not known.
     """
 
     def __init__(
@@ -93,10 +101,13 @@ class Odometer:
         clock: Clock,
         on_reading: Callable[[Odometry], None] | None = None,
         frame: str = "",
+        placed: Callable[[Odometry], Odometry | None] | None = None,
     ) -> None:
         self.newest: Odometry | None = None
         self.count = 0
         self.trusted = True
+        self.lacking = NO_ODOMETRY
+        self._placed = placed
         self._faults = faults
         self._header = Header(faults, clock, frame)
         self._on_reading = on_reading
@@ -115,13 +126,19 @@ class Odometer:
         """Take a message; the callback of the subscription."""
         wrong = not_finite(sample)
         if wrong is not None:
-            self.trusted = False
+            self.trusted, self.lacking = False, NO_ODOMETRY
             self._faults.not_finite(*wrong)
             return
         if not self._header.accepts(sample):
             return
-        self.newest = read_odometry(sample)
-        self.trusted = True
+        odometry: Odometry | None = read_odometry(sample)
+        if self._placed is not None and odometry is not None:
+            odometry = self._placed(odometry)
+        if odometry is None:
+            self.trusted, self.lacking = False, NO_TRANSFORM
+            return
+        self.newest = odometry
+        self.trusted, self.lacking = True, NO_ODOMETRY
         self.count += 1
         if self._on_reading is not None:
             self._on_reading(self.newest)
@@ -129,9 +146,6 @@ class Odometer:
     def age(self, now: float) -> float | None:
         """Seconds since the newest message should have come; None when none did."""
         return None if self.newest is None else now - self.newest.sample.stamp + self._header.late
-
-
-NO_ODOMETRY = "no_odometry"
 
 
 class ArtOdometry(RosArtifact):

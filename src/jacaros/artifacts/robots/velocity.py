@@ -13,14 +13,17 @@ from jacaros.artifacts.kit.options import positive, text
 from jacaros.artifacts.kit.reading import READING_OPTIONS, Reading, ReadingPolicy
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.artifacts.robots.control import STANDSTILL, Limits, Velocity
+from jacaros.artifacts.robots.driving_frame import DrivingFrame
 from jacaros.artifacts.robots.journey import DriveTo, TurnTo, go_to
 from jacaros.artifacts.robots.maneuver import Maneuver, Straight, Timed, Turn
 from jacaros.artifacts.robots.motion import Motion, MotionFailed, MotionSettings
 from jacaros.artifacts.robots.motion_queue import MotionQueue, motion_queue_of
-from jacaros.artifacts.robots.odometry import NO_ODOMETRY, ODOMETRY, Odometer, Odometry, pose_values
+from jacaros.artifacts.robots.odometry import ODOMETRY, Odometer, Odometry, pose_values
 from jacaros.env.artifact import Out, operation
 from jacaros.env.values import Atom, Structure
+from jacaros.ros.errors import CapabilityMissing
 from jacaros.ros.guarded import guarded_by
+from jacaros.ros.names import frame_name
 from jacaros.ros.qos import SENSOR_DATA
 
 TWIST = "geometry_msgs/msg/Twist"
@@ -54,6 +57,8 @@ class WheeledArtifact(RosArtifact):
         unmatched(W): what happens when no base is connected by then: ``warn`` (the default; the motion begins) or
             ``fail``, with ``unmatched(Topic)``.
         odometry_frame(F): the only frame in which odometry is believed; that of the first message by default.
+        frame(F): the frame of all poses, such as ``map``: motions follow odometry as localisation puts it right on tf,
+            so that wheels that slip do not add up; odometry's own frame by default.
 
     Properties:
         moving(State): ``stopped``, ``driving``, ``turning``, ``waiting`` or ``paused``.
@@ -82,6 +87,7 @@ class WheeledArtifact(RosArtifact):
         "command_topic": text,
         "odometry_topic": text,
         "odometry_frame": text,
+        "frame": text,
         **MATCH_OPTIONS,
     }
     robot_in_properties = True
@@ -108,12 +114,26 @@ class WheeledArtifact(RosArtifact):
         self.matching = self.matching_of(self._commands)
         topic = str(self.options.get("odometry_topic", "odom"))
         self.odometer = Odometer(
-            self.faults_of(topic), self.clock, self.on_odometry, str(self.options.get("odometry_frame", ""))
+            self.faults_of(topic),
+            self.clock,
+            self.on_odometry,
+            str(self.options.get("odometry_frame", "")),
+            self._placed(),
         )
         self.subscription(topic, ODOMETRY, self.odometer.take, SENSOR_DATA)
         self._drove = False
         self.at_dispose(self.ros.add_exit_hook(self._stand))
         self.at_dispose(self._halt)
+
+    def _placed(self) -> Callable[[Odometry], Odometry | None] | None:
+        """What gives odometry in the frame of the option; None without it."""
+        if "frame" not in self.options:
+            return None
+        name = frame_name(str(self.options["frame"]), self.frame_prefix)
+        try:
+            return DrivingFrame(self.ros, name).placed
+        except CapabilityMissing as error:
+            self.fail(f"frame({name}): {error}", "ros_error", name)
 
     def on_odometry(self, odometry: Odometry) -> None:
         """Take every odometry message."""
@@ -192,7 +212,7 @@ class WheeledArtifact(RosArtifact):
 
         Raises:
             OperationFailed: ``aborted(Covered)``, ``blocked(Covered)``, ``interrupted(Covered)``,
-                ``no_odometry(Seconds)`` or ``timeout(Seconds)``.
+                ``no_odometry(Seconds)``, ``no_transform(Seconds)`` or ``timeout(Seconds)``.
         """
         motion = Motion(self, maneuver)
         try:
@@ -215,10 +235,11 @@ def _speed(argument: object) -> object:
 class ArtCmdVel(WheeledArtifact):
     """Drives by velocity commands on ``/cmd_vel``; closed loops follow ``/odom``.
 
-    Lengths are metres, angles degrees (counter-clockwise positive), poses those of odometry.  Every motion
-    waits until no other motion drives the robot, stops with zero velocity whatever its end, stops while its
-    intention is suspended and then goes on with what remained, and fails with one of the reasons
-    ``aborted(Covered)``, ``blocked(Covered)``, ``interrupted(Covered)``, ``no_odometry(Seconds)`` and
+    Lengths are metres, angles degrees (counter-clockwise positive), poses those of odometry, or of the frame
+    that the option ``frame(F)`` names.  Every motion waits until no other motion drives the robot, stops with
+    zero velocity whatever its end, stops while its intention is suspended and then goes on with what remained,
+    and fails with one of the reasons ``aborted(Covered)``, ``blocked(Covered)``, ``interrupted(Covered)``,
+    ``no_odometry(Seconds)``, ``no_transform(Seconds)`` (with ``frame(F)``: localisation tells nothing) and
     ``timeout(Seconds)``; Covered is what was driven (metres) or turned (degrees).
 
     Options and the property ``moving``: those of `WheeledArtifact`.
@@ -316,7 +337,9 @@ class ArtCmdVel(WheeledArtifact):
     @operation(name="getCurrentPose")
     async def get_current_pose(self, x: Out, y: Out, heading: Out) -> None:
         """Give the pose of odometry: metres, metres, degrees; ``no_odometry(5)`` if none comes in 5 s."""
-        for out, value in zip((x, y, heading), await self.newest(self.newest_pose, NO_ODOMETRY), strict=True):
+        for out, value in zip(
+            (x, y, heading), await self.newest(self.newest_pose, self.odometer.lacking), strict=True
+        ):
             out.set(value)
 
     def _finite(self, *numbers: float) -> None:
@@ -366,7 +389,7 @@ class ArtCmdVelAndOdometry(ArtCmdVel):
     @operation(name="getCurrentOdom")
     async def get_current_odom(self) -> None:
         """Give the odometry property the newest position; ``no_odometry(5)`` if none comes in 5 s."""
-        await self.refresh(self.robot_property(self.odometry_property), self._position, NO_ODOMETRY)
+        await self.refresh(self.robot_property(self.odometry_property), self._position, self.odometer.lacking)
 
 
 class ArtCmdVelMuxAndOdometry(ArtCmdVelAndOdometry):

@@ -13,13 +13,13 @@ from jacaros.artifacts.mapping.declared import (
     TopicPart,
     Written,
 )
-from jacaros.artifacts.mapping.frames import prefixed
 from jacaros.cli.graph.joining import Joined
 from jacaros.cli.graph.kinds import near_names
 from jacaros.cli.graph.listening import root
 from jacaros.ros.backend import PARAMETERS
 from jacaros.ros.errors import RosError
 from jacaros.ros.graph import Endpoint, TopicInfo
+from jacaros.ros.names import frame_name
 from jacaros.ros.qos import DEFAULT_QOS, SENSOR_DATA, QoS, incompatibility
 from jacaros.yaml_nodes import Problem
 
@@ -41,7 +41,7 @@ class Names:
 
     def frame(self, written: str) -> str:
         """The name of a frame."""
-        return prefixed(written, self.tf_prefix)
+        return frame_name(written, self.tf_prefix)
 
     @property
     def tf_prefix(self) -> str:
