@@ -79,7 +79,9 @@ def test_the_output_of_the_battery_is_judged(tmp_path: Path) -> None:
     result = run_of("03_fake_battery/robot_battery.jcm")
     (tmp_path / "output.txt").write_text("\n".join(result.lines) + "\n", encoding="utf-8")
     write(result.ground_truth, tmp_path / "truth.jsonl")
-    assert judged("03_fake_battery", str(tmp_path / "output.txt")).returncode == 0
+    lines = "\n".join(run_of("03_fake_battery/fake_battery.jcm").lines)
+    (tmp_path / "timer.txt").write_text(lines + "\n", encoding="utf-8")
+    assert judged("03_fake_battery", str(tmp_path / "timer.txt")).returncode == 0
     assert (
         judged("03_fake_battery", str(tmp_path / "output.txt"), str(tmp_path / "truth.jsonl")).returncode == 0
     )

@@ -39,12 +39,12 @@ def test_the_report_agrees_with_what_happened() -> None:
 
 
 LEVELS = [
-    pytest.param(24.5, "driving", id="in the middle of a side"),
-    pytest.param(26.5, "driving", id="braking before a corner"),
-    pytest.param(28.5, "driving", id="arriving at a corner"),
-    pytest.param(29.5, "turning", id="in a turn"),
-    pytest.param(30.5, "turning", id="at the end of a turn"),
-    pytest.param(31.5, "driving", id="leaving a corner"),
+    pytest.param(25, "driving", id="in the middle of a side"),
+    pytest.param(27.5, "driving", id="braking before a corner"),
+    pytest.param(29, "driving", id="arriving at a corner"),
+    pytest.param(30.2, "turning", id="in a turn"),
+    pytest.param(31, "turning", id="at the end of a turn"),
+    pytest.param(32.2, "driving", id="leaving a corner"),
 ]
 """Percent at the beginning, and what the robot is doing when its agent sees that the battery is low."""
 

@@ -62,7 +62,7 @@ def test_one_command_runs_it_and_one_judges_it(tmp_path: Path) -> None:
 def test_the_lines_tell_who_has_the_robot_and_why() -> None:
     lines = [line for line in run_of(PROJECT).lines if not line.startswith("[visitor]")]
     handover = [
-        "[supervisor] I want the robot: 19 % left, that is for the way to the dock",
+        "[supervisor] I want the robot: 20 % left, that is for the way to the dock",
         "[driver] hands the robot over",
         "[driver] asks for the robot",
     ]
@@ -152,7 +152,11 @@ def test_the_checker_sees_a_bump() -> None:
 
 def test_the_checker_sees_a_robot_that_comes_too_near_to_the_visitor() -> None:
     def nearer(sample: Sample) -> Sample:
-        return sample._replace(x=sample.x - 0.3) if sample.x == 1.0 and sample.yaw > math.pi / 4 else sample
+        return (
+            sample._replace(x=sample.x - 0.3)
+            if abs(sample.x - 1.0) < 0.05 and sample.yaw > math.pi / 4
+            else sample
+        )
 
     assert any("m to the visitor" in each for each in check(falsified(truth_of_example(), nearer)).complaints)
 

@@ -1,11 +1,13 @@
 """Scenario 2: a square of one metre."""
 
 import math
+import re
 
 import pytest
 from examples_lab import checker, falsified, run, run_of
 
 PROJECT = "02_square/square.jcm"
+LINE = r"\[robot\] side (\d) done, at (-?\d+) cm, (-?\d+) cm"
 check = checker("02_square").check
 
 
@@ -16,12 +18,11 @@ def test_the_robot_drives_the_square_and_comes_back() -> None:
 
 
 def test_the_agent_tells_the_corners() -> None:
-    assert run_of(PROJECT).lines == [
-        "[robot] side 1 done, at 100 cm, 0 cm",
-        "[robot] side 2 done, at 100 cm, 100 cm",
-        "[robot] side 3 done, at 0 cm, 100 cm",
-        "[robot] side 4 done, at 0 cm, 0 cm",
-    ]
+    told = [re.fullmatch(LINE, line) for line in run_of(PROJECT).lines]
+    sides = [[int(number) for number in match.groups()] for match in told if match is not None]
+    assert [side for side, _, _ in sides] == [1, 2, 3, 4]
+    for (_, x, y), corner in zip(sides, [(100, 0), (100, 100), (0, 100), (0, 0)], strict=True):
+        assert math.dist((x, y), corner) <= 3
 
 
 @pytest.mark.parametrize("file", ["square.mas2j", "robot.asl"])
