@@ -1,6 +1,6 @@
 """The embedded robot world: TurtleBot-like robots on a plane, reached over ROS topics only."""
 
-from jacaros.sim.description import WorldDescription, WorldError
+from jacaros.sim.description import PersonDescription, WorldDescription, WorldError
 from jacaros.sim.ground_truth import Event, GroundTruth, Sample
 from jacaros.sim.node import SimNode
 from jacaros.sim.process import serve
@@ -11,6 +11,7 @@ from jacaros.sim.world_file import read_world, shipped_worlds
 __all__ = [
     "Event",
     "GroundTruth",
+    "PersonDescription",
     "RobotNode",
     "Sample",
     "SimNode",

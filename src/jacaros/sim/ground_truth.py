@@ -16,7 +16,7 @@ from jacaros.sim.description import Pose
 from jacaros.text_files import file_text
 
 Record = dict[str, Any]
-"""One line of a ground truth file: ``kind`` is ``world``, ``sample`` or ``event``."""
+"""One line of a ground truth file: ``kind`` is ``world``, ``sample``, ``event`` or ``end``."""
 
 
 class Event(NamedTuple):
@@ -190,6 +190,8 @@ class GroundTruth:
         elif record["kind"] == "event":
             record = {**record, "kind": record["event"]}
             self.record_event(Event(*(record[name] for name in Event._fields)))
+        elif record["kind"] == "end":
+            self.dirt |= {(room, kind): grams for room, kind, grams in record.get("dirt", ())}
 
 
 def _records(path: str | Path) -> list[Record]:

@@ -65,7 +65,8 @@ class GroundTruthFile:
         for robot in truth.robots:
             self._write({"kind": "sample", "robot": robot, **truth.latest(robot)._asdict()})
         if kind is None:
-            self._write({"kind": "end", "time": self._world.time})
+            dirt = {"dirt": [[*where, grams] for where, grams in truth.dirt.items()]} if truth.dirt else {}
+            self._write({"kind": "end", "time": self._world.time, **dirt})
         self._output.close()
         self._file.close()
 

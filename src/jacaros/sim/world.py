@@ -75,6 +75,8 @@ class World:
         """What truly happened up to this moment."""
         for robot in self._row:
             self._truth.update_latest(robot.name, robot.sample(self.time))
+        for field in self.cleaning.fields:
+            self._truth.dirt[field.room, field.kind] = field.grams
         return self._truth
 
     @property

@@ -1,13 +1,12 @@
 """Dirt and the tools that remove it: how much, where, of which kind, and what the ground truth says."""
 
-import json
 import math
 from pathlib import Path
 
 import pytest
 
 from jacaros.sim import GroundTruth, World, WorldError, read_world
-from jacaros.sim.ground_truth import header
+from jacaros.sim.process import GroundTruthFile
 
 WORLD = """
 name: flat
@@ -136,20 +135,26 @@ def test_a_task_starts_the_tool_that_it_names() -> None:
     ]
 
 
-def test_the_end_of_a_tool_tells_exactly_what_is_left(tmp_path: Path) -> None:
+def test_a_tool_that_stops_tells_what_is_left_though_it_is_no_whole_percent() -> None:
     flat = world()
     flat.use_tool("a", "vacuum")
     flat.run(0.1)
-    assert flat.ground_truth.dirt["hall", "dust"] == 30.0, "not yet a whole percent"
+    assert [event.kind for event in flat.log] == ["tool_started"]
     flat.use_tool("a", "")
-    truth = flat.ground_truth
-    assert truth.dirt["hall", "dust"] == left(flat)["hall", "dust"]
     assert [event.kind for event in flat.log] == ["tool_started", "cleaned", "tool_stopped"]
+    assert flat.log[1].data["grams"] == left(flat)["hall", "dust"] < 30.0
+
+
+def test_the_ground_truth_and_its_file_end_with_the_dirt_that_is_left(tmp_path: Path) -> None:
+    flat = world()
     path = tmp_path / "truth.jsonl"
-    records = [header(truth.world, 0, 0.0)]
-    records += [{**event._asdict(), "kind": "event", "event": event.kind} for event in truth.events]
-    path.write_text("".join(json.dumps(record) + "\n" for record in records), encoding="utf-8")
-    assert GroundTruth.read(path).dirt == truth.dirt
+    with GroundTruthFile(path, flat, 0.0):
+        flat.use_tool("a", "vacuum")
+        flat.run(0.5)
+        during = flat.log[-1].data["grams"]
+    assert flat.ground_truth.dirt == left(flat)
+    assert flat.ground_truth.dirt["hall", "dust"] < during, "the tool is still on"
+    assert GroundTruth.read(path).dirt == flat.ground_truth.dirt
 
 
 def test_equal_runs_clean_equally() -> None:

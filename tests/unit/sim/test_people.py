@@ -5,8 +5,7 @@ import math
 import pytest
 
 from jacaros.errors import UsageError
-from jacaros.sim import World, WorldError, read_world
-from jacaros.sim.description import PersonDescription
+from jacaros.sim import PersonDescription, World, WorldError, read_world
 from jacaros.sim.ground_truth import Event
 
 WORLD = """
