@@ -15,8 +15,9 @@ topic (below the robot's namespace)         type                          direct
 =========================================== ============================= ==========================
 
 Other sensors have files of their own: bumpers and the dock `jacaros.sim.robot_contacts`, cliffs
-`jacaros.sim.robot_cliffs`, ``/imu`` `jacaros.sim.robot_imu`, ``/sonar`` `jacaros.sim.robot_sonar`, transforms
-`jacaros.sim.robot_transforms`.  What the robot can be asked to do by itself is in `jacaros.sim.navigation`.
+`jacaros.sim.robot_cliffs`, ``/imu`` `jacaros.sim.robot_imu`, ``/sonar`` `jacaros.sim.robot_sonar`, the camera
+`jacaros.sim.robot_camera`, transforms `jacaros.sim.robot_transforms`.  What the robot can be asked to do by itself is in
+`jacaros.sim.navigation`.
 """
 
 import math
@@ -27,6 +28,7 @@ from jacaros.ros.backend import Backend, Sample, Subscription
 from jacaros.sim.navigation.frames import MAP, pose_fault, pose_of
 from jacaros.sim.navigation.localisation import Localisation
 from jacaros.sim.robot import Robot
+from jacaros.sim.robot_camera import CameraSensor
 from jacaros.sim.robot_cliffs import CliffSensors
 from jacaros.sim.robot_contacts import RobotContacts
 from jacaros.sim.robot_imu import ImuSensor
@@ -45,6 +47,7 @@ SENSORS: Final[Sequence[Callable[[RobotOnGraph], Sensor]]] = (
     LaserSensor,
     ImuSensor,
     SonarSensor,
+    CameraSensor,
 )
 """What every robot tells the graph, in the order of publishing."""
 

@@ -11,9 +11,10 @@ from jacaros.ros.backend import TRANSFORMS, Publisher
 from jacaros.ros.errors import RosError, UnknownInterface
 from jacaros.ros.message import stamp
 from jacaros.ros.qos import QoS
-from jacaros.sim.navigation.frames import BASE, FOOTPRINT, MAP, ODOMETRY, SCAN
+from jacaros.sim.navigation.frames import BASE, CAMERA, FOOTPRINT, MAP, ODOMETRY, SCAN
 from jacaros.sim.navigation.localisation import FOUND
 from jacaros.sim.navigation.placement import Placement, distance
+from jacaros.sim.rendering import CAMERA_HEIGHT
 from jacaros.sim.robot_sensors import RobotOnGraph
 
 _TRANSFORM = "geometry_msgs/msg/TransformStamped"
@@ -23,9 +24,9 @@ _HERE = Placement(0.0, 0.0)
 class RobotTransforms:
     """Publishes one robot's frames when somebody listens.
 
-    ``map`` to ``odom`` and ``odom`` to ``base_footprint`` go to ``/tf``, twenty times a second; ``base_footprint`` to
-    ``base_link`` to ``base_scan``, all at the same place, and the robot's own ``map`` if it has a namespace, to
-    ``/tf_static``, once.
+    ``map`` to ``odom`` and ``odom`` to ``base_footprint`` go to ``/tf``, twenty times a second.  ``base_footprint`` to
+    ``base_link`` to ``base_scan``, all at the same place, ``base_link`` to ``camera_optical_frame``, and the robot's own
+    ``map`` if it has a namespace, go to ``/tf_static``, once.
     """
 
     def __init__(self, at: RobotOnGraph) -> None:
@@ -68,12 +69,20 @@ class RobotTransforms:
         try:
             for parent, child in pairs:
                 self._backend.tf_broadcast(self._transform(parent, child, _HERE), static=True)
+            self._backend.tf_broadcast(self._of_camera(), static=True)
             if self._prefix:
                 own_map = self._transform("", MAP, _HERE)
                 own_map.header.frame_id = MAP
                 self._backend.tf_broadcast(own_map, static=True)
         except RosError:  # the type is there, as the publisher's was
             return
+
+    def _of_camera(self) -> Any:
+        message = self._transform(BASE, CAMERA, _HERE)
+        message.transform.translation.z = CAMERA_HEIGHT
+        rotation = message.transform.rotation
+        rotation.x, rotation.y, rotation.z, rotation.w = -0.5, 0.5, -0.5, 0.5
+        return message
 
     def _transform(self, parent: str, child: str, place: Placement) -> Any:
         message = self._backend.message(_TRANSFORM)

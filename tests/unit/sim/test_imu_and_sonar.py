@@ -2,40 +2,13 @@
 
 import math
 import random
-from typing import Any
 
 import pytest
+from sensor_lab import heard
 
-from jacaros.clock import VirtualClock, run
-from jacaros.ros.open import open_backend
-from jacaros.sim import SimNode, World
 from jacaros.sim.description import Segment
 from jacaros.sim.laser import Circle
 from jacaros.sim.robot_sonar import FIELD, echo
-
-
-def heard(
-    topic: str, kind: str, seconds: float, speed: float, turn_rate: float = 0.0, world: str = "patrol"
-) -> tuple[World, list[Any]]:
-    """The messages of a topic while the robot drives."""
-    clock, loaded = VirtualClock(), World.load(world)
-    messages: list[Any] = []
-
-    async def main() -> None:
-        backend = open_backend("memory", clock, "test")
-        await backend.start()
-        node = SimNode(loaded, backend, clock)
-        node.start()
-        backend.subscription(topic, kind, lambda sample: messages.append(sample.message))
-        publisher = backend.publisher("/cmd_vel", "geometry_msgs/msg/Twist")
-        for _ in range(round(seconds * 10)):
-            publisher.publish(publisher.message(linear={"x": speed}, angular={"z": turn_rate}))
-            await clock.sleep(0.1)
-        node.close()
-        await backend.close()
-
-    run(main, clock)
-    return loaded, messages
 
 
 def test_the_imu_measures_turning_and_what_a_curve_costs() -> None:

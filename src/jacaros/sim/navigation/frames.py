@@ -14,6 +14,8 @@ from jacaros.sim.navigation.localisation import Localisation
 from jacaros.sim.navigation.placement import Placement
 
 MAP, ODOMETRY, FOOTPRINT, BASE, SCAN = "map", "odom", "base_footprint", "base_link", "base_scan"
+CAMERA = "camera_optical_frame"
+"""Frame of images (REP 103): x to the right, y down, z ahead."""
 _PATIENCE = 1.0
 
 

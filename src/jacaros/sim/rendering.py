@@ -1,0 +1,164 @@
+"""What a camera sees of a flat world whose things have heights and colours: one ray a column, no textures, no shadows.
+
+The camera is a pinhole, level and looking ahead.  Columns are counted from the left, rows from the top.  A ray goes on
+behind what it meets, for a low thing hides only the lower part of a high one.
+"""
+
+import math
+import sys
+from array import array
+from collections.abc import Iterable
+from typing import Final, NamedTuple
+
+from jacaros.sim.description import Segment
+from jacaros.sim.laser import Circle
+from jacaros.sim.trigonometry import radians, sine_cosine
+
+WIDTH, HEIGHT = 80, 60
+"""Columns and rows of an image."""
+CAMERA_HEIGHT = 0.3
+"""Metres from the floor to the camera."""
+_FIELD = radians(60.0)
+_SINE, _COSINE = sine_cosine(0.5 * _FIELD)
+FOCAL_LENGTH: Final = 0.5 * WIDTH * _COSINE / _SINE
+"""Of a field of view of 60 degrees, in pixels."""
+_NEAR = 0.02
+_DIMMING = 0.15
+"""How much darker things get with each metre."""
+
+Colour = tuple[int, int, int]
+_SKY: Colour = (196, 208, 218)
+_FLOOR: Colour = (150, 146, 138)
+_SLOPES = tuple((0.5 * WIDTH - column - 0.5) / FOCAL_LENGTH for column in range(WIDTH))
+"""Metres to the left for each metre ahead, for each column."""
+_FLOOR_DEPTHS = tuple(
+    FOCAL_LENGTH * CAMERA_HEIGHT / (row + 0.5 - 0.5 * HEIGHT) if 2 * row >= HEIGHT else math.inf
+    for row in range(HEIGHT)
+)
+
+
+class Look(NamedTuple):
+    """How a thing looks: its height in metres, and its colour as red, green and blue, 0 to 255."""
+
+    height: float
+    colour: Colour
+
+
+Hit = tuple[float, Look]
+"""What a ray meets: how far ahead (metres, along the view, not along the ray), and how it looks."""
+
+
+def columns(
+    walls: Iterable[tuple[Segment, Look]],
+    discs: Iterable[tuple[Circle, Look]],
+    x: float,
+    y: float,
+    yaw: float,
+) -> list[list[Hit]]:
+    """What the ray of each column meets, the farthest first."""
+    sine, cosine = sine_cosine(yaw)
+    hits: list[list[Hit]] = [[] for _ in range(WIDTH)]
+    for (ax, ay, bx, by), look in walls:
+        ax, ay, bx, by = ax - x, ay - y, bx - x, by - y
+        _meet_wall(
+            hits,
+            look,
+            cosine * ax + sine * ay,
+            cosine * ay - sine * ax,
+            cosine * bx + sine * by,
+            cosine * by - sine * bx,
+        )
+    for (circle_x, circle_y, radius), look in discs:
+        cx, cy = circle_x - x, circle_y - y
+        _meet_disc(hits, look, cosine * cx + sine * cy, cosine * cy - sine * cx, radius)
+    for met in hits:
+        met.sort(key=_depth, reverse=True)
+    return hits
+
+
+def _depth(hit: Hit) -> float:
+    return hit[0]
+
+
+def _meet_wall(hits: list[list[Hit]], look: Look, a: float, a_left: float, b: float, b_left: float) -> None:
+    """Note a wall between two points, each metres ahead and to the left."""
+    if a < _NEAR and b < _NEAR:
+        return
+    ahead, left = b - a, b_left - a_left
+    if a < _NEAR:
+        a, a_left = _NEAR, a_left + (_NEAR - a) / ahead * left
+    elif b < _NEAR:
+        b, b_left = _NEAR, a_left + (_NEAR - a) / ahead * left
+    ahead, left = b - a, b_left - a_left
+    first, last = sorted((_column(a, a_left), _column(b, b_left)))
+    for column in range(max(0, math.ceil(first)), min(WIDTH - 1, math.floor(last)) + 1):
+        slope = _SLOPES[column]
+        across = left - slope * ahead
+        if across != 0.0:
+            hits[column].append((a + (slope * a - a_left) / across * ahead, look))
+
+
+def _column(ahead: float, left: float) -> float:
+    return 0.5 * WIDTH - 0.5 - FOCAL_LENGTH * left / ahead
+
+
+def _meet_disc(hits: list[list[Hit]], look: Look, ahead: float, left: float, radius: float) -> None:
+    """Note an upright cylinder; a camera inside of it does not see it."""
+    if ahead + radius < _NEAR:
+        return
+    rest = ahead * ahead + left * left - radius * radius
+    for column, slope in enumerate(_SLOPES):
+        square, along = 1.0 + slope * slope, ahead + slope * left
+        root = along * along - square * rest
+        if root >= 0.0:
+            depth = (along - math.sqrt(root)) / square
+            if depth >= _NEAR:
+                hits[column].append((depth, look))
+
+
+def _rows(hit: Hit) -> tuple[int, int]:
+    """The first row that a thing fills in its column, and the first one below it."""
+    depth, look = hit
+    top = 0.5 * HEIGHT - FOCAL_LENGTH * (look.height - CAMERA_HEIGHT) / depth
+    bottom = 0.5 * HEIGHT + FOCAL_LENGTH * CAMERA_HEIGHT / depth
+    return max(0, min(HEIGHT, math.ceil(top - 0.5))), max(0, min(HEIGHT, math.ceil(bottom - 0.5)))
+
+
+def colours(seen: list[list[Hit]]) -> bytes:
+    """The image as ``rgb8``, row by row."""
+    image = bytearray(_BACKGROUND)
+    stride = 3 * WIDTH
+    for column, hits in enumerate(seen):
+        for hit in hits:
+            first, last = _rows(hit)
+            for part, value in enumerate(_shaded(hit[1].colour, hit[0])):
+                place = 3 * column + part
+                image[first * stride + place : last * stride + place : stride] = bytes((value,)) * (
+                    last - first
+                )
+    return bytes(image)
+
+
+def depths(seen: list[list[Hit]]) -> bytes:
+    """The depth image as ``32FC1`` (little-endian): metres ahead, ``inf`` where nothing is."""
+    image = array("f", (depth for depth in _FLOOR_DEPTHS for _ in range(WIDTH)))
+    for column, hits in enumerate(seen):
+        for hit in hits:
+            first, last = _rows(hit)
+            image[first * WIDTH + column : last * WIDTH + column : WIDTH] = array("f", (hit[0],)) * (
+                last - first
+            )
+    if sys.byteorder == "big":
+        image.byteswap()
+    return image.tobytes()
+
+
+def _shaded(colour: Colour, depth: float) -> Colour:
+    light = 1.0 / (1.0 + _DIMMING * depth)
+    red, green, blue = colour
+    return int(red * light), int(green * light), int(blue * light)
+
+
+_BACKGROUND = b"".join(
+    bytes(_SKY if depth == math.inf else _shaded(_FLOOR, depth)) * WIDTH for depth in _FLOOR_DEPTHS
+)
