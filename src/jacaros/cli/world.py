@@ -134,6 +134,8 @@ def _summary(world: WorldDescription) -> str:
         _count(len(world.docks), "dock"),
         _count(len(world.robots), "robot"),
     ]
+    if world.people:
+        parts.append(f"{len(world.people)} {'person' if len(world.people) == 1 else 'people'}")
     return f"{world.name}: {right - left:g} x {top - bottom:g} m, {', '.join(parts)}"
 
 

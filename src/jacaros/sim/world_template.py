@@ -14,9 +14,9 @@ border: walls                                 # around all of it; or open
 walls:
   - segment: [[0, -2], [0, -0.6]]             # a doorway of 1.2 m between the rooms
   - segment: [[0, 0.6], [0, 2]]
-  - box: {{from: [2.2, 1.2], to: [3, 2]}}       # furniture
+  - box: {{from: [2.2, 1.2], to: [3, 2], kind: sofa, color: blue}}
 rooms:
-  kitchen: {{from: [-3, -2], to: [0, 2]}}
+  kitchen: {{from: [-3, -2], to: [0, 2]}}       # with dirt: {{from: [-3, -2], to: [0, 2], dirt: {{dust: 40}}}}
   living_room: {{from: [0, -2], to: [3, 2]}}
 # doors:                                      # agents open and close them, see /doors/hall/open
 #   - {{name: hall, segment: [[0, -0.6], [0, 0.6]], open: true}}
@@ -27,6 +27,9 @@ robots:
     pose: {{x: -2, y: 0, yaw_degrees: 0}}
     # namespace: robot_1                      # prefix of its topics; several robots need different ones
     # battery: {{level: 100, drain_per_second: 0.01, drain_per_metre: 0.02}}
+    # tools: {{vacuum: {{removes: [dust]}}}}        # cleaning tools, see /cleaning/tool
+# people:                                     # who walk from point to point, and stop before robots
+#   - {{name: ann, path: [[1, -1], [1, 1]], pause: 2, loop: true}}
 """
 
 _OF_MAP = """\

@@ -1,5 +1,6 @@
 """``jacaros world``: checks, pictures, new world files and exported maps."""
 
+import re
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -66,6 +67,15 @@ def test_a_picture_of_a_world_is_written(folder: Path, capsys: pytest.CaptureFix
     picture = ElementTree.parse("house.svg").getroot()
     assert picture.get("width") == "300"
     assert "living room" in (folder / "house.svg").read_text()
+
+
+def test_a_new_world_is_right_with_its_comments_made_part_of_it(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert outcome(capsys, "new", "new.yaml")[0] == 0
+    first, *lines = Path("new.yaml").read_text().splitlines()
+    Path("new.yaml").write_text("\n".join([first, *(re.sub(r"^( *)# ", r"\1", line) for line in lines)]))
+    assert outcome(capsys, "check", "new.yaml")[1].endswith("1 door, 1 dock, 1 robot, 1 person\n")
 
 
 def test_a_new_world_is_right_and_not_overwritten(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
