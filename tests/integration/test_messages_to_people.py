@@ -314,7 +314,7 @@ def test_a_world_that_is_not_there(project: Project) -> None:
         1,
         "error: world not found: `nowhere`\n"
         "  = help: give the path of a world file, or one of the shipped worlds: "
-        "empty, house, patrol, three_robots, two_robots\n",
+        "empty, flat, house, maze, office, patrol, three_robots, two_robots, warehouse\n",
     )
 
 

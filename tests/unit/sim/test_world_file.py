@@ -147,7 +147,9 @@ def test_robots_may_share_settings_by_a_yaml_merge() -> None:
 
 
 def test_a_world_that_is_not_there_names_the_shipped_ones() -> None:
-    with pytest.raises(WorldError, match="empty, house, patrol, three_robots, two_robots"):
+    with pytest.raises(
+        WorldError, match="empty, flat, house, maze, office, patrol, three_robots, two_robots, warehouse"
+    ):
         World.load("nowhere")
 
 
@@ -160,9 +162,8 @@ def test_a_misspelt_world_is_answered_with_the_one_meant(tmp_path: Path, name: s
     assert str(unknown.value) == f"error: world not found: `{name}`\n  = help: did you mean `{meant}`?"
 
 
-@pytest.mark.parametrize("name", ["empty", "house", "patrol", "three_robots", "two_robots"])
+@pytest.mark.parametrize("name", shipped_worlds())
 def test_a_shipped_world_loads_and_its_robots_stand_free(name: str) -> None:
-    assert name in shipped_worlds()
     world = World.load(name)
     for robot in world.robots:
         world.command(robot, 0.0, 0.001)
