@@ -3,6 +3,7 @@
 Every key may be left out; these are the defaults, but for the errors of odometry and laser, which are 0::
 
     - name: turtlebot
+      kind: turtlebot               # or turtlebot2, turtlebot3, turtlebot4: other defaults, see `jacaros.sim.robot_kinds`
       namespace: ""                 # prefix of the topics
       pose: {x: 0, y: 0, yaw_degrees: 0}
       radius: 0.17
@@ -31,6 +32,7 @@ from jacaros.sim.description import (
     RobotDescription,
     RobotLimits,
 )
+from jacaros.sim.robot_kinds import KINDS, USUAL
 from jacaros.sim.trigonometry import TWO_PI, radians
 from jacaros.yaml_nodes import Node
 
@@ -38,20 +40,31 @@ _NAMESPACE = re.compile(r"/?[A-Za-z][A-Za-z0-9_]*(/[A-Za-z][A-Za-z0-9_]*)*")
 
 
 def read_robot(node: Node) -> RobotDescription:
-    """Read one robot; what is not said is a TurtleBot at the origin."""
+    """Read one robot; what is not said is that of its kind, at the origin."""
     entries = node.mapping(
-        "name", "namespace", "pose", "radius", "limits", "battery", "odometry", "laser", "navigation", "tools"
+        "name",
+        "kind",
+        "namespace",
+        "pose",
+        "radius",
+        "limits",
+        "battery",
+        "odometry",
+        "laser",
+        "navigation",
+        "tools",
     )
+    usual = KINDS[entries["kind"].choice(*KINDS)] if "kind" in entries else KINDS[USUAL]
     return RobotDescription(
         name=entries["name"].text() if "name" in entries else "turtlebot",
         namespace=_namespace(entries.get("namespace")),
         pose=_pose(entries.get("pose")),
-        radius=entries["radius"].number(0.02, 2.0, 0.17) if "radius" in entries else 0.17,
-        limits=_limits(entries.get("limits")),
+        radius=entries["radius"].number(0.02, 2.0, usual.radius) if "radius" in entries else usual.radius,
+        limits=_limits(entries.get("limits"), usual.limits),
         battery=_battery(entries.get("battery")),
         odometry=_odometry(entries.get("odometry")),
-        laser=_laser(entries.get("laser")),
-        navigation=_navigation(entries.get("navigation")),
+        laser=_laser(entries.get("laser"), usual.laser),
+        navigation=_navigation(entries.get("navigation"), usual.navigation),
         tools=tuple(_tool(name, tool) for name, tool in entries["tools"].entries())
         if "tools" in entries
         else (),
@@ -90,12 +103,15 @@ class _Section:
         entry = self.entries.get(key)
         return entry.number(minimum, maximum, default) if entry is not None else default
 
+    def angle(self, key: str, default: float, minimum: float = 0.0, maximum: float = 1e9) -> float:
+        """An angle in radians, as its default is; the file has degrees."""
+        return radians(self.number(key, 0.0, minimum, maximum)) if key in self.entries else default
+
     def truth(self, key: str, default: bool) -> bool:
         return self.entries[key].truth() if key in self.entries else default
 
 
-def _limits(node: Node | None) -> RobotLimits:
-    usual = RobotLimits()
+def _limits(node: Node | None, usual: RobotLimits) -> RobotLimits:
     section = _Section(
         node,
         "speed",
@@ -104,14 +120,11 @@ def _limits(node: Node | None) -> RobotLimits:
         "turn_acceleration_degrees",
         "command_timeout",
     )
-    turn_rate = section.number("turn_rate_degrees", 180.0, 0.1, 3600.0)
-    # The plain default is kept as it is: 5 rad/s2 is not a round number of degrees.
-    turn_acceleration = section.number("turn_acceleration_degrees", -1.0, 0.1)
     return RobotLimits(
         speed=section.number("speed", usual.speed, 0.01, 5.0),
-        turn_rate=radians(turn_rate),
+        turn_rate=section.angle("turn_rate_degrees", usual.turn_rate, 0.1, 3600.0),
         acceleration=section.number("acceleration", usual.acceleration, 0.01),
-        turn_acceleration=usual.turn_acceleration if turn_acceleration < 0 else radians(turn_acceleration),
+        turn_acceleration=section.angle("turn_acceleration_degrees", usual.turn_acceleration, 0.1),
         command_timeout=section.number("command_timeout", usual.command_timeout, 0.05),
     )
 
@@ -143,18 +156,17 @@ def _odometry(node: Node | None) -> OdometrySettings:
     )
 
 
-def _laser(node: Node | None) -> LaserSettings:
-    usual = LaserSettings()
+def _laser(node: Node | None, usual: LaserSettings) -> LaserSettings:
     section = _Section(
         node, "enabled", "beams_per_turn", "field_degrees", "range_min", "range_max", "noise", "publish"
     )
     beams = section.entries.get("beams_per_turn")
     publish = section.entries.get("publish")
-    field = section.number("field_degrees", 360.0, 1.0, 360.0)
+    field = section.angle("field_degrees", usual.field, 1.0, 360.0)
     return LaserSettings(
         enabled=section.truth("enabled", True),
         beams_per_turn=beams.whole(4, 360) if beams is not None else usual.beams_per_turn,
-        field=TWO_PI if field == 360.0 else radians(field),
+        field=field,
         range_min=section.number("range_min", usual.range_min),
         range_max=section.number("range_max", usual.range_max, 0.1),
         noise=section.number("noise", usual.noise, 0.0, 1.0),
@@ -162,10 +174,9 @@ def _laser(node: Node | None) -> LaserSettings:
     )
 
 
-def _navigation(node: Node | None) -> NavigationSettings:
+def _navigation(node: Node | None, usual: NavigationSettings) -> NavigationSettings:
     if node is not None and not isinstance(node.value, dict):
-        return NavigationSettings(enabled=node.truth())
-    usual = NavigationSettings()
+        return NavigationSettings(node.truth(), usual.speed)
     section = _Section(node, "enabled", "speed")
     return NavigationSettings(
         enabled=section.truth("enabled", usual.enabled), speed=section.number("speed", usual.speed, 0.05, 5.0)

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from jacaros.sim import World, WorldError, read_world, shipped_worlds
+from jacaros.sim.robot_kinds import KINDS
 from jacaros.sim.trigonometry import PI
 
 FULL = """\
@@ -52,6 +53,29 @@ def test_a_full_world_file_is_read() -> None:
     assert robot.odometry.from_start
     assert robot.laser.field == pytest.approx(math.radians(270))
     assert robot.laser.always
+
+
+def test_a_kind_gives_defaults_that_can_be_overridden() -> None:
+    text = "robots:\n  - {kind: KIND, limits: {acceleration: 0.5}, laser: {range_max: 5}}\n"
+    burger = read_world(text.replace("KIND", "turtlebot3")).robots[0]
+    assert (burger.radius, burger.limits.speed, burger.limits.acceleration) == (0.105, 0.22, 0.5)
+    assert (burger.laser.range_min, burger.laser.range_max) == (0.12, 5)
+    assert burger.laser.field == 2 * PI
+    kobuki = read_world(text.replace("KIND", "turtlebot2")).robots[0]
+    assert kobuki.laser.field == pytest.approx(math.radians(57))
+    with pytest.raises(WorldError, match="turtlebot5"):
+        read_world(text.replace("KIND", "turtlebot5"))
+    plain, usual = (read_world(text.replace("kind: KIND, ", kind)) for kind in ("", "kind: turtlebot, "))
+    assert plain == usual
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_robot_of_each_kind_drives_as_fast_as_it_can(kind: str) -> None:
+    world = World.load(f"robots:\n  - {{name: robot, kind: {kind}}}\n")
+    for _ in range(40):
+        world.command("robot", 5.0, 0.0)
+        world.run(0.1)
+    assert world.robot().speed == KINDS[kind].limits.speed
 
 
 def test_all_mistakes_are_told_at_once_with_line_excerpt_and_cure() -> None:
