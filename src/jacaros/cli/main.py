@@ -14,6 +14,7 @@ import click
 
 from jacaros.cli.outputs import OUTPUT_GONE
 from jacaros.errors import JacarosError, UsageError
+from jacaros.excerpts import help_line, printable
 
 ENDED_BY_SIGNAL = (130, 143)
 """Exit codes of a run that Ctrl-C or SIGTERM ended."""
@@ -54,12 +55,22 @@ class Commands(click.Group):
         """A file in the place of the command is run: ``jacaros hello.asl``."""
         if args and args[0].endswith((".asl", ".py", ".mas2j", ".jcm")):
             args = ["run", *args]
+        if args and not args[0].startswith("-") and args[0] not in COMMANDS:
+            raise _unknown_command(args[0])
         return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """List the commands without importing them."""
         with formatter.section("Commands"):
             formatter.write_dl([(name, summary) for name, (_, summary) in COMMANDS.items()])
+
+
+def _unknown_command(name: str) -> UsageError:
+    import difflib  # here: only for a command that does not exist
+
+    near = difflib.get_close_matches(name, COMMANDS, 1)
+    cure = f"did you mean `{near[0]}`?" if near else "`jacaros --help` lists the commands"
+    return UsageError(f"error: unknown command: `{printable(name)}`\n{help_line(cure)}")
 
 
 def _tell_version(ctx: click.Context, _: click.Parameter, wanted: bool) -> None:

@@ -56,7 +56,8 @@ def test_the_word_run_may_be_left_out(folder: Path, capsys: pytest.CaptureFixtur
         (["run", "hello.asl", "--clok", "fast"], "--clock"),
         (["run", "hello.asl", "--clock", "slow"], "slow"),
         (["run"], "FILE"),
-        (["nonsense"], "nonsense"),
+        (["nonsense"], "error: unknown command: `nonsense`\n  = help: `jacaros --help` lists the commands"),
+        (["chek"], "did you mean `check`?"),
         (["run", "house.yaml"], "--mapping house.yaml"),
         (["run", "hello"], "did you mean hello.asl?"),
         (["run", "hello.asl", "--ros-args", "-q"], "--ros-args knows no -q"),
@@ -97,7 +98,7 @@ def test_an_unknown_world_is_told_with_the_known_ones(
 ) -> None:
     code, _, errors = outcome(capsys, "run", "hello.asl", "--world", "nowhere")
     assert code == 1
-    assert "empty, house" in errors
+    assert "empty, flat, house, maze" in errors
 
 
 def test_a_failure_without_handler_is_a_warning_that_names_the_remedy(
