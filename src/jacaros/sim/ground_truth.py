@@ -26,7 +26,8 @@ class Event(NamedTuple):
     ``battery_empty`` and ``battery`` at each whole percent (level), ``bump`` against a wall (side),
     ``collision`` (with, side), ``command_timeout`` and ``bad_command`` (speed, turn_rate), ``task`` (task as
     text, room), ``tool_started`` and ``tool_stopped`` (tool), ``cleaned`` at each whole percent of a room's dirt, and
-    when the tool stops (room, dirt, and what is left: grams, percent), ``fell`` down a cliff (nothing).  Of no robot
+    when the tool stops (room, dirt, and what is left: grams, percent), ``fell`` down a cliff (nothing),
+    ``lights`` (colors) and ``sound`` (notes, append).  Of no robot
     (``""``): ``door_opened`` and ``door_closed`` (door), in the middle of the door; ``person_walks`` (velocity: vx, vy),
     ``person_stands`` (waits_for: a robot, a door or ""), ``person_comes`` and ``person_goes``, each with person, x and y.
     A person stands before its first event, at the beginning of its path.

@@ -16,8 +16,8 @@ topic (below the robot's namespace)         type                          direct
 
 Other sensors have files of their own: bumpers and the dock `jacaros.sim.robot_contacts`, cliffs
 `jacaros.sim.robot_cliffs`, ``/imu`` `jacaros.sim.robot_imu`, ``/sonar`` `jacaros.sim.robot_sonar`, the camera
-`jacaros.sim.robot_camera`, transforms `jacaros.sim.robot_transforms`.  What the robot can be asked to do by itself is in
-`jacaros.sim.navigation`.
+`jacaros.sim.robot_camera`, transforms `jacaros.sim.robot_transforms`, lights and sound `jacaros.sim.robot_lights`.  What
+the robot can be asked to do by itself is in `jacaros.sim.navigation`.
 """
 
 import math
@@ -32,7 +32,15 @@ from jacaros.sim.robot_camera import CameraSensor
 from jacaros.sim.robot_cliffs import CliffSensors
 from jacaros.sim.robot_contacts import RobotContacts
 from jacaros.sim.robot_imu import ImuSensor
-from jacaros.sim.robot_sensors import BatterySensor, LaserSensor, OdometrySensor, RobotOnGraph, Sensor
+from jacaros.sim.robot_lights import LightsAndSound
+from jacaros.sim.robot_sensors import (
+    Actuator,
+    BatterySensor,
+    LaserSensor,
+    OdometrySensor,
+    RobotOnGraph,
+    Sensor,
+)
 from jacaros.sim.robot_sonar import SonarSensor
 from jacaros.sim.robot_transforms import AmclPose, RobotTransforms
 from jacaros.sim.world_time import WorldTime
@@ -50,6 +58,9 @@ SENSORS: Final[Sequence[Callable[[RobotOnGraph], Sensor]]] = (
     CameraSensor,
 )
 """What every robot tells the graph, in the order of publishing."""
+
+ACTUATORS: Final[Sequence[Callable[[RobotOnGraph], Actuator]]] = (LightsAndSound,)
+"""What every robot does for the graph, besides driving and cleaning."""
 
 COMMANDS: Final = ("/cmd_vel", "/cmd_vel_mux/input/navi", "/mobile_base/commands/velocity")
 """Topics of velocity commands: those of most robots, of the Kobuki's multiplexer, and of its base."""
@@ -78,6 +89,7 @@ class RobotNode:
         self.prefix = self._at.prefix
         self._ticks = 0
         self._sensors = [sensor(self._at) for sensor in sensors]
+        self._actuators = [actuator(self._at) for actuator in ACTUATORS]
         self._subscriptions = self._subscribe()
 
     def _subscribe(self) -> list[Subscription]:
@@ -133,5 +145,5 @@ class RobotNode:
         """Leave all topics."""
         for subscription in self._subscriptions:
             subscription.close()
-        for sensor in self._sensors:
-            sensor.close()
+        for part in (*self._sensors, *self._actuators):
+            part.close()

@@ -4,10 +4,11 @@ A sensor is a class with `publish` and `close`; its place in the graph is a `Rob
 one word in `jacaros.sim.robot_node.SENSORS`, the list of those that every robot has.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from jacaros.ros.backend import Backend, Publisher
+from jacaros.ros.backend import Backend, Publisher, Sample, Subscription
 from jacaros.ros.errors import UnknownInterface
 from jacaros.ros.message import constant, stamp
 from jacaros.ros.qos import DEFAULT_QOS, QoS
@@ -60,6 +61,15 @@ class RobotOnGraph:
         except UnknownInterface:
             return None
 
+    def subscription_if_known(
+        self, topic: str, type_name: str, callback: Callable[[Sample], None]
+    ) -> Subscription | None:
+        """Hear a topic below the robot's namespace; None where the type is not installed."""
+        try:
+            return self.backend.subscription(self.prefix + topic, type_name, callback)
+        except UnknownInterface:
+            return None
+
     def fill_header(self, header: Any, frame: str) -> None:
         """Give a header the time of the world, and one of the robot's frames."""
         stamp(header.stamp, self.time.now())
@@ -74,6 +84,13 @@ class Sensor(Protocol):
 
     def close(self) -> None:
         """Leave the topics."""
+
+
+class Actuator(Protocol):
+    """Something that a robot does when the graph asks for it."""
+
+    def close(self) -> None:
+        """Leave the graph."""
 
 
 # Fields are assigned one by one: at twenty messages a second this is five times as fast as making nested messages from

@@ -115,6 +115,10 @@ class World:
         self._note(robot, "task", {"task": text, "room": self.room_at(robot.x, robot.y)})
         self.cleaning.use(robot, text.partition(" ")[0])
 
+    def note(self, name: str, kind: str, data: dict[str, Any]) -> None:
+        """Add an event of a robot to the ground truth."""
+        self._note(self.robot(name), kind, data)
+
     def use_tool(self, name: str, tool: str) -> None:
         """Start a cleaning tool of a robot, instead of the one before; "", or what is not a tool of it, stops."""
         self.cleaning.use(self.robot(name), tool)

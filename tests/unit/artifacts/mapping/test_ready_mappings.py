@@ -283,6 +283,25 @@ def test_the_cliffs_of_a_kobuki() -> None:
     with_ready("turtlebot2.yaml", body, None)
 
 
+def test_the_lights_and_tunes_of_a_create() -> None:
+    async def body(robot: Ready) -> None:
+        red, off = Structure("color", (255, 0, 0)), Structure("color", (0, 0, 0))
+        for _ in range(2):
+            await robot.do("lights", [red] * 2 + [off] * 4)
+        await robot.do("play", [Structure("note", (440, 0.5)), Structure("note", (880, 0.25))])
+        await robot.lab.sleep(0.1)
+        assert robot.lab.world is not None
+        lights, sound = robot.lab.world.ground_truth.events_of("lights", "sound")
+        assert lights.data == {"colors": ["#ff0000"] * 2 + ["#000000"] * 4}
+        assert sound.data == {"notes": [[440, 0.5], [880, 0.25]], "append": False}
+        publisher = robot.lab.backend.publisher("/cmd_lightring", "irobot_create_msgs/msg/LightringLeds")
+        publisher.publish(publisher.message())
+        await robot.lab.sleep(0.1)
+        assert robot.lab.world.ground_truth.events[-1].data == {"colors": []}, "the robot has its lights back"
+
+    with_ready("turtlebot4.yaml", body)
+
+
 GOALS = [
     ("nav2.yaml", "navigate_to", (1, 2, 180), "navigate_to_pose", "nav2_msgs/action/NavigateToPose"),
     ("move_base.yaml", "navigate_to", (1, 2, 180), "move_base", "move_base_msgs/action/MoveBase"),

@@ -1,0 +1,49 @@
+"""The lights and the loudspeaker of a robot, as a Create 3 (TurtleBot 4) has them: the ground truth knows what they do.
+
+=========================== ========================================= ====================================
+topic (below the namespace) type                                      event of the ground truth
+=========================== ========================================= ====================================
+``/cmd_lightring``          ``irobot_create_msgs/msg/LightringLeds``   ``lights`` (colors), on changes
+``/cmd_audio``              ``irobot_create_msgs/msg/AudioNoteVector`` ``sound`` (notes, append)
+=========================== ========================================= ====================================
+"""
+
+from jacaros.ros.backend import Sample
+from jacaros.ros.message import to_seconds
+from jacaros.sim.robot_sensors import RobotOnGraph
+
+
+class LightsAndSound:
+    """Takes the commands for the lights and the loudspeaker of one robot."""
+
+    def __init__(self, at: RobotOnGraph) -> None:
+        self._at = at
+        self._colors: list[str] = []
+        heard = (
+            at.subscription_if_known("/cmd_lightring", "irobot_create_msgs/msg/LightringLeds", self._light),
+            at.subscription_if_known("/cmd_audio", "irobot_create_msgs/msg/AudioNoteVector", self._play),
+        )
+        self._subscriptions = [each for each in heard if each is not None]
+
+    def _light(self, sample: Sample) -> None:
+        """Colours as ``#rrggbb``, counter-clockwise from the front; none when the robot has its lights back."""
+        message = sample.message
+        leds = message.leds if message.override_system else ()
+        colors = [f"#{led.red:02x}{led.green:02x}{led.blue:02x}" for led in leds]
+        if colors != self._colors:
+            self._colors = colors
+            self._note("lights", {"colors": colors})
+
+    def _play(self, sample: Sample) -> None:
+        """Notes as pairs of a frequency (Hz) and seconds."""
+        notes = [[int(note.frequency), to_seconds(note.max_runtime)] for note in sample.message.notes]
+        self._note("sound", {"notes": notes, "append": bool(sample.message.append)})
+
+    def _note(self, kind: str, data: dict[str, object]) -> None:
+        self._at.time.catch_up()
+        self._at.time.world.note(self._at.robot.name, kind, data)
+
+    def close(self) -> None:
+        """Leave the topics."""
+        for subscription in self._subscriptions:
+            subscription.close()
