@@ -15,7 +15,6 @@ A laser sees through unknown cells and a robot can drive there; its map shows no
 
 import difflib
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -65,7 +64,7 @@ class OccupancyMap:
         open_runs: dict[tuple[int, int], int] = {}
         for row in range(self.height + 1):
             runs = _runs(self._row(row)) if row < self.height else []
-            for run in [run for run in open_runs if run not in runs]:
+            for run in sorted(open_runs.keys() - set(runs)):
                 first = open_runs.pop(run)
                 found.append(Rectangle(self._x(run[0]), self._y(first), self._x(run[1]), self._y(row)))
             for run in runs:
@@ -88,6 +87,17 @@ class OccupancyMap:
             found += (Segment(x, self._y(a), x, self._y(b)) for a, b in _changes(before, after))
             before = after
         return found
+
+    def known_part(self) -> Rectangle:
+        """The smallest rectangle with all cells that are not unknown; the whole map if there are none."""
+        known = self.cells.translate(_KNOWN)
+        rows = [row for row in range(self.height) if 1 in known[row * self.width : (row + 1) * self.width]]
+        columns = [column for column in range(self.width) if 1 in known[column :: self.width]]
+        if not rows:
+            return self.bounds
+        return Rectangle(
+            self._x(columns[0]), self._y(rows[0]), self._x(columns[-1] + 1), self._y(rows[-1] + 1)
+        )
 
     def _row(self, row: int) -> bytes:
         return self.cells[row * self.width : (row + 1) * self.width].translate(_SOLID)
@@ -118,6 +128,9 @@ class OccupancyMap:
 _SOLID = bytes(1 if value == OCCUPIED else 0 for value in range(256))
 
 
+_KNOWN = bytes(0 if value == UNKNOWN else 1 for value in range(256))
+
+
 def _runs(row: bytes) -> list[tuple[int, int]]:
     """Where solid cells begin, and where they end."""
     found: list[tuple[int, int]] = []
@@ -130,18 +143,13 @@ def _runs(row: bytes) -> list[tuple[int, int]]:
     return found
 
 
-def _changes(one: bytes, other: bytes) -> Iterator[tuple[int, int]]:
+def _changes(one: bytes, other: bytes) -> list[tuple[int, int]]:
     """Stretches along two lines of cells where one of them is solid and the other is not; the same one all along."""
     if one == other:
-        return
-    begin, kind = 0, 0
-    for index, (a, b) in enumerate(zip(one, other, strict=True)):
-        if a - b != kind:
-            if kind:
-                yield begin, index
-            begin, kind = index, a - b
-    if kind:
-        yield begin, len(one)
+        return []
+    a, b = int.from_bytes(one), int.from_bytes(other)
+    found = _runs((a & ~b).to_bytes(len(one))) + _runs((b & ~a).to_bytes(len(one)))
+    return sorted(found)
 
 
 def is_map(path: Path) -> bool:
