@@ -9,6 +9,7 @@ from jacaros.cli.outputs import check_output, wrong_output
 from jacaros.errors import UsageError
 from jacaros.sim.description import WorldDescription, WorldError
 
+_IMAGES = (".pgm", ".png")
 _WIDTH = 640
 """Pixels of a picture."""
 _RESOLUTION = 0.05
@@ -78,7 +79,7 @@ def show_command(world: str, output: Path | None, width: int) -> None:
     "map_file",
     type=click.Path(path_type=Path),
     metavar="MAP",
-    help="Build the world upon a map: a file of ROS's map_server (.yaml) or its image (.pgm).",
+    help="Build the world upon a map: a file of ROS's map_server (.yaml) or its image (.pgm, .png).",
 )
 @click.option(
     "--resolution",
@@ -91,14 +92,14 @@ def new_command(file: Path, map_file: Path | None, resolution: float | None) -> 
 
     For an image alone, FILE_map.yaml is written too; its lower left corner is the origin. No file is overwritten.
     """  # fmt: skip
-    if resolution is not None and (map_file is None or map_file.suffix != ".pgm"):
+    if resolution is not None and (map_file is None or map_file.suffix not in _IMAGES):
         raise UsageError(
             "error: --resolution is for the image of a map\n  = help: --map MAP.pgm --resolution 0.05"
         )
     from jacaros.sim.world_template import described_map, new_world, world_of_map
 
     described, files = map_file, [file]
-    if map_file is not None and map_file.suffix == ".pgm":
+    if map_file is not None and map_file.suffix in _IMAGES:
         described = file.with_name(f"{file.stem}_map.yaml")
         files.append(described)
     _refuse_existing(files)

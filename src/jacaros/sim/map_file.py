@@ -2,7 +2,7 @@
 
 The keys and their meaning are those of Nav2's ``map_server`` and ROS 1's ``map_server``::
 
-    image: office.pgm           # PGM; its path counts from this file
+    image: office.pgm           # or PNG; its path counts from this file
     resolution: 0.05            # metres a pixel
     origin: [-10, -5, 0]        # of the lower left corner: metres, and radians, which must be 0
     negate: 0                   # 1: black is free
@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from jacaros.sim.description import Rectangle, Segment, WorldDescription
-from jacaros.sim.map_image import GreyImage, ImageError, pgm_bytes, read_pgm
+from jacaros.sim.map_image import GreyImage, ImageError, pgm_bytes, read_image
 from jacaros.sim.navigation.grid import Grid
 from jacaros.yaml_nodes import Node, Problem, read_document
 from jacaros.yaml_syntax import read_text, top_keys
@@ -163,7 +163,11 @@ def read_map(path: Path) -> tuple[str, list[Problem], OccupancyMap | None]:
     try:
         text, wrong = read_text(path)
     except OSError as error:
-        return "", [Problem(1, 1, f"it cannot be read: {error}")], None
+        return (
+            "",
+            [Problem(1, 1, f"it cannot be read: {error}", "check that the file exists and its permissions")],
+            None,
+        )
     if wrong is not None:
         return text, [wrong], None
     problems: list[Problem] = []
@@ -243,13 +247,13 @@ def _image(node: Node, folder: Path) -> GreyImage | None:
         return None
     path = folder / name
     try:
-        return read_pgm(path)
+        return read_image(path)
     except FileNotFoundError:
         node.wrong(
             f"image not found: `{path}`", near_file(path, "*.pgm") or "its path counts from the map file"
         )
     except OSError as error:
-        node.wrong(f"image `{path}` cannot be read: {error}")
+        node.wrong(f"image `{path}` cannot be read: {error}", "check its permissions")
     except ImageError as error:
         node.wrong(f"image `{path}`: {error}", error.cure)
     return None

@@ -1,7 +1,9 @@
-"""PGM images: the pictures in which ROS's map_server keeps its maps."""
+"""Images in which ROS's map_server keeps its maps: PGM, and PNG if Pillow is installed."""
 
 import re
 from dataclasses import dataclass
+from importlib import import_module
+from io import BytesIO
 from pathlib import Path
 
 from jacaros.text_files import file_bytes
@@ -9,7 +11,8 @@ from jacaros.text_files import file_bytes
 WHITE = 255
 _NUMBER = re.compile(rb"(?:\s|#[^\r\n]*+)*+(\d{1,9})")
 """A number of the header, behind blanks and comments."""
-_KNOWN = ((b"\x89PNG", "PNG"), (b"\xff\xd8", "JPEG"), (b"BM", "BMP"), (b"GIF8", "GIF"))
+_PNG = b"\x89PNG"
+_KNOWN = ((b"\xff\xd8", "JPEG"), (b"BM", "BMP"), (b"GIF8", "GIF"))
 _HEADER = ("width", "height", "largest value")
 
 
@@ -30,19 +33,19 @@ class GreyImage:
     pixels: bytes
 
 
-def read_pgm(path: Path) -> GreyImage:
-    """Read a PGM file, binary (P5) or as text (P2).
+def read_image(path: Path) -> GreyImage:
+    """Read a PGM file, binary (P5) or as text (P2), or a PNG file.
 
     Raises:
         OSError: it does not exist, or cannot be read.
-        ImageError: it is not an image of that kind, or incomplete.
+        ImageError: it is not an image of these kinds, or incomplete; or it is a PNG, and Pillow is not installed.
     """
     data = file_bytes(path)
+    if data.startswith(_PNG):
+        return _read_png(data, path)
     if data[:2] not in (b"P5", b"P2"):
         kind = next((f"a {name} image" for begins, name in _KNOWN if data.startswith(begins)), "not an image")
-        raise ImageError(
-            f"not a PGM image, which begins with P5 or P2: it is {kind}", f"magick {path} {path.stem}.pgm"
-        )
+        raise ImageError(f"not a PGM or PNG image: it is {kind}", f"magick {path} {path.with_suffix('.pgm')}")
     width, height, largest, start = _header(data)
     count = width * height
     values = data[start + 1 : start + 1 + count] if data[:2] == b"P5" else _written(data[start:], count)
@@ -53,6 +56,21 @@ def read_pgm(path: Path) -> GreyImage:
     if largest != WHITE:
         values = values.translate(bytes(min(WHITE, value * WHITE // largest) for value in range(256)))
     return GreyImage(width, height, values)
+
+
+def _read_png(data: bytes, path: Path) -> GreyImage:
+    try:
+        pillow = import_module("PIL.Image")
+    except ImportError:
+        raise ImageError(
+            "Pillow, which reads PNG images, is not installed",
+            f"pip install 'jacaros[maps]', or magick {path} {path.with_suffix('.pgm')}",
+        ) from None
+    try:
+        image = pillow.open(BytesIO(data)).convert("L")
+    except Exception as error:  # Pillow raises errors of many kinds, SyntaxError among them
+        raise ImageError(f"the PNG image is broken: {error}", "save the map again") from error
+    return GreyImage(*image.size, image.tobytes())
 
 
 def _header(data: bytes) -> tuple[int, int, int, int]:

@@ -3,6 +3,7 @@
 import itertools
 import math
 import random
+import sys
 from pathlib import Path
 
 import pytest
@@ -10,7 +11,7 @@ import pytest
 from jacaros.sim import World, WorldError
 from jacaros.sim.description import WorldDescription
 from jacaros.sim.map_file import OccupancyMap, map_of_world, read_map
-from jacaros.sim.map_image import GreyImage, pgm_bytes, read_pgm
+from jacaros.sim.map_image import GreyImage, ImageError, pgm_bytes, read_image
 from jacaros.sim.navigation.grid import Grid
 from jacaros.sim.world_file import is_world, load_world, world_problems
 
@@ -102,9 +103,9 @@ def test_images_with_comments_few_shades_and_in_text_are_read(tmp_path: Path) ->
         b"P2 2 2 255\n0 255 # white\n16 32\n",
     ):
         path.write_bytes(content)
-        assert read_pgm(path) == GreyImage(2, 2, b"\x00\xff\x10\x20")
+        assert read_image(path) == GreyImage(2, 2, b"\x00\xff\x10\x20")
     path.write_bytes(b"P5 2 1 1\n\x00\x01")
-    assert read_pgm(path).pixels == b"\x00\xff"
+    assert read_image(path).pixels == b"\x00\xff"
 
 
 @pytest.mark.parametrize(
@@ -136,9 +137,9 @@ def test_images_with_comments_few_shades_and_in_text_are_read(tmp_path: Path) ->
         (
             YAML,
             b"P6\n1 1\n255\nxyz",
-            [(1, "not a PGM image, which begins with P5 or P2: it is not an image")],
+            [(1, "not a PGM or PNG image: it is not an image")],
         ),
-        (YAML, b"\x89PNG\r\n", [(1, "it is a PNG image")]),
+        (YAML, b"GIF89a", [(1, "not a PGM or PNG image: it is a GIF image")]),
         (YAML, b"", [(1, "it is not an image")]),
     ],
 )
@@ -150,6 +151,23 @@ def test_all_that_is_wrong_with_a_map_is_reported_with_its_line(
     assert [problem.line for problem in problems] == [line for line, _ in wrong]
     for problem, (_, message) in zip(problems, wrong, strict=True):
         assert message in problem.message
+
+
+def test_a_png_image_needs_pillow(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "PIL.Image", None)
+    (problem,) = world_problems(write_map(tmp_path, b"\x89PNG\r\n"))[1]
+    assert "Pillow, which reads PNG images, is not installed" in problem.message
+    assert problem.cure.startswith("pip install 'jacaros[maps]', or magick ")
+
+
+def test_a_png_image_is_read_with_pillow(tmp_path: Path) -> None:
+    pillow = pytest.importorskip("PIL.Image")
+    path = tmp_path / "m.pgm"
+    pillow.frombytes("L", (2, 2), b"\x00\xff\x10\x20").convert("RGB").save(path, "PNG")
+    assert read_image(path) == GreyImage(2, 2, b"\x00\xff\x10\x20")
+    path.write_bytes(path.read_bytes()[:40])
+    with pytest.raises(ImageError, match="the PNG image is broken"):
+        read_image(path)
 
 
 def test_a_map_alone_is_a_world_with_a_robot_where_it_is_free(tmp_path: Path) -> None:
