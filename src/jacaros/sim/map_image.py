@@ -70,7 +70,7 @@ def _read_png(data: bytes, path: Path) -> GreyImage:
         image = pillow.open(BytesIO(data)).convert("L")
     except Exception as error:  # Pillow raises errors of many kinds, SyntaxError among them
         raise ImageError(f"the PNG image is broken: {error}", "save the map again") from error
-    return GreyImage(*image.size, image.tobytes())
+    return GreyImage(image.width, image.height, image.tobytes())
 
 
 def _header(data: bytes) -> tuple[int, int, int, int]:
