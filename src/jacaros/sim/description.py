@@ -216,8 +216,22 @@ class CleaningTool:
 
 
 @dataclass(frozen=True, slots=True)
+class ObjectDescription:
+    """A round thing that lies on the floor and can be carried; ``color`` is ``#rrggbb``, or "" if unknown."""
+
+    name: str
+    x: float
+    y: float
+    radius: float = 0.03
+    color: str = ""
+
+
+@dataclass(frozen=True, slots=True)
 class RobotDescription:
-    """One robot: its name, the namespace of its topics ("" for none), where it starts and how it is made."""
+    """One robot: its name, the namespace of its topics ("" for none), where it starts and how it is made.
+
+    ``gripper_reach`` is how far from the robot's centre its gripper takes objects (metres), 0 without a gripper.
+    """
 
     name: str = "turtlebot"
     namespace: str = ""
@@ -229,6 +243,7 @@ class RobotDescription:
     laser: LaserSettings = LaserSettings()
     navigation: NavigationSettings = NavigationSettings()
     tools: tuple[CleaningTool, ...] = ()
+    gripper_reach: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -281,6 +296,7 @@ class WorldDescription:
     docks: tuple[Dock, ...] = ()
     doors: tuple[Door, ...] = ()
     cliffs: tuple[Rectangle, ...] = ()
+    objects: tuple[ObjectDescription, ...] = ()
     robots: tuple[RobotDescription, ...] = field(default_factory=lambda: (RobotDescription(),))
     people: tuple[PersonDescription, ...] = ()
     seed: int = 0

@@ -27,7 +27,7 @@ class Event(NamedTuple):
     ``collision`` (with, side), ``command_timeout`` and ``bad_command`` (speed, turn_rate), ``task`` (task as
     text, room), ``tool_started`` and ``tool_stopped`` (tool), ``cleaned`` at each whole percent of a room's dirt, and
     when the tool stops (room, dirt, and what is left: grams, percent), ``fell`` down a cliff (nothing),
-    ``lights`` (colors) and ``sound`` (notes, append).  Of no robot
+    ``lights`` (colors) and ``sound`` (notes, append), ``picked`` and ``placed`` (object, and its place: x, y).  Of no robot
     (``""``): ``door_opened`` and ``door_closed`` (door), in the middle of the door; ``person_walks`` (velocity: vx, vy),
     ``person_stands`` (waits_for: a robot, a door or ""), ``person_comes`` and ``person_goes``, each with person, x and y.
     A person stands before its first event, at the beginning of its path.

@@ -28,6 +28,7 @@ _BOX: Final = Look(0.75, (158, 128, 88))
 _DOCK: Final = Look(0.12, (242, 193, 78))
 _ROBOT: Final = Look(0.35, (60, 120, 165))
 _PERSON: Final = Look(1.75, (200, 80, 70))
+_OBJECT: Final = Look(0.12, (90, 160, 90))
 _DOCK_RADIUS = 0.1
 
 
@@ -64,8 +65,7 @@ class CameraSensor:
             looks = {door.segment: _DOOR for door in world.description.doors}
             looks |= {edge: _BOX for box in world.description.boxes for edge in box.edges()}
             for each in world.description.furniture:
-                if each.color:
-                    looks |= dict.fromkeys(each.area.edges(), Look(_BOX.height, _rgb(each.color)))
+                looks |= dict.fromkeys(each.area.edges(), _coloured(_BOX, each.color))
             self._segments = world.segments
             self._walls = [(segment, looks.get(segment, _WALL)) for segment in world.segments]
         return self._walls
@@ -78,7 +78,12 @@ class CameraSensor:
             if robot is not self._at.robot:
                 yield (robot.x, robot.y, robot.description.radius), _ROBOT
         for person in world.people.values():
-            yield (person.x, person.y, person.description.radius), _PERSON
+            yield (
+                (person.x, person.y, person.description.radius),
+                _coloured(_PERSON, person.description.color),
+            )
+        for each in world.objects.by_name.values():
+            yield (*each.place, each.description.radius), _coloured(_OBJECT, each.description.color)
 
     def _send(self, publisher: Publisher, encoding: str, octets: int, data: bytes) -> None:
         message = publisher.message(
@@ -108,6 +113,8 @@ def _matrix(message: Any, name: str) -> Any:
     return getattr(message, name) if hasattr(message, name) else getattr(message, name.upper())
 
 
-def _rgb(colour: str) -> tuple[int, int, int]:
-    """A colour ``#rrggbb``."""
-    return int(colour[1:3], 16), int(colour[3:5], 16), int(colour[5:7], 16)
+def _coloured(look: Look, colour: str) -> Look:
+    """The same in a colour ``#rrggbb``; "" leaves it as it is."""
+    if not colour:
+        return look
+    return Look(look.height, (int(colour[1:3], 16), int(colour[3:5], 16), int(colour[5:7], 16)))

@@ -16,6 +16,7 @@ Every key may be left out; these are the defaults, but for the errors of odometr
       laser: {enabled: true, beams_per_turn: 360, field_degrees: 360, range_min: 0.1, range_max: 10,
               noise: 0.01, publish: on demand}    # or always
       navigation: {enabled: true, speed: 0.4}    # or true, or false
+      gripper: {reach: 0.35}        # or true, or false, the default
       tools: {vacuum: {removes: [dust], rate: 5, reach: 0.3}}    # no tools by default
 """
 
@@ -38,6 +39,9 @@ from jacaros.yaml_nodes import Node
 
 _NAMESPACE = re.compile(r"/?[A-Za-z][A-Za-z0-9_]*(/[A-Za-z][A-Za-z0-9_]*)*")
 
+_REACH = 0.35
+"""Metres that a gripper reaches unless it says otherwise."""
+
 
 def read_robot(node: Node) -> RobotDescription:
     """Read one robot; what is not said is that of its kind, at the origin."""
@@ -53,6 +57,7 @@ def read_robot(node: Node) -> RobotDescription:
         "laser",
         "navigation",
         "tools",
+        "gripper",
     )
     usual = KINDS[entries["kind"].choice(*KINDS)] if "kind" in entries else KINDS[USUAL]
     return RobotDescription(
@@ -65,6 +70,7 @@ def read_robot(node: Node) -> RobotDescription:
         odometry=_odometry(entries.get("odometry")),
         laser=_laser(entries.get("laser"), usual.laser),
         navigation=_navigation(entries.get("navigation"), usual.navigation),
+        gripper_reach=_gripper_reach(entries.get("gripper")),
         tools=tuple(_tool(name, tool) for name, tool in entries["tools"].entries())
         if "tools" in entries
         else (),
@@ -172,6 +178,12 @@ def _laser(node: Node | None, usual: LaserSettings) -> LaserSettings:
         noise=section.number("noise", usual.noise, 0.0, 1.0),
         always=publish is not None and publish.choice("on demand", "always") == "always",
     )
+
+
+def _gripper_reach(node: Node | None) -> float:
+    if node is not None and isinstance(node.value, dict):
+        return _Section(node, "reach").number("reach", _REACH, 0.05, 5.0)
+    return _REACH if node is not None and node.truth() else 0.0
 
 
 def _navigation(node: Node | None, usual: NavigationSettings) -> NavigationSettings:

@@ -16,8 +16,8 @@ topic (below the robot's namespace)         type                          direct
 
 Other sensors have files of their own: bumpers and the dock `jacaros.sim.robot_contacts`, cliffs
 `jacaros.sim.robot_cliffs`, ``/imu`` `jacaros.sim.robot_imu`, ``/sonar`` `jacaros.sim.robot_sonar`, the camera
-`jacaros.sim.robot_camera`, transforms `jacaros.sim.robot_transforms`, lights and sound `jacaros.sim.robot_lights`.  What
-the robot can be asked to do by itself is in `jacaros.sim.navigation`.
+`jacaros.sim.robot_camera`, transforms `jacaros.sim.robot_transforms`, lights and sound `jacaros.sim.robot_lights`, the
+gripper `jacaros.sim.robot_gripper`.  What the robot can be asked to do by itself is in `jacaros.sim.navigation`.
 """
 
 import math
@@ -31,6 +31,7 @@ from jacaros.sim.robot import Robot
 from jacaros.sim.robot_camera import CameraSensor
 from jacaros.sim.robot_cliffs import CliffSensors
 from jacaros.sim.robot_contacts import RobotContacts
+from jacaros.sim.robot_gripper import Gripper
 from jacaros.sim.robot_imu import ImuSensor
 from jacaros.sim.robot_lights import LightsAndSound
 from jacaros.sim.robot_sensors import (
@@ -59,7 +60,7 @@ SENSORS: Final[Sequence[Callable[[RobotOnGraph], Sensor]]] = (
 )
 """What every robot tells the graph, in the order of publishing."""
 
-ACTUATORS: Final[Sequence[Callable[[RobotOnGraph], Actuator]]] = (LightsAndSound,)
+ACTUATORS: Final[Sequence[Callable[[RobotOnGraph], Actuator]]] = (LightsAndSound, Gripper)
 """What every robot does for the graph, besides driving and cleaning."""
 
 COMMANDS: Final = ("/cmd_vel", "/cmd_vel_mux/input/navi", "/mobile_base/commands/velocity")

@@ -15,6 +15,7 @@ from jacaros.sim.contact import WallIndex, push_apart
 from jacaros.sim.description import PersonDescription, WorldDescription
 from jacaros.sim.ground_truth import Event, GroundTruth
 from jacaros.sim.laser import Circle
+from jacaros.sim.objects import Objects
 from jacaros.sim.people import People, Person
 from jacaros.sim.robot import Robot
 from jacaros.sim.sensors import Laser
@@ -38,6 +39,7 @@ class World:
         segments: all walls, and the doors that are closed.
         cleaning: the dirt, and the robots' tools that are at work.
         people: the people who walk about, by name.
+        objects: what robots with a gripper can carry.
     """
 
     def __init__(self, description: WorldDescription, seed: int | None = None) -> None:
@@ -54,6 +56,7 @@ class World:
         self._people = People(self.description.people, self._note_person)
         self.people = self._people.by_name
         self.cleaning = Cleaning(self.description, self.room_at, self._note)
+        self.objects = Objects(self.description.objects, self._note)
         self._truth = GroundTruth(self.robots, description.drawing())
         self._charge_shown = {robot.name: (False, math.ceil(robot.battery.level)) for robot in self._row}
         self._next_sample = 0.0

@@ -24,6 +24,7 @@ radians.  Every key but ``robots`` may be left out; what a robot may say is in `
     robots:
       - name: turtlebot
         pose: {x: 0, y: 0, yaw_degrees: 0}
+    objects:                          # see `jacaros.sim.object_file`
     people:                           # see `jacaros.sim.people_file`
       - {name: ann, path: [[0, 1], [2, 1]], loop: true}
 """
@@ -50,6 +51,7 @@ from jacaros.sim.description import (
     WorldError,
 )
 from jacaros.sim.map_file import OccupancyMap, free_place, is_map, near_file, read_map
+from jacaros.sim.object_file import read_objects
 from jacaros.sim.people_file import check_people, read_person
 from jacaros.sim.robot_file import read_pose, read_robot
 from jacaros.sim.room_file import read_rectangle, read_rooms
@@ -72,6 +74,7 @@ _KEYS = (
     "cliffs",
     "robots",
     "people",
+    "objects",
 )
 _TELLING = frozenset(_KEYS) - {"name", "seed"}
 """Keys that few other YAML files have."""
@@ -207,6 +210,7 @@ def _world(document: Node, folder: Path) -> WorldDescription:
         doors=_doors(entries.get("doors")),
         cliffs=tuple(read_rectangle(cliff) for cliff in _items(entries.get("cliffs"))),
         robots=tuple(read_robot(robot) for robot in robots),
+        objects=read_objects(entries["objects"]) if "objects" in entries else (),
         people=tuple(read_person(person) for person in people),
         seed=entries["seed"].whole(0, 0) if "seed" in entries else 0,
     )
