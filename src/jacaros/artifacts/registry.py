@@ -2,11 +2,10 @@
 
 import importlib
 import importlib.util
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType, ModuleType
 
-from jacaros.artifacts.map.slam_data import ArtSlamData
 from jacaros.artifacts.robots.battery import ArtSimBattery
 from jacaros.artifacts.robots.connection_artifact import ArtRos
 from jacaros.artifacts.robots.kobuki_events import ArtBumper, ArtCliff
@@ -27,34 +26,56 @@ from jacaros.env import Artifact, InvalidArtifact, UnknownArtifactType
 from jacaros.env.standard_artifacts import Blackboard, Console
 from jacaros.project_modules import ModuleUnreadable, NotImported, ProjectModules
 
-BUILT_IN: Mapping[str, type[Artifact]] = MappingProxyType(
-    {
-        cls.__name__: cls
-        for cls in (
-            ArtBaseScan,
-            ArtBumper,
-            ArtCleaning,
-            ArtCliff,
-            ArtCmdVel,
-            ArtCmdVelAndOdometry,
-            ArtCmdVelMux,
-            ArtCmdVelMuxAndOdometry,
-            ArtOdometry,
-            ArtOdometryOnDemand,
-            ArtPerception,
-            ArtRos,
-            ArtScan,
-            ArtSimBattery,
-            ArtSlamData,
-            ArtTutorial,
-            ArtVelocity,
-            Barrier,
-            Blackboard,
-            Clock,
-            Console,
-            Latch,
-        )
-    }
+LATE = {
+    "ArtMap": "jacaros.artifacts.map.robot_map",
+    "ArtSlamData": "jacaros.artifacts.map.slam_data",
+}
+"""Artifacts whose modules are imported when they are first asked for: a run without a map does not load it."""
+
+
+class _BuiltIn(Mapping[str, type[Artifact]]):
+    """The artifacts of jacaros by their bare names."""
+
+    def __init__(self, *classes: type[Artifact]) -> None:
+        self._classes = {cls.__name__: cls for cls in classes}
+
+    def __getitem__(self, name: str) -> type[Artifact]:
+        if name not in self._classes:
+            self._classes[name] = getattr(importlib.import_module(LATE[name]), name)
+        return self._classes[name]
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._classes or name in LATE
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(sorted({*self._classes, *LATE}))
+
+    def __len__(self) -> int:
+        return len({*self._classes, *LATE})
+
+
+BUILT_IN: Mapping[str, type[Artifact]] = _BuiltIn(
+    ArtBaseScan,
+    ArtBumper,
+    ArtCleaning,
+    ArtCliff,
+    ArtCmdVel,
+    ArtCmdVelAndOdometry,
+    ArtCmdVelMux,
+    ArtCmdVelMuxAndOdometry,
+    ArtOdometry,
+    ArtOdometryOnDemand,
+    ArtPerception,
+    ArtRos,
+    ArtScan,
+    ArtSimBattery,
+    ArtTutorial,
+    ArtVelocity,
+    Barrier,
+    Blackboard,
+    Clock,
+    Console,
+    Latch,
 )
 """The artifacts of jacaros by their bare names."""
 

@@ -240,6 +240,7 @@ class System:
                     "ros": self.ros.backend,
                     "console": lambda: self.console.print,
                     "random": lambda: random,
+                    "restricted": lambda: self.options.restricted,
                     "stop": lambda: partial(self.stop_system, 0.0, 0),
                 }
             )

@@ -38,6 +38,17 @@ def test_a_forbidden_step_fails_with_the_reason(
     assert run(tmp_path, capsys, step)[0] == "[a] done\n"
 
 
+@pytest.mark.parametrize("step", ["saveMap", "loadMap"])
+def test_a_map_is_neither_written_nor_read(
+    step: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "map.yaml"
+    steps = f'makeArtifact("m", "ArtSlamData", [], M); focus(M); {step}("{file}")'
+    told = f"[a] action_failed: {step} is forbidden: this run is restricted (--restrict)\n"
+    assert run(tmp_path, capsys, steps, "--restrict")[0] == told
+    assert not file.exists()
+
+
 def test_an_agent_of_the_project_may_be_made(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "bob.asl").write_text("p.\n", encoding="utf-8")
     assert run(tmp_path, capsys, ".create_agent(bob)", "--restrict")[0] == "[a] done\n"

@@ -1,6 +1,6 @@
 """Cells of the ground with whole-number coordinates, and their labels."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Mapping
 
 Cell = tuple[int, int]
 
@@ -49,7 +49,12 @@ class LabelledCells:
         self._labels.clear()
         self._places.clear()
 
-    def known(self) -> Iterable[Cell]:
+    def load(self, labels: Mapping[Cell, str]) -> None:
+        """Take what a whole map says in place of all free cells and obstacles; places stay."""
+        self._labels = {cell: self.obstacle if label == OBSTACLE else label for cell, label in labels.items()}
+        self._labels.update(self._places)
+
+    def known(self) -> Collection[Cell]:
         """Return all cells with a label."""
         return self._labels
 
@@ -64,6 +69,10 @@ class LabelledCells:
     def places(self) -> Mapping[Cell, str]:
         """Return the cells with another label than free, obstacle and unknown."""
         return self._places
+
+    def blocked(self) -> set[Cell]:
+        """Return the obstacles."""
+        return {cell for cell, label in self._labels.items() if label == self.obstacle}
 
     def passable(self) -> set[Cell]:
         """Return the cells that a route may enter."""

@@ -4,11 +4,13 @@ and routes over them.
 
 import math
 from collections.abc import Sequence
+from pathlib import Path
 from typing import ClassVar
 
-from jacaros.artifacts.kit.options import positive, text
+from jacaros.artifacts.kit.options import not_negative, positive, text
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
-from jacaros.artifacts.map.cells import GOAL, OBSTACLE, UNKNOWN, Cell, LabelledCells
+from jacaros.artifacts.map.cells import FREE, GOAL, OBSTACLE, UNKNOWN, Cell, LabelledCells
+from jacaros.artifacts.map.inflation import inflated
 from jacaros.artifacts.map.picture import picture
 from jacaros.artifacts.map.route import DEGREES, compass, route
 from jacaros.env.artifact import Out, operation
@@ -26,7 +28,9 @@ class ArtSlamData(RosArtifact):
 
     Options:
         obstacle(Label): another label for cells that no route enters.
-        cell_size(S): side of a cell in metres (1), the unit of `getDistance`.
+        cell_size(S): side of a cell in metres (1).
+        radius(R): room that the robot needs, in metres (0): routes keep the centres of cells farther than this from those
+            of obstacles.
 
     Properties:
         pos2d(X, Y): the agent's cell, 0, 0 at first.
@@ -44,14 +48,18 @@ class ArtSlamData(RosArtifact):
         currentRange(X, Y, Label): after `getVisionRange`, one for each labelled cell, column by column.
     """
 
-    known_options: ClassVar = {"obstacle": text, "cell_size": positive}
+    known_options: ClassVar = {"obstacle": text, "cell_size": positive, "radius": not_negative}
+    usual_size: ClassVar[float] = 1.0
+    usual_radius: ClassVar[float] = 0.0
 
     def open(self) -> None:
         """Begin with an empty map."""
-        self.size = float(str(self.options.get("cell_size", 1.0)))
+        self.size = float(str(self.options.get("cell_size", self.usual_size)))
+        self.radius = float(str(self.options.get("radius", self.usual_radius)))
         self.cells = self.new_cells(str(self.options.get("obstacle", OBSTACLE)))
         self.here: Cell = (0, 0)
         self.heading = 0.0
+        self.way: list[Cell] = []
         self._driven = 0.0
         self._asked_at = 0.0
         self._things: dict[str, Cell] = {}
@@ -98,6 +106,8 @@ class ArtSlamData(RosArtifact):
         """Forget all labels and things, and the range of view and route that came from them."""
         self.cells.clear()
         self._things.clear()
+        self.way = []
+        self.begin_with_map()
         self._show_range([])
         self.update_property("route", [])
 
@@ -172,8 +182,13 @@ class ArtSlamData(RosArtifact):
     @operation(name="getDistance")
     def get_distance(self, metres: Out) -> None:
         """Give the distance that the agent has moved since the last call, in metres."""
-        metres.set(self._driven - self._asked_at)
-        self._asked_at = self._driven
+        metres.set(self.driven - self._asked_at)
+        self._asked_at = self.driven
+
+    @property
+    def driven(self) -> float:
+        """Metres moved so far."""
+        return self._driven
 
     # ---- the range of view
 
@@ -190,6 +205,10 @@ class ArtSlamData(RosArtifact):
         shown = [(*cell, self.cells.label(cell)) for cell in cells]
         self._show("cell", 3, shown)
         self.update_property("currentRange", [Structure("cell", each) for each in shown])
+        self.show_obstacles(cells)
+
+    def show_obstacles(self, cells: Sequence[Cell]) -> None:
+        """Show those of some cells that are obstacles as ``pos2d(obstacle, X, Y)``, and no others."""
         self._obstacles = [cell for cell in cells if self.cells.label(cell) == self.cells.obstacle]
         self.show_objects()
 
@@ -246,16 +265,24 @@ class ArtSlamData(RosArtifact):
 
     def find_route(self, goal: Cell) -> list[Structure]:
         """Show the route to *goal*, and return it."""
-        free = self.cells.passable()
+        free = self.enterable()
         if goal not in free:
-            self.fail(f"cell {goal[0]}, {goal[1]} is not free", "no_route", *goal)
+            near = f", or within {self.radius:g} m of an obstacle" if self.radius else ""
+            self.fail(f"cell {goal[0]}, {goal[1]} is not known to be free{near}", "no_route", *goal)
         way = route(free, self.here, goal)
         if way is None:
             self.fail(f"there is no route to cell {goal[0]}, {goal[1]}", "no_route", *goal)
+        self.way = way
         cells = [Structure("cell", cell) for cell in way]
         self.update_property("route", cells)
         self._show_direction(way)
         return cells
+
+    def enterable(self) -> set[Cell]:
+        """Return the cells that a route may enter: passable, and not too near to an obstacle."""
+        if not self.radius:
+            return self.cells.passable()
+        return inflated(self.cells.passable(), self.cells.blocked(), self.radius / self.size, self.here)
 
     def _show_direction(self, way: list[Cell]) -> None:
         if len(way) < 2:
@@ -265,3 +292,52 @@ class ArtSlamData(RosArtifact):
         turn = math.remainder(DEGREES[word] - self.heading, 360.0)
         self.update_property("direction", Atom(word))
         self.update_property("degrees", 180.0 if turn == -180.0 else turn)
+
+    # ---- files
+
+    @operation(name="saveMap")
+    def save_map(self, file: str) -> None:
+        """Write the map in the format of map_server: *file*, such as ``runs/flat.yaml``, and an image beside it.
+
+        Places are saved with it.  Fails with ``map_file(File)`` if it cannot be written, and with ``restricted`` in a run
+        with ``--restrict``.
+        """
+        self._check_files("saveMap")
+        from jacaros.artifacts.map.map_files import save
+
+        ground = dict.fromkeys(self.cells.passable(), FREE) | dict.fromkeys(self.cells.blocked(), OBSTACLE)
+        places = {name: cell for cell, name in self.cells.places().items()}
+        try:
+            save(Path(file), self.size, ground, places)
+        except OSError as error:
+            self.fail(f"cannot write the map {file}: {error}", "map_file", file)
+
+    @operation(name="loadMap")
+    def load_map(self, file: str) -> None:
+        """Read a map in the format of map_server, in place of what was known; its places are added.
+
+        Fails with ``map_file(File)`` if it cannot be read, or its cells are larger than ``cell_size(S)``, and with
+        ``restricted`` in a run with ``--restrict``.
+        """
+        self._check_files("loadMap")
+        from jacaros.artifacts.map.map_files import MapFileError, load
+
+        try:
+            saved = load(Path(file))
+        except MapFileError as error:
+            self.fail(str(error), "map_file", file)
+        if saved.grid.resolution > self.size * 1.001:
+            text = f"the cells of {file} are {saved.grid.resolution:g} m wide, more than cell_size({self.size:g})"
+            self.fail(text, "map_file", file)
+        self.cells.load(saved.grid.labels(self.size))
+        for name, (x, y) in saved.places.items():
+            self.cells.put((round(x / self.size), round(y / self.size)), name)
+        self.begin_with_map()
+        self.show_objects()
+
+    def begin_with_map(self) -> None:
+        """React to a map that was loaded or forgotten; for subclasses with sensors."""
+
+    def _check_files(self, name: str) -> None:
+        if self.resources.get("restricted"):
+            self.fail(f"{name} is forbidden: this run is restricted (--restrict)", "restricted")

@@ -1,0 +1,61 @@
+"""Grids of others: ``nav_msgs/msg/OccupancyGrid``, and the image of a map file, as labels of cells."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from jacaros.artifacts.map.cells import FREE, OBSTACLE, Cell
+from jacaros.artifacts.robots.control import Pose, heading_of
+
+OCCUPIED = 65
+"""Occupancy, in percent, from which on a cell is an obstacle: map_server's threshold."""
+
+CLEAR = 25
+"""Occupancy, in percent, below which a cell is free: map_server's threshold."""
+
+
+@dataclass(frozen=True, slots=True)
+class Grid:
+    """A grid of occupancies.
+
+    Attributes:
+        resolution: side of a cell, in metres.
+        width: cells in a row.
+        origin: pose of the corner of the first cell.
+        occupancy: 0 to 100 percent, -1 for unknown; rows from the bottom.
+    """
+
+    resolution: float
+    width: int
+    origin: Pose
+    occupancy: Sequence[int]
+
+    @staticmethod
+    def of(message: Any) -> "Grid":
+        """Read a ``nav_msgs/msg/OccupancyGrid``."""
+        info, q = message.info, message.info.origin.orientation
+        position = info.origin.position
+        origin = Pose(float(position.x), float(position.y), heading_of(q.x, q.y, q.z, q.w))
+        return Grid(float(info.resolution), int(info.width), origin, message.data)
+
+    def labels(self, size: float) -> dict[Cell, str]:
+        """Return free cells and obstacles as cells of another *size*, in metres, that is not smaller.
+
+        A cell is an obstacle if some of it is, and free if no more than that is known.
+        """
+        found: dict[Cell, str] = {}
+        corner, step = self.origin, self.resolution / size
+        sine, cosine = step * math.sin(corner.heading), step * math.cos(corner.heading)
+        for index, percent in enumerate(self.occupancy):
+            if percent >= OCCUPIED or 0 <= percent < CLEAR:
+                row, column = divmod(index, self.width)
+                u, v = column + 0.5, row + 0.5
+                x = corner.x / size + cosine * u - sine * v
+                y = corner.y / size + sine * u + cosine * v
+                cell = (math.floor(x + 0.5), math.floor(y + 0.5))
+                if percent >= OCCUPIED:
+                    found[cell] = OBSTACLE
+                else:
+                    found.setdefault(cell, FREE)
+        return found

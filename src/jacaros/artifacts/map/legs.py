@@ -1,0 +1,58 @@
+"""Straight legs of a route over cells, for a robot that turns on the spot and drives straight ahead."""
+
+import math
+from collections.abc import Collection, Sequence
+from typing import NamedTuple
+
+from jacaros.artifacts.map.cells import Cell
+from jacaros.artifacts.robots.control import Pose
+
+
+class Leg(NamedTuple):
+    """What legs are made of.
+
+    Attributes:
+        size: side of a cell, in metres.
+        longest: metres.
+    """
+
+    size: float
+    longest: float
+
+
+def next_leg(way: Sequence[Cell], free: Collection[Cell], pose: Pose, leg: Leg) -> tuple[float, float]:
+    """Return the turn in radians, to the left if positive, and the metres to the farthest cell in a straight line.
+
+    Args:
+        way: cells from start to goal.
+        free: cells that may be entered.
+        pose: where the robot is, in metres; it may have left the way a little.
+        leg: the size of cells, and the longest leg.
+    """
+    size = leg.size
+    at = min(range(len(way)), key=lambda i: (math.dist(pose[:2], (way[i][0] * size, way[i][1] * size)), i))
+    target = min(at + 1, len(way) - 1)
+    for i in range(target + 1, len(way)):
+        x, y = way[i][0] * size, way[i][1] * size
+        if math.dist(pose[:2], (x, y)) > leg.longest or not _clear(pose, x, y, free, size):
+            break
+        target = i
+    x, y = way[target][0] * size, way[target][1] * size
+    metres = math.dist(pose[:2], (x, y))
+    if metres < 0.5 * size:
+        return 0.0, 0.0
+    turn = math.remainder(math.atan2(y - pose.y, x - pose.x) - pose.heading, math.tau)
+    return turn, metres
+
+
+def _clear(pose: Pose, x: float, y: float, free: Collection[Cell], size: float) -> bool:
+    """Return whether the straight line to a point leads over free cells; the robot's own may be any."""
+    steps = max(1, math.ceil(math.dist(pose[:2], (x, y)) / (0.5 * size)))
+    here = (math.floor(pose.x / size + 0.5), math.floor(pose.y / size + 0.5))
+    for step in range(1, steps + 1):
+        share = step / steps
+        px, py = pose.x + share * (x - pose.x), pose.y + share * (y - pose.y)
+        cell = (math.floor(px / size + 0.5), math.floor(py / size + 0.5))
+        if cell != here and cell not in free:
+            return False
+    return True

@@ -1,0 +1,60 @@
+"""Where a robot is on the map: its odometry, and a correction of it."""
+
+import math
+from collections import deque
+
+from jacaros.artifacts.map.poses import ORIGIN, between, followed_by, inverse
+from jacaros.artifacts.robots.control import Pose
+
+REMEMBERED = 40
+"""Poses of odometry that are kept: two seconds at 20 Hz, for sensors that are late."""
+
+
+class Localisation:
+    """The pose of a robot on the map.
+
+    Attributes:
+        correction: where the frame of odometry stands on the map; at its origin until something corrects it.
+        pose: the newest pose on the map; None before the first odometry.
+        driven: metres driven, by odometry.
+    """
+
+    def __init__(self) -> None:
+        self.correction = ORIGIN
+        self.pose: Pose | None = None
+        self.driven = 0.0
+        self._odometry: deque[tuple[float, Pose]] = deque(maxlen=REMEMBERED)
+
+    def take_odometry(self, stamp: float, pose: Pose) -> None:
+        """Take a pose of odometry; *stamp* in seconds."""
+        if self._odometry:
+            last, before = self._odometry[-1]
+            self.driven += math.dist(before[:2], pose[:2])
+            if stamp < last:  # the sender's clock was set back
+                self._odometry.clear()
+        self._odometry.append((stamp, pose))
+        self.pose = followed_by(self.correction, pose)
+
+    def pose_at(self, stamp: float) -> Pose | None:
+        """Return the pose on the map at *stamp* (0.0: now), the nearest known one; None before the first odometry."""
+        found = self._odometry_at(stamp)
+        return None if found is None else followed_by(self.correction, found)
+
+    def correct(self, stamp: float, pose: Pose) -> None:
+        """Take it that the robot was at *pose* on the map at *stamp*; nothing happens before the first odometry."""
+        found = self._odometry_at(stamp)
+        if found is not None:
+            self.correction = followed_by(pose, inverse(found))
+            self.pose = followed_by(self.correction, self._odometry[-1][1])
+
+    def _odometry_at(self, stamp: float) -> Pose | None:
+        if not self._odometry:
+            return None
+        later_stamp, later = self._odometry[-1]
+        if stamp == 0.0 or stamp >= later_stamp:
+            return later
+        for before_stamp, before in reversed(self._odometry):
+            if before_stamp <= stamp:
+                return between(before, later, (stamp - before_stamp) / (later_stamp - before_stamp))
+            later_stamp, later = before_stamp, before
+        return later

@@ -1,0 +1,83 @@
+"""From scans and odometry to an occupancy grid and the robot's pose on it."""
+
+import math
+from collections.abc import Collection
+from typing import Any
+
+from jacaros.artifacts.map.cells import Cell
+from jacaros.artifacts.map.localisation import Localisation
+from jacaros.artifacts.map.occupancy import OccupancyCells
+from jacaros.artifacts.map.scan_matching import Surfaces, match
+from jacaros.artifacts.map.scans import ScanOptions, moved, read_scan
+from jacaros.artifacts.robots.control import Pose
+
+DRIVEN = 0.1
+"""Metres after which the next scan is taken into the map."""
+
+TURNED = math.radians(6.0)
+"""Radians after which it is."""
+
+STOOD = 2.0
+"""Seconds after which it is, though the robot stands: something else may have moved."""
+
+MATCHED = 120
+"""Points of a scan that are matched, about."""
+
+
+class Mapper:
+    """Puts scans into a grid, each from where the robot was at its time.
+
+    Args:
+        cells: the grid.
+        options: how scans are read.
+        matching: correct the pose by matching scans with what was seen before.
+
+    Attributes:
+        localisation: where the robot is.
+    """
+
+    def __init__(self, cells: OccupancyCells, options: ScanOptions, matching: bool) -> None:
+        self.localisation = Localisation()
+        self._cells, self._options, self._matching = cells, options, matching
+        self._surfaces = Surfaces()
+        self._last: tuple[float, Pose] | None = None
+
+    def take_scan(self, stamp: float, message: Any) -> bool:
+        """Take a ``sensor_msgs/msg/LaserScan`` of the time *stamp*, in seconds.
+
+        Returns:
+            Whether it went into the map: not before the first odometry, and not if the robot stands where it stood.
+        """
+        pose = self.localisation.pose_at(stamp)
+        if pose is None or not self._is_news(stamp, pose):
+            return False
+        scan = read_scan(message, self._options)
+        if self._matching:
+            every = max(1, len(scan.echoes) // MATCHED)
+            found = match(self._surfaces, scan.echoes[::every], pose) if self._surfaces else None
+            if found is not None:
+                pose = found
+                self.localisation.correct(stamp, pose)
+        scan = moved(scan, pose)
+        self._cells.add_scan(scan.origin, scan.echoes, scan.clear)
+        if self._matching:
+            self._surfaces.add(scan.echoes)
+        self._last = (stamp, pose)
+        return True
+
+    def _is_news(self, stamp: float, pose: Pose) -> bool:
+        if self._last is None:
+            return True
+        before, last = self._last
+        return (
+            math.dist(last[:2], pose[:2]) >= DRIVEN
+            or abs(math.remainder(pose.heading - last.heading, math.tau)) >= TURNED
+            or not 0.0 <= stamp - before < STOOD
+        )
+
+    def begin_with(self, obstacles: Collection[Cell]) -> None:
+        """Forget the scans so far, and match those to come with some *obstacles*, as of a map that was loaded."""
+        size = self._cells.size
+        self._surfaces = Surfaces()
+        self._surfaces.add((x * size, y * size) for x, y in sorted(obstacles))
+        self._last = None

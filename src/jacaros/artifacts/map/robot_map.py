@@ -1,0 +1,236 @@
+"""``ArtMap``: the map of the thesis, filled by a robot's sensors."""
+
+import math
+from functools import partial
+from typing import Any, ClassVar
+
+from jacaros.artifacts.kit.faults import Header
+from jacaros.artifacts.kit.options import not_negative, number, one_of, positive, text
+from jacaros.artifacts.map.cells import Cell, LabelledCells
+from jacaros.artifacts.map.frontiers import around, frontier, nearest
+from jacaros.artifacts.map.grids import Grid
+from jacaros.artifacts.map.legs import Leg, next_leg
+from jacaros.artifacts.map.mapper import Mapper
+from jacaros.artifacts.map.occupancy import OccupancyCells
+from jacaros.artifacts.map.poses import ORIGIN
+from jacaros.artifacts.map.scans import ScanOptions
+from jacaros.artifacts.map.slam_data import ArtSlamData
+from jacaros.artifacts.robots.control import Pose, heading_of
+from jacaros.artifacts.robots.odometry import ODOMETRY, Odometer, Odometry
+from jacaros.env.artifact import Out, internal_operation, operation
+from jacaros.ros.backend import Sample
+from jacaros.ros.message import to_seconds
+from jacaros.ros.qos import LATCHED, SENSOR_DATA
+
+AMCL_POSE = "geometry_msgs/msg/PoseWithCovarianceStamped"
+
+SHORTEST_FRONTIER = 0.4
+"""Metres that a frontier is long at least; a shorter one is a gap between two beams."""
+
+
+def names(value: object) -> tuple[str, ...]:
+    """A list of names."""
+    if not isinstance(value, list) or not all(isinstance(each, str) for each in value):
+        raise ValueError("a list of names")
+    return tuple(str(each) for each in value)
+
+
+def mount(value: object) -> Pose:
+    """A list of x, y and an angle in degrees."""
+    if not isinstance(value, list) or len(value) != 3:
+        raise ValueError("a list of x, y (metres) and degrees")
+    x, y, degrees = map(number, value)
+    return Pose(x, y, math.radians(degrees))
+
+
+class ArtMap(ArtSlamData):
+    """A map of what a robot's laser sees, or of ``/map``, with the robot on it.
+
+    Cell X, Y has its centre at X and Y times the size of a cell.  A cell is free or an obstacle as most scans have it
+    (log odds, Moravec and Elfes 1985); labels that agents write go before that.  Scans are put into the map from where
+    the robot is by odometry, corrected by matching them with what was seen before; the origin of the map is that of
+    odometry.
+
+    Options:
+        source(scan) or source(map): where cells come from, ``/scan`` (the default) or ``/map``.
+        pose_from(scans), pose_from(odometry) or pose_from(amcl): where the robot is by odometry corrected by scans (the
+            default with ``source(scan)``), by odometry alone, or corrected by ``/amcl_pose`` (the default with
+            ``source(map)``).
+        cell_size(S): side of a cell in metres (0.1); with ``source(map)`` that of the map at least.
+        max_range(R): metres (4) beyond which beams are cut off.
+        laser([X, Y, D]): where the laser is on the robot, metres and degrees; in its middle, looking ahead, by default.
+        radius(R): room that the robot needs, in metres (0.25): routes keep the centres of cells farther than this from
+            those of obstacles.  A robot of 0.17 m keeps clear by a few centimetres.
+        leg(M): longest leg that `getLeg` gives, in metres (1).
+        view(R): show obstacles up to R metres from the robot as ``pos2d(obstacle, X, Y)``, whenever the robot comes to
+            another cell; 0, the default, leaves that to `getVisionRange`.
+        robots(Names): show other robots on the same map by their ``/NAME/amcl_pose``.
+        scan_topic(T), odometry_topic(T), map_topic(T), amcl_topic(T): other topics.
+    """
+
+    known_options: ClassVar = {
+        "source": one_of("scan", "map"),
+        "pose_from": one_of("scans", "odometry", "amcl"),
+        "max_range": positive,
+        "laser": mount,
+        "leg": positive,
+        "view": not_negative,
+        "robots": names,
+        "scan_topic": text,
+        "odometry_topic": text,
+        "map_topic": text,
+        "amcl_topic": text,
+    }
+    usual_size: ClassVar[float] = 0.1
+    usual_radius: ClassVar[float] = 0.25
+
+    def open(self) -> None:
+        """Begin with an empty map, and listen."""
+        super().open()
+        self._done: set[Cell] = set()
+        self._showing = False
+        source = self._text("source", "scan")
+        pose_from = self._text("pose_from", "amcl" if source == "map" else "scans")
+        laser = self.options.get("laser", ORIGIN)
+        assert isinstance(laser, Pose)
+        options = ScanOptions(self._metres("max_range", 4.0), laser, self.size)
+        self._mapper = Mapper(self._seen, options, pose_from == "scans")
+        self._listen_for_cells(source)
+        self._listen_for_poses(pose_from)
+
+    def new_cells(self, obstacle: str) -> LabelledCells:
+        """Return an empty grid."""
+        self._seen = OccupancyCells(obstacle, self.size)
+        return self._seen
+
+    def _text(self, option: str, usual: str) -> str:
+        return str(self.options.get(option, usual))
+
+    def _metres(self, option: str, usual: float) -> float:
+        return float(str(self.options.get(option, usual)))
+
+    def _listen_for_cells(self, source: str) -> None:
+        if source == "map":
+            topic = self._text("map_topic", "map")
+            self.subscription(topic, "nav_msgs/msg/OccupancyGrid", self._take_map, LATCHED)
+            return
+        topic = self._text("scan_topic", "scan")
+        self._header = Header(self.faults_of(topic), self.clock)
+        self.subscription(topic, "sensor_msgs/msg/LaserScan", self._take_scan, SENSOR_DATA)
+
+    def _listen_for_poses(self, pose_from: str) -> None:
+        topic = self._text("odometry_topic", "odom")
+        odometer = Odometer(self.faults_of(topic), self.clock, self._take_odometry)
+        self.subscription(topic, ODOMETRY, odometer.take, SENSOR_DATA)
+        if pose_from == "amcl":
+            self.subscription(self._text("amcl_topic", "amcl_pose"), AMCL_POSE, self._take_pose, LATCHED)
+        others = self.options.get("robots", ())
+        assert isinstance(others, tuple)
+        for name in others:
+            take = partial(self._take_other, name)
+            self.kept(self.ros.subscription(f"/{name}/amcl_pose", AMCL_POSE, take, LATCHED))
+
+    # ---- what the sensors say
+
+    def _take_odometry(self, odometry: Odometry) -> None:
+        stamp = to_seconds(odometry.sample.message.header.stamp) or odometry.sample.stamp
+        self._mapper.localisation.take_odometry(stamp, odometry.pose)
+        self._locate(odometry.sample)
+
+    def _take_scan(self, sample: Sample) -> None:
+        message = sample.message
+        if not self._header.accepts(sample):
+            return
+        if self._mapper.take_scan(to_seconds(message.header.stamp) or sample.stamp, message):
+            self._locate(sample)
+
+    def _take_pose(self, sample: Sample) -> None:
+        message = sample.message
+        self._mapper.localisation.correct(to_seconds(message.header.stamp), _pose(message))
+        self._locate(sample)
+
+    def _take_map(self, sample: Sample) -> None:
+        grid = Grid.of(sample.message)
+        self._seen.resize(max(self.size, grid.resolution))
+        self.size = self._seen.size
+        self._seen.load(grid.labels(self.size))
+        self.start(self.show_surroundings, cause=sample.cause)
+
+    def _take_other(self, name: str, sample: Sample) -> None:
+        pose = _pose(sample.message)
+        self.start(self.update_object, name, *self._seen.cell_at(pose.x, pose.y), cause=sample.cause)
+
+    def _locate(self, sample: Sample) -> None:
+        """Note where the robot is; what agents perceive follows if it has come to another cell."""
+        pose = self._mapper.localisation.pose
+        if pose is None:
+            return
+        self.heading = math.degrees(pose.heading)
+        if not self._showing and self._seen.cell_at(pose.x, pose.y) != self.here:
+            self._showing = True
+            self.start(self.show_surroundings, cause=sample.cause)
+
+    @internal_operation
+    def show_surroundings(self) -> None:
+        """Show the robot's cell, and the obstacles in view."""
+        self._showing = False
+        pose = self._mapper.localisation.pose
+        if pose is not None:
+            self.stand(self._seen.cell_at(pose.x, pose.y), math.degrees(pose.heading), 0.0)
+        view = math.floor(self._metres("view", 0.0) / self.size)
+        if view:
+            self.show_obstacles(self._seen.near(self.here, view))
+
+    @property
+    def driven(self) -> float:
+        """Metres driven so far, by odometry."""
+        return self._mapper.localisation.driven
+
+    # ---- where to go
+
+    @operation(name="getLeg")
+    def get_leg(self, degrees: Out, metres: Out) -> None:
+        """Give the next straight leg of the newest route: how far to turn, to the left if positive, and how far to drive.
+
+        A leg ends where the route bends, or after ``leg(M)`` metres.  At the end of the route both are 0.  Fails with
+        ``no_route`` before the first route, and with ``no_odometry`` while it is not known where the robot is.
+        """
+        pose = self._mapper.localisation.pose
+        if pose is None:
+            self.fail("no odometry came yet", "no_odometry")
+        if not self.way:
+            self.fail("there is no route: call getRoute first", "no_route")
+        longest = self._metres("leg", 1.0)
+        found = next_leg(self.way, self.enterable(), pose, Leg(self.size, longest))
+        degrees.set(math.degrees(found[0]))
+        metres.set(found[1])
+
+    @operation(name="getFrontier")
+    def get_frontier(self, x: Out, y: Out) -> None:
+        """Give a cell from which unknown ground is seen that a route leads to: the nearest one.
+
+        A frontier that the robot stands at, and that is there still, cannot be seen from there, and is left out from then
+        on.  Fails with ``explored`` when there is none.
+        """
+        free, known = self.cells.passable(), self.cells.known()
+        enterable = self.enterable()
+        reach = math.ceil(self.radius / self.size) + 1
+        edge = frontier(free, known, math.ceil(SHORTEST_FRONTIER / self.size)) - self._done
+        self._done |= edge & around({self.here}, free, reach)
+        found = nearest(self.here, enterable, around(edge - self._done, free, reach) & enterable)
+        if found is None:
+            self.fail("no unknown ground can be reached", "explored")
+        x.set(found[0])
+        y.set(found[1])
+
+    def begin_with_map(self) -> None:
+        """Match scans with the map that is there now."""
+        self._done.clear()
+        self._mapper.begin_with(self.cells.blocked())
+
+
+def _pose(message: Any) -> Pose:
+    """Read a ``geometry_msgs/msg/PoseWithCovarianceStamped``."""
+    pose = message.pose.pose
+    q = pose.orientation
+    return Pose(float(pose.position.x), float(pose.position.y), heading_of(q.x, q.y, q.z, q.w))

@@ -1,0 +1,173 @@
+"""Scan matching: where a robot is by what its laser sees, against what it has seen before.
+
+A scan is moved until its points lie on the lines that earlier scans have left (iterated closest point, with distances to
+lines: Chen and Medioni 1991).  Odometry says where to begin, and counts as much as the directions that the lines leave open
+need, such as along a corridor.
+"""
+
+import math
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
+
+from jacaros.artifacts.map.cells import Cell
+from jacaros.artifacts.map.occupancy import Point
+from jacaros.artifacts.robots.control import Pose
+
+BUCKET = 0.1
+"""Side of the squares, in metres, in each of which the points seen are averaged."""
+
+MOST = 30
+"""Points that a square averages; more change nothing, so that the map does not drift with the robot."""
+
+FAR = 0.3
+"""Metres from its line beyond which a point does not count."""
+
+DOUBTFUL = 0.04
+"""Metres from its line at which a point counts half."""
+
+STRAIGHT = 0.15
+"""Most that the points of a line may be spread across, as a share of how they are spread along it (variances)."""
+
+ROUNDS = 12
+FEW = 12
+"""Points on lines that a match needs."""
+
+TRUST = (4.0, 4.0, 10.0)
+"""How much odometry counts for x, y and heading, in points."""
+
+
+class Line(NamedTuple):
+    """A piece of a wall: a point of it, and the direction across."""
+
+    x: float
+    y: float
+    across_x: float
+    across_y: float
+
+
+class Surfaces:
+    """Where echoes came from, averaged, as pieces of lines."""
+
+    def __init__(self) -> None:
+        self._sums: dict[Cell, tuple[int, float, float]] = {}
+        self._lines: dict[Cell, Line | None] = {}
+
+    def __bool__(self) -> bool:
+        return bool(self._sums)
+
+    def add(self, echoes: Iterable[Point]) -> None:
+        """Take the echoes of a scan, on the map."""
+        self._lines.clear()
+        sums = self._sums
+        for x, y in echoes:
+            key = (math.floor(x / BUCKET), math.floor(y / BUCKET))
+            count, sum_x, sum_y = sums.get(key, (0, 0.0, 0.0))
+            if count < MOST:
+                sums[key] = (count + 1, sum_x + x, sum_y + y)
+
+    def line_near(self, x: float, y: float) -> Line | None:
+        """Return the line through what was seen near a point, None if there is none or it is not straight."""
+        key = (math.floor(x / BUCKET), math.floor(y / BUCKET))
+        if key not in self._lines:
+            self._lines[key] = self._fit(key)
+        return self._lines[key]
+
+    def _fit(self, key: Cell) -> Line | None:
+        """Fit a line to the averages of the squares around, the near ones more than the far ones."""
+        column, row = key
+        weight = sum_x = sum_y = 0.0
+        found: list[tuple[float, float, float]] = []
+        for i in range(column - 2, column + 3):
+            for j in range(row - 2, row + 3):
+                entry = self._sums.get((i, j))
+                if entry is not None:
+                    count, x, y = entry
+                    part = count / (1.0 + (i - column) ** 2 + (j - row) ** 2)
+                    found.append((part, x / count, y / count))
+                    weight += part
+                    sum_x += part * x / count
+                    sum_y += part * y / count
+        if len(found) < 3:
+            return None
+        x, y = sum_x / weight, sum_y / weight
+        xx = sum(part * (a - x) ** 2 for part, a, _ in found) / weight
+        yy = sum(part * (b - y) ** 2 for part, _, b in found) / weight
+        xy = sum(part * (a - x) * (b - y) for part, a, b in found) / weight
+        spread = math.hypot(0.5 * (xx - yy), xy)
+        if 0.5 * (xx + yy) - spread > STRAIGHT * (0.5 * (xx + yy) + spread):
+            return None
+        along = 0.5 * math.atan2(2.0 * xy, xx - yy)
+        return Line(x, y, -math.sin(along), math.cos(along))
+
+
+def match(surfaces: Surfaces, points: Sequence[Point], guess: Pose) -> Pose | None:
+    """Find the pose at which the points of a scan lie best on what was seen before.
+
+    Args:
+        surfaces: what was seen before.
+        points: echoes, in the frame of the robot; a hundred are enough.
+        guess: the pose by odometry; it must be within some `FAR` of the true one, and a few degrees.
+
+    Returns:
+        The pose, or None when too few points lie on lines.
+    """
+    pose = guess
+    for _ in range(ROUNDS):
+        normal = _Normal(pose, guess)
+        sine, cosine = math.sin(pose.heading), math.cos(pose.heading)
+        used = 0
+        for px, py in points:
+            rx, ry = cosine * px - sine * py, sine * px + cosine * py
+            x, y = pose.x + rx, pose.y + ry
+            line = surfaces.line_near(x, y)
+            if line is None:
+                continue
+            off = line.across_x * (x - line.x) + line.across_y * (y - line.y)
+            if abs(off) < FAR:
+                used += 1
+                normal.add(line.across_x, line.across_y, rx * line.across_y - ry * line.across_x, off)
+        if used < FEW:
+            return None
+        dx, dy, turn = normal.solved()
+        pose = Pose(pose.x + dx, pose.y + dy, math.remainder(pose.heading + turn, math.tau))
+        if abs(dx) + abs(dy) < 1e-4 and abs(turn) < 1e-4:
+            break
+    return pose
+
+
+class _Normal:
+    """The normal equations of one round: least squares for a small motion of the pose."""
+
+    def __init__(self, pose: Pose, guess: Pose) -> None:
+        tx, ty, tt = TRUST
+        turned = math.remainder(guess.heading - pose.heading, math.tau)
+        self._a = [[tx, 0.0, 0.0], [0.0, ty, 0.0], [0.0, 0.0, tt]]
+        self._b = [tx * (guess.x - pose.x), ty * (guess.y - pose.y), tt * turned]
+
+    def add(self, jx: float, jy: float, jt: float, off: float) -> None:
+        """Take a point that is *off* its line, and how a motion along x and y and a turn change that."""
+        weight = 1.0 / (1.0 + (off / DOUBTFUL) ** 2)
+        wx, wy, wt = weight * jx, weight * jy, weight * jt
+        a, b = self._a, self._b
+        a[0][0] += wx * jx
+        a[0][1] += wx * jy
+        a[0][2] += wx * jt
+        a[1][1] += wy * jy
+        a[1][2] += wy * jt
+        a[2][2] += wt * jt
+        b[0] -= wx * off
+        b[1] -= wy * off
+        b[2] -= wt * off
+
+    def solved(self) -> tuple[float, float, float]:
+        """Return the motion; the matrix is positive definite, because odometry counts in every direction."""
+        (a, b, c), (_, d, e), (_, _, f) = self._a
+        p, q, r = self._b
+        m00, m01, m02 = d * f - e * e, c * e - b * f, b * e - c * d
+        m11, m12, m22 = a * f - c * c, b * c - a * e, a * d - b * b
+        determinant = a * m00 + b * m01 + c * m02
+        return (
+            (m00 * p + m01 * q + m02 * r) / determinant,
+            (m01 * p + m11 * q + m12 * r) / determinant,
+            (m02 * p + m12 * q + m22 * r) / determinant,
+        )
