@@ -29,6 +29,7 @@ PROJECTS = (
     "07_shared_robot/shared_robot.jcm",
     "08_parcels/parcels.jcm",
     "09_three_robots/three_robots.jcm",
+    "10_explore/explore.jcm",
 )
 
 LONGEST = 3000.0

@@ -1,0 +1,97 @@
+"""Did the robot explore the flat, map it, and drive to its goal and back home?
+
+Judged from the ground truth: the map that it saved is compared with the world, where it drove with its true path.
+"""
+
+import math
+import sys
+from functools import partial
+from pathlib import Path
+
+from jacaros.artifacts.map.cells import OBSTACLE, Cell
+from jacaros.artifacts.map.map_files import load
+from jacaros.sim import GroundTruth, Sample
+from jacaros.testing import Verdict, judge
+from jacaros.testing.paths import distance
+
+SAVED = Path("runs/flat.yaml")
+"""The map that the agent saved."""
+
+SIZE = 0.1
+"""Side of a cell, in metres."""
+
+REACHED = 0.15
+"""A place is reached when the robot comes so near, in metres."""
+
+GOAL = (5.6, 4.1)
+"""Where the goal is, in metres from where the robot began."""
+
+AGREEMENT = 0.95
+"""Share of the cells seen that must be as in the world."""
+
+
+def check(truth: GroundTruth, saved: Path = SAVED) -> Verdict:
+    """Judge a run, and the map that was saved in it."""
+    verdict = Verdict()
+    path = [*truth.path(), truth.latest()]
+    start = path[0]
+    judge_map(verdict, truth, start, saved)
+    goal_x, goal_y = in_world(start, *GOAL)
+    at_goal = [sample.time for sample in path if distance(sample, goal_x, goal_y) <= REACHED]
+    verdict.expect(bool(at_goal), "the robot was never at the goal")
+    verdict.at_most("metres from home at the end", distance(path[-1], start.x, start.y), REACHED)
+    verdict.expect(not truth.events_of("bump", "collision"), "the robot bumped into something")
+    verdict.measure("metres driven", truth.odometer())
+    return verdict
+
+
+def judge_map(verdict: Verdict, truth: GroundTruth, start: Sample, saved: Path) -> None:
+    """Expect that the cells seen agree with the world, and that most of its floor was seen."""
+    seen = load(saved).grid.labels(SIZE)
+    wrong = sum(is_obstacle(truth, start, cell) != (label == OBSTACLE) for cell, label in seen.items())
+    agreement = verdict.measure("share of cells that agree", 1.0 - wrong / max(1, len(seen)))
+    verdict.expect(agreement >= AGREEMENT, f"only {agreement:.1%} of the cells agree with the world")
+    floor = sum(label != OBSTACLE for label in seen.values()) * SIZE * SIZE
+    share = verdict.measure("share of the floor that was seen", floor / open_floor(truth))
+    verdict.expect(share >= 0.9, f"only {share:.0%} of the floor was seen")
+
+
+def is_obstacle(truth: GroundTruth, start: Sample, cell: Cell) -> bool:
+    """Whether a wall or a piece of furniture is in a cell of the map, whose origin is where the robot began."""
+    x, y = in_world(start, cell[0] * SIZE, cell[1] * SIZE)
+    if any(left <= x <= right and low <= y <= high for left, low, right, high in truth.world["boxes"]):
+        return True
+    return any(is_in_square(start, x, y, *wall) for wall in truth.world["walls"])
+
+
+def is_in_square(start: Sample, x: float, y: float, ax: float, ay: float, bx: float, by: float) -> bool:
+    """Whether a segment of a wall comes into the cell around x, y (Liang and Barsky's clipping)."""
+    sine, cosine = math.sin(start.yaw), math.cos(start.yaw)
+    ax, ay = cosine * (ax - x) + sine * (ay - y), cosine * (ay - y) - sine * (ax - x)
+    bx, by = cosine * (bx - x) + sine * (by - y), cosine * (by - y) - sine * (bx - x)
+    first, last = 0.0, 1.0
+    for a, b in ((ax, bx), (ay, by)):
+        if abs(b - a) < 1e-12:
+            if abs(a) > 0.5 * SIZE:
+                return False
+            continue
+        one, other = sorted(((-0.5 * SIZE - a) / (b - a), (0.5 * SIZE - a) / (b - a)))
+        first, last = max(first, one), min(last, other)
+    return first <= last
+
+
+def in_world(start: Sample, x: float, y: float) -> tuple[float, float]:
+    """A point of the map, whose origin is where the robot began, in the world."""
+    sine, cosine = math.sin(start.yaw), math.cos(start.yaw)
+    return start.x + cosine * x - sine * y, start.y + sine * x + cosine * y
+
+
+def open_floor(truth: GroundTruth) -> float:
+    """Square metres of the world without furniture."""
+    left, low, right, high = truth.world["bounds"]
+    boxes = sum((c - a) * (d - b) for a, b, c, d in truth.world["boxes"])
+    return float((right - left) * (high - low) - boxes)
+
+
+if __name__ == "__main__":
+    sys.exit(judge(partial(check, saved=Path(sys.argv[2]) if len(sys.argv) > 2 else SAVED), sys.argv[1:2]))
