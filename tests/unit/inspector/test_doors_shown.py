@@ -25,7 +25,7 @@ def test_closed_doors_are_in_the_terminal() -> None:
     view.world(World.load(WORLD).description.drawing())
 
     def rows() -> list[int]:
-        return [number for number, row in enumerate(view._map().plain.splitlines()) if "▒" in row]
+        return [number for number, row in enumerate(view.map().plain.splitlines()) if "▒" in row]
 
     (upper,) = rows()
     view.event(1.0, "door_opened", {"door": "a"})

@@ -59,7 +59,7 @@ def test_people_are_in_the_terminal() -> None:
     view.world(World.load(WORLD).description.drawing())
 
     def column() -> int:
-        return max(row.find("☻") for row in view._map().plain.splitlines())
+        return max(row.find("☻") for row in view.map().plain.splitlines())
 
     before = column()
     view.event(0.0, "person_walks", {"person": "ann", "x": -2.0, "y": 2.0, "vx": 1.0, "vy": 0.0})

@@ -23,7 +23,7 @@ from jacaros.sim.trigonometry import PI
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["house", "patrol", "two_robots", "three_robots", "empty"])
+@pytest.mark.parametrize("name", ["house", "patrol", "two_robots", "three_robots", "empty", "flat"])
 def test_two_hundred_random_goals_and_never_a_wall(name: str) -> None:
     described = World.load(name).description
     world = World(replace(described, robots=described.robots[:1]))
