@@ -18,8 +18,8 @@ import math
 from dataclasses import dataclass
 from pathlib import Path
 
+from jacaros.grey_images import GreyImage, ImageError, pgm_bytes, read_image
 from jacaros.sim.description import Rectangle, Segment, WorldDescription
-from jacaros.sim.map_image import GreyImage, ImageError, pgm_bytes, read_image
 from jacaros.sim.navigation.grid import Grid
 from jacaros.yaml_nodes import Node, Problem, read_document
 from jacaros.yaml_syntax import read_text, top_keys

@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
+from jacaros.grey_images import GreyImage, ImageError, pgm_bytes, read_image
 from jacaros.sim import World, WorldError
 from jacaros.sim.description import WorldDescription
 from jacaros.sim.map_file import OccupancyMap, map_of_world, read_map
-from jacaros.sim.map_image import GreyImage, ImageError, pgm_bytes, read_image
 from jacaros.sim.navigation.grid import Grid
 from jacaros.sim.world_file import is_world, load_world, world_problems
 

@@ -11,7 +11,7 @@ file                             what it holds
                                  `localisation`, `scan_matching` and `poses`
 `route`, `inflation`, `legs`     ways for a robot that has a size
 `frontiers`                      where there is unknown ground
-`map_files`, `pgm`, `grids`      maps of others: files of map_server, ``nav_msgs/msg/OccupancyGrid``
+`map_files`, `grids`             maps of others: files of map_server, ``nav_msgs/msg/OccupancyGrid``
 `picture`                        a map as text
 ================================ ======================================================================
 """

@@ -1,4 +1,4 @@
-"""Maps in the format of ROS's map_server: a YAML file, and beside it an image (PGM, binary).
+"""Maps in the format of ROS's map_server: a YAML file, and beside it an image (PGM; PNG can be read, too).
 
 Places are in a key of their own, ``places``, which map_server ignores.
 """
@@ -9,11 +9,11 @@ from pathlib import Path
 
 from jacaros.artifacts.map.cells import FREE, Cell
 from jacaros.artifacts.map.grids import Grid
-from jacaros.artifacts.map.pgm import Image, pgm, read_pgm
 from jacaros.artifacts.map.poses import ORIGIN
 from jacaros.artifacts.robots.control import Pose
 from jacaros.errors import JacarosError
-from jacaros.text_files import file_bytes, file_text
+from jacaros.grey_images import WHITE, GreyImage, ImageError, pgm_bytes, read_image
+from jacaros.text_files import file_text
 from jacaros.yaml_nodes import Node, Problem, YamlFileError, read_document
 
 _BLACK, _WHITE, _GREY = 0, 254, 205
@@ -65,7 +65,7 @@ def save(file: Path, size: float, labels: Mapping[Cell, str], places: Mapping[st
             f"  {_quoted(name)}: [{x * size:g}, {y * size:g}]\n" for name, (x, y) in places.items()
         )
     file.parent.mkdir(parents=True, exist_ok=True)
-    file.with_suffix(".pgm").write_bytes(pgm(Image(width, height, 255, bytes(pixels))))
+    file.with_suffix(".pgm").write_bytes(pgm_bytes(GreyImage(width, height, bytes(pixels))))
     file.write_text(text, encoding="utf-8")
 
 
@@ -98,13 +98,16 @@ def load(file: Path) -> Saved:
         header = _Header(read_document(text, problems, "a map"))
         if problems:
             raise YamlFileError(file.name, text, problems)
-        image = read_pgm(file_bytes(file.parent / header.image))
+        image = read_image(file.parent / header.image)
+    except ImageError as error:
+        raise MapFileError(f"cannot read the map {file}: {error}; {error.cure}") from None
     except (OSError, ValueError, JacarosError) as error:
         raise MapFileError(f"cannot read the map {file}: {error}") from None
-    shades = [header.percent(shade / image.white) for shade in range(256)]
+    shades = [header.percent(shade / WHITE) for shade in range(WHITE + 1)]
     rows = range(image.height - 1, -1, -1)
-    occupancy = [shades[shade] for row in rows for shade in image.row(row)]
-    return Saved(Grid(header.resolution, image.width, header.origin, occupancy), header.places)
+    width = image.width
+    occupancy = [shades[shade] for row in rows for shade in image.pixels[row * width : (row + 1) * width]]
+    return Saved(Grid(header.resolution, width, header.origin, occupancy), header.places)
 
 
 class _Header:

@@ -49,9 +49,12 @@ def test_the_map_of_another_tool_is_read(tmp_path: Path) -> None:
         ("image: room.pgm\n", "lacks the key 'resolution'"),
         ("image: room.pgm\nresolution: 0\norigin: [0, 0]\n", "'origin' must be x, y and yaw"),
         ("image: none.pgm\nresolution: 1\norigin: [0, 0, 0]\n", "none.pgm"),
-        ("image: room.yaml\nresolution: 1\norigin: [0, 0, 0]\n", "not a binary PGM"),
-        ("image: short.pgm\nresolution: 1\norigin: [0, 0, 0]\n", "cut off: 3 of 4 pixels"),
-        ("image: wide.pgm\nresolution: 1\norigin: [0, 0, 0]\n", "one byte for each pixel"),
+        ("image: room.yaml\nresolution: 1\norigin: [0, 0, 0]\n", "not a PGM or PNG image"),
+        (
+            "image: short.pgm\nresolution: 1\norigin: [0, 0, 0]\n",
+            "ends after 3 of 4 pixels (2 x 2); save the map again",
+        ),
+        ("image: wide.pgm\nresolution: 1\norigin: [0, 0, 0]\n", "16 bits a pixel"),
     ],
 )
 def test_a_map_that_cannot_be_read_is_refused_with_the_reason(tmp_path: Path, text: str, told: str) -> None:

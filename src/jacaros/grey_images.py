@@ -1,4 +1,4 @@
-"""Images in which ROS's map_server keeps its maps: PGM, and PNG if Pillow is installed."""
+"""Grey images, in which ROS's map_server keeps its maps: PGM, and PNG if Pillow is installed."""
 
 import re
 from dataclasses import dataclass
