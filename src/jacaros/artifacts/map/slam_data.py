@@ -42,7 +42,7 @@ class ArtSlamData(RosArtifact):
         route(List): the newest route, a list of ``cell(X, Y)`` from the agent's cell to the goal.
         direction(D): where the route leads next, an atom: `east`, `northeast`, `north` ..., or `reached` at its end.
         degrees(D): how far to turn for that, in (-180, 180], to the left if positive.  An agent that has not moved
-            looks to the east.
+            looks to the east, or where the first argument says: ``makeArtifact("m", "ArtSlamData", ["north"], Id)``.
 
     Signals:
         currentRange(X, Y, Label): after `getVisionRange`, one for each labelled cell, column by column.
@@ -58,7 +58,7 @@ class ArtSlamData(RosArtifact):
         self.radius = float(str(self.options.get("radius", self.usual_radius)))
         self.cells = self.new_cells(str(self.options.get("obstacle", OBSTACLE)))
         self.here: Cell = (0, 0)
-        self.heading = 0.0
+        self.heading = DEGREES.get(self.robot, 0.0)
         self.way: list[Cell] = []
         self._driven = 0.0
         self._asked_at = 0.0
@@ -252,9 +252,37 @@ class ArtSlamData(RosArtifact):
         self.find_route((x, y))
 
     @operation(name="getRoute")
-    def give_route_to(self, x: int, y: int, found: Out) -> None:
-        """As `get_route_to`, and give the route to the caller."""
-        found.set(self.find_route((x, y)))
+    def give_route_to(self, x: int, y: int, found: Out | str) -> None:
+        """As `get_route_to`, and give the route to the caller.
+
+        With ``"X"`` or ``"Y"`` as the third argument, the first two are the present and the wanted coordinate on that axis:
+        `route` shows the text ``"east"``, ``"west"``, ``"north"``, ``"south"`` or ``"reached"``, `degrees` how far to turn
+        for it, and the agent then counts as looking there.  Signals ``tick_route``; fails with ``unknown_axis(Axis)``.
+        """
+        if isinstance(found, Out):
+            found.set(self.find_route((x, y)))
+        else:
+            self._route_along(x, y, found)
+
+    def _route_along(self, current: int, goal: int, axis: str) -> None:
+        words = {"X": ("west", "east"), "Y": ("south", "north")}.get(axis.upper())
+        if words is None:
+            self.fail(f"unknown axis {axis}: expected X or Y", "unknown_axis", axis)
+        word = "reached" if current == goal else words[goal > current]
+        self.update_properties(word, self._turn_to(DEGREES.get(word, self.heading)))
+        self.signal("tick_route")
+
+    @operation(name="updateProperties")
+    def update_properties(self, route: str, degrees: float) -> None:
+        """Show other values of `route` and `degrees`; an agent with a route ``"east"`` looks to the east."""
+        self.heading = DEGREES.get(str(route), self.heading)
+        self.update_property("route", str(route))
+        self.update_property("degrees", degrees)
+
+    def _turn_to(self, heading: float) -> float:
+        """Degrees from where the agent looks to *heading*, in (-180, 180]."""
+        turn = math.remainder(heading - self.heading, 360.0)
+        return 180.0 if turn == -180.0 else turn
 
     def _goal(self) -> Cell:
         x, y = self.here
@@ -289,9 +317,8 @@ class ArtSlamData(RosArtifact):
             self.update_property("direction", Atom("reached"))
             return
         word = compass(way[0], way[1])
-        turn = math.remainder(DEGREES[word] - self.heading, 360.0)
         self.update_property("direction", Atom(word))
-        self.update_property("degrees", 180.0 if turn == -180.0 else turn)
+        self.update_property("degrees", self._turn_to(DEGREES[word]))
 
     # ---- files
 

@@ -284,3 +284,23 @@ def relaxed(free: set[Cell], start: Cell) -> dict[Cell, float]:
                         costs[there] = cost
                         waiting.append(there)
     return costs
+
+
+def test_a_route_along_an_axis_is_a_word_and_how_far_to_turn_for_it() -> None:
+    """The grid navigation of the original system: one axis after the other."""
+
+    async def body(lab: Lab) -> None:
+        artifact = await lab.make(ArtSlamData, "north")
+        watcher = lab.watch(artifact)
+        told = []
+        for current, goal, axis in ((0, -4, "Y"), (0, 3, "x"), (3, 3, "X"), (0, 2, "Y"), (5, 1, "X")):
+            await lab.do(artifact, "getRoute", current, goal, axis)
+            told.append((*watcher.holds("route")[0], *watcher.holds("degrees")[0]))
+        assert told == [("south", 180), ("east", 90), ("reached", 0), ("north", 90), ("west", 90)]
+        assert watcher.signals == [("tick_route", ())] * 5
+        await lab.do(artifact, "updateProperties", "east", 0)
+        await lab.do(artifact, "getRoute", 0, 1, "Y")
+        assert watcher.holds("degrees") == [(90,)]
+        assert (await lab.call(artifact, "getRoute", 0, 1, "Z")).reason == 'unknown_axis("Z")'
+
+    in_lab(body, None)
