@@ -195,7 +195,7 @@ KINDS: Final[dict[str, Kind]] = {
     "wrong-goal": Kind("error", "something that cannot be a goal"),
     "wrong-label": Kind("error", "something that cannot be a label"),
     "wrong-mapping": Kind("error", "a mistake in a mapping file"),
-    "wrong-world": Kind("error", "a mistake in a world file"),
+    "wrong-world": Kind("error", "a mistake in a world file or a fault file"),
     "wrong-operator": Kind("error", "an operator of another language"),
     "wrong-project": Kind("error", "a mistake in a project file"),
     "wrong-separator": Kind("error", "',' in place of another sign"),

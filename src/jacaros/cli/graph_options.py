@@ -41,6 +41,13 @@ def ros_option(told: str, kinds: Sequence[str] = ROS_KINDS, required: bool = Fal
     )
 
 
+faults_option = click.option(
+    "--faults",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="Fault file: what goes wrong in the world, and when.",
+)
+
 _ADDRESS = (
     click.option(
         "--domain-id",

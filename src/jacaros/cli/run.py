@@ -12,6 +12,7 @@ import click
 
 from jacaros.bdi.mind import Mind
 from jacaros.cli.graph_options import (
+    faults_option,
     graph_options,
     orphan_policy,
     orphans_option,
@@ -59,6 +60,7 @@ SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
     show_envvar=True,
     help="World file, or the name of a world that comes with jacaros; `none` for a graph without a robot.",
 )
+@faults_option
 @click.option(
     "--mapping",
     "mappings",

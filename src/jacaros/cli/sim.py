@@ -7,7 +7,7 @@ from typing import Any
 
 import click
 
-from jacaros.cli.graph_options import read_remaps, ros_option, world_options
+from jacaros.cli.graph_options import faults_option, read_remaps, ros_option, world_options
 from jacaros.cli.outputs import check_output
 from jacaros.clock import Clock, VirtualClock, WallClock, run
 from jacaros.errors import UsageError
@@ -28,6 +28,7 @@ from jacaros.text_files import is_file
     help="Write what truly happens as JSON lines.",
 )
 @click.option("--seed", type=int, help="Makes the noise of the sensors repeatable.")
+@faults_option
 @click.option("--full-battery", is_flag=True, help="Batteries stay full, however long the world runs.")
 @click.option(
     "--clock",
@@ -54,6 +55,7 @@ def command(
     seconds: float | None,
     ground_truth: Path | None,
     seed: int | None,
+    faults: Path | None,
     full_battery: bool,
     clock: str,
     publish_clock: bool,
@@ -76,9 +78,9 @@ def command(
     address.check()
     if ground_truth is not None:
         check_output(ground_truth, "ground truth")
-    loaded = World.load(Path(world) if is_file(Path(world)) else world, seed)
+    loaded = World.load(Path(world) if is_file(Path(world)) else world, seed, faults)
     if full_battery:
-        loaded = World(with_full_batteries(loaded.description))
+        loaded = World(with_full_batteries(loaded.description), faults=loaded.faults.by_name.values())
     loaded.ground_truth.keep = 1000
     loaded.ground_truth.listen(told(lambda line: click.echo(line, err=True)))
 

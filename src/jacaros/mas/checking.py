@@ -1,6 +1,6 @@
 """Checking programs and projects without running them."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
@@ -21,6 +21,7 @@ from jacaros.mas.project.reading import read_project
 from jacaros.mas.python_code import PythonCode
 from jacaros.project_modules import ModuleUnreadable, ProjectModules
 from jacaros.text_files import is_file
+from jacaros.yaml_syntax import Problem
 
 if TYPE_CHECKING:
     from jacaros.env.artifact import Artifact
@@ -265,12 +266,12 @@ def _check_world(deployment: Deployment, findings: Findings) -> None:
         return
     from jacaros.mas.ros_graph import NO_WORLD  # here: most projects name none
     from jacaros.sim.description import UnknownWorld
-    from jacaros.sim.world_file import find_world, shipped_worlds
+    from jacaros.sim.world_file import find_world, shipped_worlds, world_problems
 
     if deployment.world in (NO_WORLD, *shipped_worlds()):
         return
     try:
-        _check_world_file(find_world(deployment.world), findings)
+        _check_world_file(find_world(deployment.world), findings, world_problems)
     except UnknownWorld as unknown:
         findings.diagnostics.append(
             Diagnostic("error", unknown.message, deployment.world_span, unknown.cure, "wrong-project")
@@ -278,24 +279,28 @@ def _check_world(deployment: Deployment, findings: Findings) -> None:
 
 
 def _check_yaml(path: Path, findings: Findings, named: bool = True) -> None:
-    """Check a world file or a mapping file; one that is neither only if it is *named* on the command line."""
+    """Check a world file, a fault file or a mapping file; one that is neither only if it is *named* on the command line."""
     from jacaros.artifacts.mapping.file import is_mapping  # here: see `_check_mapping`
-    from jacaros.sim.world_file import is_world
+    from jacaros.sim.faults.file import fault_file_problems, is_fault_file
+    from jacaros.sim.world_file import is_world, world_problems
 
     if is_world(path):
-        _check_world_file(path, findings)
+        _check_world_file(path, findings, world_problems)
+    elif is_fault_file(path):
+        _check_world_file(path, findings, fault_file_problems)
     elif named or is_mapping(path):  # other programs have YAML files, too
         _check_mapping(path, findings)
 
 
-def _check_world_file(path: Path, findings: Findings) -> None:
+def _check_world_file(
+    path: Path, findings: Findings, problems_of: Callable[[Path], tuple[str, list[Problem]]]
+) -> None:
     if path.resolve() in findings.files:
         return
     from jacaros.mas.mappings import WRONG_WORLD, diagnostics_of  # here: see `_check_mapping`
-    from jacaros.sim.world_file import world_problems
 
     findings.files.add(path.resolve())
-    findings.diagnostics += diagnostics_of(str(path), *world_problems(path), wrong=WRONG_WORLD)
+    findings.diagnostics += diagnostics_of(str(path), *problems_of(path), wrong=WRONG_WORLD)
 
 
 def _check_mapping(path: Path, findings: Findings) -> None:

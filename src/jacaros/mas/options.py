@@ -21,6 +21,7 @@ class RunOptions(GraphAddress):
         fast: on the virtual clock, as fast as the machine can; else in real time.
         seed: of all random numbers, the world's too; None for other numbers in each run.
         world: world file, or name of a world of JaCaROS, in place of the project's own.
+        faults: fault file: what goes wrong in the embedded world, and when.
         keep_ground_truth: keep in memory all that happens in the embedded world, not only the last minutes.
         show_world: make the world at the start, even when nobody asks for a robot yet.
         until_idle: end when no agent has anything to do and no operation is under way.
@@ -38,6 +39,7 @@ class RunOptions(GraphAddress):
     fast: bool = False
     seed: int | None = None
     world: str | Path | None = None
+    faults: str | Path | None = None
     show_world: bool = False
     keep_ground_truth: bool = False
     until_idle: bool = False

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.clock import Clock
+from jacaros.errors import UsageError
 from jacaros.mas.deployment import ProjectError
 from jacaros.mas.options import RunOptions
 
@@ -90,7 +91,11 @@ class RosGraph:
             BackendUnavailable: the library for the graph is missing; the text tells the cure.
             WorldError: the world file is wrong.
             ProjectError: the project names a world that does not exist.
+            UsageError: there are faults, and no world.
         """
+        made = self._options.world is not None if self._options.ros != "memory" else self._source != NO_WORLD
+        if self._options.faults is not None and not made:
+            raise UsageError("--faults needs an embedded world: give --world, too")
         if self._options.ros != "memory":
             backend = self._open()
             self._backend = backend
@@ -108,7 +113,7 @@ class RosGraph:
                 self._start_world(backend)
             elif self._options.ros == "ros2":
                 self._look_for_others(backend)
-        elif self._source is not None or self._options.show_world:
+        elif self._source is not None or self._options.show_world or self._options.faults is not None:
             self.backend()
 
     async def guard(self) -> None:
@@ -218,7 +223,7 @@ class RosGraph:
 
         source = self._source if self._source is not None else DEFAULT_WORLD
         try:
-            self.world = World.load(source, self._options.seed)
+            self.world = World.load(source, self._options.seed, self._options.faults)
         except UnknownWorld as unknown:
             if self._source_span is None:
                 raise

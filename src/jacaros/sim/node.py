@@ -1,10 +1,13 @@
 """The world as a ROS node: all its robots over any backend, in the time of any clock."""
 
 import math
+from typing import cast
 
 from jacaros.clock import Clock, Timer
 from jacaros.ros.backend import Backend
 from jacaros.sim.door_server import DoorServer
+from jacaros.sim.faults.messages import FaultyGraph
+from jacaros.sim.faults.server import FaultServer
 from jacaros.sim.map_server import MapServer
 from jacaros.sim.navigation.grid import Grid
 from jacaros.sim.navigation.robot import RobotNavigation
@@ -24,11 +27,14 @@ class SimNode:
     """
 
     def __init__(self, world: World, backend: Backend, clock: Clock) -> None:
-        self.world, self.backend, self.clock = world, backend, clock
+        self._faulty = FaultyGraph(backend, world.faults, clock) if world.faults.topics else None
+        self.world, self.clock = world, clock
+        self.backend = backend if self._faulty is None else cast(Backend, self._faulty)
         self.time = WorldTime(world, clock)
         self.robots: list[RobotNode] = []
         self.navigation: list[RobotNavigation] = []
         self.doors: list[DoorServer] = []
+        self.faults: list[FaultServer] = []
         self._map: MapServer | None = None
         self._grid: Grid | None = None
         self._timer: Timer | None = None
@@ -39,6 +45,7 @@ class SimNode:
 
         Raises:
             RosError: the backend is not started, or a namespace or message type does not suit it.
+            UsageError: a fault concerns a topic that the world does not have.
         """
         self.time = WorldTime(self.world, self.clock)
         self.robots = [RobotNode(self.time, robot, self.backend) for robot in self.world.robots.values()]
@@ -50,6 +57,9 @@ class SimNode:
         prefixes = [robot.prefix for robot in self.robots]
         self._map = MapServer(self.backend, prefixes, self.grid, self.time.now)
         self.doors = [DoorServer(self.time, door, self.backend) for door in self.world.doors]
+        self.faults = [FaultServer(self.time, fault, self.backend) for fault in self.world.faults.by_name]
+        if self._faulty is not None:
+            self._faulty.check()
         self._ticks = 0
         self._wait_for_tick()
 
@@ -99,4 +109,7 @@ class SimNode:
             door.close()
         if self._map is not None:
             self._map.close()
+        for fault in self.faults:
+            fault.close()
         self.robots, self.navigation, self.doors, self._map = [], [], [], None
+        self.faults = []

@@ -28,7 +28,7 @@ def read_person(node: Node) -> PersonDescription:
     usual = PersonDescription("", ((0.0, 0.0),))
     return PersonDescription(
         name=entries["name"].text() if "name" in entries else "",
-        path=_path(entries["path"]) if "path" in entries else usual.path,
+        path=read_path(entries["path"]) if "path" in entries else usual.path,
         speed=entries["speed"].number(0.01, 5.0, usual.speed) if "speed" in entries else usual.speed,
         pause=entries["pause"].number(0.0, 1e6) if "pause" in entries else usual.pause,
         loop="loop" in entries and entries["loop"].truth(),
@@ -38,7 +38,7 @@ def read_person(node: Node) -> PersonDescription:
     )
 
 
-def _path(node: Node) -> tuple[tuple[float, float], ...]:
+def read_path(node: Node) -> tuple[tuple[float, float], ...]:
     points = tuple(point.pair() for point in node.sequence())
     if not points:
         node.wrong(f"{node.what} has no points", "write [[x, y], ...], in metres")

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from collections.abc import Set as AbstractSet
 from typing import Any
 
 from jacaros.sim.contact import WallIndex, push_out
@@ -15,6 +16,9 @@ STILL_SPEED = 0.02
 STILL_TURN_RATE = 0.1
 """The same for turning on the spot (rad/s)."""
 
+HALF_TRACK = 0.115
+"""Metres from the middle to a wheel, as of a TurtleBot 2."""
+
 WALL = "wall"
 
 
@@ -27,6 +31,10 @@ class Robot:
         odometry: where it believes to be.  odometer: metres truly driven.
         battery: its battery.  dock: the dock it stands in, or None.
         fallen: whether it fell down a cliff, after which it does not move.
+        grip: gives how much of what the wheels roll moves the robot, from 0 to 1, for each step; None: all of it.
+        blocked_wheel: ``left``, ``right`` or ``both``; "" for none.
+        dead_docks: names of docks that give no current.
+        put_downs: how often somebody has put it down elsewhere.
         touching: names of what it touches: ``wall`` or other robots.  contacts: on which side, by those names.
     """
 
@@ -42,6 +50,10 @@ class Robot:
         self.battery = Battery(description.battery)
         self.dock: Dock | None = None
         self.fallen = False
+        self.grip: Callable[[], float] | None = None
+        self.blocked_wheel = ""
+        self.dead_docks: AbstractSet[str] = frozenset()
+        self.put_downs = 0
         self.touching: frozenset[str] = frozenset()
         self.contacts: dict[str, str] = {}
         self._silence = math.inf
@@ -52,6 +64,11 @@ class Robot:
     def pose(self) -> Pose:
         """The true pose."""
         return Pose(self.x, self.y, self.yaw)
+
+    @property
+    def fed(self) -> bool:
+        """Whether a dock gives it current."""
+        return self.dock is not None and self.dock.name not in self.dead_docks
 
     @property
     def moving(self) -> bool:
@@ -91,7 +108,7 @@ class Robot:
         if not self.moving:
             if WALL in self.touching:
                 self._touched[WALL] = self.contacts.get(WALL, "")
-            self.battery.step(dt, 0.0, 0.0, self.dock is not None)
+            self.battery.step(dt, 0.0, 0.0, self.fed)
             return
         self._watch_commands(dt)
         self.speed, self.turn_rate = ramp(
@@ -102,18 +119,39 @@ class Robot:
             self.description.limits,
             dt,
         )
-        distance, turn = self.speed * dt, self.turn_rate * dt
+        distance, turn = self._roll(dt)
+        rolled, turned = distance, turn
+        if self.grip is not None:
+            grip = self.grip()
+            distance, turn = grip * distance, grip * turn
         before_x, before_y = self.x, self.y
         self.x, self.y, self.yaw = advance(self.x, self.y, self.yaw, distance, turn)
         if self._leave_walls(walls):
             # Wheels against a wall stall: they roll as far as the robot truly came along its heading.
             sine, cosine = sine_cosine(self.yaw - 0.5 * turn)
-            rolled = (self.x - before_x) * cosine + (self.y - before_y) * sine
-            distance = min(max(rolled, 0.0), distance) if distance > 0.0 else max(min(rolled, 0.0), distance)
+            came = (self.x - before_x) * cosine + (self.y - before_y) * sine
+            distance = min(max(came, 0.0), distance) if distance > 0.0 else max(min(came, 0.0), distance)
+            rolled = distance
             self.speed = distance / dt
         self.odometer += abs(distance)
-        self.odometry.step(distance, turn)
-        self.battery.step(dt, distance, turn, self.dock is not None)
+        self.odometry.step(rolled, turned)
+        self.battery.step(dt, rolled, turned, self.fed)
+
+    def _roll(self, dt: float) -> tuple[float, float]:
+        """Metres and radians that the wheels make in a step of *dt* seconds."""
+        distance, turn = self.speed * dt, self.turn_rate * dt
+        if not self.blocked_wheel:
+            return distance, turn
+        left, right = distance - HALF_TRACK * turn, distance + HALF_TRACK * turn
+        left = 0.0 if self.blocked_wheel in ("left", "both") else left
+        right = 0.0 if self.blocked_wheel in ("right", "both") else right
+        return 0.5 * (left + right), 0.5 * (right - left) / HALF_TRACK
+
+    def put_down(self, pose: Pose) -> None:
+        """Be lifted, and put down at another place; the wheels do not notice."""
+        self.x, self.y, self.yaw = pose
+        self.speed = self.turn_rate = 0.0
+        self.put_downs += 1
 
     def _watch_commands(self, dt: float) -> None:
         """Brake at once, without a ramp, when commands stay away or the battery is empty."""
@@ -194,7 +232,7 @@ class Robot:
                 self._tell(self, "docked", {"dock": dock.name})
             self.dock = dock
             # At once, not in the next step: a robot in its dock that is not charged would be taken to be full.
-            self.battery.feed(dock is not None)
+            self.battery.feed(self.fed)
 
     def _within(self, dock: Dock) -> bool:
         dx, dy = self.x - dock.pose.x, self.y - dock.pose.y

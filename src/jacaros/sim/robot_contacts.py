@@ -79,7 +79,13 @@ class RobotContacts:
         """A Kobuki's battery, in whole tenths of a volt: 13.2 V are empty, 16.5 V full, and no battery is full before."""
         battery = self._robot.battery
         message = publisher.message(battery=math.floor(132.0 + 0.33 * battery.level + 1e-6))
-        state = "DOCKING_CHARGING" if battery.charging else "DOCKING_CHARGED" if docked else "DISCHARGING"
+        state = (
+            "DOCKING_CHARGING"
+            if battery.charging
+            else "DOCKING_CHARGED"
+            if self._robot.fed
+            else "DISCHARGING"
+        )
         message.charger = constant(message, state)
         self._at.fill_header(message.header, "base_link")
         publisher.publish(message)

@@ -134,7 +134,7 @@ class BatterySensor:
 
     def publish(self, ticks: int) -> None:
         """Publish what is due."""
-        charging = (self._robot.battery.charging, self._robot.dock is not None)
+        charging = (self._robot.battery.charging, self._robot.fed)
         if ticks % _TICKS_PER_BATTERY == 0 or charging != self._charging:
             self._charging = charging
             self._send()
@@ -152,7 +152,7 @@ class BatterySensor:
     def _status(self) -> str:
         if self._robot.battery.charging:
             return "CHARGING"
-        return "FULL" if self._robot.dock is not None else "DISCHARGING"
+        return "FULL" if self._robot.fed else "DISCHARGING"
 
     def close(self) -> None:
         """Leave the topic."""

@@ -5,6 +5,7 @@ and seed and the same commands at the same steps give the same run, to the last 
 """
 
 import math
+from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,8 @@ from jacaros.errors import UsageError
 from jacaros.sim.cleaning import Cleaning
 from jacaros.sim.contact import WallIndex, push_apart
 from jacaros.sim.description import PersonDescription, WorldDescription
+from jacaros.sim.faults.description import Fault
+from jacaros.sim.faults.schedule import Faults
 from jacaros.sim.ground_truth import Event, GroundTruth
 from jacaros.sim.laser import Circle
 from jacaros.sim.objects import Objects
@@ -40,16 +43,23 @@ class World:
         cleaning: the dirt, and the robots' tools that are at work.
         people: the people who walk about, by name.
         objects: what robots with a gripper can carry.
+        faults: what may go wrong.
+        dead_docks: names of docks that give no current.
     """
 
-    def __init__(self, description: WorldDescription, seed: int | None = None) -> None:
-        """*seed* replaces the one of the description."""
+    def __init__(
+        self, description: WorldDescription, seed: int | None = None, faults: Iterable[Fault] = ()
+    ) -> None:
+        """*seed* replaces the one of the description; *faults* may happen."""
         self.description = description if seed is None else replace(description, seed=seed)
         self.time = 0.0
         self.robots = {
             robot.name: Robot(robot, self.description.seed, self._note) for robot in description.robots
         }
         self._row = tuple(self.robots.values())
+        self.dead_docks: set[str] = set()
+        for robot in self._row:
+            robot.dead_docks = self.dead_docks
         self._lasers: dict[str, Laser] = {}
         self.doors = {door.name: door.open for door in description.doors}
         self._put_up_walls()
@@ -61,17 +71,33 @@ class World:
         self._charge_shown = {robot.name: (False, math.ceil(robot.battery.level)) for robot in self._row}
         self._next_sample = 0.0
         self._sample_robots(all_of_them=True)
+        self.faults = Faults(self, faults)
+        self.faults.step(self.time)
 
     @classmethod
-    def load(cls, source: str | Path, seed: int | None = None) -> "World":
+    def load(cls, source: str | Path, seed: int | None = None, faults: str | Path | None = None) -> "World":
         """Make a world from a file, from the name of a shipped world, or from the text of a world file.
 
+        Args:
+            source: of the world.
+            seed: in place of the file's.
+            faults: a fault file, or its text; None: nothing goes wrong.
+
         Raises:
-            WorldError: the file is missing or wrong.
+            WorldError: a file is missing or wrong.
         """
-        if isinstance(source, str) and "\n" in source:
-            return cls(read_world(source), seed)
-        return cls(load_world(str(source)), seed)
+        text = isinstance(source, str) and "\n" in source
+        description = read_world(str(source)) if text else load_world(str(source))
+        if faults is None:
+            return cls(description, seed)
+        from jacaros.sim.faults.file import load_faults, read_faults
+
+        told = str(faults)
+        return cls(
+            description,
+            seed,
+            read_faults(told, description) if "\n" in told else load_faults(told, description),
+        )
 
     @property
     def ground_truth(self) -> GroundTruth:
@@ -208,6 +234,8 @@ class World:
         """Let *dt* seconds pass."""
         # Rounded to a nanosecond: fifty steps make a second, not almost a second.
         self.time = round(self.time + dt, 9)
+        if self.time >= self.faults.next:
+            self.faults.step(self.time)
         for robot in self._row:
             robot.step(dt, self._walls)
         if len(self._row) > 1:
@@ -266,6 +294,13 @@ class World:
 
     def _note(self, robot: Robot, kind: str, data: dict[str, Any]) -> None:
         self._truth.record_event(Event(self.time, robot.name, kind, robot.x, robot.y, robot.yaw, data))
+
+    def note_fault(self, name: str, data: dict[str, Any]) -> None:
+        """Take note that a fault begins or ends; *name* is of the robot that it happens to, "" for none."""
+        if name:
+            self._note(self.robot(name), "fault", data)
+        else:
+            self._truth.record_event(Event(self.time, "", "fault", 0.0, 0.0, 0.0, data))
 
     def _note_person(self, person: Person, kind: str, data: dict[str, Any]) -> None:
         # The place is in the data too: those who watch a run are not told the poses of events.

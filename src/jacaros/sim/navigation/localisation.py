@@ -34,9 +34,13 @@ class Localisation:
         self.map_to_odom = Placement(0.0, 0.0)
         self.variances = FOUND
         self.lost = False
+        self._put_downs = robot.put_downs
 
     def update(self, time: float) -> None:
         """Correct the transform if that is due at *time* (seconds of the world)."""
+        if self._robot.put_downs != self._put_downs:
+            self._put_downs = self._robot.put_downs
+            self.lost = True  # nothing tells it that it was carried away
         if time < self._next or self.lost:
             return
         self._next = time + PERIOD

@@ -1,0 +1,208 @@
+"""Fault files: YAML text to `Fault` objects, checked against the world in which they are to happen.
+
+Times are seconds of the world, lengths metres, angles degrees; ``robot`` may be left out where there is one::
+
+    faults:
+      slippery: {kind: wheel_slip, share: 0.3, at: 5, for: 10}
+      stuck: {kind: blocked_wheel, wheel: left}          # left, right or both; without 'at': only when it is asked for
+      moved: {kind: kidnapped_robot, robot: turtlebot, to: {x: 1, y: 2, yaw_degrees: 90}, at: 30}
+      tired: {kind: battery_drop, to: 15, at: 40}        # percent
+      cold: {kind: dead_dock, dock: dock}
+      shut: {kind: closed_door, door: kitchen, at: 20, for: 60}
+      ann: {kind: person, path: [[1, 0]], at: 12, for: 30}
+      blind: {kind: dead, topic: /scan, at: 15, for: 5}  # frozen, nan
+      loss: {kind: lost, topic: /odom, share: 0.2}
+      late: {kind: delayed, topic: /cmd_vel, seconds: 0.3, jitter: 0.1}
+      twice: {kind: duplicated, topic: /odom, copies: 3}
+"""
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+from jacaros.sim.description import PersonDescription, WorldDescription, WorldError
+from jacaros.sim.faults.description import AT_ONCE, KEYS, MESSAGES, WHEELS, Fault
+from jacaros.sim.people_file import read_path
+from jacaros.sim.robot_file import read_pose
+from jacaros.yaml_nodes import Node, Problem, read_document
+from jacaros.yaml_syntax import read_text, top_keys
+
+_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+_COMMON = ("kind", "at", "for", "robot")
+
+
+def load_faults(path: str | Path, world: WorldDescription) -> tuple[Fault, ...]:
+    """Read a fault file.
+
+    Raises:
+        WorldError: the file is missing or wrong, or does not suit the *world*; with all mistakes at once.
+    """
+    text, problems, faults = _read(Path(path), world)
+    if problems:
+        raise WorldError(str(path), text, problems)
+    return faults
+
+
+def read_faults(text: str, world: WorldDescription, name: str = "faults") -> tuple[Fault, ...]:
+    """Read the text of a fault file; *name* is what errors call it.
+
+    Raises:
+        WorldError: with all mistakes at once.
+    """
+    problems, faults = _faults(text, world)
+    if problems:
+        raise WorldError(name, text, problems)
+    return faults
+
+
+def is_fault_file(path: Path) -> bool:
+    """Whether a YAML file is a fault file: it says ``faults``, and nothing of a world."""
+    keys = top_keys(path)
+    return "faults" in keys and "robots" not in keys and "artifacts" not in keys
+
+
+def fault_file_problems(path: Path) -> tuple[str, list[Problem]]:
+    """The text of a fault file, and all that is wrong with it, whatever the world."""
+    text, problems, _ = _read(path, None)
+    return text, problems
+
+
+def _read(path: Path, world: WorldDescription | None) -> tuple[str, list[Problem], tuple[Fault, ...]]:
+    try:
+        text, wrong = read_text(path)
+    except OSError as error:
+        cure = "give the path of a file that begins with `faults:`"
+        return "", [Problem(1, 1, f"it cannot be read: {error.strerror}", cure)], ()
+    return (text, [wrong], ()) if wrong is not None else (text, *_faults(text, world))
+
+
+def _faults(text: str, world: WorldDescription | None) -> tuple[list[Problem], tuple[Fault, ...]]:
+    problems: list[Problem] = []
+    document = read_document(text, problems, "a fault file")
+    found: list[Fault] = []
+    if not problems:
+        entries = document.mapping("faults", required=("faults",))
+        if "faults" in entries:
+            found = [_fault(key, item, world) for key, item in entries["faults"].entries()]
+    return problems, tuple(found)
+
+
+def _fault(key: Node, node: Node, world: WorldDescription | None) -> Fault:
+    name = key.text()
+    if not _NAME.fullmatch(name):
+        key.wrong(f"'{name}' is no name for a fault", "write letters, digits and underscores")
+    kinds = node.value.get("kind") if isinstance(node.value, dict) else None
+    keys = KEYS.get(kinds, ()) if isinstance(kinds, str) else ()
+    every = tuple(dict.fromkeys(key for keys in KEYS.values() for key in keys))
+    entries = node.mapping(*_COMMON, *(keys or every), required=("kind",))
+    if "kind" not in entries:
+        return Fault(name, "dead")
+    kind = entries["kind"].choice(*KEYS)
+    fault = Fault(
+        name,
+        kind,
+        at=entries["at"].number(0.0) if "at" in entries else None,
+        lasts=entries["for"].number(0.0) if "for" in entries else None,
+        share=entries["share"].number(0.0, 1.0)
+        if "share" in entries
+        else 0.3
+        if kind == "wheel_slip"
+        else 1.0,
+        wheel=entries["wheel"].choice("both", "left", "right") if "wheel" in entries else "both",
+        seconds=entries["seconds"].number(0.0) if "seconds" in entries else 0.5,
+        jitter=entries["jitter"].number(0.0) if "jitter" in entries else 0.0,
+        copies=entries["copies"].whole(2, 2) if "copies" in entries else 2,
+    )
+    if kind in AT_ONCE and "for" in entries:
+        entries["for"].wrong(f"a fault of the kind '{kind}' happens at once", "leave 'for' out")
+    return _placed(fault, node, entries, world)
+
+
+def _placed(fault: Fault, node: Node, entries: dict[str, Node], world: WorldDescription | None) -> Fault:
+    """The fault with the robot, topic or place that it happens to."""
+    if fault.kind in (*WHEELS, *AT_ONCE, *MESSAGES):
+        fault = replace(fault, robot=_robot(node, entries.get("robot"), fault.kind, world))
+    elif "robot" in entries:
+        entries["robot"].wrong(f"a fault of the kind '{fault.kind}' concerns no robot", "leave 'robot' out")
+    if fault.kind in MESSAGES:
+        return replace(fault, topic=_topic(node, entries.get("topic"), fault.robot, world))
+    docks = None if world is None else [dock.name for dock in world.docks]
+    doors = None if world is None else [door.name for door in world.doors]
+    if fault.kind == "closed_door":
+        return replace(
+            fault,
+            place=_one_of(node, entries, "door", doors),
+        )
+    if fault.kind == "dead_dock":
+        return replace(
+            fault,
+            place=_one_of(node, entries, "dock", docks),
+        )
+    if fault.kind == "person":
+        return replace(fault, person=_person(fault.name, node, entries))
+    if fault.kind in AT_ONCE and "to" not in entries:
+        node.wrong(f"a fault of the kind '{fault.kind}' needs 'to'", _TO[fault.kind])
+    elif fault.kind == "battery_drop":
+        return replace(fault, level=entries["to"].number(0.0, 100.0))
+    elif fault.kind == "kidnapped_robot":
+        return replace(fault, pose=read_pose(entries["to"].mapping("x", "y", "yaw_degrees")))
+    return fault
+
+
+_TO = {
+    "battery_drop": "say how many percent are left: to: 15",
+    "kidnapped_robot": "say where it is put: to: {x: 1, y: 2, yaw_degrees: 90}",
+}
+
+
+def _robot(node: Node, given: Node | None, kind: str, world: WorldDescription | None) -> str:
+    if world is None:
+        return ""
+    names = [robot.name for robot in world.robots]
+    if given is None:
+        if len(names) > 1 and kind not in MESSAGES:
+            node.wrong("it is not said which robot it happens to", f"write 'robot: {names[0]}', for one")
+        return names[0] if len(names) == 1 else ""
+    name = given.text()
+    if name not in names:
+        given.wrong(f"the world has no robot '{name}'", f"its robots: {', '.join(names) or 'none'}")
+    return name
+
+
+def _topic(node: Node, given: Node | None, robot: str, world: WorldDescription | None) -> str:
+    """An absolute name; a relative one is the robot's."""
+    if given is None:
+        node.wrong("it is not said which topic it happens to", "write 'topic: /scan', for one")
+        return ""
+    written = given.text()
+    if written.startswith("/"):
+        return written
+    robots = () if world is None else world.robots
+    namespace = next((each.namespace for each in robots if each.name == robot), "")
+    return f"/{namespace}/{written}" if namespace else f"/{written}"
+
+
+def _one_of(node: Node, entries: dict[str, Node], what: str, names: list[str] | None) -> str:
+    if what not in entries:
+        node.wrong(f"it is not said which {what} it happens to", f"write '{what}: NAME'")
+        return ""
+    name = entries[what].text()
+    if names is not None and name not in names:
+        known = f"its {what}s: {', '.join(names)}" if names else f"it has no {what}s"
+        entries[what].wrong(f"the world has no {what} '{name}'", known)
+    return name
+
+
+def _person(name: str, node: Node, entries: dict[str, Node]) -> PersonDescription:
+    usual = PersonDescription(name, ((0.0, 0.0),))
+    if "path" not in entries:
+        node.wrong("it is not said where the person stands", "write 'path: [[1, 0]]', in metres")
+        return usual
+    return PersonDescription(
+        name,
+        read_path(entries["path"]),
+        speed=entries["speed"].number(0.01, 5.0, usual.speed) if "speed" in entries else usual.speed,
+        loop="loop" in entries and entries["loop"].truth(),
+        radius=entries["radius"].number(0.05, 2.0, usual.radius) if "radius" in entries else usual.radius,
+        careless="careless" in entries and entries["careless"].truth(),
+    )

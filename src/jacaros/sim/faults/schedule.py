@@ -1,0 +1,180 @@
+"""The faults of a running world: when they begin and end, and what they do to it."""
+
+import math
+import random
+from collections.abc import Callable, Iterable
+from functools import partial
+from typing import TYPE_CHECKING
+
+from jacaros.errors import UsageError
+from jacaros.sim.faults.description import MESSAGES, Fault
+from jacaros.sim.faults.messages import Way, way_of
+
+if TYPE_CHECKING:
+    from jacaros.sim.world import World
+
+Undo = Callable[[], object]
+
+
+class Refused(Exception):
+    """A fault cannot happen now."""
+
+
+class Faults:
+    """The faults of a world, by name.
+
+    Each beginning and end is an event ``fault`` of the ground truth, with ``fault`` (its name), ``kind`` and ``state``:
+    ``begins``, ``ends`` or ``refused``, then with ``why``.
+
+    Args:
+        world: in which they happen.
+        faults: those that may happen.
+
+    Attributes:
+        by_name: the faults.
+        next: the world's time at which something is to be done; infinite when nothing is.
+        topics: those with faults, at work or not.
+    """
+
+    def __init__(self, world: "World", faults: Iterable[Fault] = ()) -> None:
+        self._world = world
+        self.by_name = {fault.name: fault for fault in faults}
+        self.topics = frozenset(fault.topic for fault in self.by_name.values() if fault.topic)
+        self._begins = {fault.name: fault.at for fault in self.by_name.values() if fault.at is not None}
+        self._ends: dict[str, float] = {}
+        self._undo: dict[str, Undo] = {}
+        self._ways: dict[str, dict[str, Way]] = {}
+        self._look_ahead()
+
+    @property
+    def at_work(self) -> list[str]:
+        """Names of the faults that have begun and not ended, the oldest first."""
+        return list(self._undo)
+
+    def ways(self, topic: str) -> Iterable[Way]:
+        """What the faults at work do to messages of a topic, the oldest first."""
+        return self._ways.get(topic, {}).values()
+
+    def step(self, time: float) -> None:
+        """Do what is due at *time* (seconds of the world): ends first."""
+        for name in [name for name, end in self._ends.items() if end <= time]:
+            self.end(name)
+        for name in [name for name, begin in self._begins.items() if begin <= time]:
+            del self._begins[name]
+            self.begin(name)
+        self._look_ahead()
+
+    def _look_ahead(self) -> None:
+        self.next = min((*self._begins.values(), *self._ends.values()), default=math.inf)
+
+    def begin(self, name: str) -> str | None:
+        """Let a fault happen now; one that is at work goes on.
+
+        Returns:
+            Why it cannot happen, or None.
+
+        Raises:
+            UsageError: there is no such fault.
+        """
+        fault = self._named(name)
+        if name in self._undo:
+            return None
+        try:
+            undo = self._effect(fault)
+        except (Refused, UsageError) as refused:
+            self._tell(fault, "refused", why=str(refused))
+            return str(refused)
+        if undo is not None:
+            self._undo[name] = undo
+            if fault.lasts is not None:
+                self._ends[name] = self._world.time + fault.lasts
+                self._look_ahead()
+        self._tell(fault, "begins")
+        return None
+
+    def end(self, name: str) -> None:
+        """End a fault; one that is not at work stays so.
+
+        Raises:
+            UsageError: there is no such fault.
+        """
+        fault = self._named(name)
+        self._ends.pop(name, None)
+        self._look_ahead()
+        undo = self._undo.pop(name, None)
+        if undo is not None:
+            undo()
+            self._tell(fault, "ends")
+
+    def _named(self, name: str) -> Fault:
+        if name not in self.by_name:
+            raise UsageError(f"there is no fault '{name}', only: {', '.join(self.by_name) or 'none'}")
+        return self.by_name[name]
+
+    def _tell(self, fault: Fault, state: str, **more: str) -> None:
+        self._world.note_fault(fault.robot, {"fault": fault.name, "kind": fault.kind, "state": state, **more})
+
+    def _effect(self, fault: Fault) -> Undo | None:
+        """Do what a fault does; gives what ends it, None for what happened at once.
+
+        Raises:
+            Refused, UsageError: it cannot happen now.
+        """
+        if fault.kind in MESSAGES:
+            ways = self._ways.setdefault(fault.topic, {})
+            ways[fault.name] = way_of(fault, self._world.description.seed)
+            return partial(ways.pop, fault.name)
+        return _EFFECTS[fault.kind](self._world, fault)
+
+
+def _slip(world: "World", fault: Fault) -> Undo:
+    robot = world.robot(fault.robot)
+    draw = random.Random(f"{world.description.seed}/{fault.name}/slip").random
+    robot.grip = lambda: max(0.0, 1.0 - 2.0 * fault.share * draw())
+    return partial(setattr, robot, "grip", None)
+
+
+def _block(world: "World", fault: Fault) -> Undo:
+    robot = world.robot(fault.robot)
+    robot.blocked_wheel = fault.wheel
+    return partial(setattr, robot, "blocked_wheel", "")
+
+
+def _kidnap(world: "World", fault: Fault) -> None:
+    world.robot(fault.robot).put_down(fault.pose)
+
+
+def _drop(world: "World", fault: Fault) -> None:
+    battery = world.robot(fault.robot).battery
+    battery.level = min(battery.level, fault.level)
+
+
+def _cut_current(world: "World", fault: Fault) -> Undo:
+    world.dead_docks.add(fault.place)
+    return partial(world.dead_docks.discard, fault.place)
+
+
+def _close_door(world: "World", fault: Fault) -> Undo:
+    if not world.doors[fault.place]:
+        return lambda: None
+    why = world.move_door(fault.place, opened=False)
+    if why is not None:
+        raise Refused(why)
+    return partial(world.move_door, fault.place, opened=True)
+
+
+def _let_come(world: "World", fault: Fault) -> Undo:
+    assert fault.person is not None
+    world.add_person(fault.person)
+    return partial(world.remove_person, fault.name)
+
+
+_EFFECTS: dict[str, Callable[["World", Fault], Undo | None]] = {
+    "wheel_slip": _slip,
+    "blocked_wheel": _block,
+    "kidnapped_robot": _kidnap,
+    "battery_drop": _drop,
+    "dead_dock": _cut_current,
+    "closed_door": _close_door,
+    "person": _let_come,
+}

@@ -1,0 +1,66 @@
+"""Fault files: all mistakes at once, each with its place and what to write."""
+
+from pathlib import Path
+
+import pytest
+
+from jacaros.sim.description import WorldError
+from jacaros.sim.faults.file import fault_file_problems, is_fault_file, load_faults, read_faults
+from jacaros.sim.world_file import read_world
+
+WORLD = read_world("""
+name: two
+doors:
+  - {name: kitchen, segment: [[2, -1], [2, 1]]}
+robots:
+  - {name: one, namespace: one}
+  - {name: two, namespace: two, pose: {x: 1, y: 1}}
+""")
+
+
+@pytest.mark.parametrize(
+    ("fault", "message"),
+    [
+        ("{kind: wheel_slp}", "3:13: error: 'kind' is 'wheel_slp'"),
+        ("{at: 3}", "3:6: error: 'f' lacks the key 'kind'"),
+        ("{kind: wheel_slip}", "it is not said which robot it happens to"),
+        ("{kind: wheel_slip, robot: three}", "the world has no robot 'three'"),
+        ("{kind: wheel_slip, robot: one, share: 2}", "'share' is 2, but must lie between 0 and 1"),
+        ("{kind: wheel_slip, robot: one, topic: /scan}", "'f' has no key 'topic'"),
+        ("{kind: closed_door, door: hall}", "the world has no door 'hall'"),
+        ("{kind: closed_door}", "it is not said which door it happens to"),
+        ("{kind: closed_door, door: kitchen, robot: one}", "concerns no robot"),
+        ("{kind: dead_dock, dock: home}", "the world has no dock 'home'"),
+        ("{kind: battery_drop, robot: one}", "needs 'to'"),
+        ("{kind: battery_drop, robot: one, to: 15, for: 3}", "happens at once"),
+        ("{kind: kidnapped_robot, robot: one, to: {z: 1}}", "'to' has no key 'z'"),
+        ("{kind: person}", "it is not said where the person stands"),
+        ("{kind: dead}", "it is not said which topic it happens to"),
+        ("{kind: dead, topic: /scan, at: -1}", "'at' is -1, but must be at least 0"),
+    ],
+)
+def test_a_mistake_is_told_with_its_place(fault: str, message: str) -> None:
+    with pytest.raises(WorldError) as told:
+        read_faults(f"faults:\n  # one\n  f: {fault}\n", WORLD, "f.yaml")
+    assert message in str(told.value)
+    assert str(told.value).startswith("f.yaml:3:")
+
+
+def test_topics_are_the_robots_unless_they_begin_with_a_slash() -> None:
+    text = "faults:\n  a: {kind: dead, robot: two, topic: scan}\n  b: {kind: dead, topic: /clock}\n"
+    assert [fault.topic for fault in read_faults(text, WORLD)] == ["/two/scan", "/clock"]
+
+
+def test_a_file_is_told_from_others_and_checked_without_a_world(tmp_path: Path) -> None:
+    path = tmp_path / "faults.yaml"
+    path.write_text("faults:\n  a: {kind: closed_door, door: any}\n  b: {kind: dead}\n", encoding="utf-8")
+    assert is_fault_file(path)
+    assert [problem.line for problem in fault_file_problems(path)[1]] == [3]
+    other = tmp_path / "mapping.yaml"
+    other.write_text("properties: {}\n", encoding="utf-8")
+    assert not is_fault_file(other)
+
+
+def test_a_missing_file_is_told(tmp_path: Path) -> None:
+    with pytest.raises(WorldError, match="it cannot be read"):
+        load_faults(tmp_path / "none.yaml", WORLD)
