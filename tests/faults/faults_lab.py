@@ -25,6 +25,7 @@ from jacaros.ros.ros_clock import CLOCK_TYPE, RosClock
 from jacaros.sim.ground_truth import GroundTruth
 from jacaros.sim.node import SimNode
 from jacaros.sim.world import World
+from jacaros.sim.world_file import load_world
 
 PROGRAMS = Path(__file__).parent / "programs"
 
@@ -252,14 +253,14 @@ def in_lab(
         program: its name.
         faults: arranges what goes wrong.
         mapping: mapping file of that folder, or one of those that come with the package, whose artifacts the agent focuses.
-        world: where the robot is.
+        world: where the robot is; its odometry has no noise.
         seconds: longest time; a run that should have ended before tells so by its exit code, which is None.
         simulated: time of the robot's own clock at the beginning; without it there is one clock for all.
         followed: that clock is told on ``/clock``, as a simulator does, and the agents follow it.
     """
     clock = VirtualClock()
     robot_clock = clock if simulated is None else SimulatorClock(clock, simulated)
-    lab = Lab(clock, robot_clock, MemoryGraph(), World.load(world, 0))
+    lab = Lab(clock, robot_clock, MemoryGraph(), World(load_world(world).without_noise(), 0))
     time: Clock = (
         clock if simulated is None or not followed else RosClock(lambda text: lab.log(f"[ros] {text}"))
     )

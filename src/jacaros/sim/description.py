@@ -5,7 +5,7 @@ them, and viewers draw them.
 """
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 from jacaros.excerpts import help_line, printable
@@ -300,6 +300,18 @@ class WorldDescription:
     robots: tuple[RobotDescription, ...] = field(default_factory=lambda: (RobotDescription(),))
     people: tuple[PersonDescription, ...] = ()
     seed: int = 0
+
+    def without_noise(self) -> "WorldDescription":
+        """The same world, whose robots measure exactly: for tests to the millimetre."""
+        robots = (
+            replace(
+                robot,
+                odometry=OdometrySettings(from_start=robot.odometry.from_start),
+                laser=replace(robot.laser, noise=0.0),
+            )
+            for robot in self.robots
+        )
+        return replace(self, robots=tuple(robots))
 
     def drawing(self) -> dict[str, Any]:
         """All that a viewer needs to draw the world, as plain JSON data."""

@@ -6,7 +6,7 @@ from typing import cast
 from jacaros.clock import Clock, Timer
 from jacaros.ros.backend import Backend
 from jacaros.sim.door_server import DoorServer
-from jacaros.sim.faults.messages import FaultyGraph
+from jacaros.sim.faults.graph import FaultyGraph
 from jacaros.sim.faults.server import FaultServer
 from jacaros.sim.map_server import MapServer
 from jacaros.sim.navigation.grid import Grid

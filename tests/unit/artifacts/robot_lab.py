@@ -3,7 +3,6 @@
 import asyncio
 import math
 from collections.abc import Awaitable, Callable
-from dataclasses import replace
 from typing import Any
 
 from jacaros.clock import VirtualClock, run
@@ -19,7 +18,6 @@ from jacaros.env import (
 from jacaros.ros.backend import Backend, Sample
 from jacaros.ros.open import open_backend
 from jacaros.sim import SimNode, World
-from jacaros.sim.description import OdometrySettings
 from jacaros.sim.world_file import load_world
 
 TWIST = "geometry_msgs/msg/Twist"
@@ -156,13 +154,6 @@ class Lab:
         return state.speed, state.turn_rate
 
 
-def exact(name: str) -> World:
-    """A shipped world without noise: only what is known to the millimetre can be tested to the millimetre."""
-    world = load_world(name)
-    robots = tuple(replace(robot, odometry=OdometrySettings()) for robot in world.robots)
-    return World(replace(world, robots=robots))
-
-
 def in_lab(body: Callable[[Lab], Awaitable[Any]], world: str | None = "empty") -> Lab:
     """Run *body* in a laboratory; everything is disposed and closed at the end.
 
@@ -174,7 +165,13 @@ def in_lab(body: Callable[[Lab], Awaitable[Any]], world: str | None = "empty") -
     async def main() -> None:
         backend = open_backend("memory", clock, "lab", log=lambda text: None)
         await backend.start()
-        made = None if world is None else World.load(world) if "\n" in world else exact(world)
+        made = (
+            None
+            if world is None
+            else World.load(world)
+            if "\n" in world
+            else World(load_world(world).without_noise())
+        )
         lab = Lab(clock, backend, made)
         labs.append(lab)
         if lab.sim is not None:

@@ -1,24 +1,13 @@
-"""Faults of messages: a sensor that is dead, frozen or tells nonsense, and a line that loses, delays or repeats.
-
-They happen where the world meets the graph, so that agents and all other nodes suffer them alike.
-"""
+"""What faults do to messages: a sensor that is dead, frozen or tells nonsense, and a line that loses, delays or repeats."""
 
 import copy
-import difflib
 import math
 import random
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import fields, is_dataclass, replace
-from functools import partial
-from typing import TYPE_CHECKING, Any, cast
+from dataclasses import fields, is_dataclass
+from typing import Any
 
-from jacaros.clock import Clock
-from jacaros.errors import UsageError
-from jacaros.ros.backend import Backend, Publisher, Sample, Subscription
 from jacaros.sim.faults.description import Fault
-
-if TYPE_CHECKING:
-    from jacaros.sim.faults.schedule import Faults
 
 Way = Callable[[Any], Sequence[tuple[float, Any]]]
 """Takes a message; gives what arrives in its place, each after so many seconds: nothing when it is lost."""
@@ -72,7 +61,7 @@ def _without_numbers(message: Any) -> Any:
             _without_numbers(value)
         elif not isinstance(value, str | bytes) and isinstance(value, Iterable):
             # Of arrays (numpy's, and array.array, as of ROS 2) the items as Python has them.
-            items = value.tolist() if hasattr(value, "tolist") else list(value)
+            items = list(getattr(value, "tolist", value.__iter__)())
             if items and all(isinstance(item, float) for item in items):
                 setattr(message, name, [math.nan] * len(items))
     return message
@@ -85,79 +74,3 @@ def _fields(value: Any) -> list[str]:
     return [
         slot.removeprefix("_") for slot in getattr(type(value), "__slots__", ()) if slot != "_check_fields"
     ]
-
-
-class FaultyGraph:
-    """A graph whose topics have faults; all else is as it is.
-
-    Args:
-        backend: the graph.
-        faults: of the world.
-        clock: of late messages.
-    """
-
-    def __init__(self, backend: Backend, faults: "Faults", clock: Clock) -> None:
-        self._backend, self._faults, self._clock = backend, faults, clock
-        self._made: set[str] = set()
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self._backend, name)
-
-    def publisher(self, topic: str, *arguments: Any, **keywords: Any) -> Publisher:
-        """Make a publisher, a faulty one if the topic has faults."""
-        self._made.add(topic)
-        publisher = self._backend.publisher(topic, *arguments, **keywords)
-        if topic not in self._faults.topics:
-            return publisher
-        return cast(Publisher, _FaultyPublisher(publisher, topic, self._pass_on))
-
-    def subscription(
-        self, topic: str, type_name: str, callback: Callable[[Sample], None], *arguments: Any, **keywords: Any
-    ) -> Subscription:
-        """Make a subscription, a faulty one if the topic has faults."""
-        self._made.add(topic)
-        if topic not in self._faults.topics:
-            return self._backend.subscription(topic, type_name, callback, *arguments, **keywords)
-
-        def hear(sample: Sample) -> None:
-            self._pass_on(topic, sample.message, lambda message: callback(replace(sample, message=message)))
-
-        return self._backend.subscription(topic, type_name, hear, *arguments, **keywords)
-
-    def check(self) -> None:
-        """Refuse faults of topics that the world neither publishes nor hears, when it has joined them all.
-
-        Raises:
-            UsageError: for the first one.
-        """
-        for fault in self._faults.by_name.values():
-            if fault.topic and fault.topic not in self._made:
-                near = difflib.get_close_matches(fault.topic, self._made, 1)
-                cure = f"did you mean {near[0]}?" if near else f"its topics: {', '.join(sorted(self._made))}"
-                raise UsageError(f"fault {fault.name}: the world has no topic {fault.topic}; {cure}")
-
-    def _pass_on(self, topic: str, message: Any, send: Callable[[Any], None]) -> None:
-        passing: Sequence[tuple[float, Any]] = ((0.0, message),)
-        for way in self._faults.ways(topic):
-            passing = [(late + later, out) for late, each in passing for later, out in way(each)]
-        for late, each in passing:
-            if late > 0.0:
-                self._clock.call_later(late, partial(send, each))
-            else:
-                send(each)
-
-
-class _FaultyPublisher:
-    """A publisher whose messages pass through faults."""
-
-    def __init__(
-        self, publisher: Publisher, topic: str, pass_on: Callable[[str, Any, Callable[[Any], None]], None]
-    ) -> None:
-        self._publisher, self._topic, self._pass_on = publisher, topic, pass_on
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self._publisher, name)
-
-    def publish(self, message: Any) -> None:
-        """Send what the faults leave of a message."""
-        self._pass_on(self._topic, message, self._publisher.publish)

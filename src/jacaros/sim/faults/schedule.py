@@ -4,16 +4,30 @@ import math
 import random
 from collections.abc import Callable, Iterable
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import Any, Protocol
 
 from jacaros.errors import UsageError
+from jacaros.sim.description import PersonDescription, WorldDescription
 from jacaros.sim.faults.description import MESSAGES, Fault
 from jacaros.sim.faults.messages import Way, way_of
-
-if TYPE_CHECKING:
-    from jacaros.sim.world import World
+from jacaros.sim.robot import Robot
 
 Undo = Callable[[], object]
+
+
+class Stricken(Protocol):
+    """A world, as a fault sees it (`jacaros.sim.world.World`)."""
+
+    description: WorldDescription
+    time: float
+    doors: dict[str, bool]
+    dead_docks: set[str]
+
+    def robot(self, name: str) -> Robot: ...
+    def move_door(self, name: str, opened: bool) -> str | None: ...
+    def add_person(self, description: PersonDescription) -> object: ...
+    def remove_person(self, name: str) -> None: ...
+    def note_fault(self, name: str, data: dict[str, Any]) -> None: ...
 
 
 class Refused(Exception):
@@ -36,7 +50,7 @@ class Faults:
         topics: those with faults, at work or not.
     """
 
-    def __init__(self, world: "World", faults: Iterable[Fault] = ()) -> None:
+    def __init__(self, world: Stricken, faults: Iterable[Fault] = ()) -> None:
         self._world = world
         self.by_name = {fault.name: fault for fault in faults}
         self.topics = frozenset(fault.topic for fault in self.by_name.values() if fault.topic)
@@ -127,34 +141,34 @@ class Faults:
         return _EFFECTS[fault.kind](self._world, fault)
 
 
-def _slip(world: "World", fault: Fault) -> Undo:
+def _slip(world: Stricken, fault: Fault) -> Undo:
     robot = world.robot(fault.robot)
     draw = random.Random(f"{world.description.seed}/{fault.name}/slip").random
     robot.grip = lambda: max(0.0, 1.0 - 2.0 * fault.share * draw())
     return partial(setattr, robot, "grip", None)
 
 
-def _block(world: "World", fault: Fault) -> Undo:
+def _block(world: Stricken, fault: Fault) -> Undo:
     robot = world.robot(fault.robot)
     robot.blocked_wheel = fault.wheel
     return partial(setattr, robot, "blocked_wheel", "")
 
 
-def _kidnap(world: "World", fault: Fault) -> None:
+def _kidnap(world: Stricken, fault: Fault) -> None:
     world.robot(fault.robot).put_down(fault.pose)
 
 
-def _drop(world: "World", fault: Fault) -> None:
+def _drop(world: Stricken, fault: Fault) -> None:
     battery = world.robot(fault.robot).battery
     battery.level = min(battery.level, fault.level)
 
 
-def _cut_current(world: "World", fault: Fault) -> Undo:
+def _cut_current(world: Stricken, fault: Fault) -> Undo:
     world.dead_docks.add(fault.place)
     return partial(world.dead_docks.discard, fault.place)
 
 
-def _close_door(world: "World", fault: Fault) -> Undo:
+def _close_door(world: Stricken, fault: Fault) -> Undo:
     if not world.doors[fault.place]:
         return lambda: None
     why = world.move_door(fault.place, opened=False)
@@ -163,13 +177,13 @@ def _close_door(world: "World", fault: Fault) -> Undo:
     return partial(world.move_door, fault.place, opened=True)
 
 
-def _let_come(world: "World", fault: Fault) -> Undo:
+def _let_come(world: Stricken, fault: Fault) -> Undo:
     assert fault.person is not None
     world.add_person(fault.person)
     return partial(world.remove_person, fault.name)
 
 
-_EFFECTS: dict[str, Callable[["World", Fault], Undo | None]] = {
+_EFFECTS: dict[str, Callable[[Stricken, Fault], Undo | None]] = {
     "wheel_slip": _slip,
     "blocked_wheel": _block,
     "kidnapped_robot": _kidnap,
