@@ -16,8 +16,9 @@ topic (below the robot's namespace)         type                          direct
 
 Other sensors have files of their own: bumpers and the dock `jacaros.sim.robot_contacts`, cliffs
 `jacaros.sim.robot_cliffs`, ``/imu`` `jacaros.sim.robot_imu`, ``/sonar`` `jacaros.sim.robot_sonar`, the camera
-`jacaros.sim.robot_camera`, transforms `jacaros.sim.robot_transforms`, lights and sound `jacaros.sim.robot_lights`, the
-gripper `jacaros.sim.robot_gripper`.  What the robot can be asked to do by itself is in `jacaros.sim.navigation`.
+`jacaros.sim.robot_camera`, objects in its view `jacaros.sim.robot_recognition`, transforms `jacaros.sim.robot_transforms`;
+lights and sound are in `jacaros.sim.robot_lights`, the gripper is in `jacaros.sim.robot_gripper`.  What the robot can be
+asked to do by itself is in `jacaros.sim.navigation`.
 """
 
 import math
@@ -34,6 +35,7 @@ from jacaros.sim.robot_contacts import RobotContacts
 from jacaros.sim.robot_gripper import Gripper
 from jacaros.sim.robot_imu import ImuSensor
 from jacaros.sim.robot_lights import LightsAndSound
+from jacaros.sim.robot_recognition import ObjectRecognition
 from jacaros.sim.robot_sensors import (
     Actuator,
     BatterySensor,
@@ -57,6 +59,7 @@ SENSORS: Final[Sequence[Callable[[RobotOnGraph], Sensor]]] = (
     ImuSensor,
     SonarSensor,
     CameraSensor,
+    ObjectRecognition,
 )
 """What every robot tells the graph, in the order of publishing."""
 

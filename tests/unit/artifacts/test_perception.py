@@ -3,7 +3,7 @@
 from robot_lab import Lab, in_lab
 
 from jacaros.artifacts.thesis.perception import ArtPerception
-from jacaros.env import Out
+from jacaros.env import Out, Structure
 
 
 def test_the_texts_of_the_newest_message_are_properties() -> None:
@@ -23,3 +23,34 @@ def test_the_texts_of_the_newest_message_are_properties() -> None:
         assert watcher.signals == [("tick_perception", ())]
 
     in_lab(body, None)
+
+
+def test_parts_between_commas_are_values_if_wanted() -> None:
+    async def body(lab: Lab) -> None:
+        watcher = lab.watch(await lab.make(ArtPerception, Structure("split", (True,))))
+        publisher = lab.backend.publisher("/jason/perception", "perception_msgs/msg/perception")
+        publisher.publish(publisher.message(perception=["box1,1.0, -2,3.1", "fog", "wind,nan"]))
+        await lab.sleep(0.1)
+        assert watcher.holds("perception") == [("box1", 1.0, -2.0, 3.1), ("fog",), ("wind", "nan")]
+
+    in_lab(body, None)
+
+
+def test_objects_in_the_view_of_the_robot_are_perceived() -> None:
+    world = """\
+walls: [{segment: [[1, 0.2], [1, 2]]}]
+robots: [{name: robot}]
+objects:
+  - {name: cup, x: 0.5, y: -0.1}
+  - {name: hidden, x: 1.5, y: 0.5}
+  - {name: behind, x: -1, y: 0}
+  - {name: aside, x: 1, y: -1}
+  - {name: far, x: 5, y: 0}
+"""
+
+    async def body(lab: Lab) -> None:
+        watcher = lab.watch(await lab.make(ArtPerception))
+        await lab.sleep(1)
+        assert watcher.values("perception") == [("cup,0.50,-0.10,0.00",)]
+
+    in_lab(body, world)

@@ -1,8 +1,9 @@
 """``ArtPerception``: percepts that another program sends as texts."""
 
+import math
 from typing import ClassVar
 
-from jacaros.artifacts.kit.options import text
+from jacaros.artifacts.kit.options import text, yes_or_no
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.env.artifact import Out, operation
 from jacaros.ros.backend import Sample
@@ -15,15 +16,17 @@ class ArtPerception(RosArtifact):
 
     Options:
         topic(T): another topic.
+        split(true): show the parts between commas, numbers as numbers.
 
     Properties:
-        perception(Text): one for each text of the newest message, such as ``"box1,1.0,2.0,3.1"``.
+        perception(Text): one for each text of the newest message, such as ``"box1,1.0,2.0,3.1"``; with `split`
+            ``perception("box1", 1.0, 2.0, 3.1)``.
 
     Signals:
         tick_perception: `getPerception` was called.
     """
 
-    known_options: ClassVar = {"topic": text}
+    known_options: ClassVar = {"topic": text, "split": yes_or_no}
 
     def open(self) -> None:
         """Listen; there are no percepts before the first message."""
@@ -34,7 +37,8 @@ class ArtPerception(RosArtifact):
 
     def _take(self, sample: Sample) -> None:
         self._texts = [str(each) for each in sample.message.perception]
-        elements = [(each,) for each in self._texts]
+        split = self.options.get("split", False)
+        elements = [tuple(map(_value, each.split(","))) if split else (each,) for each in self._texts]
         self.start(self.show_elements, "perception", elements, cause=sample.cause)
 
     @operation(name="getPerception")
@@ -46,3 +50,12 @@ class ArtPerception(RosArtifact):
     def give_perception(self, texts: Out) -> None:
         """Give the texts of the newest message to the caller, as a list; empty before the first."""
         texts.set(self._texts)
+
+
+def _value(part: str) -> str | float:
+    """A number where the text is a finite one."""
+    try:
+        number = float(part)
+    except ValueError:
+        return part.strip()
+    return number if math.isfinite(number) else part.strip()

@@ -1,0 +1,45 @@
+"""What a robot recognises in its camera's view: ``/jason/perception`` (``perception_msgs/msg/perception``), as the original
+JaCaROS has it from a program that looks at images.
+"""
+
+from collections.abc import Iterator
+
+from jacaros.sim.navigation.sight import hidden
+from jacaros.sim.rendering import FOCAL_LENGTH, WIDTH
+from jacaros.sim.robot_sensors import RobotOnGraph
+from jacaros.sim.trigonometry import sine_cosine
+
+RANGE = 4.0
+"""Metres from which objects are recognised."""
+_TICKS_PER_MESSAGE = 10
+
+
+class ObjectRecognition:
+    """Tells the objects in view, 2 Hz when somebody listens: ``cup,0.30,-0.10,0.00`` is name, metres ahead, left and up."""
+
+    def __init__(self, at: RobotOnGraph) -> None:
+        self._world, self._robot = at.time.world, at.robot
+        self._publisher = at.publisher_if_known("/jason/perception", "perception_msgs/msg/perception")
+
+    def publish(self, ticks: int) -> None:
+        """Publish what is due."""
+        publisher = self._publisher
+        if publisher is None or ticks % _TICKS_PER_MESSAGE or not publisher.subscription_count:
+            return
+        publisher.publish(publisher.message(perception=list(self._in_view())))
+
+    def _in_view(self) -> Iterator[str]:
+        robot = self._robot
+        sine, cosine = sine_cosine(robot.yaw)
+        for each in self._world.objects.by_name.values():
+            x, y = each.place
+            ahead = cosine * (x - robot.x) + sine * (y - robot.y)
+            left = cosine * (y - robot.y) - sine * (x - robot.x)
+            in_image = 0.0 < ahead <= RANGE and abs(left) * FOCAL_LENGTH <= 0.5 * WIDTH * ahead
+            if in_image and not hidden(self._world.segments, robot.x, robot.y, x, y):
+                yield f"{each.name},{ahead:.2f},{left:.2f},0.00"
+
+    def close(self) -> None:
+        """Leave the topic."""
+        if self._publisher is not None:
+            self._publisher.close()
