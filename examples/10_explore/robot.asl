@@ -27,7 +27,6 @@ map_file("runs/flat.yaml").  // where the map is saved
 // The cell in which the robot begins is 0, 0.
 +!use_map : goal_at(X, Y) & cell_size(Size)
   <- !use_artifact("map", "ArtMap", [cell_size(Size)]);
-     .wait(1000);  // for the first scans
      updateSlamData(0, 0, "home");
      updateSlamData(math.round(X / Size), math.round(Y / Size), "goal").
 

@@ -6,6 +6,7 @@ from typing import Any, ClassVar
 
 from jacaros.artifacts.kit.faults import Header
 from jacaros.artifacts.kit.options import not_negative, number, one_of, positive, text
+from jacaros.artifacts.kit.reading import Reading, ReadingPolicy
 from jacaros.artifacts.map.cells import Cell, LabelledCells
 from jacaros.artifacts.map.frontiers import around, frontier, nearest
 from jacaros.artifacts.map.grids import Grid
@@ -89,6 +90,7 @@ class ArtMap(ArtSlamData):
         super().open()
         self._done: set[Cell] = set()
         self._showing = False
+        self._first = Reading(ReadingPolicy(on_demand=True), self.clock)
         source = self._text("source", "scan")
         pose_from = self._text("pose_from", "amcl" if source == "map" else "scans")
         laser = self.options.get("laser", ORIGIN)
@@ -142,6 +144,7 @@ class ArtMap(ArtSlamData):
         if not self._header.accepts(sample):
             return
         if self._mapper.take_scan(to_seconds(message.header.stamp) or sample.stamp, message):
+            self._first.take((True,))
             self._locate(sample)
 
     def _take_pose(self, sample: Sample) -> None:
@@ -154,6 +157,7 @@ class ArtMap(ArtSlamData):
         self._seen.resize(max(self.size, grid.resolution))
         self.size = self._seen.size
         self._seen.load(grid.labels(self.size))
+        self._first.take((True,))
         self.start(self.show_surroundings, cause=sample.cause)
 
     def _take_other(self, name: str, sample: Sample) -> None:
@@ -206,12 +210,14 @@ class ArtMap(ArtSlamData):
         metres.set(found[1])
 
     @operation(name="getFrontier")
-    def get_frontier(self, x: Out, y: Out) -> None:
+    async def get_frontier(self, x: Out, y: Out) -> None:
         """Give a cell from which unknown ground is seen that a route leads to: the nearest one.
 
         A frontier that the robot stands at, and that is there still, cannot be seen from there, and is left out from then
-        on.  Fails with ``explored`` when there is none.
+        on.  Fails with ``explored`` when there is none, and with ``no_scan(5)`` (``no_map(5)`` with ``source(map)``) when
+        nothing is known after 5 s.
         """
+        await self.newest(self._first, "no_map" if self._text("source", "scan") == "map" else "no_scan")
         free, known = self.cells.passable(), self.cells.known()
         enterable = self.enterable()
         reach = math.ceil(self.radius / self.size) + 1

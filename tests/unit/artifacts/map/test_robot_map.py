@@ -100,6 +100,20 @@ def test_routes_keep_clear_of_walls_and_legs_lead_along_them() -> None:
     in_lab(body, WALLED)
 
 
+def test_the_first_frontier_waits_for_the_first_scan() -> None:
+    async def body(lab: Lab) -> None:
+        artifact = await lab.make(ArtMap)
+        x, y = Out(), Out()
+        await lab.do(artifact, "getFrontier", x, y)
+        assert lab.clock.elapsed < 1.0
+        other = await lab.make(ArtMap, "robot_2")
+        assert (await lab.call(other, "getFrontier", x, y)).reason == "no_scan(5)"
+        other = await lab.make(ArtMap, "robot_2", option("source", "map"))
+        assert (await lab.call(other, "getFrontier", x, y)).reason == "no_map(5)"
+
+    in_lab(body, WALLED)
+
+
 def test_the_next_frontier_is_given_until_all_is_explored() -> None:
     async def body(lab: Lab) -> None:
         artifact = await lab.make(ArtMap)
