@@ -11,7 +11,15 @@ _AROUND = (*_NEXT, (1, 1), (-1, 1), (-1, -1), (1, -1))
 
 def frontier(free: Collection[Cell], known: Collection[Cell], least: int) -> set[Cell]:
     """Return the free cells beside an unknown one, without pieces of less than *least* cells."""
-    edge = {(x, y) for x, y in free if any((x + dx, y + dy) not in known for dx, dy in _NEXT)}
+    edge = {
+        (x, y)
+        for x, y in free
+        # Written out: a loop over the four takes three times as long, and maps have 100,000 cells.
+        if (x + 1, y) not in known
+        or (x - 1, y) not in known
+        or (x, y + 1) not in known
+        or (x, y - 1) not in known
+    }
     kept: set[Cell] = set()
     rest = set(edge)
     while rest:
