@@ -57,6 +57,7 @@ def picture_svg(recording: Recording, width: int = 640) -> str:
     parts += [
         *_doors(sheet, recording),
         *_paths(sheet, recording),
+        *_objects(sheet, recording),
         *_people(sheet, recording),
         *_room_names(sheet, recording),
         *_robots(sheet, recording),
@@ -146,6 +147,22 @@ def _doors(sheet: _Sheet, recording: Recording) -> Iterator[str]:
         ax, ay, bx, by = door["segment"]
         line = f"M{sheet.x(ax)} {sheet.y(ay)}L{sheet.x(bx)} {sheet.y(by)}"
         yield f'<path class="{"open" if opened else "door"}" d="{line}"/>'
+
+
+def _objects(sheet: _Sheet, recording: Recording) -> Iterator[str]:
+    """The objects where they lie at the end; a robot has what is not there."""
+    places = {each["name"]: each["place"] for each in recording.drawing["objects"]}
+    for _, kind, data in recording.events:
+        if kind == "placed":
+            places[data["object"]] = (data["x"], data["y"])
+        elif kind == "picked":
+            places.pop(data["object"], None)
+    for each in recording.drawing["objects"]:
+        if each["name"] in places:
+            x, y = places[each["name"]]
+            fill, size = html.escape(each["color"] or "#5aa05a"), max(3.0, sheet.size(each["radius"]))
+            dot = f'<circle style="fill:{fill}" cx="{sheet.x(x)}" cy="{sheet.y(y)}" r="{size}"/>'
+            yield f"<g><title>{html.escape(each['name'])}</title>{dot}</g>"
 
 
 def _people(sheet: _Sheet, recording: Recording) -> Iterator[str]:

@@ -30,7 +30,18 @@ _NOWHERE: dict[str, Any] = {
     "bounds": [-1, -1, 1, 1],
     **{
         each: []
-        for each in ("walls", "boxes", "furniture", "rooms", "docks", "doors", "cliffs", "robots", "people")
+        for each in (
+            "walls",
+            "boxes",
+            "furniture",
+            "rooms",
+            "docks",
+            "doors",
+            "cliffs",
+            "robots",
+            "people",
+            "objects",
+        )
     },
 }
 """The drawing of a world of which nothing is known."""

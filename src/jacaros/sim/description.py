@@ -335,6 +335,10 @@ class WorldDescription:
                 {"name": robot.name, "pose": list(robot.pose), "radius": robot.radius}
                 for robot in self.robots
             ],
+            "objects": [
+                {"name": each.name, "place": [each.x, each.y], "radius": each.radius, "color": each.color}
+                for each in self.objects
+            ],
             "people": [person.drawing() for person in self.people],
         }
 

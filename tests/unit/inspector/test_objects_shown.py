@@ -1,0 +1,43 @@
+"""Objects and cliffs on the still picture and in what the replay page is given."""
+
+from jacaros.inspector.picture import picture_svg
+from jacaros.inspector.recorder import Recorder
+from jacaros.inspector.replay import payload
+from jacaros.sim import World
+
+WORLD = """
+size: [4, 4]
+cliffs: [{from: [1, 1], to: [2, 2]}]
+objects:
+  - {name: cup, x: 1, y: 0, color: red}
+  - {name: jug & lid, x: -1, y: 0}
+robots: [{gripper: true}]
+"""
+
+
+def recorded() -> Recorder:
+    recorder = Recorder()
+    recorder.world(World.load(WORLD).description.drawing())
+    return recorder
+
+
+def test_objects_are_where_they_lie_at_the_end() -> None:
+    recorder = recorded()
+    before = picture_svg(recorder.recording)
+    assert "<title>cup</title>" in before
+    assert "<title>jug &amp; lid</title>" in before
+    assert "#c0392b" in before, "in its colour"
+    recorder.event(1.0, "picked", {"robot": "turtlebot", "object": "cup", "x": 1, "y": 0})
+    assert "<title>cup</title>" not in picture_svg(recorder.recording)
+    recorder.event(2.0, "placed", {"robot": "turtlebot", "object": "cup", "x": 0, "y": 1})
+    after = picture_svg(recorder.recording)
+    assert "<title>cup</title>" in after
+    assert after != before, "in another place"
+
+
+def test_cliffs_are_in_the_picture_and_all_of_it_reaches_the_replay_page() -> None:
+    recorder = recorded()
+    assert "<title>cliff</title>" in picture_svg(recorder.recording)
+    world = payload(recorder.recording)["world"]
+    assert world["cliffs"] == [[1, 1, 2, 2]]
+    assert world["objects"][0] == {"name": "cup", "place": [1, 0], "radius": 0.03, "color": "#c0392b"}
