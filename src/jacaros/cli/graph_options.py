@@ -27,13 +27,24 @@ class RosKind(click.Choice[str]):
         return value if ":" in value else super().convert(value, param, ctx)
 
 
-def ros_option(told: str, kinds: Sequence[str] = ROS_KINDS, required: bool = False) -> Callable[[F], F]:
-    """The option that says which kind of graph; *told* is its help, and it is ``memory`` unless it is required."""
+def ros_option(
+    told: str, kinds: Sequence[str] = ROS_KINDS, required: bool = False, but_with: str = ""
+) -> Callable[[F], F]:
+    """The option that says which kind of graph; *told* is its help, and it is ``memory`` unless it is required.
+
+    With the flag *but_with* it is not.
+    """
+
+    def needed(context: click.Context, option: click.Parameter, value: str | None) -> str | None:
+        if value is None and required and not context.params.get(but_with):
+            raise click.MissingParameter(ctx=context, param=option)
+        return value
+
     return click.option(
         "--ros",
         type=RosKind(kinds),
         default=None if required else "memory",
-        required=required,
+        callback=needed,
         envvar="JACAROS_ROS",
         show_default=not required,
         show_envvar=True,

@@ -18,7 +18,7 @@ from jacaros.text_files import is_file
 
 @click.command("sim", short_help="Run a robot world as a ROS node of its own.")
 @click.argument("world")
-@ros_option("The ROS graph to join.", required=True)
+@ros_option("The ROS graph to join.", required=True, but_with="only_hash")
 @world_options
 @click.option("--for", "seconds", type=float, metavar="S", help="End after S seconds.")
 @click.option(
@@ -30,6 +30,13 @@ from jacaros.text_files import is_file
 @click.option("--seed", type=int, help="Makes the noise of the sensors repeatable.")
 @faults_option
 @click.option("--full-battery", is_flag=True, help="Batteries stay full, however long the world runs.")
+@click.option(
+    "--hash",
+    "only_hash",
+    is_flag=True,
+    help="Print a hash of a minute (--for S: of S seconds) in which the robots drive about, and end; it is the same on "
+    "every machine.",
+)
 @click.option(
     "--clock",
     type=click.Choice(["real", "fast"]),
@@ -50,12 +57,13 @@ from jacaros.text_files import is_file
 )
 def command(
     world: str,
-    ros: str,
+    ros: str | None,
     remap: tuple[str, ...],
     seconds: float | None,
     ground_truth: Path | None,
     seed: int | None,
     faults: Path | None,
+    only_hash: bool,
     full_battery: bool,
     clock: str,
     publish_clock: bool,
@@ -63,8 +71,18 @@ def command(
     **graph: Any,
 ) -> None:
     """Run WORLD (a world file, or the name of a world that comes with jacaros) until Ctrl-C."""  # fmt: skip
+    from jacaros.sim import World
+
+    loaded = World.load(Path(world) if is_file(Path(world)) else world, seed, faults)
+    if full_battery:
+        loaded = World(with_full_batteries(loaded.description), faults=loaded.faults.by_name.values())
+    if only_hash:
+        from jacaros.sim.fingerprint import fingerprint
+
+        click.echo(fingerprint(loaded, 60.0 if seconds is None else seconds))
+        return
     from jacaros.ros.node import to_stderr
-    from jacaros.sim import World, serve
+    from jacaros.sim import serve
     from jacaros.sim.scaled_clock import ScaledClock
 
     if clock == "fast" and (ros != "memory" or seconds is None):
@@ -74,13 +92,11 @@ def command(
     if clock == "fast" and speed is not None:
         raise UsageError("--speed goes with --clock real; --clock fast is as fast as the machine can")
     time: Clock = VirtualClock() if clock == "fast" else WallClock() if speed is None else ScaledClock(speed)
+    assert ros is not None  # the option sees to it
     address = GraphAddress(ros, remap=read_remaps(remap), **graph)
     address.check()
     if ground_truth is not None:
         check_output(ground_truth, "ground truth")
-    loaded = World.load(Path(world) if is_file(Path(world)) else world, seed, faults)
-    if full_battery:
-        loaded = World(with_full_batteries(loaded.description), faults=loaded.faults.by_name.values())
     loaded.ground_truth.keep = 1000
     loaded.ground_truth.listen(told(lambda line: click.echo(line, err=True)))
 

@@ -11,7 +11,7 @@ from typing import Any
 import numpy
 
 from jacaros.sim.description import Segment
-from jacaros.sim.laser import Beams
+from jacaros.sim.laser import Beams, Circle
 from jacaros.sim.trigonometry import PI, TWO_PI, sine_cosine
 
 
@@ -24,8 +24,8 @@ class WallArrays:
         self._cosines, self._sines = numpy.array(beams.cosines), numpy.array(beams.sines)
         self._beams = beams
 
-    def sweep(self, x: float, y: float, yaw: float) -> list[float]:
-        """Distances of a whole turn of beams, as `jacaros.sim.laser.sweep_walls` gives them."""
+    def sweep(self, x: float, y: float, yaw: float, circles: Sequence[Circle] = ()) -> list[float]:
+        """Distances of a whole turn of beams, as `jacaros.sim.laser.sweep_walls` and `sweep_circles` give them."""
         count, scale = self._beams.count, self._beams.count / TWO_PI
         sine, cosine = sine_cosine(yaw)
         xs = cosine * self._cosines - sine * self._sines
@@ -47,12 +47,34 @@ class WallArrays:
         hit = (across != 0.0) & (distance >= 0.0) & (place >= 0.0) & (place <= 1.0)
         ranges = numpy.full(count, math.inf)
         numpy.minimum.at(ranges, beam[hit], distance[hit])
+        if circles:
+            self._sweep_circles(ranges, circles, x, y, yaw, xs, ys)
         result: list[float] = ranges.tolist()
         return result
 
+    def _sweep_circles(
+        self, ranges: Any, circles: Sequence[Circle], x: float, y: float, yaw: float, xs: Any, ys: Any
+    ) -> None:
+        """Shorten *ranges* where a beam meets a circle first; *xs* and *ys* are the beams' directions."""
+        count, scale = self._beams.count, self._beams.count / TWO_PI
+        table = numpy.array(circles, dtype=numpy.float64)
+        ex, ey, radius = table[:, 0] - x, table[:, 1] - y, table[:, 2]
+        apart2, radius2 = ex * ex + ey * ey, radius * radius
+        outside = apart2 > radius2
+        ex, ey, radius2, apart2, radius = (each[outside] for each in (ex, ey, radius2, apart2, radius))
+        half = numpy.arcsin(radius / numpy.sqrt(apart2))
+        first = numpy.floor((numpy.arctan2(ey, ex) - half - yaw + PI) * scale).astype(numpy.int64) - 1
+        circle, number = _expand(first, numpy.ceil(2.0 * half * scale).astype(numpy.int64) + 3)
+        beam = number % count
+        c, s = xs[beam], ys[beam]
+        along, across = ex[circle] * c + ey[circle] * s, ex[circle] * s - ey[circle] * c
+        root = radius2[circle] - across * across
+        hit = (root >= 0.0) & (along > 0.0)
+        numpy.minimum.at(ranges, beam[hit], along[hit] - numpy.sqrt(root[hit]))
+
 
 def _expand(first: Any, candidates: Any) -> tuple[Any, Any]:
-    """One flat list of (wall, beam number) pairs from the first beam and the count of each wall."""
+    """One flat list of (wall or circle, beam number) pairs from the first beam and the count of each."""
     wall = numpy.repeat(numpy.arange(len(first)), candidates)
     begin = numpy.cumsum(candidates) - candidates
     number = numpy.arange(len(wall)) - begin[wall] + first[wall]

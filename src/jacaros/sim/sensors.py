@@ -10,6 +10,9 @@ from jacaros.sim.laser import Beams, Circle, sweep_circles, sweep_walls
 FEW_WALLS = 4
 """Up to so many walls plain Python is as fast as numpy, and saves its import."""
 
+FEW_CIRCLES = 2
+"""The same for robots and people within reach."""
+
 
 class Laser:
     """One robot's laser.
@@ -36,21 +39,32 @@ class Laser:
 
     def scan(self, x: float, y: float, yaw: float, others: Iterable[Circle] = ()) -> list[float]:
         """Ranges (metres) of the swept field, counter-clockwise; ``inf`` where nothing is within reach."""
-        ranges = self._walls(x, y, yaw)
-        sweep_circles(ranges, others, x, y, yaw, self.beams)
-        swept = ranges[self.beams.first : self.beams.last]
         noise, reach = self.settings.noise, self.settings.range_max
+        swept = self._sweep(x, y, yaw, [each for each in others if _near(each, x, y, reach + noise)])
+        swept = swept[self.beams.first : self.beams.last]
         if noise:
             swept = [value + (self._draw() * 2.0 - 1.0) * noise for value in swept]
         return [value if value <= reach else float("inf") for value in swept]
 
-    def _walls(self, x: float, y: float, yaw: float) -> list[float]:
+    def _sweep(self, x: float, y: float, yaw: float, circles: list[Circle]) -> list[float]:
         if not self._with_numpy:
-            return sweep_walls(self._segments, x, y, yaw, self.beams)
+            ranges = sweep_walls(self._segments, x, y, yaw, self.beams)
+            sweep_circles(ranges, circles, x, y, yaw, self.beams)
+            return ranges
         if self._arrays is None:
             # numpy takes a third of a second to import: only the first wanted scan pays for it.
             from jacaros.sim.laser_numpy import WallArrays
 
             self._arrays = WallArrays(self._segments, self.beams)
-        ranges: list[float] = self._arrays.sweep(x, y, yaw)
-        return ranges
+        if len(circles) > FEW_CIRCLES:
+            swept: list[float] = self._arrays.sweep(x, y, yaw, circles)
+        else:
+            swept = self._arrays.sweep(x, y, yaw)
+            sweep_circles(swept, circles, x, y, yaw, self.beams)
+        return swept
+
+
+def _near(circle: Circle, x: float, y: float, reach: float) -> bool:
+    """Whether a beam of so many metres can meet a circle."""
+    ex, ey, far = circle[0] - x, circle[1] - y, reach + circle[2]
+    return ex * ex + ey * ey < far * far
