@@ -42,10 +42,13 @@ def check_command(worlds: tuple[str, ...]) -> int:
     return code
 
 
-@command.command("show", short_help="Draw a world in the terminal, or as SVG.")
+@command.command("show", short_help="Draw a world in the terminal, or as SVG or PNG.")
 @click.argument("world")
 @click.option(
-    "--output", type=click.Path(path_type=Path), metavar="FILE.svg", help="Write a picture to FILE.svg."
+    "--output",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="Write a picture to FILE.svg or FILE.png.",
 )
 @click.option(
     "--width",
@@ -61,15 +64,31 @@ def show_command(world: str, output: Path | None, width: int) -> None:
     if output is None:
         _draw(load_world(world))
         return
-    if output.suffix.lower() != ".svg":
+    kind = output.suffix.lower()
+    if kind not in (".svg", ".png"):
         raise wrong_output(
-            f"not the name of an SVG picture: `{output}`", f"--output {output.with_suffix('.svg')}"
+            f"not the name of an SVG or PNG picture: `{output}`", f"--output {output.with_suffix('.svg')}"
         )
     check_output(output, "picture")
     from jacaros.inspector.picture import picture_svg  # here: only for pictures
     from jacaros.inspector.recording import Recording
 
-    _write(output, picture_svg(Recording(world=load_world(world).drawing()), width))
+    svg = picture_svg(Recording(world=load_world(world).drawing()), width)
+    _write(output, svg if kind == ".svg" else _png(svg))
+
+
+def _png(svg: str) -> bytes:
+    """An SVG picture as PNG."""
+    try:
+        from resvg_py import svg_to_bytes  # here: an extra, and only for PNG
+    except ImportError:
+        raise UsageError(
+            "error: resvg, which draws PNG pictures, is not installed\n  = help: pip install 'jacaros[maps]', or "
+            "--output FILE.svg"
+        ) from None
+    # The font that nearly every Linux has; elsewhere resvg's own choice is there.
+    font = "DejaVu Sans" if sys.platform == "linux" else None
+    return bytes(svg_to_bytes(svg_string=svg, background="white", sans_serif_family=font))
 
 
 @command.command("new", short_help="Write a new world file.")

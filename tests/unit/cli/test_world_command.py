@@ -1,6 +1,7 @@
 """``jacaros world``: checks, pictures, new world files and exported maps."""
 
 import re
+import sys
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -69,6 +70,22 @@ def test_a_picture_of_a_world_is_written(folder: Path, capsys: pytest.CaptureFix
     assert "living room" in (folder / "house.svg").read_text()
 
 
+def test_a_picture_of_a_world_is_written_as_png(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert outcome(capsys, "show", "house", "--output", "house.png", "--width", "300")[0] == 0
+    picture = (folder / "house.png").read_bytes()
+    assert picture.startswith(b"\x89PNG")
+    assert int.from_bytes(picture[16:20], "big") == 300
+
+
+def test_a_png_without_its_library_says_what_to_install(
+    folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "resvg_py", None)
+    code, _, errors = outcome(capsys, "show", "house", "--output", "house.png")
+    assert code == 2
+    assert "pip install 'jacaros[maps]', or --output FILE.svg" in errors
+
+
 def test_a_new_world_is_right_with_its_comments_made_part_of_it(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -112,7 +129,7 @@ def test_an_image_alone_gets_a_map_file(folder: Path, capsys: pytest.CaptureFixt
 @pytest.mark.parametrize(
     ("arguments", "code", "told"),
     [
-        (("show", "house", "--output", "h.png"), 2, "not the name of an SVG picture: `h.png`"),
+        (("show", "house", "--output", "h.gif"), 2, "not the name of an SVG or PNG picture: `h.gif`"),
         (("show", "house", "--output", "notes.svg"), 2, "not a picture, and not overwritten: `notes.svg`"),
         (("show", "nowhere"), 1, "world not found: `nowhere`"),
         (("export", "house", "h.png"), 2, "not the name of a map: `h.png`"),
