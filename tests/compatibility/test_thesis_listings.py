@@ -3,6 +3,7 @@
 import math
 import re
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -10,18 +11,28 @@ from jacaros.mas.launch import launch
 from jacaros.mas.options import RunOptions
 from jacaros.mas.system import System
 from jacaros.sim import GroundTruth
+from jacaros.sim.world_file import find_world
 from jacaros.testing import RunResult, run_project
 from jacaros.testing.paths import angle_between, distance, turns
 
 HERE = Path(__file__).parent
 
 
-def run(name: str, seconds: float) -> RunResult:
+def run(name: str, seconds: float, **options: Any) -> RunResult:
     """Run a program; nothing may be complained about."""
-    result = run_project(HERE / f"{name}.mas2j", seconds=seconds)
+    result = run_project(HERE / f"{name}.mas2j", seconds=seconds, **options)
     assert result.errors == []
     assert result.exit_code == 0
     return result
+
+
+def exact(folder: Path, world: str) -> Path:
+    """A shipped world whose wheels do not slip: the thesis's programs drive by odometry alone."""
+    text = find_world(world).read_text(encoding="utf-8")
+    assert "    odometry: {noise" in text
+    path = folder / f"{world}.yaml"
+    path.write_text(re.sub(r"    odometry: .*\n", "", text), encoding="utf-8")
+    return path
 
 
 def is_back(truth: GroundTruth) -> bool:
@@ -52,14 +63,29 @@ def test_each_robot_has_odometry_of_its_own() -> None:
     ]
 
 
-def test_out_and_back_by_time() -> None:
-    truth = run("out_and_back", 30.0).ground_truth
+def test_out_and_back_by_time(tmp_path: Path) -> None:
+    truth = run("out_and_back", 30.0, world=exact(tmp_path, "empty")).ground_truth
     assert max(sample.x for sample in truth.path()) > 1.0
     assert is_back(truth)
 
 
-def test_a_square_by_odometry() -> None:
-    truth = run("square", 40.0).ground_truth
+@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("name", ["out_and_back", "square"])
+def test_one_word_makes_a_program_robust_where_wheels_slip(name: str, seed: int, tmp_path: Path) -> None:
+    text = (HERE / f"{name}.asl").read_text(encoding="utf-8")
+    assert text.count(", [],") == 1
+    (tmp_path / f"{name}.asl").write_text(text.replace(", [],", ", [frame(map)],"), encoding="utf-8")
+    (tmp_path / f"{name}.mas2j").write_text(
+        (HERE / f"{name}.mas2j").read_text(encoding="utf-8"), encoding="utf-8"
+    )
+    result = run_project(tmp_path / f"{name}.mas2j", seconds=40.0, seed=seed)
+    assert result.errors == []
+    assert max(sample.x for sample in result.ground_truth.path()) > 0.9
+    assert is_back(result.ground_truth)
+
+
+def test_a_square_by_odometry(tmp_path: Path) -> None:
+    truth = run("square", 40.0, world=exact(tmp_path, "empty")).ground_truth
     corners = [(turn.x, turn.y) for turn in turns(truth.path())]
     for corner, wanted in zip(corners, [(1, 0), (1, 1), (0, 1), (0, 0)], strict=True):
         assert math.dist(corner, wanted) <= 0.05
@@ -75,8 +101,8 @@ def test_the_diagnoses_of_the_battery() -> None:
 
 
 @pytest.mark.slow
-def test_patrol_and_recharge() -> None:
-    result = run("patrol", 300.0)
+def test_patrol_and_recharge(tmp_path: Path) -> None:
+    result = run("patrol", 300.0, world=exact(tmp_path, "empty"))
     told = [line.removeprefix("[robot] ") for line in result.lines]
     story = re.sub(r"(side )+", "sides ", " ".join(line.replace(" ", "_") for line in told) + " ")
     cycle = (
