@@ -184,6 +184,8 @@ def _world(drawing: Any) -> dict[str, Any]:
     for robot in world.get("robots", []):
         _text(_mapping(robot)["name"])
         _number(robot.get("radius", 0.0))
+        for number in robot.get("footprint", []):
+            _number(number)
     for number in world.get("bounds", []):
         _number(number)
     return world

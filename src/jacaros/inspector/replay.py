@@ -40,6 +40,7 @@ def replay_html(recording: Recording, title: str | None = None) -> str:
 def payload(recording: Recording) -> dict[str, Any]:
     """What the page is given: whole numbers (ms, mm, mrad, tenths of a percent) as differences."""
     radii = {robot["name"]: robot.get("radius", 0.17) for robot in recording.world.get("robots", [])}
+    footprints = {robot["name"]: robot.get("footprint") for robot in recording.world.get("robots", [])}
     columns = [list(zip(*rows, strict=True)) for rows in recording.rows()]
     return {
         "world": recording.drawing,
@@ -49,6 +50,7 @@ def payload(recording: Recording) -> dict[str, Any]:
             {
                 "name": name,
                 "radius": radii[name],
+                "footprint": footprints[name],
                 "x": _differences(x, 1000),
                 "y": _differences(y, 1000),
                 "yaw": _differences(yaw, 1000),

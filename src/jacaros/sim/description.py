@@ -230,6 +230,8 @@ class ObjectDescription:
 class RobotDescription:
     """One robot: its name, the namespace of its topics ("" for none), where it starts and how it is made.
 
+    ``footprint`` is the length and width of a rectangular robot; ``radius`` is then that of the circle round it, which is
+    what others, lasers and navigation take it for.
     ``gripper_reach`` is how far from the robot's centre its gripper takes objects (metres), 0 without a gripper.
     """
 
@@ -244,6 +246,7 @@ class RobotDescription:
     navigation: NavigationSettings = NavigationSettings()
     tools: tuple[CleaningTool, ...] = ()
     gripper_reach: float = 0.0
+    footprint: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -332,7 +335,12 @@ class WorldDescription:
             ],
             "cliffs": [list(cliff) for cliff in self.cliffs],
             "robots": [
-                {"name": robot.name, "pose": list(robot.pose), "radius": robot.radius}
+                {
+                    "name": robot.name,
+                    "pose": list(robot.pose),
+                    "radius": robot.radius,
+                    **({"footprint": list(robot.footprint)} if robot.footprint is not None else {}),
+                }
                 for robot in self.robots
             ],
             "objects": [

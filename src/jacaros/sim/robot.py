@@ -5,7 +5,7 @@ from collections.abc import Callable
 from collections.abc import Set as AbstractSet
 from typing import Any
 
-from jacaros.sim.contact import WallIndex, push_out
+from jacaros.sim.contact import WallIndex, push_out, push_out_rectangle
 from jacaros.sim.description import BatterySettings, Dock, Pose, Rectangle, RobotDescription
 from jacaros.sim.ground_truth import Sample
 from jacaros.sim.motion import Odometry, advance, ramp
@@ -168,7 +168,11 @@ class Robot:
         near = walls.near(self.x, self.y)
         if not near:
             return False
-        x, y, towards = push_out(self.x, self.y, self.description.radius, near)
+        if self.description.footprint is None:
+            x, y, towards = push_out(self.x, self.y, self.description.radius, near)
+        else:
+            length, width = self.description.footprint
+            x, y, towards = push_out_rectangle(self.pose, 0.5 * length, 0.5 * width, near)
         if towards is None:
             return False
         self._touched[WALL] = self.side(*towards)

@@ -6,7 +6,7 @@ Every key may be left out; these are the defaults, but for the errors of odometr
       kind: turtlebot               # or turtlebot2, turtlebot3, turtlebot4: other defaults, see `jacaros.sim.robot_kinds`
       namespace: ""                 # prefix of the topics
       pose: {x: 0, y: 0, yaw_degrees: 0}
-      radius: 0.17
+      radius: 0.17                  # or footprint: [length, width], a rectangle
       limits: {speed: 0.65, turn_rate_degrees: 180, acceleration: 0.8, turn_acceleration_degrees: 286.5,
                command_timeout: 0.5}
       battery: {level: 100, drain_per_second: 0.01, drain_per_metre: 0.02, drain_per_turn: 0,
@@ -51,6 +51,7 @@ def read_robot(node: Node) -> RobotDescription:
         "namespace",
         "pose",
         "radius",
+        "footprint",
         "limits",
         "battery",
         "odometry",
@@ -60,11 +61,15 @@ def read_robot(node: Node) -> RobotDescription:
         "gripper",
     )
     usual = KINDS[entries["kind"].choice(*KINDS)] if "kind" in entries else KINDS[USUAL]
+    footprint = _footprint(entries["footprint"]) if "footprint" in entries else None
+    if footprint is not None and "radius" in entries:
+        entries["radius"].wrong("'radius' and 'footprint' say the same thing", "leave one of them out")
     return RobotDescription(
         name=entries["name"].text() if "name" in entries else "turtlebot",
         namespace=_namespace(entries.get("namespace")),
         pose=_pose(entries.get("pose")),
-        radius=entries["radius"].number(0.02, 2.0, usual.radius) if "radius" in entries else usual.radius,
+        radius=_radius(entries.get("radius"), footprint, usual.radius),
+        footprint=footprint,
         limits=_limits(entries.get("limits"), usual.limits),
         battery=_battery(entries.get("battery")),
         odometry=_odometry(entries.get("odometry")),
@@ -75,6 +80,22 @@ def read_robot(node: Node) -> RobotDescription:
         if "tools" in entries
         else (),
     )
+
+
+def _footprint(node: Node) -> tuple[float, float]:
+    length, width = node.pair()
+    if not (0.04 <= length <= 4.0 and 0.04 <= width <= 4.0):
+        node.wrong("a footprint is from 0.04 to 4 m long and wide", "write [length, width], in metres")
+        return 0.34, 0.34
+    return length, width
+
+
+def _radius(node: Node | None, footprint: tuple[float, float] | None, usual: float) -> float:
+    """That of the circle round a rectangular footprint, if there is one."""
+    if footprint is not None:
+        length, width = footprint
+        return 0.5 * math.sqrt(length * length + width * width)
+    return node.number(0.02, 2.0, usual) if node is not None else usual
 
 
 def read_pose(entries: dict[str, Node]) -> Pose:

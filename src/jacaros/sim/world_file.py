@@ -37,6 +37,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from jacaros.sim.box_file import read_box
+from jacaros.sim.contact import WallIndex, push_out_rectangle
 from jacaros.sim.description import (
     Dock,
     Door,
@@ -239,8 +240,20 @@ def _check_places(items: list[Node], world: WorldDescription, walled: bool) -> N
             item.wrong(f"{where}, inside of a box", cure)
         elif any(cliff.contains(x, y) for cliff in world.cliffs):
             item.wrong(f"{where}, over a cliff", cure)
-        elif near < robot.radius - _TOUCHING:
+        elif robot.footprint is not None and _is_in_wall(robot, (*world.segments, *closed)):
+            length, width = robot.footprint
+            item.wrong(f"{where}, in a wall, with a footprint of {length:g} x {width:g} m", cure)
+        elif robot.footprint is None and near < robot.radius - _TOUCHING:
             item.wrong(f"{where}, in a wall: {near:.2f} m from it, with a radius of {robot.radius:g} m", cure)
+
+
+def _is_in_wall(robot: RobotDescription, segments: Iterable[Segment]) -> bool:
+    """Whether a rectangular robot would be pushed by more than is lost in rounding."""
+    assert robot.footprint is not None
+    length, width = robot.footprint
+    walls = WallIndex(segments, robot.radius).near(robot.pose.x, robot.pose.y)
+    x, y, _ = push_out_rectangle(robot.pose, 0.5 * length, 0.5 * width, walls)
+    return math.dist((x, y), robot.pose[:2]) > _TOUCHING
 
 
 def _map(node: Node, folder: Path) -> OccupancyMap | None:

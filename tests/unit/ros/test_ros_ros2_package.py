@@ -40,6 +40,14 @@ def test_types_of_ros_1_alone_are_not_in_it() -> None:
     assert origin("action", "MoveBase") is None
 
 
+def test_rosidl_takes_the_names_of_all_types() -> None:
+    """One that it refuses lets the whole package fail to build."""
+    wrong = [
+        found.name for found in look_alikes().values() if not re.fullmatch(r"[A-Z][A-Za-z0-9]*", found.name)
+    ]
+    assert wrong == []
+
+
 def test_the_manifest_names_what_the_definitions_need(tmp_path: Path) -> None:
     manifest = ElementTree.parse(write_package(tmp_path) / "package.xml").getroot()
     depends = {element.text for element in manifest.findall("depend")}

@@ -36,7 +36,7 @@ COMMON = frozenset(
     }
 )
 """Packages that every ROS 2 has; their definitions are here for the backends that have no packages."""
-ROS1_ONLY = frozenset({"kobuki_msgs", "move_base_msgs"})
+ROS1_ONLY = frozenset({"kobuki_msgs", "move_base_msgs", "perception_msgs"})
 """Packages of robots and stacks that stayed with ROS 1: nobody in a ROS 2 graph has these types."""
 OWN_NAME = frozenset({"tf2_msgs"})
 """Packages that are built under their own name."""
