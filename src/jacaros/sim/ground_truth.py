@@ -136,7 +136,7 @@ class GroundTruth:
             self.dirt[event.data["room"], event.data["dirt"]] = event.data["grams"]
         self._forget(self.events)
         if self._listeners:
-            self._tell({**event._asdict(), "kind": "event", "event": event.kind})
+            self._tell(event_record(event))
 
     def record_sample(self, robot: str, sample: Sample) -> None:
         """Add a point to the path of *robot*."""
@@ -206,6 +206,11 @@ def _records(path: str | Path) -> list[Record]:
             if number < len(lines) and not line.startswith("{"):
                 raise
     return records
+
+
+def event_record(event: Event) -> Record:
+    """The record of an event."""
+    return {**event._asdict(), "kind": "event", "event": event.kind}
 
 
 def header(world: Record, seed: int, epoch: float) -> Record:

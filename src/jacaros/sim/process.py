@@ -15,7 +15,7 @@ from jacaros.clock import Clock, Timer
 from jacaros.output import Output
 from jacaros.ros.backend import Backend
 from jacaros.ros.message import stamp
-from jacaros.sim.ground_truth import Record, header
+from jacaros.sim.ground_truth import Record, event_record, header
 from jacaros.sim.node import SimNode
 from jacaros.sim.world import World
 
@@ -49,6 +49,8 @@ class GroundTruthFile:
         self._write(header(truth.world, world.description.seed, epoch))
         for robot in truth.robots:
             self._write({"kind": "sample", "robot": robot, **truth.latest(robot)._asdict()})
+        for event in truth.events:  # faults that are there from the beginning
+            self._write(event_record(event))
         self._stop_listening = truth.listen(self._write)
 
     def _write(self, record: Record) -> None:

@@ -4,6 +4,7 @@ import hashlib
 import json
 import math
 from collections.abc import Awaitable, Callable
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -12,7 +13,8 @@ from jacaros.clock import VirtualClock, run
 from jacaros.errors import UsageError
 from jacaros.ros.backend import Backend
 from jacaros.ros.open import open_backend
-from jacaros.sim import SimNode, World
+from jacaros.sim import GroundTruth, SimNode, World
+from jacaros.sim.process import GroundTruthFile
 
 WORLD = """
 name: faulty
@@ -266,3 +268,11 @@ def test_a_kidnapped_robot_is_lost_until_it_is_told_its_place() -> None:
         assert backend.tf_lookup("map", "base_link").translation[:2] == pytest.approx((1, -2), abs=0.01)
 
     in_graph("{kind: kidnapped_robot, to: {x: 1, y: -2}, at: 1}", body)
+
+
+def test_a_fault_from_the_beginning_is_in_the_file(tmp_path: Path) -> None:
+    world, path = world_with("{kind: blocked_wheel, at: 0}"), tmp_path / "truth.jsonl"
+    with GroundTruthFile(path, world, 0.0):
+        world.run(1.0)
+    [event] = GroundTruth.read(path).events_of("fault")
+    assert (event.time, event.data["state"]) == (0.0, "begins")
