@@ -5,7 +5,7 @@ from functools import partial
 from typing import Any, ClassVar
 
 from jacaros.artifacts.kit.faults import Header
-from jacaros.artifacts.kit.options import not_negative, number, one_of, positive, text
+from jacaros.artifacts.kit.options import not_negative, number, one_of, positive, text, yes_or_no
 from jacaros.artifacts.kit.reading import Reading, ReadingPolicy
 from jacaros.artifacts.map.cells import Cell, LabelledCells
 from jacaros.artifacts.map.frontiers import around, frontier, nearest
@@ -66,6 +66,8 @@ class ArtMap(ArtSlamData):
         view(R): show obstacles up to R metres from the robot as ``pos2d(obstacle, X, Y)``, whenever the robot comes to
             another cell; 0, the default, leaves that to `getVisionRange`.
         robots(Names): show other robots on the same map by their ``/NAME/amcl_pose``.
+        things(true): show things that are recognised, on ``/jason/perception`` as `ArtPerception` has it: the texts are
+            name, metres ahead, and metres to the left.  A thing stays where it was seen last.
         scan_topic(T), odometry_topic(T), map_topic(T), amcl_topic(T): other topics.
     """
 
@@ -77,6 +79,7 @@ class ArtMap(ArtSlamData):
         "leg": positive,
         "view": not_negative,
         "robots": names,
+        "things": yes_or_no,
         "scan_topic": text,
         "odometry_topic": text,
         "map_topic": text,
@@ -126,6 +129,8 @@ class ArtMap(ArtSlamData):
         self.subscription(topic, ODOMETRY, odometer.take, SENSOR_DATA)
         if pose_from == "amcl":
             self.subscription(self._text("amcl_topic", "amcl_pose"), AMCL_POSE, self._take_pose, LATCHED)
+        if self.options.get("things", False):
+            self.subscription("jason/perception", "perception_msgs/msg/perception", self._take_things)
         others = self.options.get("robots", ())
         assert isinstance(others, tuple)
         for name in others:
@@ -163,6 +168,19 @@ class ArtMap(ArtSlamData):
     def _take_other(self, name: str, sample: Sample) -> None:
         pose = _pose(sample.message)
         self.start(self.update_object, name, *self._seen.cell_at(pose.x, pose.y), cause=sample.cause)
+
+    def _take_things(self, sample: Sample) -> None:
+        pose = self._mapper.localisation.pose
+        if pose is None:
+            return
+        for recognised in sample.message.perception:
+            name, *place = str(recognised).split(",")
+            try:
+                ahead, left = float(place[0]), float(place[1])
+                cell = self._seen.cell_at(*point_ahead(pose, ahead, left))
+            except (ValueError, IndexError, OverflowError):
+                continue  # a text of another form
+            self.start(self.update_object, name.strip(), *cell, cause=sample.cause)
 
     def _locate(self, sample: Sample) -> None:
         """Note where the robot is; what agents perceive follows if it has come to another cell."""
@@ -233,6 +251,12 @@ class ArtMap(ArtSlamData):
         """Match scans with the map that is there now."""
         self._done.clear()
         self._mapper.begin_with(self.cells.blocked())
+
+
+def point_ahead(pose: Pose, ahead: float, left: float) -> tuple[float, float]:
+    """The point that a robot at *pose* has so many metres ahead and to its left."""
+    cosine, sine = math.cos(pose.heading), math.sin(pose.heading)
+    return pose.x + ahead * cosine - left * sine, pose.y + ahead * sine + left * cosine
 
 
 def _pose(message: Any) -> Pose:

@@ -70,6 +70,33 @@ def test_the_robot_and_the_obstacles_in_view_are_followed() -> None:
     in_lab(body, WALLED)
 
 
+def test_things_that_are_recognised_are_on_the_map_where_they_were_seen_last() -> None:
+    async def body(lab: Lab) -> None:
+        artifact = await lab.make(ArtMap, option("things", True))
+        wheels = await lab.make(ArtCmdVelAndOdometry)
+        watcher = lab.watch(artifact)
+        await lab.sleep(1)
+        assert placed(watcher, "cup") == {(15, 3)}
+        await lab.do(wheels, "rotate", 180)
+        await lab.sleep(1)
+        assert placed(watcher, "cup") == {(15, 3)}
+
+    in_lab(body, WALLED + "objects:\n  - {name: cup, x: 1.5, y: 0.3}\n")
+
+
+def test_percepts_of_another_form_are_left_out() -> None:
+    async def body(lab: Lab) -> None:
+        watcher = lab.watch(await lab.make(ArtMap, option("things", True)))
+        publisher = lab.backend.publisher("/jason/perception", "perception_msgs/msg/perception")
+        await lab.sleep(0.5)
+        publisher.publish(publisher.message(perception=["hello", "a,b,c", "ball,1.0,0.0", "far,inf,0"]))
+        await lab.sleep(0.5)
+        assert placed(watcher, "ball") == {(10, 0)}
+        assert {v[0] for v in watcher.holds("pos2d") if len(v) == 3} == {"me", "ball"}
+
+    in_lab(body, WALLED)
+
+
 def placed(watcher: Watcher, thing: str) -> set[tuple[object, object]]:
     return {(v[1], v[2]) for v in watcher.holds("pos2d") if len(v) == 3 and v[0] == thing}
 
