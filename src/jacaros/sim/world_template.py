@@ -25,6 +25,7 @@ docks:
 robots:
   - name: turtlebot
     pose: {{x: -2, y: 0, yaw_degrees: 0}}
+    odometry: {{noise_per_metre: 0.02, noise_degrees_per_turn: 2}}   # wheels slip; without this they never do
     # namespace: robot_1                      # prefix of its topics; several robots need different ones
     # battery: {{level: 100, drain_per_second: 0.01, drain_per_metre: 0.02}}
     # tools: {{vacuum: {{removes: [dust]}}}}        # cleaning tools, see /cleaning/tool
@@ -43,6 +44,7 @@ docks:
 robots:
   - name: turtlebot
     pose: {{x: {x}, y: {y}, yaw_degrees: 0}}
+    odometry: {{noise_per_metre: 0.02, noise_degrees_per_turn: 2}}   # wheels slip; without this they never do
 """
 
 
