@@ -23,7 +23,7 @@ ls -l "$root"/runs/dist
 import pathlib, sys, zipfile
 root, wheel = pathlib.Path(sys.argv[1]) / "src", sys.argv[2]
 packed = set(zipfile.ZipFile(wheel).namelist())
-files = {p.relative_to(root).as_posix() for p in (root / "jacaros").rglob("*") if p.is_file() and p.suffix != ".pyc" and p.name != "ruff.toml"}
+files = {p.relative_to(root).as_posix() for p in (root / "jacaros").rglob("*") if p.is_file() and p.suffix != ".pyc" and p.name != "ruff.toml" and "/." not in p.relative_to(root).as_posix()}
 missing = sorted(files - packed)
 sys.exit(f"not in the wheel: {', '.join(missing)}" if missing else 0)
 PY
