@@ -2,14 +2,11 @@
 
 import sys
 from collections.abc import Callable
-from functools import partial
 from pathlib import Path
 from types import TracebackType
 
 from jacaros.cli.outputs import Outputs
 from jacaros.errors import UsageError
-from jacaros.inspector.cause_news import CauseNews
-from jacaros.inspector.goal_news import GoalNews
 from jacaros.inspector.recorder import Recorder
 from jacaros.inspector.recording import Recording
 from jacaros.inspector.replay import write_replay
@@ -59,9 +56,6 @@ class Watching:
             watchers.append(self._view)
         self._watch = watch_of(mas, watchers, world)
         self._watch.start()
-        GoalNews(partial(self._watch.event, "goal")).listen_to_all(mas.directory)
-        if self._outputs.record is not None:
-            CauseNews(mas.clock, self._watch.beginning, self._watch.event).listen_to(mas)
 
     def print(self, agent: str, text: str) -> None:
         """Show a line of an agent's output; a view that draws on the terminal shows it itself."""

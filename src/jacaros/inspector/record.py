@@ -2,11 +2,8 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from functools import partial
 from pathlib import Path
 
-from jacaros.inspector.cause_news import CauseNews
-from jacaros.inspector.goal_news import GoalNews
 from jacaros.inspector.recorder import Recorder
 from jacaros.inspector.recording import Recording
 from jacaros.inspector.replay import write_replay
@@ -42,14 +39,11 @@ def record(
     recorder = Recorder(path, keep, lambda text: mas.system.console.log(f"warning: {text}", "warning"))
     watch = watch_of(mas.system, [recorder], mas.world)
     watch.start()
-    news = GoalNews(partial(watch.event, "goal"))
-    causes = CauseNews(mas.system.clock, watch.beginning, watch.event)
-    ends = mas.on_print(watch.text), news.listen_to_all(mas.system.directory), causes.listen_to(mas.system)
+    end_prints = mas.on_print(watch.text)
     try:
         yield recorder.recording if keep else None
     finally:
-        for end in ends:
-            end()
+        end_prints()
         watch.stop()
         recorder.close()
     if replay is not None:

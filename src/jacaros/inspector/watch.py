@@ -1,12 +1,11 @@
 """Looks at a running world ten times a second of the run's clock, for a recorder and a view."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, Protocol
 
 from jacaros.clock import Clock, Timer
 from jacaros.inspector.scene import RobotView, Scene
-from jacaros.sim import GroundTruth
-from jacaros.sim.ground_truth import Record
+from jacaros.mas.history import History
 
 PERIOD = 0.1
 
@@ -28,15 +27,15 @@ class Watcher(Protocol):
 
 
 class Watch:
-    """Feeds watchers with frames and events of a world, and passes on prints and goals of agents.
+    """Feeds watchers with frames of a world, with prints of agents, and with the history of the run.
 
     It reads only: a run is the same with and without it.
 
     Args:
-        clock: the run's clock; ``t`` counts from now.
+        clock: the run's clock; ``t`` counts from the beginning of the history, without one from now.
         watchers: who is told.
         scene: the world that is looked at, None when there is none; it is closed at the end.
-        truth: whose events are passed on, None when nobody knows what truly happens.
+        history: whose records are passed on while the watch is on, None for none.
     """
 
     def __init__(
@@ -44,20 +43,26 @@ class Watch:
         clock: Clock,
         watchers: list[Watcher],
         scene: Scene | None = None,
-        truth: GroundTruth | None = None,
+        history: History | None = None,
     ) -> None:
         self.clock, self.watchers = clock, watchers
-        self.beginning = clock.now()
+        self.beginning = history.beginning if history is not None else clock.now()
         self._scene = scene
         self._drawing: Mapping[str, Any] | None = None
         self._timer: Timer | None = None
-        self._stop_listening = truth.listen(self._listen) if truth is not None else None
+        self._history = history
+        self._stop_listening: Callable[[], None] | None = None
 
     def start(self) -> None:
         """Begin to look."""
         self._drawing = self._scene.drawing() if self._scene is not None else None
         self._show_world(self._drawing or {})
         self._look()
+        if self._history is not None:
+            for happening in self._history.all():
+                self.event(*happening)
+            self._stop_listening = self._history.listen(self.event)
+            self._history.start()
 
     def _show_world(self, drawing: Mapping[str, Any]) -> None:
         for watcher in self.watchers:
@@ -88,14 +93,10 @@ class Watch:
         for watcher in self.watchers:
             watcher.text(self.t(), agent, text)
 
-    def event(self, kind: str, data: Mapping[str, Any]) -> None:
-        """Pass on something that happened now, such as ``goal``."""
+    def event(self, t: float, kind: str, data: Mapping[str, Any]) -> None:
+        """Pass on something that happened, such as ``goal``."""
         for watcher in self.watchers:
-            watcher.event(self.t(), kind, data)
-
-    def _listen(self, record: Record) -> None:
-        if record["kind"] == "event":
-            self.event(record["event"], {"robot": record["robot"], **record["data"]})
+            watcher.event(t, kind, data)
 
     def stop(self) -> None:
         """Look once more and then no more; watchers are closed by who made them."""
@@ -105,6 +106,7 @@ class Watch:
             self._frame()
             if self._scene is not None:
                 self._scene.close()
-        if self._stop_listening is not None:
+        if self._stop_listening is not None and self._history is not None:
+            self._history.stop()
             self._stop_listening()
             self._stop_listening = None

@@ -8,12 +8,15 @@ from jacaros.sim import World
 
 def watch_of(mas: System, watchers: list[Watcher], world: World | None = None) -> Watch:
     """Make the watch of a system that has been started; *world* is its embedded world, if it has one."""
-    if world is not None:
-        return Watch(mas.clock, watchers, EmbeddedScene(world), world.ground_truth)
-    scene: Scene | None = None
-    backend = mas.ros.joined
-    if backend is not None and backend.name != "memory":
-        from jacaros.inspector.graph_scene import GraphScene  # here: only for runs on a real graph
+    return Watch(mas.clock, watchers, _scene_of(mas, world), mas.history())
 
-        scene = GraphScene(backend, mas.clock, mas.deployment.name)
-    return Watch(mas.clock, watchers, scene)
+
+def _scene_of(mas: System, world: World | None) -> Scene | None:
+    if world is not None:
+        return EmbeddedScene(world)
+    backend = mas.ros.joined
+    if backend is None or backend.name == "memory":
+        return None
+    from jacaros.inspector.graph_scene import GraphScene  # here: only for runs on a real graph
+
+    return GraphScene(backend, mas.clock, mas.deployment.name)

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from jacaros.env.environment import Environment
     from jacaros.mas.diagnostics import Diagnostics
     from jacaros.mas.environment import RunEnvironment
+    from jacaros.mas.history.history import History
     from jacaros.trace import Tracer
 
 
@@ -88,6 +89,7 @@ class System:
         self.idleness.turns = self.scheduler
         self._run_environment: RunEnvironment | None = None
         self._tracer: Tracer | None = None
+        self._history: History | None = None
         self._diagnostics: Diagnostics | None = None
         self.ros = self._find_graph()
         self._modules = ProjectModules(deployment.base_path, *deployment.source_paths)
@@ -181,6 +183,14 @@ class System:
         self.ros.trace(tracer)
         if self._run_environment is not None:
             self._run_environment.environment.tracer = tracer
+
+    def history(self) -> "History":
+        """What happens in the run, for recordings, views and explanations; made when it is first asked for."""
+        if self._history is None:
+            from jacaros.mas.history.history import History  # here: most runs are not observed
+
+            self._history = History(self)
+        return self._history
 
     # ---- the start
 
@@ -295,6 +305,8 @@ class System:
         self.idleness.stop()
         for host in self.directory:
             host.halt()
+        if self._history is not None:
+            self._history.run_ended(exit_code)
         if self._ended is not None and not self._ended.done():
             self._ended.set_result(exit_code)
 

@@ -12,7 +12,7 @@ from jacaros.bdi.rules.meta_events import failed_number, observe_goals
 from jacaros.bdi.state.act import Act, Completion
 from jacaros.bdi.state.event import EVENT_ANNOTATIONS, EVENT_GOAL
 from jacaros.bdi.state.intention import ANNOTATIONS, GOAL, SERIAL
-from jacaros.inspector.goal_news import GoalNews
+from jacaros.mas.history.goals import GoalRecords
 
 CASES = Path(__file__).parents[2] / "conformance"
 BEGUN = ("pursued", "suspended", "resumed")
@@ -37,7 +37,7 @@ def test_an_observer_hears_of_every_change_of_a_goal() -> None:
 def goals_at_the_end(program):
     """The last text and state of each goal of a program, by number."""
     host, last = mind(program), {}
-    news = GoalNews(lambda goal: last.update({goal["id"]: f"{goal['state']} {goal['goal']}"}))
+    news = GoalRecords(lambda goal: last.update({goal["id"]: f"{goal['state']} {goal['goal']}"}))
     observe_goals(host.agent, lambda *change: news("bob", *change))
     host.run()
     return list(last.values())
@@ -106,7 +106,7 @@ class Watched:
     def __init__(self, program, **arguments):
         self.host = mind(program, **arguments)
         self._ends, self._last = Counter(), {}
-        self._news = GoalNews(self._hear)
+        self._news = GoalRecords(self._hear)
         observe_goals(self.host.agent, lambda *change: self._news("bob", *change))
 
     def _hear(self, goal):

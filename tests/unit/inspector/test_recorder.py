@@ -166,7 +166,7 @@ def watched_run() -> tuple[Recorder, World]:
         await backend.start()
         node = SimNode(world, backend, clock)
         node.start()
-        watch = Watch(clock, [recorder], EmbeddedScene(world), world.ground_truth)
+        watch = Watch(clock, [recorder], EmbeddedScene(world))
         watch.start()
         publisher = backend.publisher("/cmd_vel", "geometry_msgs/msg/Twist")
         for _ in range(20):
@@ -183,15 +183,12 @@ def watched_run() -> tuple[Recorder, World]:
     return recorder, world
 
 
-def test_a_watch_records_frames_prints_and_events_of_the_world() -> None:
+def test_a_watch_records_frames_and_prints() -> None:
     recorder, world = watched_run()
     recording = recorder.recording
     assert recording.frames[0].t == 0.0
     assert recording.frames[-1].robots[0][0] == pytest.approx(world.robot().x, abs=1e-4)
     assert recording.texts == [(pytest.approx(2.0), "cleaner", "here I am")]
-    kinds = {kind for _, kind, _ in recording.events}
-    assert "command_timeout" in kinds
-    assert all(data["robot"] == "turtlebot" for _, _, data in recording.events)
 
 
 def test_a_watched_run_is_the_same_as_an_unwatched_one() -> None:

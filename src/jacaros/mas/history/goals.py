@@ -1,4 +1,4 @@
-"""What watchers of a run are told of the agents' goals: each change once, and goals by numbers of their own."""
+"""Records of the agents' goals: each change once, and goals by numbers of their own."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -21,11 +21,13 @@ _AT_WORK = ("pursued", "resumed")
 @dataclass(slots=True)
 class _Goal:
     number: int
-    state: str
+    state: str = ""
+    text: str = ""
+    intention: int = 0
 
 
-class GoalNews:
-    """Tells watchers of goals, from what minds tell of them, and of the work of agents written in Python.
+class GoalRecords:
+    """Records the goals of minds, and the work of agents written in Python.
 
     Goals are numbered in the order in which they begin: the numbers are the same in each run with one seed.
 
@@ -87,21 +89,26 @@ class GoalNews:
             # What is told of a goal that is over is no news, nor is the end of one that nobody saw begin.
             if state not in _OPEN and (state != "failed" or which <= self._newest.get(agent, 0)):
                 return
-            known = self._goals[agent, which] = _Goal(next(self._numbers), "")
+            known = self._goals[agent, which] = _Goal(next(self._numbers))
             self._newest[agent] = max(which, self._newest.get(agent, 0))
         is_news = known.state != shown and not (known.state in _AT_WORK and shown in _AT_WORK)
-        known.state = shown
+        known.state, known.text, known.intention = shown, goal, intention
         if is_news:
             told = {"agent": agent, "goal": goal, "state": shown, "id": known.number, "intention": intention}
             self._tell({**told, "why": why} if why else told)
         if state in _OVER:
             del self._goals[agent, which]
 
+    def drop_all(self) -> None:
+        """Record that all goals are dropped that are still open."""
+        for (agent, which), goal in list(self._goals.items()):
+            self.take(agent, "finished", goal.text, which, goal.intention)
+
 
 class _Work:
     """Numbers what one agent written in Python works at."""
 
-    def __init__(self, news: GoalNews, agent: str) -> None:
+    def __init__(self, news: GoalRecords, agent: str) -> None:
         self._news, self._agent = news, agent
         self._numbers = count(1)
         self._at_work: dict[object, int] = {}

@@ -2,14 +2,16 @@
 
 import pytest
 
-from jacaros.inspector.goal_news import GoalNews
+from jacaros.mas.history.goals import GoalRecords
 
 
 @pytest.fixture
 def told():
     """What was told, as ``id state goal``; called with what a mind tells."""
     lines = []
-    news = GoalNews(lambda goal: lines.append(f"{goal['id']} {goal['agent']} {goal['state']} {goal['goal']}"))
+    news = GoalRecords(
+        lambda goal: lines.append(f"{goal['id']} {goal['agent']} {goal['state']} {goal['goal']}")
+    )
 
     def hear(*states, agent="bob", goal="!patrol", number=139_867):
         for state in states:
@@ -63,7 +65,7 @@ def test_the_end_of_a_goal_is_told_once(told):
 
 def test_why_a_goal_failed_is_told():
     told = []
-    news = GoalNews(told.append)
+    news = GoalRecords(told.append)
     news("bob", "executing", "!patrol", 1, 1)
     news("bob", "failed", "!patrol", 1, 1, "no way")
     assert ["why" in each for each in told] == [False, True]

@@ -1,17 +1,16 @@
-"""What led to the acts of a run: tells a recorder, of all causes, those that an agent acted for."""
+"""Records of causes: those that an agent acted for, of all that arise."""
 
 from collections.abc import Callable, Mapping
 from typing import Any
 
 from jacaros.clock import Clock
-from jacaros.mas.system import System
-from jacaros.trace import Cause
+from jacaros.trace import Cause, Tracer
 
 KEPT = 10_000
 """Causes that are remembered until an act needs them; most sensor messages lead to nothing."""
 
 
-class CauseNews:
+class CauseRecords:
     """Numbers the causes of a run, and tells the chain of each act once: message, operation, property, act.
 
     A cause is told as ``cause``, with its ``id``, that of its ``parent`` (0: none), ``kind``, ``what``, and ``at``, when it
@@ -30,10 +29,10 @@ class CauseNews:
         self._last = 0
         self._untold: dict[int, tuple[Cause, float]] = {}
 
-    def listen_to(self, mas: System) -> Callable[[], None]:
-        """Be the tracer of a system; gives what ends it."""
-        mas.trace(self)
-        return lambda: mas.trace(None)
+    def listen_to(self, trace: Callable[[Tracer | None], None]) -> Callable[[], None]:
+        """Be the tracer of a system, which *trace* sets; gives what ends it."""
+        trace(self)
+        return lambda: trace(None)
 
     def link(self, kind: str, what: str, parent: Cause | None = None) -> Cause:
         """Make the next link of a chain, see `jacaros.trace.Tracer`."""

@@ -1,0 +1,153 @@
+"""The history of a run: what happens in its agents and around them, as records of plain data."""
+
+from collections import deque
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+
+from jacaros.clock import Clock
+from jacaros.mas.agent_host import AgentHost
+from jacaros.mas.directory import Directory
+from jacaros.mas.history.causes import CauseRecords
+from jacaros.mas.history.goals import GoalRecords
+from jacaros.mas.ros_graph import RosGraph
+from jacaros.trace import Tracer
+
+if TYPE_CHECKING:
+    from jacaros.sim.ground_truth import Record
+
+KEPT = 50_000
+"""Records that are kept; older ones are forgotten."""
+
+
+class Happening(NamedTuple):
+    """One record.
+
+    Attributes:
+        t: seconds of the run's clock since the history's `History.beginning`.
+        event: its kind, see ``docs/reference/recordings.md``.
+        data: plain JSON data; nobody changes it.
+    """
+
+    t: float
+    event: str
+    data: Mapping[str, Any]
+
+
+Listener = Callable[[float, str, Mapping[str, Any]], None]
+"""Takes ``t``, ``event`` and ``data`` of a record, see `Happening`."""
+
+_LASTING: Mapping[str, tuple[str, ...]] = {
+    "run": (),
+    "source": ("file",),
+    "agent": ("agent",),
+    "program": ("agent",),
+    "artifact": ("artifact",),
+}
+"""Records that describe what is there: the newest of each is kept while it is there, by these fields of it."""
+
+
+class ObservedSystem(Protocol):
+    """A running system as its history sees it (`jacaros.mas.system.System`)."""
+
+    clock: Clock
+    directory: Directory[AgentHost]
+    ros: RosGraph
+
+    def trace(self, tracer: Tracer | None) -> None:
+        """Have *tracer* make the causes; None ends it."""
+
+
+class History:
+    """Observes a running system from `start` to `stop`, keeps records of what happens, and passes them to listeners.
+
+    It costs nothing while it is not started.  A run is the same with and without it.
+
+    Args:
+        system: the system; it has been started before `start` is called.
+        kept: number of records that are kept.
+
+    Attributes:
+        beginning: the time of the run's clock from which ``t`` counts.
+        events: the newest records, oldest first.
+    """
+
+    def __init__(self, system: ObservedSystem, kept: int = KEPT) -> None:
+        self._system = system
+        self.beginning = system.clock.now()
+        self.events: deque[Happening] = deque(maxlen=kept)
+        self._lasting: dict[tuple[object, ...], Happening] = {}
+        self._listeners: tuple[Listener, ...] = ()
+        self._ends: list[Callable[[], None]] = []
+        self._starts = 0
+        self._goals = GoalRecords(lambda goal: self.record("goal", goal))
+
+    def listen(self, listener: Listener) -> Callable[[], None]:
+        """Have *listener* called with every record from now on; gives what ends that."""
+        self._listeners = (*self._listeners, listener)
+
+        def end() -> None:
+            self._listeners = tuple(each for each in self._listeners if each is not listener)
+
+        return end
+
+    def start(self) -> None:
+        """Begin to observe; each `start` needs a `stop`, and the last `stop` ends the observation."""
+        self._starts += 1
+        if self._starts > 1:
+            return
+        causes = CauseRecords(self._system.clock, self.beginning, self.record)
+        self._ends += [
+            causes.listen_to(self._system.trace),
+            self._goals.listen_to_all(self._system.directory),
+            self._observe_world(),
+        ]
+
+    def stop(self) -> None:
+        """End the observation, unless somebody else has started it, too; what was recorded is kept."""
+        self._starts = max(0, self._starts - 1)
+        if not self._starts:
+            while self._ends:
+                self._ends.pop()()
+
+    def run_ended(self, code: int) -> None:
+        """Take note of the end of the run: goals that are open are dropped."""
+        if self._starts:
+            self._goals.drop_all()
+            self.record("ended", {"code": code})
+
+    def t(self) -> float:
+        """Seconds since the beginning, in milliseconds."""
+        return round(self._system.clock.now() - self.beginning, 3)
+
+    def record(self, event: str, data: Mapping[str, Any]) -> None:
+        """Keep a record of something that happened now, and pass it to the listeners."""
+        happening = Happening(self.t(), event, data)
+        if len(self.events) == self.events.maxlen:
+            self._keep(self.events[0])
+        self.events.append(happening)
+        for listener in self._listeners:
+            listener(*happening)
+
+    def _keep(self, forgotten: Happening) -> None:
+        event, data = forgotten.event, forgotten.data
+        fields = _LASTING.get(event)
+        if fields is None:
+            return
+        key = tuple(data.get(field) for field in fields)
+        if data.get("state") in ("ended", "disposed"):
+            for each in ("agent", "program", "artifact"):
+                self._lasting.pop((each, *key), None)
+        else:
+            self._lasting[event, *key] = forgotten
+
+    def all(self) -> list[Happening]:
+        """The records a newcomer needs: what describes agents, programs and artifacts, and the newest `events`."""
+        return [*self._lasting.values(), *self.events]
+
+    def _observe_world(self) -> Callable[[], None]:
+        world = self._system.ros.world
+        return world.ground_truth.listen(self._hear_world) if world is not None else lambda: None
+
+    def _hear_world(self, record: "Record") -> None:
+        if record["kind"] == "event":
+            self.record(record["event"], {"robot": record["robot"], **record["data"]})
