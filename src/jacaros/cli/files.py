@@ -31,3 +31,23 @@ def existing(path: Path, kinds: tuple[str, ...] = _KINDS) -> Path:
     if path.suffix not in kinds:
         raise UsageError(f"{path} is no {', '.join(kinds)} file")
     return path
+
+
+def existing_recording(path: Path) -> Path:
+    """*path*, which must be a file; recordings may have any name.
+
+    Raises:
+        UsageError: it does not exist or is a folder; with the names of similar files beside it.
+    """
+    if path.is_dir():
+        raise UsageError(f"error: `{path}` is a folder\n  = help: name a recording in it")
+    if not is_file(path):
+        beside = [each.name for each in path.parent.glob("*.*") if _RECORDINGS.intersection(each.suffixes)]
+        near = difflib.get_close_matches(path.name, beside, n=1)
+        cure = f"did you mean `{path.parent / near[0]}`?" if near else f"jacaros run FILE --record {path}"
+        raise UsageError(f"error: recording not found: `{path}`\n  = help: {cure}")
+    return path
+
+
+_RECORDINGS = {".jsonl", ".mcap"}
+"""Suffixes that recordings usually have."""

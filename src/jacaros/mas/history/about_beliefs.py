@@ -1,0 +1,73 @@
+"""What last changed a belief."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from jacaros.asl.slips import close_matches
+from jacaros.mas.history.chains import chain, source_line
+from jacaros.mas.history.explanation import Explanation, Fact, seconds
+from jacaros.mas.history.past import Data, Past, of_agent
+from jacaros.mas.history.patterns import Pattern, name_of
+
+MOST_CHANGES = 5
+"""Earlier changes that an answer lists."""
+
+
+def explain_belief(past: Past, question: str, about: str, agent: str = "") -> Explanation:
+    """Explain the last change of a belief, such as ``battery(_)``."""
+    pattern = Pattern(about)
+    changes = [
+        each for each in of_agent(past.beliefs, agent) if pattern.fits_literal(str(each[1].get("belief", "")))
+    ]
+    if not changes:
+        return _unknown(past, question, pattern, agent)
+    t, last = changes[-1]
+    does = "came to believe" if last.get("op") == "+" else "stopped believing"
+    answer = f"{last['agent']} {does} `{last['belief']}` at {seconds(t)}"
+    facts = (*_step(past, t, last), *_before(changes))
+    return Explanation(question, answer, t, facts, chain(past, last.get("cause") or 0))
+
+
+def _step(past: Past, t: float, change: Data) -> Iterator[Fact]:
+    """The step of a plan that changed a belief."""
+    file, line = str(change.get("file") or ""), int(change.get("line") or 0)
+    if file:
+        written = source_line(past, file, line)
+        step = f"the step `{written}`" if written else "a step"
+        number = change.get("intention")
+        yield Fact("act", f"{step}{f' of intention {number}' if number else ''} did it", t, "", file, line)
+    elif not change.get("cause"):
+        yield Fact("note", "it is an initial belief, or came from outside of the plans")
+
+
+def _before(changes: list[tuple[float, Data]]) -> Iterator[Fact]:
+    for t, data in reversed(changes[:-1][-MOST_CHANGES:]):
+        yield Fact(
+            "belief", f"before: {data.get('op')}{data.get('belief')} at {seconds(t)}", t, data["agent"]
+        )
+    left = len(changes) - 1 - MOST_CHANGES
+    if left > 0:
+        yield Fact("note", f"{left} more changes before")
+
+
+def _unknown(past: Past, question: str, pattern: Pattern, agent: str) -> Explanation:
+    who = agent or "no agent"
+    verb = "never believed" if agent else "ever believed"
+    answer = f"{who} {verb} `{pattern.written}` until {seconds(past.end)}"
+    return Explanation(question, answer, None, tuple(_meant(past, pattern)))
+
+
+def _meant(past: Past, pattern: Pattern) -> Iterator[Fact]:
+    rule = next(
+        (rule for rules in past.rules.values() for rule in rules if name_of(rule) == pattern.name), None
+    )
+    if rule is not None:
+        yield Fact("note", f"it is the conclusion of a rule: {rule}")
+    same = [str(data["belief"]) for _, data in past.beliefs if name_of(str(data["belief"])) == pattern.name]
+    if same:
+        yield Fact("note", f"there was `{same[-1]}`")
+        return
+    names: set[Any] = {name_of(str(data["belief"])) for _, data in past.beliefs}
+    near = close_matches(pattern.name, sorted(names), 0.7)
+    if near:
+        yield Fact("note", f"did you mean `{near[0]}`?")

@@ -1,0 +1,150 @@
+"""Why an event or a goal was handled as it was, or was not handled at all."""
+
+from collections.abc import Iterator
+
+from jacaros.asl.slips import close_matches
+from jacaros.mas.history.chains import chain, place_of, plan_name, plan_text
+from jacaros.mas.history.explanation import Explanation, Fact, seconds
+from jacaros.mas.history.past import Data, Past, of_agent
+from jacaros.mas.history.patterns import Pattern, name_of, unsigned
+
+MOST_PLANS = 8
+"""Plans that an answer names."""
+
+
+def explain_event(past: Past, question: str, about: str, agent: str = "") -> Explanation:
+    """Explain the last event that fits *about*, such as ``+alarm(_)`` or ``!go(dock)``."""
+    pattern = Pattern(about)
+    found = [
+        each for each in of_agent(past.deliberations, agent) if pattern.fits(str(each[1].get("trigger", "")))
+    ]
+    if not found:
+        return _never(past, question, about, pattern, agent)
+    t, last = found[-1]
+    facts = [*candidates(past, last), *_outcome(past, t, last), *_earlier(len(found), agent)]
+    return Explanation(question, _headline(past, t, last), t, tuple(facts), chain(past, last["id"]))
+
+
+def explain_deliberation(past: Past, question: str, t: float, deliberation: Data) -> Explanation:
+    """Explain one event that was handled."""
+    facts = tuple(candidates(past, deliberation))
+    return Explanation(question, _headline(past, t, deliberation), t, facts, chain(past, deliberation["id"]))
+
+
+def _headline(past: Past, t: float, deliberation: Data) -> str:
+    agent, trigger = deliberation["agent"], deliberation["trigger"]
+    plan = past.plan(agent, deliberation.get("chosen"))
+    if plan:
+        file, line = place_of(plan)
+        return f"{agent} handled `{trigger}` at {seconds(t)} with {plan_name(plan)} ({file}:{line})"
+    if deliberation.get("chosen") is not None:
+        return f"{agent} handled `{trigger}` at {seconds(t)} with a plan that it no longer has"
+    if deliberation.get("options"):
+        return f"{agent} has no applicable plan for `{trigger}` at {seconds(t)}"
+    return f"{agent} has no relevant plan for `{trigger}` at {seconds(t)}"
+
+
+def candidates(past: Past, deliberation: Data) -> Iterator[Fact]:
+    """The relevant plans of an event in their order, each with the reason why it was not taken."""
+    agent = str(deliberation["agent"])
+    options = list(deliberation.get("options") or ())
+    for option in options[:MOST_PLANS]:
+        why = str(option.get("why") or "") or "applicable too, but another plan was selected"
+        yield _candidate(past.plan(agent, option.get("plan")), why)
+    chosen = past.plan(agent, deliberation.get("chosen"))
+    if chosen:
+        yield _candidate(chosen, "chosen")
+    for number in list(deliberation.get("untried") or ())[:MOST_PLANS]:
+        yield _candidate(past.plan(agent, number), "not tried, since the chosen plan comes before it")
+    left = len(options) - MOST_PLANS
+    if left > 0:
+        yield Fact("note", f"{left} more plans do not apply")
+
+
+def _candidate(plan: Data, what: str) -> Fact:
+    return Fact("plan", f"`{plan_text(plan)}`: {what}", None, "", *place_of(plan))
+
+
+def _outcome(past: Past, t: float, deliberation: Data) -> Iterator[Fact]:
+    """How the goal of an event ended."""
+    goal = unsigned(str(deliberation["trigger"]))
+    if not goal.startswith("!"):
+        return
+    for later, data in past.goals:
+        same = data.get("agent") == deliberation["agent"] and data.get("goal") == goal
+        if same and later >= t and data.get("state") not in ("pursued", "suspended", "resumed"):
+            why = f": {data['why']}" if data.get("why") else ""
+            yield Fact("goal", f"{goal} {data['state']} at {seconds(later)}{why}")
+            return
+
+
+def _earlier(count: int, agent: str) -> Iterator[Fact]:
+    if count > 1:
+        times = "once" if count == 2 else f"{count - 1} times"
+        yield Fact("note", f"it happened {times} before{'' if agent else ' (all agents)'}; ask with --at T")
+
+
+def _never(past: Past, question: str, about: str, pattern: Pattern, agent: str) -> Explanation:
+    what = "goal" if pattern.kind else "event"
+    changed = [] if pattern.kind else _changes(past, pattern, agent)
+    if changed:
+        t, data = changed[-1]
+        answer = f"{data['agent']} has no relevant plan for `{data['op']}{data['belief']}` at {seconds(t)}"
+        cause = chain(past, data.get("cause") or 0)
+        return Explanation(question, answer, t, tuple(_near_plans(past, pattern, str(data["agent"]))), cause)
+    told = [each for each in past.goals if pattern.kind == "!" and pattern.fits(str(each[1].get("goal", "")))]
+    if told:
+        return _of_goal(question, *told[-1])
+    answer = f"no {what} `{about}` happened{f' in {agent}' if agent else ''} until {seconds(past.end)}"
+    return Explanation(question, answer, None, tuple(_hints(past, pattern, agent)))
+
+
+def _of_goal(question: str, t: float, data: Data) -> Explanation:
+    why = f": {data['why']}" if data.get("why") else ""
+    return Explanation(question, f"{data['agent']}: {data['goal']} {data['state']} at {seconds(t)}{why}", t)
+
+
+def _changes(past: Past, pattern: Pattern, agent: str) -> list[tuple[float, Data]]:
+    return [
+        each
+        for each in of_agent(past.beliefs, agent)
+        if pattern.fits(f"{each[1].get('op', '+')}{each[1].get('belief', '')}")
+    ]
+
+
+def _hints(past: Past, pattern: Pattern, agent: str) -> Iterator[Fact]:
+    """What may have been meant by an event that never happened, and who would handle it."""
+    rule = next(
+        (rule for rules in past.rules.values() for rule in rules if name_of(rule) == pattern.name), None
+    )
+    if rule is not None and not pattern.kind:
+        yield Fact("note", f"`{pattern.name}` is the conclusion of a rule; conclusions cause no events")
+    yield from _near_plans(past, pattern, agent)
+    near = close_matches(pattern.name, sorted(known_names(past) - {pattern.name}), 0.75)
+    if near:
+        yield Fact("note", f"did you mean `{near[0]}`?")
+    seen = sorted({str(data.get("trigger")) for _, data in past.deliberations if _is_near(data, pattern)})
+    if seen:
+        yield Fact("note", f"events of that name: {', '.join(f'`{each}`' for each in seen[:MOST_PLANS])}")
+
+
+def _is_near(data: Data, pattern: Pattern) -> bool:
+    return name_of(str(data.get("trigger", ""))) == pattern.name
+
+
+def _near_plans(past: Past, pattern: Pattern, agent: str) -> Iterator[Fact]:
+    """The plans with the name of an event that are not for it."""
+    for name, plan in past.plans(agent):
+        trigger = str(plan.get("trigger", ""))
+        if name_of(trigger) == pattern.name:
+            how = "waits for it" if pattern.fits(trigger) else "is not for it: another trigger"
+            yield Fact("plan", f"`{plan_text(plan)}` {how}", None, name, *place_of(plan))
+
+
+def known_names(past: Past) -> set[str]:
+    """Names of events, goals and beliefs that there were or that plans are for."""
+    names = {name_of(str(data.get("trigger", ""))) for _, data in past.deliberations}
+    names |= {name_of(str(data.get("belief", ""))) for _, data in past.beliefs}
+    names |= {name_of(str(data.get("goal", ""))) for _, data in past.goals}
+    names |= {name_of(str(plan.get("trigger", ""))) for _, plan in past.plans()}
+    return names - {""}

@@ -1,0 +1,142 @@
+"""Why a robot stopped, and what led to a command or an operation."""
+
+import re
+from collections.abc import Iterator
+
+from jacaros.mas.history.chains import chain
+from jacaros.mas.history.explanation import Explanation, Fact, seconds
+from jacaros.mas.history.past import Data, Past
+
+_NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e-?\d+)?\b")
+AT_ONCE = 0.2
+"""Seconds before a stop in which a change of goals is named with it."""
+MOST_FACTS = 8
+"""Facts beside the chain that an answer names."""
+
+Command = tuple[float, Data]
+
+
+def explain_stop(past: Past, question: str, agent: str = "", robot: str = "") -> Explanation:
+    """Explain why a robot stopped: the first command to stand still after the last one to move."""
+    commands = _commands(past, robot)
+    if not commands:
+        return _no_command(past, question, robot)
+    stop = _stop_of(commands)
+    if stop is None:
+        t, last = commands[-1]
+        answer = f"no command to stop until {seconds(past.end)}; the last command is `{last['what']}` at {seconds(t)}"
+        return Explanation(question, answer, t, tuple(_world(past, t, robot)), chain(past, last["id"]))
+    t, link = stop
+    facts = [*_ended_operation(past, link), *_changes(past, t, agent), *_world(past, t, robot)]
+    answer = f"{robot or 'the robot'} stopped at {seconds(t)}: `{link['what']}`"
+    return Explanation(question, answer, t, tuple(facts[:MOST_FACTS]), chain(past, link["id"]))
+
+
+def explain_command(past: Past, question: str, about: str = "", robot: str = "") -> Explanation:
+    """Explain the last command, on the topic *about* if it is given."""
+    commands = [each for each in _commands(past, robot) if about in str(each[1].get("what", ""))]
+    if not commands:
+        return _no_command(past, question, robot, about)
+    t, link = commands[-1]
+    return Explanation(question, f"`{link['what']}` at {seconds(t)}", t, (), chain(past, link["id"]))
+
+
+def explain_operation(past: Past, question: str, about: str = "", agent: str = "") -> Explanation:
+    """Explain the last operation, of the name *about* if it is given."""
+    found = [
+        (number, each)
+        for number, each in past.operations.items()
+        if about.partition("(")[0] in str(each.data.get("operation", ""))
+        and agent in ("", each.data.get("agent"))
+    ]
+    if not found:
+        named = f" `{about}`" if about else ""
+        names = sorted(
+            {str(each.data.get("operation", "")).partition("(")[0] for each in past.operations.values()}
+        )
+        known = (Fact("note", f"there were {', '.join(names[:MOST_FACTS])}"),) if names else ()
+        return Explanation(question, f"no operation{named} began until {seconds(past.end)}", None, known)
+    number, last = found[-1]
+    end = f", {last.outcome} at {seconds(last.ended)}" if last.ended is not None else ", still running"
+    reason = f": {last.reason}" if last.reason else ""
+    answer = (
+        f"{last.data['operation']} of {last.data['artifact']} began at {seconds(last.began)}{end}{reason}"
+    )
+    return Explanation(question, answer, last.began, (), chain(past, number))
+
+
+def _commands(past: Past, robot: str) -> list[Command]:
+    found = [
+        each
+        for each in past.links.values()
+        if each[1].get("kind") == "command" and _is_of(past, each[1], robot)
+    ]
+    return sorted(found, key=lambda each: (each[0], each[1]["id"]))
+
+
+def _is_of(past: Past, link: Data, robot: str) -> bool:
+    """Whether a command is for a robot, by its topic or by the artifact that drives the robot."""
+    if not robot or robot in re.split(r"\W+", str(link.get("topic") or link.get("what", ""))):
+        return True
+    artifacts = {str(each.get("artifact") or "") for _, each in past.chain(link["id"])}
+    return any(past.artifacts.get(each, {}).get("robot") == robot for each in artifacts)
+
+
+def _stop_of(commands: list[Command]) -> Command | None:
+    """The first command to stand still after the last one to move; None if the last command is to move."""
+    stop: Command | None = None
+    for each in reversed(commands):
+        if not _stands(each[1]):
+            break
+        stop = each
+    return stop
+
+
+def _stands(link: Data) -> bool:
+    """Whether a command is to stand still: all of its numbers are zero.  One without numbers may be."""
+    what = str(link.get("what", "")).removeprefix(str(link.get("topic") or ""))
+    return all(float(number) == 0.0 for number in _NUMBER.findall(what))
+
+
+def _ended_operation(past: Past, command: Data) -> Iterator[Fact]:
+    """How the operation that published a command ended."""
+    for _, link in past.chain(command["id"]):
+        operation = past.operations.get(link["id"])
+        if operation is not None and operation.ended is not None:
+            reason = f": {operation.reason}" if operation.reason else ""
+            what = f"{operation.data['operation']} {operation.outcome}{reason}"
+            yield Fact("operation", f"{what} at {seconds(operation.ended)}", operation.ended)
+            return
+
+
+def _changes(past: Past, t: float, agent: str) -> Iterator[Fact]:
+    """What became of goals when the robot stopped, and the events that were handled just before."""
+    for at, data in past.goals:
+        ended = data.get("state") in ("dropped", "suspended", "failed")
+        if t - AT_ONCE <= at <= t + AT_ONCE and ended and agent in ("", data.get("agent")):
+            why = f": {data['why']}" if data.get("why") else ""
+            yield Fact(
+                "goal", f"{data['goal']} {data['state']} at {seconds(at)}{why}", at, str(data["agent"])
+            )
+    for at, data in past.deliberations:
+        handled = data.get("chosen") is not None and not _is_goal(data)
+        if t - AT_ONCE <= at <= t and handled and agent in ("", data.get("agent")):
+            yield Fact("event", f"{data['trigger']} handled at {seconds(at)}", at, str(data["agent"]))
+
+
+def _is_goal(deliberation: Data) -> bool:
+    return "!" in str(deliberation["trigger"])[:2]
+
+
+def _world(past: Past, t: float, robot: str) -> Iterator[Fact]:
+    """What the world did to the robot at that time."""
+    for at, event, data in past.world:
+        if abs(at - t) <= AT_ONCE and robot in ("", data.get("robot")):
+            yield Fact("note", f"{data.get('robot')}: {event} at {seconds(at)}", at)
+
+
+def _no_command(past: Past, question: str, robot: str, about: str = "") -> Explanation:
+    what = f" on `{about}`" if about else ""
+    whose = f" for {robot}" if robot else ""
+    answer = f"no command{what}{whose} that an agent caused was recorded until {seconds(past.end)}"
+    return Explanation(question, answer, None, tuple(_world(past, past.end, robot)))

@@ -1,0 +1,107 @@
+"""Chains of causes as lines of an answer: command, operation, step of a plan, event, percept, message."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from jacaros.mas.history.explanation import Fact
+from jacaros.mas.history.past import Data, Past
+
+LONGEST_CHAIN = 40
+"""Links that are shown; of a longer chain the ones next to the effect and the first one."""
+
+
+def chain(past: Past, number: Any) -> tuple[Fact, ...]:
+    """The links from one back to the beginning, as facts."""
+    links = [fact for t, data in past.chain(number) for fact in _facts(past, t, data)]
+    if len(links) > LONGEST_CHAIN:
+        left = len(links) - LONGEST_CHAIN
+        return (*links[: LONGEST_CHAIN - 1], Fact("note", f"{left} more causes"), links[-1])
+    return tuple(links)
+
+
+def _facts(past: Past, t: float, link: Data) -> Iterator[Fact]:
+    kind = str(link.get("kind", ""))
+    make = _MAKERS.get(kind)
+    yield make(past, t, link) if make is not None else Fact(kind, str(link.get("what", "")), t)
+
+
+def _event(past: Past, t: float, link: Data) -> Fact:
+    agent = str(link.get("agent", ""))
+    plan = past.plan(agent, link.get("chosen"))
+    how = f", handled by {plan_name(plan)}" if plan else ""
+    return Fact("event", f"{link.get('trigger', link.get('what', ''))}{how}", t, agent, *place_of(plan))
+
+
+def _act(past: Past, t: float, link: Data) -> Fact:
+    agent, file, line = str(link.get("agent", "")), str(link.get("file") or ""), int(link.get("line") or 0)
+    what = str(link.get("what", "")).removeprefix(f"{agent} ")
+    plan = past.plan(agent, link.get("plan"))
+    written = source_line(past, file, line)
+    step = f"step `{written}`" if written else f"step {what}"
+    return Fact("act", f"{step}{f' of {plan_name(plan)}' if plan else ''}", t, agent, file, line)
+
+
+def _operation(past: Past, t: float, link: Data) -> Fact:
+    known = past.operations.get(link.get("id"))
+    artifact = f" of {link['artifact']}" if link.get("artifact") else ""
+    return Fact("operation", f"{link.get('what', '')}{artifact}{'' if known is None else _end(known)}", t)
+
+
+def _end(operation: Any) -> str:
+    if operation.ended is None:
+        return ", still running"
+    reason = f": {operation.reason}" if operation.reason else ""
+    return f", {operation.outcome} at {operation.ended:.3f} s{reason}"
+
+
+def _sample(_past: Past, t: float, link: Data) -> Fact:
+    what, topic = str(link.get("what", "")), str(link.get("topic") or "")
+    return Fact("sample", what if topic in what else f"{topic}: {what}", t)
+
+
+def _message(_past: Past, t: float, link: Data) -> Fact:
+    if "performative" not in link:
+        return Fact("message", str(link.get("what", "")), t)
+    return Fact("message", message_text(link), t)
+
+
+_MAKERS = {
+    "event": _event,
+    "act": _act,
+    "operation": _operation,
+    "sample": _sample,
+    "message": _message,
+}
+
+
+def message_text(message: Data) -> str:
+    """A message between agents for people."""
+    return f"{message['from']} to {message['to']}: {message['performative']} {message['content']}"
+
+
+def plan_name(plan: Data) -> str:
+    """A plan for people: label, or trigger, with its context."""
+    label = str(plan.get("label") or "")
+    return f"@{label}" if is_written(label) else f"`{plan_text(plan)}`"
+
+
+def is_written(label: str) -> bool:
+    """Whether a label was written in the program; others are numbered by the system."""
+    return bool(label) and not label.startswith("p__")
+
+
+def plan_text(plan: Data) -> str:
+    """Trigger and context of a plan."""
+    context = plan.get("context")
+    return f"{plan.get('trigger', '?')}{f' : {context}' if context else ''}"
+
+
+def place_of(plan: Data) -> tuple[str, int]:
+    """File and line of a plan."""
+    return str(plan.get("file") or ""), int(plan.get("line") or 0)
+
+
+def source_line(past: Past, file: str, line: int) -> str:
+    """The text of a line of a program, without blanks around it; empty if it is unknown."""
+    lines = past.sources.get(file, [])
+    return lines[line - 1].strip().removesuffix(";") if 0 < line <= len(lines) else ""

@@ -1,0 +1,82 @@
+"""The answer to a question about a run: plain data, with a text for people."""
+
+from collections.abc import Iterable
+from dataclasses import asdict, dataclass
+from typing import Any
+
+
+@dataclass(frozen=True, slots=True)
+class Fact:
+    """One line of an answer.
+
+    Attributes:
+        kind: what it is about: ``command``, ``operation``, ``act``, ``event``, ``property``, ``signal``, ``sample``,
+            ``message``, ``plan``, ``goal``, ``intention``, ``belief`` or ``note``.
+        text: for people.
+        t: seconds since the run began, None if the fact has no time.
+        agent: whose it is; empty for facts of the environment.
+        file, line: where in a program, ``""`` and 0 if unknown.
+    """
+
+    kind: str
+    text: str
+    t: float | None = None
+    agent: str = ""
+    file: str = ""
+    line: int = 0
+
+    @property
+    def place(self) -> str:
+        """File and line, such as ``robot.asl:14``; empty if unknown."""
+        return f"{self.file}:{self.line}" if self.file and self.line else self.file
+
+    def written(self) -> str:
+        """The text with agent and place."""
+        agent = f"{self.agent}: " if self.agent else ""
+        return f"{agent}{self.text}{f' ({self.place})' if self.place else ''}"
+
+
+@dataclass(frozen=True, slots=True)
+class Explanation:
+    """The answer to one question.
+
+    Attributes:
+        question: as it was asked.
+        answer: the answer in one line.
+        t: seconds since the run began of what was asked for, None if it never happened.
+        facts: what the answer rests on, such as each candidate plan with the conjunct that failed.
+        because: the chain of causes, from the effect back to its beginning.
+    """
+
+    question: str
+    answer: str
+    t: float | None = None
+    facts: tuple[Fact, ...] = ()
+    because: tuple[Fact, ...] = ()
+
+    def text(self) -> str:
+        """The answer as lines: its facts, then the chain of causes with times."""
+        return "\n".join(
+            (self.answer, *(f"  {each.written()}" for each in self.facts), *_chain(self.because))
+        )
+
+    def data(self) -> dict[str, Any]:
+        """The answer as dictionaries, lists, texts and numbers, ready for JSON."""
+        return asdict(self)
+
+
+def _chain(facts: Iterable[Fact]) -> list[str]:
+    lines = [(each.kind, _time(each.t), each.written()) for each in facts]
+    if not lines:
+        return []
+    kinds, times = (max(len(line[column]) for line in lines) for column in (0, 1))
+    return ["because:", *(f"  {kind:{kinds}}  {time:>{times}}  {text}" for kind, time, text in lines)]
+
+
+def _time(t: float | None) -> str:
+    return "" if t is None else seconds(t)
+
+
+def seconds(t: float) -> str:
+    """A time for people, such as ``12.300 s``."""
+    return f"{t:.3f} s"

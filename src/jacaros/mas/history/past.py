@@ -1,0 +1,201 @@
+"""What happened in a run until a moment: records, found by what they are about."""
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import suppress
+from dataclasses import dataclass, field
+from typing import Any
+
+Data = Mapping[str, Any]
+"""The data of a record, see docs/reference/recordings.md."""
+Record = tuple[float, str, Data]
+"""``t`` in seconds since the run began, the event and its data."""
+
+
+@dataclass(frozen=True, slots=True)
+class Operation:
+    """An operation of an artifact, and how it ended.
+
+    Attributes:
+        data: of its beginning.
+        began, ended: seconds; *ended* is None while it runs.
+        outcome: ``done``, ``failed``, or empty while it runs.
+        reason: of a failure.
+    """
+
+    data: Data
+    began: float
+    ended: float | None = None
+    outcome: str = ""
+    reason: str = ""
+
+
+@dataclass
+class Past:
+    """The records of a run until a moment.
+
+    Attributes:
+        end: seconds of the last record.
+        links: causes by id: ``cause`` records, and deliberations, operations and messages under their own ids.
+        deliberations, beliefs, goals, messages, properties: (t, data), the oldest first.
+        programs: the plans of each agent by id, as in the newest ``program``.
+        rules: the rules of each agent as text.
+        intentions: the newest record of each, by agent and id.
+        operations: by id.
+        agents: their newest state by name.
+        artifacts: the newest record of each by path.
+        sources: texts of the programs by file.
+        world: events of robots and the world, as (t, event, data), the oldest first.
+        robots: their names, as far as records name them.
+        debug: the newest record of the debugger.
+        exit_code: of the run, None if it had not ended.
+    """
+
+    end: float = 0.0
+    links: dict[int, tuple[float, Data]] = field(default_factory=dict)
+    deliberations: list[tuple[float, Data]] = field(default_factory=list)
+    beliefs: list[tuple[float, Data]] = field(default_factory=list)
+    goals: list[tuple[float, Data]] = field(default_factory=list)
+    messages: list[tuple[float, Data]] = field(default_factory=list)
+    properties: list[tuple[float, Data]] = field(default_factory=list)
+    programs: dict[str, dict[Any, Data]] = field(default_factory=dict)
+    rules: dict[str, list[str]] = field(default_factory=dict)
+    intentions: dict[tuple[str, Any], tuple[float, Data]] = field(default_factory=dict)
+    operations: dict[Any, Operation] = field(default_factory=dict)
+    agents: dict[str, tuple[float, str]] = field(default_factory=dict)
+    artifacts: dict[str, Data] = field(default_factory=dict)
+    sources: dict[str, list[str]] = field(default_factory=dict)
+    world: list[Record] = field(default_factory=list)
+    robots: set[str] = field(default_factory=set)
+    debug: Data = field(default_factory=dict)
+    exit_code: int | None = None
+
+    @classmethod
+    def of(cls, records: Iterable[Record], until: float | None = None) -> "Past":
+        """Read records.  Those later than *until* (seconds), of unknown kinds or without a field are left out."""
+        past = cls()
+        for t, event, data in records:
+            if until is not None and t > until:
+                continue
+            past.end = max(past.end, t)
+            take = _TAKERS.get(event)
+            with suppress(KeyError, TypeError, AttributeError):
+                if take is not None:
+                    take(past, t, data)
+                elif event not in _SEEN_OFTEN and data["robot"]:
+                    past.world.append((t, event, data))
+                    past.robots.add(data["robot"])
+        return past
+
+    def plan(self, agent: str, plan: Any) -> Data:
+        """A plan of an agent; empty if it is unknown."""
+        return self.programs.get(agent, {}).get(plan, {})
+
+    def plans(self, agent: str = "") -> Iterator[tuple[str, Data]]:
+        """All plans, each with its agent; those of one agent if *agent* is given."""
+        for name, plans in self.programs.items():
+            if agent in ("", name):
+                for each in plans.values():
+                    yield name, each
+
+    def chain(self, number: Any) -> Iterator[tuple[float, Data]]:
+        """The links from one back to the beginning of its chain."""
+        seen = set()
+        while number in self.links and number not in seen:
+            seen.add(number)
+            yield self.links[number]
+            number = self.links[number][1].get("parent", 0)
+
+
+def of_agent(records: Iterable[tuple[float, Data]], agent: str) -> Iterator[tuple[float, Data]]:
+    """The records of one agent; all if *agent* is empty."""
+    return (each for each in records if agent in ("", each[1].get("agent")))
+
+
+def _take_cause(past: Past, t: float, data: Data) -> None:
+    known = past.links.get(data["id"])
+    at = data.get("at", t)
+    # What a deliberation or an operation says of itself tells more than its link.
+    past.links[data["id"]] = (at, data) if known is None else (at, {**data, **known[1]})
+
+
+def _take_deliberation(past: Past, t: float, data: Data) -> None:
+    past.deliberations.append((t, data))
+    known = past.links.get(data["id"])
+    told = {**(known[1] if known is not None else {}), **data, "kind": "event", "what": data["trigger"]}
+    past.links[data["id"]] = (known[0] if known is not None else t, told)
+
+
+def _take_operation(past: Past, t: float, data: Data) -> None:
+    number, state = data["id"], data.get("state")
+    if state == "began":
+        past.operations[number] = Operation(data, t)
+        if number not in past.links:
+            parent = data.get("cause") or 0
+            past.links[number] = t, {**data, "parent": parent, "kind": "operation", "what": data["operation"]}
+        return
+    known = past.operations.get(number, Operation(data, t))
+    past.operations[number] = Operation(known.data, known.began, t, str(state), str(data.get("reason") or ""))
+
+
+def _take_program(past: Past, _: float, data: Data) -> None:
+    past.programs[data["agent"]] = {each["id"]: each for each in data["plans"]}
+    past.rules[data["agent"]] = list(data.get("rules") or ())
+
+
+def _take_intention(past: Past, t: float, data: Data) -> None:
+    key = data["agent"], data["id"]
+    if data.get("state") == "over":
+        past.intentions.pop(key, None)
+    else:
+        past.intentions[key] = t, data
+
+
+def _take_agent(past: Past, t: float, data: Data) -> None:
+    past.agents[data["agent"]] = t, data["state"]
+    if data["state"] == "ended":
+        for key in [key for key in past.intentions if key[0] == data["agent"]]:
+            del past.intentions[key]
+
+
+def _take_source(past: Past, _: float, data: Data) -> None:
+    past.sources[data["file"]] = str(data["text"]).split("\n")
+
+
+def _take_artifact(past: Past, _: float, data: Data) -> None:
+    past.artifacts[data["artifact"]] = data
+    if data.get("robot"):
+        past.robots.add(data["robot"])
+
+
+def _take_debug(past: Past, _: float, data: Data) -> None:
+    past.debug = data
+
+
+def _take_end(past: Past, _: float, data: Data) -> None:
+    past.exit_code = data.get("code")
+
+
+def _take_message(past: Past, t: float, data: Data) -> None:
+    past.messages.append((t, data))
+    if isinstance(data.get("id"), int) and data["id"] not in past.links:
+        past.links[data["id"]] = t, {**data, "kind": "message", "parent": data.get("cause") or 0}
+
+
+_TAKERS: dict[str, Callable[[Past, float, Data], None]] = {
+    "cause": _take_cause,
+    "deliberation": _take_deliberation,
+    "operation": _take_operation,
+    "program": _take_program,
+    "intention": _take_intention,
+    "agent": _take_agent,
+    "source": _take_source,
+    "artifact": _take_artifact,
+    "debug": _take_debug,
+    "ended": _take_end,
+    "message": _take_message,
+    "belief": lambda past, t, data: past.beliefs.append((t, data)),
+    "goal": lambda past, t, data: past.goals.append((t, data)),
+    "property": lambda past, t, data: past.properties.append((t, data)),
+}
+_SEEN_OFTEN = frozenset({"laser", "path", "believed"})
+"""Records that name a robot and are no events."""
