@@ -18,9 +18,9 @@ from jacaros.artifacts.mapping.file import load_mapping
 from jacaros.asl.diagnostics import render_all
 from jacaros.cli.ros_arguments import read_parameters
 from jacaros.errors import JacarosError
+from jacaros.inspector.page import replay_html
 from jacaros.inspector.recorder import Recorder
 from jacaros.inspector.recording import Recording
-from jacaros.inspector.replay import replay_html
 from jacaros.mas.checking import check_files
 from jacaros.mas.loading import load_deployment
 from jacaros.ros.drivers.rosbridge.link import Link

@@ -7,9 +7,9 @@ from types import TracebackType
 
 from jacaros.cli.outputs import Outputs
 from jacaros.errors import UsageError
+from jacaros.inspector.page import write_replay
 from jacaros.inspector.recorder import Recorder
 from jacaros.inspector.recording import Recording
-from jacaros.inspector.replay import write_replay
 from jacaros.inspector.terminal_view import TerminalView
 from jacaros.inspector.watch import Watch, Watcher
 from jacaros.inspector.watch_of import watch_of

@@ -1,10 +1,10 @@
 """Watching a run: recorder, replay page, still picture, and a live view in the terminal.  It reads only."""
 
+from jacaros.inspector.page import write_replay
 from jacaros.inspector.picture import write_picture
 from jacaros.inspector.record import record
 from jacaros.inspector.recorder import Recorder
 from jacaros.inspector.recording import Frame, Recording
-from jacaros.inspector.replay import write_replay
 from jacaros.inspector.scene import RobotView, views_of
 from jacaros.inspector.terminal_view import TerminalView
 from jacaros.inspector.watch import Watch, Watcher

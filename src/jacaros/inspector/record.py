@@ -4,9 +4,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from jacaros.inspector.page import write_replay
 from jacaros.inspector.recorder import Recorder
 from jacaros.inspector.recording import Recording
-from jacaros.inspector.replay import write_replay
 from jacaros.inspector.watch_of import watch_of
 from jacaros.mas.embedding.mas import Mas
 

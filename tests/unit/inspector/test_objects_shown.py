@@ -1,8 +1,8 @@
 """Objects and cliffs on the still picture and in what the replay page is given."""
 
+from jacaros.inspector.page import records
 from jacaros.inspector.picture import picture_svg
 from jacaros.inspector.recorder import Recorder
-from jacaros.inspector.replay import payload
 from jacaros.sim import World
 
 WORLD = """
@@ -38,6 +38,6 @@ def test_objects_are_where_they_lie_at_the_end() -> None:
 def test_cliffs_are_in_the_picture_and_all_of_it_reaches_the_replay_page() -> None:
     recorder = recorded()
     assert "<title>cliff</title>" in picture_svg(recorder.recording)
-    world = payload(recorder.recording)["world"]
+    world = next(records(recorder.recording))["world"]
     assert world["cliffs"] == [[1, 1, 2, 2]]
     assert world["objects"][0] == {"name": "cup", "place": [1, 0], "radius": 0.03, "color": "#c0392b"}

@@ -5,10 +5,10 @@ from typing import Any
 
 from rich.console import Console
 
+from jacaros.inspector.page import records
 from jacaros.inspector.people import PeopleSeen
 from jacaros.inspector.picture import picture_svg
 from jacaros.inspector.recorder import Recorder
-from jacaros.inspector.replay import payload
 from jacaros.inspector.terminal_view import TerminalView
 from jacaros.sim import World
 from jacaros.sim.ground_truth import Record
@@ -51,7 +51,7 @@ def test_the_picture_shows_people_with_their_paths() -> None:
     picture = picture_svg(recorder.recording)
     assert picture.count('class="person"') == 1
     assert ">&lt;bob&gt;</text>" in picture
-    assert [person["name"] for person in payload(recorder.recording)["world"]["people"]] == ["ann"]
+    assert [person["name"] for person in next(records(recorder.recording))["world"]["people"]] == ["ann"]
 
 
 def test_people_are_in_the_terminal() -> None:

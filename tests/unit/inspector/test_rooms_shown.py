@@ -1,8 +1,8 @@
 """Dirt and furniture on the still picture: as much dirt as is left at the end, furniture in its colour."""
 
+from jacaros.inspector.page import records
 from jacaros.inspector.picture import picture_svg
 from jacaros.inspector.recorder import Recorder
-from jacaros.inspector.replay import payload
 from jacaros.sim import World
 
 WORLD = """
@@ -23,7 +23,7 @@ def test_the_picture_shows_what_is_left_of_the_dirt() -> None:
     recorder.event(2.0, "cleaned", {**left, "dirt": "stains", "grams": 0.0, "percent": 0})
     picture = picture_svg(recorder.recording)
     assert picture.count('class="dirt"') == picture.count('class="dirt" opacity="0.15"') == 1
-    (room,) = payload(recorder.recording)["world"]["rooms"]
+    (room,) = next(records(recorder.recording))["world"]["rooms"]
     assert [dirt["kind"] for dirt in room["dirt"]] == ["dust", "stains"]
 
 
@@ -33,7 +33,7 @@ def test_the_picture_shows_furniture_in_its_colour() -> None:
     recorder.world(World.load(f"walls:\n  - box: {box}\nrobots: [{{pose: {{x: -1}}}}]").description.drawing())
     picture = picture_svg(recorder.recording)
     assert '<g><title>&lt;table&gt;</title><rect class="box" style="fill:#c0392b"' in picture
-    assert payload(recorder.recording)["world"]["furniture"][0]["color"] == "#c0392b"
+    assert next(records(recorder.recording))["world"]["furniture"][0]["color"] == "#c0392b"
 
 
 def test_a_colour_of_a_recording_is_no_way_into_a_picture() -> None:

@@ -1,0 +1,87 @@
+"""Makes one self-contained page of a recording: a file to open, to mail, to keep with a CI run.
+
+The page loads nothing.  It holds the modules of ``static/`` as one script, and the records, gzipped and base64-coded, which
+the browser unpacks with its own ``DecompressionStream``.  Its content security policy names the hashes of this one style
+sheet and this one script, so nothing else runs, whatever a recording says.
+"""
+
+import base64
+import gzip
+import hashlib
+import html
+import json
+import re
+from collections.abc import Iterator
+from operator import itemgetter
+from pathlib import Path
+from typing import Any
+
+from jacaros.inspector.modules import bundle
+from jacaros.inspector.recording import Recording
+
+STATIC = Path(__file__).parent / "static"
+"""The page and its modules; a server serves this folder as it is."""
+_VERSION = 2
+_PLACES = re.compile(
+    r'<title>[^<]*</title>|<link rel="stylesheet" href="page\.css">|<script type="module" src="live\.js"></script>'
+)
+
+
+def write_replay(recording: Recording, path: str | Path, title: str | None = None) -> None:
+    """Write the page; *title* is the world's name by default.
+
+    Raises:
+        OSError: the file cannot be written.
+    """
+    Path(path).write_text(replay_html(recording, title), encoding="utf-8")
+
+
+def replay_html(recording: Recording, title: str | None = None) -> str:
+    """Return the text of the page."""
+    shown = html.escape(title or str(recording.world.get("name") or "A run"))
+    style, script = (STATIC / "page.css").read_text(encoding="utf-8"), bundle(STATIC, "recorded")
+    policy = f"default-src 'none'; img-src data:; script-src {_hash(script)}; style-src {_hash(style)}"
+    parts = {
+        "<title": f'<meta http-equiv="Content-Security-Policy" content="{policy}">\n<title>{shown}</title>',
+        "<link": f"<style>{style}</style>",
+        "<script": f'<script type="text/plain" id="recording">{packed(recording)}</script>\n'
+        f'<script type="module">{script}</script>',
+    }
+    page = (STATIC / "page.html").read_text(encoding="utf-8")
+    # In one pass: a title may look like a place.
+    return _PLACES.sub(lambda found: parts[found[0].partition(" ")[0].partition(">")[0]], page)
+
+
+def packed(recording: Recording) -> str:
+    """Return the records of a recording as the page holds them."""
+    lines = "\n".join(
+        json.dumps(record, separators=(",", ":"), ensure_ascii=False, default=str)
+        for record in records(recording)
+    )
+    return base64.b64encode(gzip.compress(lines.encode("utf-8", "replace"), 9, mtime=0)).decode("ascii")
+
+
+def records(recording: Recording) -> Iterator[dict[str, Any]]:
+    """Yield the records of a recording in the order of time, as its file has them."""
+    yield {"kind": "world", "version": _VERSION, "world": recording.world}
+    moments = [
+        *((t, {"kind": "frame", "t": _short(t), "robots": rows}) for t, rows in recording.frames),
+        *(
+            (t, {"kind": "text", "t": _short(t), "agent": agent, "text": text})
+            for t, agent, text in recording.texts
+        ),
+        *(
+            (t, {"kind": "event", "t": _short(t), "event": kind, "data": data})
+            for t, kind, data in recording.events
+        ),
+    ]
+    for _, record in sorted(moments, key=itemgetter(0)):
+        yield record
+
+
+def _short(t: float) -> float:
+    return round(t, 3)
+
+
+def _hash(text: str) -> str:
+    return f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"

@@ -1,0 +1,34 @@
+/** Make an element; `children` are elements or texts. */
+export function element(tag, className = "", ...children) {
+  const made = document.createElement(tag);
+  if (className) made.className = className;
+  made.append(...children);
+  return made;
+}
+
+/** Make a button that calls `act` when it is pressed. */
+export function button(className, act, ...children) {
+  const made = element("button", className, ...children);
+  made.type = "button";
+  made.addEventListener("click", act);
+  return made;
+}
+
+/** Give `node` the text, only when it has another: writing the same text again costs a layout. */
+export function setText(node, text) {
+  if (node.textContent !== text) node.textContent = text;
+}
+
+/** Seconds as minutes and seconds: 1:05.3. */
+export function clock(t) {
+  const tenths = Math.round(t * 10), minutes = Math.floor(tenths / 600), seconds = (tenths - minutes * 600) / 10;
+  return `${minutes}:${seconds < 10 ? "0" : ""}${seconds.toFixed(1)}`;
+}
+
+/** A colour of the theme, such as `themeColor("wall")`. */
+export function themeColor(name) {
+  return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+}
+
+/** Whether the page is dark. */
+export function isDark() { return document.documentElement.dataset.theme === "dark"; }

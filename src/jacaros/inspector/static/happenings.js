@@ -1,0 +1,47 @@
+const spaced = (name) => String(name ?? "").replaceAll("_", " ");
+
+/** Events that people read, in words. */
+const WORDS = {
+  docked: (d) => `docked at ${d.dock}`, undocked: (d) => `left ${d.dock}`,
+  charging: (d) => `charging from ${Math.round(d.level)} %`, charged: () => "fully charged",
+  bump: (d) => `bumped into a wall, ${d.side}`, collision: (d) => `collided with ${d.with}, ${d.side}`,
+  task: (d) => `${d.task}${d.room ? ` in the ${spaced(d.room)}` : ""}`,
+  door_opened: (d) => `door ${d.door} opens`, door_closed: (d) => `door ${d.door} closes`,
+  person_comes: (d) => `${d.person} comes`, person_goes: (d) => `${d.person} goes`,
+  picked: (d) => `picked up ${d.object}`, placed: (d) => `put down ${d.object}`,
+  fault: (d) => `fault ${d.fault} (${spaced(d.kind)}) ${d.state}${d.why ? `: ${d.why}` : ""}`,
+  fell: () => "fell down a cliff",
+  battery_empty: () => "battery empty", command_timeout: () => "no commands for a while: stopped",
+  log: (d) => d.text, intervention: (d) => d.what,
+  debug: (d) => (d.state === "paused" ? `paused${d.why ? `: ${d.why}` : ""}` : "continues"),
+  ended: (d) => `the run ended with code ${d.code}`,
+};
+
+const FAILURES = new Set(["bump", "collision", "fault", "fell", "battery_empty", "command_timeout"]);
+
+/** The sorts of marks on the timeline: class, and name in the legend. */
+export const SORTS = { failure: "failure", task: "task done", docked: "docked", intervention: "your change", pause: "paused" };
+
+/** An event in words, undefined when people do not read it. */
+export function inWords(event, data, severalRobots) {
+  if (event === "log" && data.level === "info") return undefined;
+  const words = WORDS[event]?.(data);
+  return words && severalRobots && data.robot ? `${data.robot}: ${words}` : words;
+}
+
+/** The sort of mark for an event, undefined for none. */
+export function sortOf(event, data) {
+  if (FAILURES.has(event)) return event === "fault" && data.state === "ended" ? undefined : "failure";
+  // Behaviours of trees fail without a reason as a matter of course.
+  if (event === "goal") return data.state === "failed" && data.why ? "failure" : undefined;
+  if (event === "operation") return undefined;
+  if (event === "log") return data.level === "error" ? "failure" : undefined;
+  if (event === "debug") return data.state === "paused" ? "pause" : undefined;
+  return event === "docked" || event === "task" || event === "intervention" ? event : undefined;
+}
+
+/** The text of a mark. */
+export function markText(event, data, severalRobots) {
+  if (event === "goal") return `${data.agent}: ${data.goal} failed: ${data.why.split("\n")[0]}`;
+  return inWords(event, data, severalRobots) ?? event;
+}

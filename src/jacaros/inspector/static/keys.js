@@ -1,0 +1,17 @@
+const TYPING = "input:not([type=range]), select, textarea, [contenteditable]";
+
+/** The keys that move through time, wherever the focus is but in a field. */
+export function listenToKeys(time) {
+  document.addEventListener("keydown", (event) => {
+    if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey || event.target.matches(TYPING)) return;
+    const step = event.shiftKey ? 10 : 1;
+    const act = {
+      " ": () => time.toggle(), ArrowLeft: () => time.go(time.now - step), ArrowRight: () => time.go(time.now + step),
+      Home: () => time.go(0), End: () => time.go(time.run.end),
+    }[event.key];
+    // The space key presses the button that has the focus; Home and End scroll a list that has it.
+    if (!act || (event.key === " " && event.target.matches("button, summary"))) return;
+    event.preventDefault();
+    act();
+  });
+}

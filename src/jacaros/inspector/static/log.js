@@ -1,0 +1,34 @@
+import { indexAt } from "./track.js";
+import { inWords, markText, sortOf } from "./happenings.js";
+
+/** What agents printed and what happened, in the order of time; and the marks of the timeline. */
+export class Log {
+  constructor() {
+    this.times = [];
+    this.entries = [];  // t, who (an agent or ""), text, sort, robot
+    this.marks = [];  // t, sort, text, and the selection that it leads to
+    this.robots = new Set();
+  }
+
+  add(t, event, data) {
+    if (event === "world") for (const robot of data.robots ?? []) this.robots.add(robot.name);
+    const several = this.robots.size > 1;
+    if (event === "text") this.enter({ t, who: data.agent, text: data.text, sort: "" });
+    const words = inWords(event, data, several), sort = sortOf(event, data);
+    if (words) this.enter({ t, who: "", text: words, sort: sort ?? "world", robot: data.robot });
+    if (sort) this.marks.push({ t, sort, text: markText(event, data, several), leads: leads(data) });
+  }
+
+  enter(entry) {
+    this.times.push(entry.t);
+    this.entries.push(entry);
+  }
+
+  /** How many entries there are up to time `t`. */
+  countAt(t) { return indexAt(this.times, t) + 1; }
+}
+
+function leads({ agent, robot, intention }) {
+  if (agent) return { agent, intention };
+  return robot ? { robot } : null;
+}

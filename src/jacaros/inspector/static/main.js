@@ -1,0 +1,130 @@
+import { element, isDark, setText } from "./elements.js";
+import { Goals } from "./goals.js";
+import { GoalsView } from "./goals_view.js";
+import { listenToKeys } from "./keys.js";
+import { Links } from "./links.js";
+import { Log } from "./log.js";
+import { LogView } from "./log_view.js";
+import { MapView } from "./map_view.js";
+import { RobotsView } from "./robots_view.js";
+import { Run } from "./run.js";
+import { Selection } from "./selection.js";
+import { Tabs } from "./tabs.js";
+import { Time } from "./time.js";
+import { TimelineView } from "./timeline.js";
+import { World } from "./world.js";
+
+/** What a replay has in place of commands: nothing can be done to a run that is over. */
+export const NO_COMMANDS = {
+  can: new Set(),
+  send: () => Promise.reject(new Error("this page shows a recording")),
+  onChange: () => {},
+};
+
+/**
+ * Put the page together.
+ *
+ * @param {boolean} live follow the end of the run.
+ * @param {object} commands `can`: the set of commands that work, `send(do, args)`: a promise of the result,
+ *   `onChange(listener)`: called when `can` has changed.
+ * @returns {object} `run`, which takes the records, `time`, `selection`, and `show()`, which draws what has changed.
+ */
+export function startPage({ live, commands }) {
+  const world = new World(), links = new Links(), log = new Log(), goals = new Goals();
+  const models = [world, links, log, goals];
+  const run = new Run(models), selection = new Selection(), time = new Time(run, live);
+  const context = { run, selection, commands, time, open: (panel) => tabs.open(panel) };
+  const at = (id) => document.getElementById(id);
+
+  const tabs = new Tabs(at("tabs"), [
+    [at("agents"), new GoalsView(at("agents"), context, goals)],
+  ], context);
+  const map = new MapView(at("map"), context, world, links);
+  const beside = [
+    [at("robots"), new RobotsView(at("robots"), context, world, links)],
+    [at("log"), new LogView(at("log"), context, log)],
+    [at("timeline"), new TimelineView(at("timeline"), context, log)],
+  ];
+
+  const page = new Page({ run, selection, time, world, map, tabs, beside });
+  listenToKeys(time);
+  page.chooseTheme(fragment().get("theme") ?? (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light"));
+  at("theme").addEventListener("click", () => page.chooseTheme(isDark() ? "light" : "dark"));
+  page.begin();
+  return page;
+}
+
+/** Parameters behind the # of the address: `t`, seconds; `theme`, light or dark. */
+export function fragment() { return new URLSearchParams(location.hash.slice(1)); }
+
+/** Draws the views, at most once for each animation frame, and only when something has changed. */
+class Page {
+  constructor(parts) {
+    Object.assign(this, parts);
+    this.isStale = true;
+  }
+
+  begin() {
+    const stale = () => { this.isStale = true; };
+    this.run.onChange(stale);
+    this.time.onChange(stale);
+    this.selection.onChange(stale);
+    const sizes = new ResizeObserver(stale);
+    for (const id of ["map", "timeline", "log"]) sizes.observe(document.getElementById(id));
+    document.body.classList.remove("starting");
+    const tick = (moment) => {
+      this.tick(this.last === undefined ? 0 : Math.min(0.25, (moment - this.last) / 1000));
+      this.last = moment;
+      requestAnimationFrame(tick);
+    };
+    requestAnimationFrame(tick);
+  }
+
+  tick(seconds) {
+    if (this.time.tick(seconds)) this.isStale = true;
+    if (this.isStale) this.show();
+  }
+
+  show() {
+    this.isStale = false;
+    const t = this.time.now;
+    const { world, map } = this;
+    document.getElementById("stage").hidden = world.empty;
+    document.body.classList.toggle("no-world", world.empty);
+    this.tabs.show(t);
+    document.getElementById("nothing").hidden = this.tabs.available.length > 0;
+    for (const [root, view] of this.beside) {
+      root.hidden = view.empty === true;
+      if (!root.hidden) view.show(t);
+    }
+    if (!world.empty) map.show(t);  // last: the others decide how much room is left for it
+    this.summarise(t);
+  }
+
+  summarise(t) {
+    const robots = this.world.robotCount, name = this.world.drawing(t).name, parts = [];
+    if (name && name !== document.getElementById("title").textContent) parts.push(name);
+    if (robots) parts.push(robots === 1 ? "1 robot" : `${robots} robots`);
+    setText(document.getElementById("summary"), parts.join(" · "));
+  }
+
+  chooseTheme(theme) {
+    document.documentElement.dataset.theme = theme;
+    setText(document.getElementById("theme"), theme === "dark" ? "Light" : "Dark");
+    document.getElementById("theme").setAttribute("aria-label", theme === "dark" ? "Use light colours" : "Use dark colours");
+    this.map.invalidate();
+    this.isStale = true;
+  }
+
+  setTitle(title) {
+    document.title = title;
+    setText(document.getElementById("title"), title);
+  }
+
+  /** Show a line about the page itself, such as a lost connection; "" hides it. */
+  notice(text) {
+    const notice = document.getElementById("notice");
+    notice.hidden = !text;
+    notice.replaceChildren(element("span", "", text));
+  }
+}

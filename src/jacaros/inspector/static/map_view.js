@@ -1,0 +1,136 @@
+import { FloorDrawing } from "./floor_drawing.js";
+import { button, element } from "./elements.js";
+import { Projection } from "./projection.js";
+import { drawBelieved, drawLaser, drawPlan, drawRobot } from "./robot_drawing.js";
+import { drawDirt, drawDoors, drawObjects, drawPeople } from "./thing_drawing.js";
+import { TrailDrawing } from "./trail_drawing.js";
+
+const REACH = 8;  // pixels around a robot, a door or a person in which a click selects it
+
+/** The world from above. What stands still, and the paths so far, are kept on canvases of their own. */
+export class MapView {
+  constructor(root, { selection, run }, world, links) {
+    Object.assign(this, { root, selection, run, world, links });
+    this.canvas = element("canvas");
+    this.canvas.setAttribute("role", "img");
+    this.pen = this.canvas.getContext("2d");
+    this.floor = new FloorDrawing();
+    this.trails = new TrailDrawing(world);
+    root.append(this.canvas, this.makeLegend());
+    this.canvas.addEventListener("click", (event) => this.click(event));
+    this.key = "";
+  }
+
+  makeLegend() {
+    this.layers = { laser: true, trail: true };
+    const legend = element("div", "layers");
+    legend.setAttribute("role", "group");
+    legend.setAttribute("aria-label", "Layers of the map");
+    this.laserButton = this.layerButton("laser", "Laser");
+    legend.append(this.layerButton("trail", "Path so far"), this.laserButton);
+    return legend;
+  }
+
+  layerButton(layer, title) {
+    const made = button("plain layer", () => {
+      this.layers[layer] = !this.layers[layer];
+      made.setAttribute("aria-pressed", String(this.layers[layer]));
+      this.show(this.t);
+    }, title);
+    made.setAttribute("aria-pressed", "true");
+    return made;
+  }
+
+  /** Draw everything anew next time, for example because the colours have changed. */
+  invalidate() { this.key = ""; }
+
+  show(t) {
+    this.t = t;
+    const box = this.canvas.getBoundingClientRect();
+    if (box.width < 2 || box.height < 2) return;
+    this.fit(box, t);
+    this.draw(t);
+    this.laserButton.hidden = this.world.lasers.size === 0;
+    this.describe(t);
+  }
+
+  /** Fit the world into the canvas, when one of them has changed. */
+  fit(box, t) {
+    const ratio = window.devicePixelRatio || 1, drawing = this.world.drawing(t);
+    const bounds = this.world.bounds.map((value, side) => (side < 2 ? Math.floor(value * 2) : Math.ceil(value * 2)) / 2);
+    const key = [box.width, box.height, ratio, this.world.version, this.world.drawings.since(t), ...bounds].join(" ");
+    if (key === this.key) return;
+    this.key = key;
+    this.projection = new Projection(bounds, box.width, box.height);
+    for (const canvas of [this.canvas, this.floor.canvas, this.trails.canvas]) {
+      canvas.width = Math.max(1, Math.round(box.width * ratio));
+      canvas.height = Math.max(1, Math.round(box.height * ratio));
+    }
+    this.ratio = ratio;
+    this.floor.draw(drawing, this.projection, ratio, box, this.world);
+    this.trails.restart(this.projection, ratio);
+  }
+
+  draw(t) {
+    const { pen, projection, world, canvas } = this;
+    const states = Array.from({ length: world.robotCount }, (_, index) => world.state(index, t));
+    pen.setTransform(1, 0, 0, 1, 0, 0);
+    pen.clearRect(0, 0, canvas.width, canvas.height);
+    pen.drawImage(this.floor.canvas, 0, 0);
+    if (this.layers.trail) pen.drawImage(this.trails.extendTo(t), 0, 0);
+    pen.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
+    pen.lineJoin = pen.lineCap = "round";
+    drawDirt(pen, projection, world, t);
+    drawDoors(pen, projection, world, t);
+    if (this.layers.trail) this.trails.drawRest(pen, t, states);
+    drawObjects(pen, projection, world, t);
+    if (this.layers.laser) this.eachRobot(states, (robot, state, index) => drawLaser(pen, projection, world.scan(robot.name, t), state, index));
+    this.eachRobot(states, (robot, state, index) => drawPlan(pen, projection, world.path(robot.name, t), index));
+    drawPeople(pen, projection, world, t);
+    this.eachRobot(states, (robot, state, index) => drawBelieved(pen, projection, robot, world.belief(robot.name, t), state, index));
+    this.eachRobot(states, (robot, state, index) => drawRobot(pen, projection, robot, state, {
+      index, named: states.length > 1, selected: this.isSelected(robot.name, t),
+    }));
+  }
+
+  eachRobot(states, act) {
+    states.forEach((state, index) => { if (state) act(this.world.robot(index), state, index); });
+  }
+
+  isSelected(robot, t) {
+    const { robot: selected, agent } = this.selection.current;
+    return selected === robot || (agent !== undefined && this.links.robots(agent, t).includes(robot));
+  }
+
+  /** Say the map in words, for screen readers. */
+  describe(t) {
+    const robots = [];
+    for (let index = 0; index < this.world.robotCount; index++) {
+      const state = this.world.state(index, t);
+      if (state) robots.push(`${this.world.robot(index).name} at ${state.x.toFixed(1)}, ${state.y.toFixed(1)}`);
+    }
+    const { name, doors } = this.world.drawing(t);
+    const open = doors.map((door) => `door ${door.name} ${this.world.doorOpen(door, t) ? "open" : "closed"}`);
+    const text = `Map${name ? ` of ${name}` : ""}: ${[...robots.slice(0, 20), ...open].join("; ") || "no robots"}`;
+    if (this.canvas.getAttribute("aria-label") !== text) this.canvas.setAttribute("aria-label", text);
+  }
+
+  click(event) {
+    const found = this.find(event.offsetX, event.offsetY);
+    if (found) this.selection.choose(found); else this.selection.clear();
+  }
+
+  /** What is at a point of the canvas, as a selection; null for nothing. */
+  find(x, y) {
+    const { world, projection, t } = this;
+    const near = (px, py, size) => Math.hypot(projection.x(px) - x, projection.y(py) - y) <= size + REACH;
+    for (let index = world.robotCount - 1; index >= 0; index--) {
+      const state = world.state(index, t), robot = world.robot(index);
+      if (state && near(state.x, state.y, robot.radius * projection.scale)) return { robot: robot.name };
+    }
+    const person = world.peopleAt(t).find((each) => near(each.x, each.y, each.radius * projection.scale));
+    if (person) return { person: person.name };
+    const door = world.drawing(t).doors.find(({ segment: [ax, ay, bx, by] }) => near((ax + bx) / 2, (ay + by) / 2, Math.hypot(bx - ax, by - ay) / 2 * projection.scale));
+    return door ? { door: door.name } : null;
+  }
+}

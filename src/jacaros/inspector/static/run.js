@@ -1,0 +1,56 @@
+/**
+ * The records of a run, dispatched to models.
+ *
+ * A model is an object with `add(t, event, data)`. The event is that of a record of kind "event"; the other kinds arrive
+ * as "world" (the drawing), "frame" (the rows of robots) and "text" ({agent, text}).
+ */
+export class Run {
+  constructor(models) {
+    this.models = models;
+    this.end = 0;  // seconds: the time of the last record
+    this.count = 0;  // records so far
+    this.over = false;  // the run has ended
+    this.faults = [];  // what models could not take, in words
+    this.listeners = new Set();
+  }
+
+  add(record) { this.addAll([record]); }
+
+  /** Take records, oldest first, then notify the listeners once. */
+  addAll(records) {
+    for (const record of records) this.take(record);
+    for (const listener of this.listeners) listener();
+  }
+
+  take(record) {
+    const [event, data] = content(record), t = record.t ?? 0;
+    if (event === undefined) return;
+    this.count += 1;
+    if (t > this.end) this.end = t;
+    if (event === "ended") this.over = true;
+    for (const model of this.models) {
+      try { model.add(t, event, data); } catch (error) { this.reject(event, error); }
+    }
+  }
+
+  /** One broken record must not hide the others. */
+  reject(event, error) {
+    if (this.faults.length < 100) this.faults.push(`${event}: ${error.message}`);
+  }
+
+  /** Call `listener` after each batch of records; returns the function that ends this. */
+  onChange(listener) {
+    this.listeners.add(listener);
+    return () => this.listeners.delete(listener);
+  }
+}
+
+function content(record) {
+  switch (record?.kind) {
+    case "world": return ["world", record.world ?? {}];
+    case "frame": return ["frame", record.robots ?? []];
+    case "text": return ["text", { agent: record.agent, text: record.text }];
+    case "event": return [record.event, record.data ?? {}];
+    default: return [];
+  }
+}

@@ -1,0 +1,64 @@
+import { button } from "./elements.js";
+
+/**
+ * The panels beside the map, one at a time: a list of tabs as the ARIA practices describe it (arrow keys move).
+ *
+ * A panel without content has no tab.
+ */
+export class Tabs {
+  /** @param {Array<[HTMLElement, object]>} panels elements with their views; a view without content is `empty`. */
+  constructor(list, panels, context) {
+    this.list = list;
+    this.selection = context.selection;
+    this.panels = panels.map(([panel, view]) => ({ panel, view, tab: this.makeTab(panel) }));
+    this.chosen = null;
+    list.addEventListener("keydown", (event) => this.press(event));
+  }
+
+  makeTab(panel) {
+    const tab = button("tab", () => this.open(panel.id), panel.dataset.title);
+    tab.id = `tab-${panel.id}`;
+    tab.hidden = true;
+    tab.setAttribute("role", "tab");
+    tab.setAttribute("aria-controls", panel.id);
+    panel.setAttribute("role", "tabpanel");
+    panel.setAttribute("aria-labelledby", tab.id);
+    panel.tabIndex = 0;
+    this.list.append(tab);
+    return tab;
+  }
+
+  /** Open a panel by its id, for example from a view: `context.open("causes")`. */
+  open(id) {
+    this.chosen = id;
+    this.arrange();
+  }
+
+  /** Panels that have something to show. */
+  get available() { return this.panels.filter(({ view }) => !view.empty); }
+
+  arrange() {
+    const available = this.available;
+    const open = available.find(({ panel }) => panel.id === this.chosen) ?? available[0];
+    for (const each of this.panels) {
+      each.tab.hidden = !available.includes(each);
+      each.panel.hidden = each !== open;
+      each.tab.tabIndex = each === open ? 0 : -1;
+      each.tab.setAttribute("aria-selected", String(each === open));
+    }
+    return open;
+  }
+
+  show(t) { this.arrange()?.view.show(t); }
+
+  press(event) {
+    const tabs = this.available.map(({ tab }) => tab), at = tabs.indexOf(document.activeElement);
+    const to = { ArrowRight: at + 1, ArrowLeft: at - 1, Home: 0, End: tabs.length - 1 }[event.key];
+    if (at < 0 || to === undefined) return;
+    event.preventDefault();
+    event.stopPropagation();
+    const tab = tabs[(to + tabs.length) % tabs.length];
+    this.open(tab.getAttribute("aria-controls"));
+    tab.focus();
+  }
+}

@@ -1,0 +1,77 @@
+const EASE = 0.3;  // part of the lag behind the run that each animation frame makes up for: robots glide between samples
+const JUMP = 3;  // seconds of lag that are made up for in one step
+
+/**
+ * The moment that is shown.
+ *
+ * `now`: seconds since the run began; `live`: follow the end of the run; `playing`: move on by itself, at `speed`.
+ */
+export class Time {
+  constructor(run, live) {
+    this.run = run;
+    this.now = 0;
+    this.live = live;
+    this.canBeLive = live;
+    this.playing = false;
+    this.speed = 1;
+    this.listeners = new Set();
+  }
+
+  onChange(listener) {
+    this.listeners.add(listener);
+    return () => this.listeners.delete(listener);
+  }
+
+  notify() { for (const listener of this.listeners) listener(); }
+
+  /** Show the moment `t`; a live page stops following the run. */
+  go(t) {
+    this.now = Math.min(this.run.end, Math.max(0, t));
+    this.live = false;
+    this.notify();
+  }
+
+  /** Follow the run again. */
+  follow() {
+    this.playing = false;
+    this.live = this.canBeLive;
+    this.now = this.run.end;
+    this.notify();
+  }
+
+  play() {
+    if (this.live) return;
+    if (this.now >= this.run.end) this.now = 0;
+    this.playing = true;
+    this.notify();
+  }
+
+  pause() {
+    this.playing = false;
+    this.live = false;
+    this.notify();
+  }
+
+  toggle() { if (this.playing || this.live) this.pause(); else this.play(); }
+
+  /** Move on by `seconds` of real time; true when the moment has changed. */
+  tick(seconds) {
+    const before = this.now;
+    if (this.live) this.approach();
+    else if (this.playing) this.advance(seconds * this.speed);
+    return this.now !== before;
+  }
+
+  approach() {
+    const lag = this.run.end - this.now;
+    this.now = lag < 0.004 || lag > JUMP ? this.run.end : this.now + lag * EASE;
+  }
+
+  advance(seconds) {
+    this.now = Math.min(this.run.end, this.now + seconds);
+    if (this.now < this.run.end) return;
+    this.playing = false;
+    if (this.canBeLive && !this.run.over) this.live = true;
+    this.notify();
+  }
+}

@@ -1,0 +1,149 @@
+import { button, clock, element, setText } from "./elements.js";
+import { SORTS } from "./happenings.js";
+
+const SPEEDS = [0.5, 1, 2, 5, 10, 30, 100];
+const NEAR = 7;  // pixels: marks of one sort that are nearer become one
+const LONGEST = 45;  // seconds that a replay lasts at the speed it begins with, if one is fast enough
+const PLAY = "▶", PAUSE = "❚❚";
+
+/** Time: slider, marks with a legend, play and pause, speed, and the way back to a live run. */
+export class TimelineView {
+  constructor(root, context, log) {
+    Object.assign(this, { root, log, time: context.time, run: context.run, selection: context.selection });
+    this.drawn = "";
+    this.hasSpeed = false;
+    this.make();
+    this.listen();
+  }
+
+  make() {
+    this.play = button("round", () => this.time.toggle(), PLAY);
+    this.play.id = "play";
+    this.now = element("b", "", "0:00.0");
+    this.now.id = "now";
+    this.end = element("span");
+    this.slider = element("input");
+    Object.assign(this.slider, { type: "range", id: "scrub", min: "0", max: "1", step: "0.05", value: "0" });
+    this.slider.setAttribute("aria-label", "Time");
+    this.marks = element("div", "marks");
+    this.marks.setAttribute("role", "group");
+    this.marks.setAttribute("aria-label", "Events. The arrow keys move from one to the next.");
+    this.tip = element("p", "tip");
+    this.tip.hidden = true;
+    this.live = button("plain live", () => this.time.follow(), "Back to live");
+    this.speed = element("select");
+    this.speed.id = "speed";
+    for (const speed of SPEEDS) this.speed.append(new Option(speed === 0.5 ? "½×" : `${speed}×`, String(speed)));
+    this.speedLabel = element("label", "speed", "Speed ", this.speed);
+    this.legend = element("ul", "legend");
+    this.keys = element("span", "keys", ...keys());
+    const track = element("div", "track", this.marks, this.slider, this.tip);
+    this.root.append(this.play, element("div", "clock", this.now, " ", this.end), track, this.live, this.speedLabel,
+      element("div", "below", this.legend, this.keys));
+  }
+
+  listen() {
+    this.slider.addEventListener("input", () => this.time.go(Number(this.slider.value)));
+    this.speed.addEventListener("change", () => { this.time.speed = Number(this.speed.value); });
+    this.marks.addEventListener("keydown", (event) => this.press(event));
+  }
+
+  show(t) {
+    const { time, run } = this;
+    this.chooseSpeed();
+    setText(this.now, clock(t));
+    setText(this.end, `/ ${clock(run.end)}`);
+    this.slider.max = String(run.end);
+    this.slider.value = String(t);
+    this.slider.setAttribute("aria-valuetext", clock(t));
+    const moving = time.playing || time.live;
+    setText(this.play, moving ? PAUSE : PLAY);
+    this.play.setAttribute("aria-label", moving ? (time.live ? "Hold the view" : "Pause") : "Play");
+    this.live.hidden = !time.canBeLive || time.live;
+    this.speedLabel.hidden = time.live;
+    this.root.classList.toggle("following", time.live);
+    this.showMarks();
+  }
+
+  /** Play a replay at a speed at which it does not last long. */
+  chooseSpeed() {
+    if (this.hasSpeed || this.run.end === 0) return;
+    this.hasSpeed = true;
+    if (!this.time.canBeLive) this.time.speed = Math.max(1, SPEEDS.find((speed) => this.run.end / speed <= LONGEST) ?? 100);
+    this.speed.value = String(this.time.speed);
+  }
+
+  showMarks() {
+    const width = this.marks.clientWidth, key = `${this.log.marks.length} ${width} ${this.run.end.toFixed(1)}`;
+    if (key === this.drawn) return;
+    this.drawn = key;
+    const groups = this.run.end > 0 ? grouped(this.log.marks, width / this.run.end) : [];
+    const focused = this.marks.contains(document.activeElement) ? Number(document.activeElement.dataset.t) : null;
+    this.marks.replaceChildren(...groups.map((group, index) => this.mark(group, index === 0)));
+    if (focused !== null) this.marks.querySelector(`[data-t="${focused}"]`)?.focus();
+    this.showLegend();
+  }
+
+  mark(group, first) {
+    const [{ t, sort, text, leads }] = group;
+    const more = group.length > 1 ? `, and ${group.length - 1} more until ${clock(group[group.length - 1].t)}` : "";
+    const told = `${clock(t)} ${SORTS[sort]}: ${text}${more}`;
+    const made = button(`mark ${sort}`, () => {
+      this.time.go(t);
+      if (leads) this.selection.choose(leads);
+    });
+    made.dataset.t = String(t);
+    made.style.left = `${100 * t / this.run.end}%`;
+    made.tabIndex = first ? 0 : -1;
+    made.setAttribute("aria-label", told);
+    for (const event of ["focus", "pointerenter"]) made.addEventListener(event, () => this.tell(made, told));
+    for (const event of ["blur", "pointerleave"]) made.addEventListener(event, () => { this.tip.hidden = true; });
+    return made;
+  }
+
+  tell(mark, text) {
+    setText(this.tip, text);
+    this.tip.hidden = false;
+    const width = this.marks.clientWidth, half = this.tip.offsetWidth / 2;
+    this.tip.style.left = `${Math.max(half, Math.min(width - half, mark.offsetLeft))}px`;
+  }
+
+  showLegend() {
+    const sorts = Object.keys(SORTS).filter((sort) => this.log.marks.some((mark) => mark.sort === sort));
+    if (sorts.join() === this.sorts) return;
+    this.sorts = sorts.join();
+    this.legend.replaceChildren(...sorts.map((sort) => {
+      const sample = element("i", `mark ${sort}`);
+      sample.setAttribute("aria-hidden", "true");
+      return element("li", "", sample, SORTS[sort]);
+    }));
+  }
+
+  press(event) {
+    const marks = [...this.marks.children], at = marks.indexOf(document.activeElement);
+    const to = { ArrowRight: at + 1, ArrowLeft: at - 1, Home: 0, End: marks.length - 1 }[event.key];
+    if (at < 0 || to === undefined) return;
+    event.preventDefault();
+    event.stopPropagation();
+    marks[Math.min(marks.length - 1, Math.max(0, to))].focus();
+  }
+}
+
+/** Marks in the order of time, those of one sort that are near each other as one group. */
+function grouped(marks, scale) {
+  const groups = [], last = new Map();
+  for (const mark of marks) {
+    const group = last.get(mark.sort);
+    if (group && (mark.t - group[0].t) * scale < NEAR) group.push(mark);
+    else {
+      last.set(mark.sort, [mark]);
+      groups.push(last.get(mark.sort));
+    }
+  }
+  return groups;
+}
+
+function keys() {
+  const key = (text) => element("kbd", "", text);
+  return [key("space"), " play ", key("←"), " ", key("→"), " 1 s ", key("shift"), " 10 s"];
+}

@@ -1,0 +1,150 @@
+import { Track, indexAt } from "./track.js";
+
+const SCANS = 20000;  // scans of all robots that are kept: a live page may be open for days
+
+const EMPTY = {
+  name: "", bounds: null, walls: [], boxes: [], furniture: [], rooms: [], docks: [], doors: [], cliffs: [], robots: [],
+  people: [], objects: [],
+};
+
+/** The world and its robots over time. */
+export class World {
+  constructor() {
+    this.drawings = new Track();
+    this.times = [];  // of frames
+    this.columns = [];  // by robot: x, y, yaw, battery, flags, and `first`, the frame in which it appeared
+    this.names = [];
+    this.version = 0;  // grows when the drawing changes
+    this.lasers = new Map();
+    this.paths = new Map();
+    this.believed = new Map();
+    this.doors = new Map();
+    this.objects = new Map();
+    this.people = new Map();
+    this.dirt = new Map();
+    this.bounds = null;  // of the drawings, and of where robots were
+  }
+
+  add(t, event, data) { TAKE[event]?.(this, t, data); }
+
+  /** Whether there is anything to draw. */
+  get empty() { return !this.bounds; }
+
+  /** The drawing at time `t`; before the first one, that one: on a real graph it comes late. */
+  drawing(t) { return this.drawings.at(t) ?? this.drawings.values[0] ?? EMPTY; }
+
+  /** Description of robot number `index`: name, radius, footprint. */
+  robot(index) {
+    const drawings = this.drawings.values, known = drawings[drawings.length - 1]?.robots[index];
+    return { radius: 0.17, ...known, name: known?.name ?? this.names[index] ?? `robot ${index + 1}` };
+  }
+
+  get robotCount() { return this.columns.length; }
+
+  /** State of robot number `index` at time `t`, between two frames; null before it was known. */
+  state(index, t) {
+    const robot = this.columns[index], i = Math.max(indexAt(this.times, t), 0), j = Math.min(i + 1, this.times.length - 1);
+    if (!robot || i < robot.first) return null;
+    const span = this.times[j] - this.times[i];
+    const part = span > 0 ? Math.min(1, Math.max(0, (t - this.times[i]) / span)) : 0;
+    const mix = (values) => values[i] + (values[j] - values[i]) * part;
+    return {
+      frame: i, x: mix(robot.x), y: mix(robot.y), yaw: robot.yaw[i] + turn(robot.yaw[i], robot.yaw[j]) * part,
+      battery: mix(robot.battery), charging: (robot.flags[i] & 1) !== 0, touching: (robot.flags[i] & 2) !== 0,
+    };
+  }
+
+  doorOpen(door, t) { return this.doors.get(door.name)?.at(t) ?? door.open; }
+
+  /** The objects that lie somewhere at time `t`; a robot holds the others. */
+  objectsAt(t) {
+    const lie = [];
+    for (const object of this.drawing(t).objects) {
+      const place = this.objects.has(object.name) ? this.objects.get(object.name).at(t) : undefined;
+      if (place !== null) lie.push({ ...object, place: place ?? object.place });
+    }
+    return lie;
+  }
+
+  /** The people who are there at time `t`: where the last event of each says, straight on since then. */
+  peopleAt(t) {
+    const found = [];
+    for (const person of this.drawing(t).people) {
+      if (!this.people.get(person.name)?.at(t)) found.push({ ...person, x: person.path[0][0], y: person.path[0][1] });
+    }
+    for (const [name, track] of this.people) {
+      const walk = track.at(t), passed = t - track.since(t);
+      if (walk && !walk.gone) found.push({ ...walk, name, x: walk.x + walk.vx * passed, y: walk.y + walk.vy * passed });
+    }
+    return found;
+  }
+
+  /** Grams of dirt that are left at time `t`. */
+  dirtLeft(room, dirt, t) { return this.dirt.get(`${room.name}/${dirt.kind}`)?.at(t) ?? dirt.grams; }
+
+  scan(robot, t) { return this.lasers.get(robot)?.at(t); }
+  path(robot, t) { return this.paths.get(robot)?.at(t) ?? []; }
+  belief(robot, t) { return this.believed.get(robot)?.at(t); }
+
+  widen(left, bottom, right, top) {
+    const b = this.bounds ?? [left, bottom, right, top];
+    this.bounds = [Math.min(b[0], left), Math.min(b[1], bottom), Math.max(b[2], right), Math.max(b[3], top)];
+  }
+}
+
+const TAKE = {
+  world(world, t, drawing) {
+    if (!drawing.bounds) return;
+    world.drawings.add(t, { ...EMPTY, ...drawing });
+    world.widen(...drawing.bounds);
+    world.version += 1;
+  },
+  frame(world, t, rows) {
+    if (!rows.length) return;
+    world.times.push(t);
+    rows.forEach((row, index) => addRow(world, index, row));
+  },
+  laser(world, t, data) { track(world.lasers, data.robot, SCANS / Math.max(1, world.lasers.size)).add(t, data); },
+  path(world, t, data) { track(world.paths, data.robot).add(t, data.points); },
+  believed(world, t, data) { track(world.believed, data.robot).add(t, data); },
+  door_opened(world, t, data) { track(world.doors, data.door).add(t, true); },
+  door_closed(world, t, data) { track(world.doors, data.door).add(t, false); },
+  picked(world, t, data) { track(world.objects, data.object).add(t, null); },
+  placed(world, t, data) { track(world.objects, data.object).add(t, [data.x, data.y]); },
+  person_comes(world, t, data) { walk(world, t, data, data); },
+  person_walks(world, t, data) { walk(world, t, data); },
+  person_stands(world, t, data) { walk(world, t, data); },
+  person_goes(world, t, data) { track(world.people, data.person).add(t, { gone: true }); },
+  cleaned(world, t, data) { track(world.dirt, `${data.room}/${data.dirt}`).add(t, data.grams); },
+};
+
+function track(tracks, key, limit) {
+  if (!tracks.has(key)) tracks.set(key, new Track(limit));
+  return tracks.get(key);
+}
+
+function addRow(world, index, [x, y, yaw, battery, charging, touching]) {
+  const last = world.times.length - 1, flags = (charging ? 1 : 0) | (touching ? 2 : 0);
+  if (!world.columns[index]) {
+    // It was found late: until then it is where it was found, so that every column has one value for each frame.
+    const fill = (value) => new Array(last).fill(value);
+    world.columns[index] = { first: last, x: fill(x), y: fill(y), yaw: fill(yaw), battery: fill(battery), flags: fill(flags) };
+  }
+  const robot = world.columns[index];
+  robot.x[last] = x; robot.y[last] = y; robot.yaw[last] = yaw; robot.battery[last] = battery; robot.flags[last] = flags;
+  world.widen(x - 0.3, y - 0.3, x + 0.3, y + 0.3);
+}
+
+function walk(world, t, data, known) {
+  const tracks = track(world.people, data.person);
+  const person = known ?? tracks.at(t) ?? world.drawing(t).people.find((each) => each.name === data.person);
+  if (!person) return;
+  const { radius, color, path, loop } = person;
+  tracks.add(t, { radius, color, path, loop, x: data.x, y: data.y, vx: data.vx ?? 0, vy: data.vy ?? 0 });
+}
+
+/** The shorter way from one angle to another. */
+function turn(from, to) {
+  const way = (to - from) % (2 * Math.PI);
+  return way > Math.PI ? way - 2 * Math.PI : way < -Math.PI ? way + 2 * Math.PI : way;
+}
