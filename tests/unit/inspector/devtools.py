@@ -101,6 +101,7 @@ class Page:
         """Have the browser report what happens on the page."""
         for domain in ("Page", "Runtime", "Log"):
             await self.call(f"{domain}.enable")
+        await self.call("Emulation.setFocusEmulationEnabled", enabled=True)
 
     async def open(self, address: str | Path) -> None:
         """Open an address, or a file, and wait until it is loaded."""

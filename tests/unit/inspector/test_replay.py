@@ -178,6 +178,7 @@ def test_keys_move_through_time(tmp_path: Path) -> None:
 @needs_chromium
 def test_marks_are_reached_by_keyboard_and_have_texts(tmp_path: Path) -> None:
     async def test(page: Page) -> None:
+        await page.wait_for("document.querySelectorAll('.marks .mark').length === 2")
         await page.evaluate("document.querySelector('.marks .mark').focus()")
         assert await page.text(".tip") == "0:02.0 docked: docked at dock"
         await page.press("ArrowRight")
