@@ -103,6 +103,13 @@ class Architecture(AgentSystem, Protocol):
     def out_of_memory(self) -> None:
         """A step or an event met a `MemoryError`; the agent goes on as long as it is let."""
 
+    def explain(self, question: str) -> Mapping[str, Any]:
+        """Answer a question about the run so far; plain data, as `jacaros.mas.history.Explanation.data` returns it.
+
+        Raises:
+            UsageError: the question is not understood.
+        """
+
     def clone_agent(self, name: str) -> str | None:
         """Make an agent with a copy of this mind; its final name, or None with the reason logged."""
 

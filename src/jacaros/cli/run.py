@@ -124,6 +124,14 @@ SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
     help="Forbid agents to take plans from others (tellHow), to use files (.include, .save_agent, .list_files, "
     ".create_agent with a program) and to make Python objects (cartago.*): the step fails.",
 )
+@click.option(
+    "--explain",
+    "explained",
+    metavar="EVENT",
+    multiple=True,
+    help="Explain on the standard error output how EVENT is handled each time, such as '+alarm(_)' or '!go(dock)'. "
+    "Repeatable.",
+)
 @click.option("--view", is_flag=True, help="Show the world in the terminal.")
 @click.option("--quiet", is_flag=True, help="Tell warnings and errors only.")
 def command(
@@ -139,6 +147,7 @@ def command(
     ground_truth: Path | None,
     view: bool,
     quiet: bool,
+    explained: tuple[str, ...],
     **given: Any,
 ) -> int:
     """Run FILE: an agent program (.asl, or .py for an agent in Python) or a project (.mas2j, .jcm).
@@ -152,10 +161,12 @@ def command(
     check_file(file)
     outputs = Outputs(record, replay, ground_truth, view, record_limit * 1_000_000)
     outputs.check()
+    _check_events(explained)
     options = RunOptions(
         remap=read_remaps(remap) if remap else {},
         orphans=orphan_policy(orphans),
         show_world=outputs.any,
+        explain=bool(explained),
         **given,
     )
     project: Path | Deployment = file
@@ -174,7 +185,7 @@ def command(
     )
     code = 1
     try:
-        code = _launch(project, options, console, outputs)
+        code = _launch(project, options, console, outputs, explained)
         return code
     finally:
         _close(console, code)
@@ -190,8 +201,16 @@ def _parameters(
     return read_parameters(written, files, name, "/" if options.ros == "ros1" else ".")
 
 
-def _launch(file: Path | Deployment, options: RunOptions, console: StandardConsole, outputs: Outputs) -> int:
+def _launch(
+    file: Path | Deployment,
+    options: RunOptions,
+    console: StandardConsole,
+    outputs: Outputs,
+    explained: Sequence[str] = (),
+) -> int:
     def begin(mas: System) -> None:
+        if explained:
+            _announce(mas, explained)
         if options.fast:
             # As in `| head`: nobody wants the rest, and no robot depends on the agents.
             loop = asyncio.get_running_loop()
@@ -212,6 +231,25 @@ def _launch(file: Path | Deployment, options: RunOptions, console: StandardConso
 
     with Watching(console, outputs) as watching, console.with_prints():
         return launch(file, options, watching, begin_watched)
+
+
+def _check_events(events: Sequence[str]) -> None:
+    """Refuse what `--explain` cannot explain, before the run.
+
+    Raises:
+        UsageError: one of them is not an event, a goal or a belief.
+    """
+    if events:
+        from jacaros.mas.history.patterns import Pattern  # here: few runs are explained
+
+        for each in events:
+            Pattern(each)
+
+
+def _announce(mas: System, events: Sequence[str]) -> None:
+    from jacaros.mas.history.announcing import Announcer  # here: few runs are explained
+
+    Announcer(mas.keep_history(), events, mas.console.log).begin()
 
 
 def report_idleness(mas: System) -> None:

@@ -108,6 +108,9 @@ class Run(Protocol):
     def out_of_memory(self, name: str) -> None:
         """End the run: an agent met a `MemoryError`."""
 
+    def explain(self, question: str, agent: str) -> Mapping[str, Any]:
+        """Answer a question of an agent about the run so far."""
+
     def create_agent(self, name: str, source: str | None, classes: Mapping[str, str]) -> str | None:
         """Make and start an agent; its final name, or None with the reason logged."""
 
@@ -315,6 +318,10 @@ class AgentHost:
     def create_agent(self, name: str, source: str | None, classes: Mapping[str, str]) -> str | None:
         """Make an agent."""
         return self._run.create_agent(name, source, classes)
+
+    def explain(self, question: str) -> Mapping[str, Any]:
+        """Answer a question about the run so far."""
+        return self._run.explain(question, self.name)
 
     def clone_agent(self, name: str) -> str | None:
         """Make an agent with a copy of this one's mind."""

@@ -33,6 +33,7 @@ class RunOptions(GraphAddress):
         guard: have a process of its own stop the robot when this one no longer can.
         restricted: agents take no plans from others (``tellHow``), read and write no files, and make no Python objects; see
             docs/explanation/trust.md.
+        explain: keep the history of the run from its start on, for `Mas.explain` and ``.why``.
         diagnostics: publish the state of agents and connection on ``/diagnostics``; None: on real graphs.
     """
 
@@ -52,6 +53,7 @@ class RunOptions(GraphAddress):
     mappings: Sequence[str | Path] = ()
     guard: bool = False
     restricted: bool = False
+    explain: bool = False
 
     @property
     def real_graph(self) -> bool:

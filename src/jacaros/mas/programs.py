@@ -33,6 +33,13 @@ _OF_JASON = re.compile(r"\$jason(Jar)?/test/jason/inc/|\btest_manager\b|\bmock_o
 """What is found in Jason's own copies of them, which projects have beside their tests."""
 
 
+def asks_why(program: nodes.Program) -> bool:
+    """Whether the text of a program mentions ``.why``: then the history of the run is kept from its start on."""
+    clauses = (*program.beliefs, *program.plans)
+    files = {id(each.span.file): each.span.file for each in clauses if each.span is not None}
+    return any(".why(" in file.text for file in files.values())
+
+
 class Programs:
     """Reads agent programs.
 

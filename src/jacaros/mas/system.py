@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import AsyncExitStack
 from functools import partial
 from random import Random
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import jacaros.bdi.actions.standard  # noqa: F401 - fills the table of internal actions
 from jacaros.asl.nodes import Program
@@ -22,7 +22,7 @@ from jacaros.mas.directory import Directory, Mailboxes, ServiceDirectory, Servic
 from jacaros.mas.idleness import Activity, AgentTimer, Idleness
 from jacaros.mas.options import RunOptions
 from jacaros.mas.population import Population, begin
-from jacaros.mas.programs import Programs
+from jacaros.mas.programs import Programs, asks_why
 from jacaros.mas.python_code import PythonCode
 from jacaros.mas.ros_graph import RosGraph
 from jacaros.mas.scheduler import Scheduler
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from jacaros.env.environment import Environment
     from jacaros.mas.diagnostics import Diagnostics
     from jacaros.mas.environment import RunEnvironment
+    from jacaros.mas.history.explanation import Explanation
     from jacaros.mas.history.history import History
     from jacaros.trace import Tracer
 
@@ -90,6 +91,7 @@ class System:
         self._run_environment: RunEnvironment | None = None
         self._tracer: Tracer | None = None
         self._history: History | None = None
+        self._keeps_history = False
         self._diagnostics: Diagnostics | None = None
         self.ros = self._find_graph()
         self._modules = ProjectModules(deployment.base_path, *deployment.source_paths)
@@ -192,6 +194,32 @@ class System:
             self._history = History(self)
         return self._history
 
+    def keep_history(self) -> "History":
+        """Observe the run from now on, until its end."""
+        history = self.history()
+        if not self._keeps_history:
+            self._keeps_history = True
+            history.start()
+        return history
+
+    def answer(
+        self, question: str, at: float | None = None, agent: str = "", robot: str = ""
+    ) -> "Explanation":
+        """Answer a question about the run so far, see `jacaros.mas.history.why.explain`.
+
+        What happened before the first question is unknown, unless the option ``explain`` is set.
+
+        Raises:
+            UsageError: the question is not understood.
+        """
+        from jacaros.mas.history.why import explain  # here: few runs are asked
+
+        return explain(self.keep_history().all(), question, at, agent, robot)
+
+    def explain(self, question: str, agent: str) -> Mapping[str, Any]:
+        """Answer a question of an agent about itself, as plain data."""
+        return self.answer(question, agent=agent).data()
+
     # ---- the start
 
     async def start(self) -> None:
@@ -214,6 +242,8 @@ class System:
         await self.ros.guard()
         agents = list(zip(self.deployment.agents, programs, strict=True))
         hosts = [population.add(spec, program) for spec, program in agents]
+        if self.options.explain or any(map(asks_why, programs)):
+            self.keep_history()
         for host, (spec, program) in zip(hosts, agents, strict=True):
             begin(host, spec, program)
         if self.options.seconds is not None:

@@ -10,6 +10,7 @@ from jacaros.bdi.mind import Mind
 from jacaros.bdi.state.act import Act
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.clock import Timer, VirtualClock, run
+from jacaros.errors import UsageError
 from jacaros.mas.coroutines import Ended, without_exit
 from jacaros.mas.programs import Programs
 from jacaros.testing.recorded import Action, RecordedAct, SentMessage
@@ -123,6 +124,9 @@ class HarnessPort:
         del classes
         self.log("info", f".create_agent({name}, {source}): this test has no other agents")
         return None
+
+    def explain(self, question: str) -> Mapping[str, Any]:
+        raise UsageError(f"nothing is recorded in this test, so `{question}` has no answer")
 
     def clone_agent(self, name: str) -> str | None:
         self.log("info", f".clone({name}): this test has no other agents")

@@ -5,6 +5,7 @@ import itertools
 import os
 from collections.abc import Callable, Mapping, Sequence
 from random import Random
+from typing import Any
 
 import jacaros.bdi.actions.standard  # noqa: F401 - fills the registry of internal actions
 from jacaros.asl.loader import load_program
@@ -105,6 +106,10 @@ class RecordingHost:
     def create_agent(self, name: str, source: str | None, classes: Mapping[str, str]) -> str | None:
         del name, source
         return None
+
+    def explain(self, question: str) -> Mapping[str, Any]:
+        fact = {"kind": "sample", "text": "/battery", "t": 0.5, "agent": "", "file": "", "line": 0}
+        return {"answer": question, "t": 1.0, "facts": (), "because": (fact,)}
 
     def clone_agent(self, name: str) -> str | None:
         del name

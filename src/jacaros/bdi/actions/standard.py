@@ -4,6 +4,7 @@ from jacaros.bdi.actions import (  # noqa: F401 - each registers its actions
     agents,
     beliefs,
     collections,
+    explaining,
     goals,
     lists,
     output,

@@ -13,6 +13,7 @@ from jacaros.mas.deployment import Deployment
 from jacaros.mas.embedding.errors import RunEnded
 from jacaros.mas.embedding.stream import OnLog, OnPrint, PrintedConsole
 from jacaros.mas.embedding.waits import Waits
+from jacaros.mas.history.explanation import Explanation
 from jacaros.mas.options import RunOptions
 from jacaros.mas.system import System
 
@@ -103,6 +104,25 @@ class EmbeddedRun:
             RunEnded: it has not begun.
         """
         return self._running[0]
+
+    def explain(
+        self, question: str, at: float | None = None, agent: str = "", robot: str = ""
+    ) -> Explanation:
+        """Answer a question about the run, such as ``stopped``, ``+alarm(_)`` or ``plan @low``.
+
+        The history begins with the first question, or with the run if the option ``explain`` is set or a program mentions
+        ``.why``.
+
+        Args:
+            question: as `jacaros why` takes it.
+            at: seconds since the history began; the present moment without.
+            agent, robot: the only one that counts.
+
+        Raises:
+            UsageError: the question is not understood.
+            RunEnded: the run has not begun.
+        """
+        return self._running[0].answer(question, at, agent, robot)
 
     @property
     def _open(self) -> System:

@@ -36,7 +36,9 @@ class Pattern:
         self.sign, self.written = sign[-1:], literal.strip()
         self.name, term = _name(self.written), _term(self.written)
         if term is None:
-            raise UsageError(f"not an event, a goal or a belief: `{text}`")
+            raise UsageError(
+                f"error: not an event, a goal or a belief: `{text}`\n  = help: such as `+alarm(_)` or `!go(dock)`"
+            )
         self._term = None if self.name == self.written else term
 
     def fits(self, recorded: str) -> bool:
