@@ -1,5 +1,6 @@
 """Causes: why a thing happened, and the port through which a run is observed."""
 
+from contextvars import ContextVar
 from typing import NamedTuple, Protocol
 
 
@@ -9,7 +10,7 @@ class Cause(NamedTuple):
     Attributes:
         id: number of this link, unique in the run.
         parent: number of the link that led to it, 0 at the beginning of a chain.
-        kind: stop of the journey, ``sample``, ``property``, ``act`` or ``operation``.
+        kind: stop of the journey: ``sample``, ``property``, ``signal``, ``event``, ``act``, ``operation`` or ``command``.
         what: short text for people.
     """
 
@@ -22,5 +23,16 @@ class Cause(NamedTuple):
 class Tracer(Protocol):
     """Observer of a run; where there is none, no cause is made."""
 
-    def link(self, kind: str, what: str, parent: Cause | None = None) -> Cause:
-        """Make the next link of a chain, and take note of it."""
+    def link(self, kind: str, what: str, parent: Cause | None = None, about: object = None) -> Cause:
+        """Make the next link of a chain, and take note of it.
+
+        Args:
+            kind: stop of the journey, see `Cause`.
+            what: short text.
+            parent: what led to it, None at the beginning of a chain.
+            about: what the link is about, such as the message; it is read only if the link is recorded.
+        """
+
+
+CURRENT: ContextVar[Cause | None] = ContextVar("CURRENT", default=None)
+"""What led to the code that runs now, for messages that it publishes; set for operations while somebody watches."""

@@ -34,7 +34,7 @@ ADD = "example_interfaces/srv/AddTwoInts"
 class Causes:
     """Makes the causes of one node."""
 
-    def link(self, kind: str, what: str, parent: Cause | None = None) -> Cause:
+    def link(self, kind: str, what: str, parent: Cause | None = None, about: object = None) -> Cause:
         return Cause(1, parent.id if parent is not None else 0, kind, what)
 
 

@@ -32,7 +32,10 @@ NUMBERS = {
     "terms.order._variable_numbers": "variables in the order in which they were first compared",
     "terms.values._reference_numbers": "names of opaque objects (cobj_N)",
 }
-VARIABLES = {"terms.arithmetic.RUNNING": "the agent whose turn it is, for each thread and task"}
+VARIABLES = {
+    "terms.arithmetic.RUNNING": "the agent whose turn it is, for each thread and task",
+    "env.kernel.steps.CURRENT": "what led to the operation that runs, for each task of a run that is watched",
+}
 CACHES = {
     "asl.checks.goals._goals_of_tests": "of a file of the package",
     "bdi.actions.strings._compile": "of a text",
@@ -75,7 +78,7 @@ def test_no_module_counts() -> None:
     assert others_than(NUMBERS, lambda value: isinstance(value, itertools.count)) == []
 
 
-def test_only_the_running_agent_is_a_context_variable() -> None:
+def test_only_what_runs_now_is_a_context_variable() -> None:
     assert others_than(VARIABLES, lambda value: isinstance(value, ContextVar)) == []
 
 

@@ -235,7 +235,7 @@ class AgentBody:
         timeout = call.direction.timeout
         tracer, why = self._environment.tracer, act.cause
         if tracer is not None:
-            why = tracer.link("act", f"{self._agent} {call.key}", why)
+            why = tracer.link("act", f"{self._agent} {call.key}", why, (self._agent, act))
         request = OperationRequest(artifact, call.name, tuple(arguments), self._agent, why, done, timeout)
         return self._environment.execute(request)
 

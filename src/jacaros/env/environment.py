@@ -10,6 +10,7 @@ from jacaros.env.errors import OperationFailed, UnknownArtifactType
 from jacaros.env.ids import ArtifactId
 from jacaros.env.kernel.registry import Registry
 from jacaros.env.kernel.setting import Setting, log_to_stderr
+from jacaros.env.listener import EnvironmentListener
 from jacaros.env.operation import OPERATION, OperationRequest
 from jacaros.env.ports import UnderWay
 from jacaros.env.standard_artifacts import furnish
@@ -72,6 +73,21 @@ class Environment:
     @tracer.setter
     def tracer(self, tracer: Tracer | None) -> None:
         self._setting.tracer = tracer
+
+    @property
+    def listener(self) -> EnvironmentListener | None:
+        """Receives what happens in the artifacts of this process, None while nobody watches."""
+        listener: EnvironmentListener | None = self._setting.listener
+        return listener
+
+    @listener.setter
+    def listener(self, listener: EnvironmentListener | None) -> None:
+        self._setting.listener = listener
+
+    def artifact(self, artifact_id: ArtifactId) -> object | None:
+        """The artifact behind an id, for those who watch it; None when it has not been made, is gone or lives elsewhere."""
+        steps = self._registry.made(artifact_id)
+        return steps.artifact if steps is not None else None
 
     def when_disposed(self, callback: Callable[[ArtifactId], None]) -> None:
         """Call *callback* with the id of every artifact that is gone, when all who observed it have been told."""

@@ -420,6 +420,8 @@ class Workspace(ports.Workspace):
             else:
                 offering.remove(artifact_id)
         self._offers.pop(artifact_id, None)
+        if self._setting.listener is not None:
+            self._setting.listener.artifact(artifact_id, present)
         self._tell((*self._watchers.values(), *self._watchers_of_all.values()), artifact_id, present)
 
     def _tell(self, watchers: tuple[Watcher, ...], artifact_id: ArtifactId, present: bool) -> None:

@@ -98,6 +98,37 @@ class StandardConsole:
         self.log(f"warning: {text}", "warning")
 
 
+class HeardConsole:
+    """Passes everything on to another console, and log lines to those who listen.
+
+    Args:
+        console: where everything goes.
+
+    Attributes:
+        print: shows a line of an agent's output: that of *console*.
+    """
+
+    def __init__(self, console: Console) -> None:
+        self._console = console
+        self.print = console.print
+        self._listeners: tuple[Callable[[str, str], None], ...] = ()
+
+    def log(self, text: str, level: str = "info") -> None:
+        """Tell people about what happens."""
+        self._console.log(text, level)
+        for listener in self._listeners:
+            listener(text, level)
+
+    def listen(self, listener: Callable[[str, str], None]) -> Callable[[], None]:
+        """Call *listener* with text and level of each line from now on; gives what ends that."""
+        self._listeners = (*self._listeners, listener)
+
+        def end() -> None:
+            self._listeners = tuple(each for each in self._listeners if each is not listener)
+
+        return end
+
+
 def line_of(agent: str, text: str) -> str:
     """The line that shows what an agent prints; line ends inside stay, as the agent wants them."""
     return f"[{agent}] {text}\n"

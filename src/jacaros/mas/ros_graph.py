@@ -149,6 +149,11 @@ class RosGraph:
         return made
 
     @property
+    def node(self) -> "SimNode | None":
+        """The node of the embedded world; None without one, or while nobody has asked for the graph."""
+        return self._node
+
+    @property
     def joined(self) -> "Backend | None":
         """Our node, None while nobody has asked for the graph."""
         return self._backend

@@ -15,7 +15,7 @@ from jacaros.clock import Clock
 from jacaros.mas.agent_classes import AgentClasses
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.code_folder import code_folder
-from jacaros.mas.console import Console
+from jacaros.mas.console import Console, HeardConsole
 from jacaros.mas.deployment import AgentSpec, Deployment, has_own_artifacts
 from jacaros.mas.directory import NAME as DIRECTORY_NAME
 from jacaros.mas.directory import Directory, Mailboxes, ServiceDirectory, Services
@@ -80,7 +80,7 @@ class System:
     ) -> None:
         self.deployment = deployment
         self.clock = clock
-        self.console = console
+        self.console: Console = console
         self.options = options or RunOptions()
         self.options.check()
         self.directory: Directory[AgentHost] = Directory()
@@ -90,6 +90,7 @@ class System:
         self.idleness.turns = self.scheduler
         self._run_environment: RunEnvironment | None = None
         self._tracer: Tracer | None = None
+        self._situated: Callable[[Environment], None] | None = None
         self._history: History | None = None
         self._keeps_history = False
         self._diagnostics: Diagnostics | None = None
@@ -120,6 +121,7 @@ class System:
             from jacaros.mas.diagnostics import RosoutConsole  # here: only for runs on a real graph
 
             self.console = RosoutConsole(self.console, lambda: self.ros.joined)
+        self.console = self._log = HeardConsole(self.console)
         return RosGraph(
             options,
             self.clock,
@@ -185,6 +187,21 @@ class System:
         self.ros.trace(tracer)
         if self._run_environment is not None:
             self._run_environment.environment.tracer = tracer
+
+    def when_situated(self, told: "Callable[[Environment], None]") -> Callable[[], None]:
+        """Call *told* with the environment, now or when it is made; gives what ends that."""
+        self._situated = told
+        if self._run_environment is not None:
+            told(self._run_environment.environment)
+
+        def end() -> None:
+            self._situated = None
+
+        return end
+
+    def listen_to_log(self, told: Callable[[str, str], None]) -> Callable[[], None]:
+        """Call *told* with text and level of each line that is logged from now on; gives what ends that."""
+        return self._log.listen(told)
 
     def history(self) -> "History":
         """What happens in the run, for recordings, views and explanations; made when it is first asked for."""
@@ -288,6 +305,8 @@ class System:
                 self.deployment, self._modules, self.clock, resources, self.console, self.activity, self.fail
             )
             self._run_environment.environment.tracer = self._tracer
+            if self._situated is not None:
+                self._situated(self._run_environment.environment)
         return self._run_environment
 
     def _situate(self, host: AgentHost, spec: AgentSpec) -> None:

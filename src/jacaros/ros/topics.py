@@ -12,6 +12,7 @@ from jacaros.ros.backend import Sample, TopicEvent, TopicTrouble
 from jacaros.ros.node import Node, Wanted
 from jacaros.ros.qos import QoS
 from jacaros.ros.serving import published_message
+from jacaros.trace import CURRENT
 
 N = TypeVar("N", bound=Node)
 
@@ -73,6 +74,8 @@ class TopicPublisher(_TopicEnd[N]):
             message = published_message(self._node.factory, self.topic, self.type_name, message)
         if not self._closed:
             self._node.lifetime.send(self._send, message)
+            if self._node.tracer is not None and (why := CURRENT.get()) is not None:
+                self._node.tracer.link("command", self.topic, why, message)
 
     def tell(self, text: str, key: object = None) -> None:
         """Log why what is published reaches nobody, once for each *key* (the text by default)."""
@@ -109,7 +112,7 @@ class TopicSubscription(_TopicEnd[N]):
     def deliver(self, message: Any) -> None:
         """Hand a message over, on the loop."""
         node = self._node
-        why = None if node.tracer is None else node.tracer.link("sample", self.topic)
+        why = None if node.tracer is None else node.tracer.link("sample", self.topic, None, message)
         self._callback(Sample(message, self.topic, node.clock.now(), why))
 
     def tell(self, trouble: TopicTrouble, text: str, key: object = None) -> None:

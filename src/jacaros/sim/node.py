@@ -1,6 +1,7 @@
 """The world as a ROS node: all its robots over any backend, in the time of any clock."""
 
 import math
+from collections.abc import Sequence
 from typing import cast
 
 from jacaros.clock import Clock, Timer
@@ -62,6 +63,18 @@ class SimNode:
             self._faulty.check()
         self._ticks = 0
         self._wait_for_tick()
+
+    def beliefs(self) -> dict[str, tuple[float, float, float]]:
+        """Where each robot believes to be, by its name: metres on the map, and radians."""
+        found = {}
+        for each in self.robots:
+            x, y, cosine, sine = each.localisation.belief(self.world.time)
+            found[each.robot.name] = (x, y, math.atan2(sine, cosine))
+        return found
+
+    def paths(self) -> dict[str, Sequence[tuple[float, float]]]:
+        """The points of the path that each robot follows, by its name: metres on the map; empty without a goal."""
+        return {each.name: each.path for each in self.navigation}
 
     def grid(self) -> Grid:
         """The map of the world, made when it is first wanted."""

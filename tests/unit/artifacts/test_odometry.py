@@ -35,7 +35,7 @@ def test_verbose_odometry_gives_one_change_and_no_signal_for_each_new_message() 
 
 
 class Causes:
-    def link(self, kind: str, what: str, parent: Cause | None = None) -> Cause:
+    def link(self, kind: str, what: str, parent: Cause | None = None, about: object = None) -> Cause:
         return Cause(1, 0, kind, what)
 
 

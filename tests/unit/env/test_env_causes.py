@@ -8,7 +8,7 @@ class Recorder:
     def __init__(self, clock):
         self.clock, self.links = clock, []
 
-    def link(self, kind, what, parent=None):
+    def link(self, kind, what, parent=None, about=None):
         made = Cause(len(self.links) + 100, parent.id if parent is not None else 0, kind, what)
         self.links.append((made, self.clock.now()))
         return made
@@ -75,7 +75,7 @@ def test_with_a_tracer_each_operation_and_each_commit_is_a_link(play):
         await stage.clock.sleep(2.0)
         changed, signalled = (observation.cause for observation in watcher.observations[1:])
         assert recorder.chain(changed) == ["property /main/it power", "operation /main/it switch/0"]
-        assert recorder.chain(signalled) == ["property /main/it burnt", "operation /main/it switch/0"]
+        assert recorder.chain(signalled) == ["signal /main/it burnt", "operation /main/it switch/0"]
         assert recorder.links[-1][1] == stage.clock.start + 1.0
         first = next(each for each, _ in recorder.links if each.kind == "operation")
         assert first.parent == why.id

@@ -330,6 +330,13 @@ class ConnectedArtifact(Artifact):
         self.at_dispose(partial(parameters.withdraw, name))
         return value
 
+    @property
+    def ros_names(self) -> tuple[str, ...]:
+        """The absolute names of the topics, services and actions that it uses now."""
+        owners = [getattr(closing, "__self__", None) for closing in self.__dict__.get("_closings", ())]
+        names = [getattr(each, "topic", None) or getattr(each, "name", None) for each in owners]
+        return tuple(name for name in names if isinstance(name, str) and name.startswith("/"))
+
     def kept(self, connection: C) -> C:
         """Have *connection* closed with the artifact, and give it back."""
         self.at_dispose(connection.close)

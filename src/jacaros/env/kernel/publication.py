@@ -66,6 +66,7 @@ class Publication:
         if observer not in self._observers:
             self._observers[observer] = None
             self._note_slow()
+            self._tell_focus(observer, True)
             self._show(observer, added=self.committed())
 
     def remove(self, observer: Observer) -> None:
@@ -74,7 +75,12 @@ class Publication:
         if observer in self._observers:
             del self._observers[observer]
             self._note_slow()
+            self._tell_focus(observer, False)
             self._show(observer, removed=self.committed())
+
+    def _tell_focus(self, observer: Observer, on: bool) -> None:
+        if self._setting.listener is not None:
+            self._setting.listener.focused(self._artifact, observer.agent, on)
 
     def has_untaken(self, name: str) -> bool:
         """Whether properties called *name* will change, or an observer has still to take up what it was told about them."""
@@ -116,12 +122,15 @@ class Publication:
         changes = self.properties.commit()
         if not (signals or changes.changed or changes.added or changes.removed):
             return
-        if not self._observers and self._setting.tracer is None:
+        listener = self._setting.listener
+        if not self._observers and self._setting.tracer is None and listener is None:
             return
         cause = parent if self._setting.tracer is None else self._trace(parent, signals, changes)
         complete = others = Observation(self._artifact, signals, *changes, cause)
         if addressee is not None:
             others = Observation(self._artifact, (), *changes, cause)
+        if listener is not None:
+            listener.published(complete)
         if self._telling is not _NOBODY:
             self._tell()
         self._telling = iter(tuple(self._observers)), addressee, complete, others
@@ -153,7 +162,9 @@ class Publication:
     ) -> Cause | None:
         names = [signal.name for signal in signals] + [new.name for _, new in changes.changed]
         names += [each.name for each in (*changes.added, *changes.removed)]
-        return self._setting.trace("property", f"{self._artifact.path} {' '.join(names)}", parent)
+        kind = "property" if changes.changed or changes.added or changes.removed else "signal"
+        about = self._artifact, signals, changes
+        return self._setting.trace(kind, f"{self._artifact.path} {' '.join(names)}", parent, about)
 
     def _deliver(self, observer: Observer, observation: Observation) -> None:
         try:

@@ -65,6 +65,10 @@ class Registry:
             return make()
         return found
 
+    def made(self, artifact_id: ArtifactId) -> Steps | None:
+        """The artifact with that id; None when it is gone, or promised and not made yet."""
+        return self._steps.get(artifact_id)
+
     def interface(self, artifact_id: ArtifactId) -> Interface | None:
         """The operations of the artifact with that id, None when it is gone."""
         if artifact_id in self._promises:

@@ -7,6 +7,7 @@ import traceback
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
+from typing import Any
 
 from jacaros.clock import Clock
 from jacaros.errors import InternalError
@@ -27,6 +28,7 @@ class Setting:
         resources: what the host lends to artifacts, such as ``ros`` and ``console``, by name.
         log: takes a line for people, such as ``[lamp] on``.
         tracer: told of every cause, None while nobody watches.
+        listener: a `jacaros.env.listener.EnvironmentListener`, None while nobody watches.
         told: what authors have been told once.
         loop: where the operations run, None before the first one.
         on_internal_error: told of defects of JaCaROS itself; None lets them escape.
@@ -37,6 +39,7 @@ class Setting:
     log: Callable[[str], None] = log_to_stderr
     tracer: Tracer | None = None
     on_internal_error: Callable[[BaseException], None] | None = None
+    listener: Any = None
     told: set[object] = field(default_factory=set, init=False)
     loop: asyncio.AbstractEventLoop | None = field(default=None, init=False)
     _loop_thread: int = field(default=0, init=False)
@@ -80,6 +83,6 @@ class Setting:
         else:
             raise InternalError(f"{type(error).__name__}: {error}") from error
 
-    def trace(self, kind: str, what: str, parent: Cause | None) -> Cause | None:
+    def trace(self, kind: str, what: str, parent: Cause | None, about: object = None) -> Cause | None:
         """The next link after *parent*; *parent* itself while nobody watches."""
-        return parent if self.tracer is None else self.tracer.link(kind, what, parent)
+        return parent if self.tracer is None else self.tracer.link(kind, what, parent, about)

@@ -34,7 +34,7 @@ from jacaros.env.operation import (
     ignore_outcome,
 )
 from jacaros.errors import InternalError
-from jacaros.trace import Cause
+from jacaros.trace import CURRENT, Cause
 
 V = TypeVar("V")
 TELLING = "tell"
@@ -77,6 +77,11 @@ class Steps(StepInProgress):
         return self.ending.over
 
     @property
+    def artifact(self) -> object:
+        """The artifact itself, for those who watch it."""
+        return self._artifact
+
+    @property
     def artifact_type(self) -> type:
         """The class of the artifact."""
         return type(self._artifact)
@@ -95,8 +100,11 @@ class Steps(StepInProgress):
             return self.refuse(request, faults.wrong_arguments(request, wrong))
         cause = request.cause
         if self.setting.tracer is not None:
-            cause = self.setting.trace("operation", f"{self.id.path} {faults.key(request)}", cause)
+            what = f"{self.id.path} {faults.key(request)}"
+            cause = self.setting.trace("operation", what, cause, request)
         execution = OperationExecution(self, request, declared, arguments, cause)
+        if self.setting.listener is not None:
+            self.setting.listener.began(execution)
         self.turns.enter(execution, None if declared.guard is None else self._guard(execution))
         if request.timeout is not None and not execution.ended:
             execution.limit = self.clock.call_later(request.timeout, partial(self._time_is_up, execution))
@@ -221,6 +229,16 @@ class Steps(StepInProgress):
             self._running[execution] = None
 
     def _run(self, execution: OperationExecution, declared: DeclaredOperation) -> None:
+        if self.setting.tracer is None:
+            self._run_at_once(execution, declared)
+            return
+        before = CURRENT.set(execution.cause)
+        try:
+            self._run_at_once(execution, declared)
+        finally:
+            CURRENT.reset(before)
+
+    def _run_at_once(self, execution: OperationExecution, declared: DeclaredOperation) -> None:
         try:
             result = declared.function(self._artifact, *execution.arguments)
             if result is not None:
@@ -238,6 +256,8 @@ class Steps(StepInProgress):
     async def _drive(self, execution: OperationExecution) -> None:
         error: BaseException | None = None
         cancellation: asyncio.CancelledError | None = None
+        if self.setting.tracer is not None:
+            CURRENT.set(execution.cause)  # in the task of the operation alone
         try:
             if not execution.stopped:
                 execution.begun = True
@@ -325,6 +345,8 @@ class Steps(StepInProgress):
 
     def _tell(self, execution: OperationExecution, outcome: OperationOutcome) -> None:
         execution.ended = True
+        if self.setting.listener is not None:
+            self.setting.listener.ended(execution, None if execution.cancelled else outcome)
         if execution.limit is not None:
             execution.limit.cancel()
         if execution.cancelled:
@@ -373,6 +395,8 @@ class Steps(StepInProgress):
             self._interrupt(execution)
         elif self.turns.withdraw(execution):
             execution.ended = True
+            if self.setting.listener is not None:
+                self.setting.listener.ended(execution, None)
             if execution.limit is not None:
                 execution.limit.cancel()
 

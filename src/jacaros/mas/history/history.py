@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 from jacaros.clock import Clock
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.directory import Directory
-from jacaros.mas.history.causes import CauseRecords
 from jacaros.mas.history.goals import GoalRecords
+from jacaros.mas.history.surroundings import SurroundedSystem, Surroundings
 from jacaros.mas.ros_graph import RosGraph
 from jacaros.trace import Tracer
 
@@ -46,7 +46,7 @@ _LASTING: Mapping[str, tuple[str, ...]] = {
 """Records that describe what is there: the newest of each is kept while it is there, by these fields of it."""
 
 
-class ObservedSystem(Protocol):
+class ObservedSystem(SurroundedSystem, Protocol):
     """A running system as its history sees it (`jacaros.mas.system.System`)."""
 
     clock: Clock
@@ -95,9 +95,9 @@ class History:
         self._starts += 1
         if self._starts > 1:
             return
-        causes = CauseRecords(self._system.clock, self.beginning, self.record)
+        self.surroundings = Surroundings(self._system, self.beginning, self.record)
         self._ends += [
-            causes.listen_to(self._system.trace),
+            self.surroundings.start(),
             self._goals.listen_to_all(self._system.directory),
             self._observe_world(),
         ]

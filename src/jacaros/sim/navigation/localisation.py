@@ -69,6 +69,11 @@ class Localisation:
         """The robot's pose on the map, as it believes."""
         return self.map_to_odom.then(self._odometry())
 
+    def belief(self, time: float) -> Placement:
+        """The pose that it would give at *time* (seconds of the world); for those who watch: nothing is corrected."""
+        due = time >= self._next and not self.lost and self._robot.put_downs == self._put_downs
+        return self._truth() if due else self.pose()
+
     def _truth(self) -> Placement:
         robot = self._robot
         return Placement.at(robot.x, robot.y, robot.yaw)

@@ -7,7 +7,7 @@ from jacaros.sim.description import Dock
 from jacaros.sim.motion import clamp
 from jacaros.sim.navigation.driver import STOP, Command, Driver, Pace
 from jacaros.sim.navigation.localisation import Localisation
-from jacaros.sim.navigation.placement import Placement, distance
+from jacaros.sim.navigation.placement import Placement, Point, distance
 from jacaros.sim.navigation.planner import Circle, Planner
 from jacaros.sim.navigation.sight import Sight
 from jacaros.sim.navigation.wheels import PERIOD, Hold, Wheels
@@ -28,6 +28,9 @@ class Navigator:
         localisation: where it believes to be.
         wheels: what it commands.
         make_planner: makes the planner; called at the first goal.
+
+    Attributes:
+        path: points of the path that it follows now, empty without a goal.
     """
 
     def __init__(
@@ -42,6 +45,7 @@ class Navigator:
         settings = robot.description.navigation
         self.pace = Pace.within(robot.description.limits, settings.speed)
         self.sight = Sight(time.world, robot)
+        self.path: Sequence[Point] = ()
         self._make_planner = make_planner
         self._planner: Planner | None = None
 

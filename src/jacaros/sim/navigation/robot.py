@@ -1,6 +1,6 @@
 """All that one robot offers to be driven and docked by."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from jacaros.ros.backend import Backend
 from jacaros.sim.navigation.dock_servers import DockServers
@@ -11,6 +11,7 @@ from jacaros.sim.navigation.localisation import Localisation
 from jacaros.sim.navigation.nav2_servers import NavigationServers
 from jacaros.sim.navigation.navigator import Navigator
 from jacaros.sim.navigation.offers import Offers
+from jacaros.sim.navigation.placement import Point
 from jacaros.sim.navigation.planner import Planner
 from jacaros.sim.navigation.wheels import Wheels
 from jacaros.sim.robot import Robot
@@ -27,6 +28,9 @@ class RobotNavigation:
         localisation: where it believes to be.
         backend: the graph; it is started already.
         grid: makes the grid of the world, when it is first wanted.
+
+    Attributes:
+        name: of the robot.
     """
 
     def __init__(
@@ -39,8 +43,9 @@ class RobotNavigation:
     ) -> None:
         namespace = robot.description.namespace
         prefix = f"/{namespace}" if namespace else ""
+        self.name = robot.name
         self._wheels = Wheels(backend, f"{prefix}/cmd_vel", time.clock)
-        navigator = Navigator(
+        self._navigator = navigator = Navigator(
             time, robot, localisation, self._wheels, lambda: Planner(grid(), robot.description.radius)
         )
         frames = Frames(backend, namespace, localisation)
@@ -54,6 +59,11 @@ class RobotNavigation:
         if backend.ros_version == 1 or backend.name == "memory":
             self._servers.offer_move_base()
             docks.offer_kobuki()
+
+    @property
+    def path(self) -> Sequence[Point]:
+        """The points of the path that the robot follows now, in metres on the map; empty without a goal."""
+        return self._navigator.path
 
     def close(self) -> None:
         """Offer nothing any more; a robot that is being driven is stopped."""

@@ -67,7 +67,10 @@ async def go(navigator: Navigator, goals: Sequence[Placement], tell: Tell, limit
         Overtaken: another goal has the wheels.
     """
     with navigator.wheels.held() as hold:
-        await Trip(navigator, goals, tell, limit).run(hold)
+        try:
+            await Trip(navigator, goals, tell, limit).run(hold)
+        finally:
+            navigator.path = ()
 
 
 class Trip:
@@ -258,6 +261,7 @@ class Trip:
     def _drive_along(self, points: list[Point]) -> None:
         if len(points) < 2:  # the robot stands there already
             points = [points[0], points[0]]
+        self.navigator.path = points
         self._route = Route(points)
         self._driver = self.navigator.driver()
 

@@ -1,0 +1,202 @@
+"""Records of the environment: artifacts, who focuses them, properties, signals and operations."""
+
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any
+
+from jacaros.clock import Clock
+from jacaros.env.environment import Environment
+from jacaros.env.execution import OperationExecution
+from jacaros.env.ids import ArtifactId
+from jacaros.env.observation import Observation
+from jacaros.env.operation import OperationOutcome
+from jacaros.env.property import ObservableProperty
+from jacaros.env.workspace import Workspace
+from jacaros.mas.history.values import call_text, json_values, limited, request_text
+
+PERIOD = 0.5
+"""Seconds between two records of one property that changes all the time; the newest value is recorded in the end."""
+
+Tell = Callable[[str, Mapping[str, Any]], None]
+_Key = tuple[ArtifactId, int]
+
+
+class EnvironmentRecords:
+    """Listens to an environment, and makes records of what happens in it.
+
+    Args:
+        clock: of the run.
+        tell: takes the kind of a record and its data.
+        robot_of: finds the robot that an artifact drives or senses; None: no robot.
+    """
+
+    def __init__(self, clock: Clock, tell: Tell, robot_of: Callable[[object], str | None]) -> None:
+        self._clock, self._tell, self._robot_of = clock, tell, robot_of
+        self._environment: Environment | None = None
+        self._known: set[ArtifactId] = set()
+        self._recorded: dict[_Key, float] = {}
+        """When each property was recorded last."""
+        self._held: dict[_Key, tuple[ObservableProperty, int | None]] = {}
+        """Values that came too soon after the last record, and their causes."""
+        self._running: dict[OperationExecution, dict[str, Any]] = {}
+
+    def observe(self, environment: Environment) -> None:
+        """Listen to *environment*, and record what is there already."""
+        self._environment = environment
+        environment.listener = self
+        for workspace in environment.workspaces():
+            if isinstance(workspace, Workspace):
+                for artifact in workspace.artifacts():
+                    self.artifact(artifact, True)
+
+    def end(self) -> None:
+        """Listen no longer; the newest values that were held back are recorded."""
+        self.flush(all_of_them=True)
+        if self._environment is not None:
+            self._environment.listener = None
+            self._environment = None
+
+    # ---- what the environment calls
+
+    def artifact(self, artifact: ArtifactId, present: bool) -> None:
+        """Record that an artifact is made or disposed."""
+        made = self._environment.artifact(artifact) if present and self._environment is not None else None
+        self._tell(
+            "artifact",
+            {
+                "artifact": artifact.path,
+                "type": artifact.type_name,
+                "state": "made" if present else "disposed",
+                "robot": self._robot_of(made) if made is not None else None,
+            },
+        )
+        if present:
+            self._known.add(artifact)
+            if made is not None:
+                self._introduce(artifact)
+        else:
+            self._known.discard(artifact)
+            for key in [key for key in self._recorded if key[0] is artifact]:
+                del self._recorded[key]
+                self._held.pop(key, None)
+
+    def _introduce(self, artifact: ArtifactId) -> None:
+        workspace = self._environment.workspace(artifact.workspace) if self._environment is not None else None
+        if isinstance(workspace, Workspace):
+            for observer in workspace.observers(artifact):
+                self.focused(artifact, observer.agent, True)
+            for each in workspace.properties(artifact):
+                self._property(artifact, each, None)
+
+    def focused(self, artifact: ArtifactId, agent: str, on: bool) -> None:
+        """Record that an agent focuses an artifact, or no longer does."""
+        if artifact in self._known:
+            self._tell("focus", {"agent": agent, "artifact": artifact.path, "on": on})
+
+    def published(self, observation: Observation) -> None:
+        """Record new values and signals."""
+        artifact, cause = observation.artifact, observation.cause
+        if artifact not in self._known:
+            return  # it stands for an agent, or is being made: its properties are recorded after that
+        number = cause.id if cause is not None else None
+        for signal in observation.signals:
+            written = call_text(signal.name, signal.arguments)
+            self._tell("signal", {"artifact": artifact.path, "signal": written, "cause": number})
+        for _, new in observation.changed:
+            self._property(artifact, new, number)
+        for added in observation.added:
+            self._property(artifact, added, number)
+        for gone in observation.removed:
+            self._property_gone(artifact, gone, number)
+
+    def began(self, execution: OperationExecution) -> None:
+        """Record that an operation begins."""
+        request = execution.request
+        if request.artifact not in self._known:
+            return
+        cause = execution.cause
+        data = {
+            "id": cause.id if cause is not None else 0,
+            "artifact": request.artifact.path,
+            "operation": request_text(request),
+            "agent": request.agent,
+            "cause": request.cause.id if request.cause is not None else 0,
+        }
+        self._running[execution] = data
+        self._tell("operation", {**data, "state": "began"})
+
+    def ended(self, execution: OperationExecution, outcome: OperationOutcome | None) -> None:
+        """Record how an operation ended; one that was cancelled has failed."""
+        data = self._running.pop(execution, None)
+        if data is None:
+            return
+        if outcome is not None and outcome.ok:
+            self._tell("operation", {**data, "state": "done"})
+            return
+        reason = "cancelled" if outcome is None else limited(outcome.message or str(outcome.reason or ""))
+        self._tell("operation", {**data, "state": "failed", "reason": reason})
+
+    # ---- properties
+
+    def _property(self, artifact: ArtifactId, new: ObservableProperty, cause: int | None) -> None:
+        key, now = (artifact, new.key), self._clock.elapsed
+        # Not made into a record yet: most values of a sensor are replaced before anybody reads them.
+        if now - self._recorded.get(key, -PERIOD) < PERIOD:
+            self._held[key] = (new, cause)
+            return
+        self._record(key, new, cause, now)
+
+    def _record(self, key: _Key, new: ObservableProperty, cause: int | None, now: float) -> None:
+        self._recorded[key] = now
+        self._held.pop(key, None)
+        self._tell(
+            "property",
+            {
+                "artifact": key[0].path,
+                "name": new.name,
+                "key": new.key,
+                "values": json_values(new.values),
+                "cause": cause,
+            },
+        )
+
+    def _property_gone(self, artifact: ArtifactId, old: ObservableProperty, cause: int | None) -> None:
+        self._recorded.pop((artifact, old.key), None)
+        self._held.pop((artifact, old.key), None)
+        data = {"artifact": artifact.path, "name": old.name, "key": old.key, "values": None, "cause": cause}
+        self._tell("property", data)
+
+    def flush(self, all_of_them: bool = False) -> None:
+        """Record the newest values that were held back for `PERIOD` seconds; to be called a few times a second."""
+        now = self._clock.elapsed
+        for key, held in list(self._held.items()):
+            if all_of_them or now - self._recorded.get(key, -PERIOD) >= PERIOD:
+                self._record(key, *held, now)
+
+
+def robot_finder(robots: Callable[[], Mapping[str, str]]) -> Callable[[object], str | None]:
+    """Make a function that finds the robot of an artifact by the ROS names under which it works.
+
+    Args:
+        robots: gives the names of the known robots by what stands before their topics, such as ``/robot_0``; empty for
+            the only robot.
+    """
+
+    def robot_of(artifact: object) -> str | None:
+        prefix = getattr(artifact, "robot_prefix", None)
+        if not isinstance(prefix, str):
+            return None
+        known = robots()
+        if prefix in known:
+            return known[prefix] if prefix or _has_robot_topics(artifact) else None
+        return prefix.strip("/") or None
+
+    return robot_of
+
+
+_NOT_OF_A_ROBOT = ("map", "door", "fault")
+
+
+def _has_robot_topics(artifact: object) -> bool:
+    """Whether an artifact without a robot's name uses topics or services of the only robot."""
+    names: Iterable[str] = getattr(artifact, "ros_names", ())
+    return any(not name.lstrip("/").startswith(_NOT_OF_A_ROBOT) for name in names)

@@ -1,0 +1,79 @@
+"""Records of the ROS graph around our node: its topics, who is at them, and how often ours carry a message."""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from jacaros.ros.backend import Backend
+from jacaros.ros.errors import RosError
+from jacaros.ros.graph import GraphContents
+
+PERIOD = 3.0
+"""Seconds between two looks at the graph."""
+_CHANGED = 0.2
+"""Share by which a rate must change to be recorded again."""
+_MOST_TOPICS = 300
+
+Tell = Callable[[str, Mapping[str, Any]], None]
+
+
+class GraphRecords:
+    """Counts the messages of our node, and makes the record ``graph`` when something has changed.
+
+    Args:
+        tell: takes the kind of a record and its data.
+    """
+
+    def __init__(self, tell: Tell) -> None:
+        self._tell = tell
+        self._counts: dict[tuple[str, str], int] = {}
+        self._recorded: list[dict[str, Any]] | None = None
+
+    def count(self, topic: str, direction: str) -> None:
+        """Count a message that came in (``in``) or went out (``out``)."""
+        key = topic, direction
+        self._counts[key] = self._counts.get(key, 0) + 1
+
+    async def look(self, backend: Backend, seconds: float) -> None:
+        """Look at the graph, *seconds* after the last look."""
+        try:
+            contents = await backend.contents()
+        except RosError:  # the graph may be gone for a while
+            return
+        counts, self._counts = self._counts, {}
+        topics = self._topics(contents, counts, seconds, backend.node_name)
+        if self._recorded is None or _differ(self._recorded, topics):
+            self._recorded = topics
+            self._tell("graph", {"node": backend.node_name, "topics": topics})
+
+    def _topics(
+        self, contents: GraphContents, counts: Mapping[tuple[str, str], int], seconds: float, node: str
+    ) -> list[dict[str, Any]]:
+        rows = []
+        for name, info in sorted(contents.topics.items())[:_MOST_TOPICS]:
+            ours = ""
+            if (name, "in") in counts or any(each.node == node for each in info.subscriptions):
+                ours = "in"
+            if (name, "out") in counts or any(each.node == node for each in info.publishers):
+                ours = "out"
+            rows.append(
+                {
+                    "name": name,
+                    "type": ", ".join(info.types),
+                    "publishers": len(info.publishers),
+                    "subscribers": len(info.subscriptions),
+                    "ours": ours,
+                    "rate": round(counts.get((name, ours), 0) / seconds, 1) if ours else 0.0,
+                }
+            )
+        return rows
+
+
+def _differ(before: list[dict[str, Any]], now: list[dict[str, Any]]) -> bool:
+    if len(before) != len(now):
+        return True
+    for old, new in zip(before, now, strict=True):
+        if any(old[key] != new[key] for key in ("name", "type", "publishers", "subscribers", "ours")):
+            return True
+        if abs(old["rate"] - new["rate"]) > max(0.5, _CHANGED * old["rate"]):
+            return True
+    return False

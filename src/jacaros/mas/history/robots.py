@@ -1,0 +1,121 @@
+"""Records of robots: laser scans that our node receives, planned paths, and where robots believe to be."""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, Protocol
+
+from jacaros.clock import Clock
+
+MOST_RAYS = 90
+SCAN_PERIOD = 0.1
+"""Seconds between two recorded scans of one topic."""
+OFF = (0.05, math.radians(5.0))
+"""Metres and radians from the truth up to which a belief is taken for it."""
+_SCAN = "LaserScan"
+_PATH = "Path"
+
+Tell = Callable[[str, Mapping[str, Any]], None]
+
+
+class WatchedRobots(Protocol):
+    """What the embedded world shows of its robots (`jacaros.sim.node.SimNode`)."""
+
+    def beliefs(self) -> dict[str, tuple[float, float, float]]:
+        """Where each robot believes to be: x, y, yaw."""
+
+    def paths(self) -> dict[str, Sequence[tuple[float, float]]]:
+        """The path that each robot follows."""
+
+
+Truths = Callable[[], Mapping[str, tuple[float, float, float]]]
+"""Gives the true pose of each robot: x, y, yaw."""
+
+
+class RobotRecords:
+    """Makes the records ``laser``, ``path`` and ``believed``.
+
+    Args:
+        clock: of the run.
+        tell: takes the kind of a record and its data.
+        robot_at: finds a robot's name by what stands before its topics, such as ``/robot_0``.
+        robots: the robots of the embedded world, None without one.
+        truths: their true poses.
+    """
+
+    def __init__(
+        self,
+        clock: Clock,
+        tell: Tell,
+        robot_at: Callable[[str], str],
+        robots: WatchedRobots | None = None,
+        truths: Truths = dict,
+    ) -> None:
+        self._clock, self._tell, self._robot_at = clock, tell, robot_at
+        self._robots, self._truths = robots, truths
+        self._scanned: dict[str, float] = {}
+        self._paths: dict[str, Sequence[tuple[float, float]]] = {}
+        self._astray: set[str] = set()
+
+    def received(self, topic: str, message: Any) -> None:
+        """Record a message that our node received, if it is a scan or a path."""
+        kind = type(message).__name__
+        if kind.endswith(_SCAN):
+            self._scan(topic, message)
+        elif kind.endswith(_PATH) and hasattr(message, "poses"):
+            points = [(pose.pose.position.x, pose.pose.position.y) for pose in message.poses]
+            self._path(self._robot_at(topic.rpartition("/")[0]), points)
+
+    def _scan(self, topic: str, scan: Any) -> None:
+        now = self._clock.elapsed
+        # A little less: scans that come ten times a second do not come exactly so.
+        if now - self._scanned.get(topic, -SCAN_PERIOD) < 0.9 * SCAN_PERIOD:
+            return
+        self._scanned[topic] = now
+        robot = self._robot_at(topic.rpartition("/")[0])
+        self._tell("laser", {"robot": robot, **thinned(scan)})
+
+    def look(self) -> None:
+        """Record paths and beliefs that have changed; to be called a few times a second."""
+        if self._robots is None:
+            return
+        for robot, path in self._robots.paths().items():
+            if path is not self._paths.get(robot, ()) and (path or self._paths.get(robot)):
+                self._path(robot, path)
+        truths = self._truths()
+        for robot, (x, y, yaw) in self._robots.beliefs().items():
+            true_x, true_y, true_yaw = truths[robot]
+            turned = math.remainder(yaw - true_yaw, math.tau)
+            self._belief(
+                robot, x, y, yaw, math.hypot(x - true_x, y - true_y) > OFF[0] or abs(turned) > OFF[1]
+            )
+
+    def _path(self, robot: str, path: Sequence[tuple[float, float]]) -> None:
+        self._paths[robot] = path
+        self._tell("path", {"robot": robot, "points": [(round(x, 3), round(y, 3)) for x, y in path]})
+
+    def _belief(self, robot: str, x: float, y: float, yaw: float, astray: bool) -> None:
+        if astray:
+            self._astray.add(robot)
+            data = {"robot": robot, "x": round(x, 3), "y": round(y, 3), "yaw": round(yaw, 3)}
+            self._tell("believed", data)
+        elif robot in self._astray:
+            self._astray.discard(robot)
+            self._tell("believed", {"robot": robot, "x": None, "y": None, "yaw": None})
+
+
+def thinned(scan: Any) -> dict[str, Any]:
+    """Return a scan with at most `MOST_RAYS` rays: of rays beside each other the shortest, in whole centimetres."""
+    ranges = scan.ranges
+    share = max(1, math.ceil(len(ranges) / MOST_RAYS))
+    least, most = scan.range_min, scan.range_max
+    rays = []
+    for start in range(0, len(ranges), share):
+        # NaN fails both comparisons, infinity the second one.
+        seen = [metres for metres in ranges[start : start + share] if least <= metres <= most]
+        rays.append(round(100.0 * float(min(seen))) if seen else 0)
+    middle = 0.5 * (share - 1) * scan.angle_increment
+    return {
+        "from": round(float(scan.angle_min + middle), 5),
+        "step": round(float(scan.angle_increment * share), 6),
+        "ranges": rays,
+    }

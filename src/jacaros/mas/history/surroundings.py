@@ -1,0 +1,121 @@
+"""Records of what surrounds the agents: the environment, robots and the ROS graph."""
+
+import asyncio
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any, Protocol
+
+from jacaros.clock import Clock, Timer
+from jacaros.mas.history.causes import CauseRecords
+from jacaros.mas.history.environment import EnvironmentRecords, robot_finder
+from jacaros.mas.history.graph import PERIOD as GRAPH_PERIOD
+from jacaros.mas.history.graph import GraphRecords
+from jacaros.mas.history.robots import RobotRecords
+from jacaros.mas.ros_graph import RosGraph
+from jacaros.trace import Tracer
+
+if TYPE_CHECKING:
+    from jacaros.env.environment import Environment
+
+PERIOD = 0.25
+"""Seconds between two looks at what tells nobody of its changes."""
+
+Tell = Callable[[str, Mapping[str, Any]], None]
+
+
+class SurroundedSystem(Protocol):
+    """A running system as far as this needs it (`jacaros.mas.system.System`)."""
+
+    clock: Clock
+    ros: RosGraph
+
+    def trace(self, tracer: Tracer | None) -> None:
+        """Have *tracer* make the causes; None ends it."""
+
+    def when_situated(self, told: "Callable[[Environment], None]") -> Callable[[], None]:
+        """Call *told* with the environment, now or when it is made; gives what ends that."""
+
+    def listen_to_log(self, told: Callable[[str, str], None]) -> Callable[[], None]:
+        """Call *told* with text and level of each line that is logged; gives what ends that."""
+
+
+class Surroundings:
+    """Observes what surrounds the agents of a system, from `start` until what that gives is called.
+
+    Args:
+        system: the system.
+        beginning: seconds of the clock from which times of records count.
+        tell: takes the kind of a record and its data.
+
+    Attributes:
+        causes: numbers the causes of the run.
+    """
+
+    def __init__(self, system: SurroundedSystem, beginning: float, tell: Tell) -> None:
+        self._system, self._tell = system, tell
+        self._clock = system.clock
+        self.causes = CauseRecords(system.clock, beginning, tell, self._passed)
+        self._environment = EnvironmentRecords(system.clock, tell, robot_finder(self._robots))
+        self._graph = GraphRecords(tell)
+        self._moving = RobotRecords(system.clock, tell, self._robot_at, system.ros.node, self._truths)
+        self._timer: Timer | None = None
+        self._looked = system.clock.elapsed
+        self._looking: asyncio.Task[None] | None = None
+
+    def start(self) -> Callable[[], None]:
+        """Begin to observe; gives what ends it."""
+        system = self._system
+        ends = (
+            system.when_situated(self._environment.observe),
+            self._environment.end,
+            self.causes.listen_to(system.trace),
+            system.listen_to_log(self._logged),
+        )
+        self._look()
+
+        def end() -> None:
+            if self._timer is not None:
+                self._timer.cancel()
+            if self._looking is not None:
+                self._looking.cancel()
+            for each in ends:
+                each()
+
+        return end
+
+    def _look(self) -> None:
+        self._timer = self._clock.call_later(PERIOD, self._look)
+        self._environment.flush()
+        self.causes.flush()
+        self._moving.look()
+        backend, passed = self._system.ros.joined, self._clock.elapsed - self._looked
+        is_looking = self._looking is not None and not self._looking.done()
+        if backend is not None and passed >= GRAPH_PERIOD and not is_looking:
+            self._looked = self._clock.elapsed
+            self._looking = asyncio.get_running_loop().create_task(self._graph.look(backend, passed))
+
+    def _passed(self, direction: str, topic: str, message: Any) -> None:
+        self._graph.count(topic, direction)
+        if direction == "in":
+            self._moving.received(topic, message)
+
+    def _logged(self, text: str, level: str) -> None:
+        if level != "debug":
+            self._tell("log", {"level": level, "text": text})
+
+    # ---- robots of the embedded world
+
+    def _robots(self) -> Mapping[str, str]:
+        world = self._system.ros.world
+        if world is None:
+            return {}
+        names = {robot.description.namespace.strip("/"): name for name, robot in world.robots.items()}
+        return {f"/{namespace}" if namespace else "": name for namespace, name in names.items()}
+
+    def _robot_at(self, prefix: str) -> str:
+        return self._robots().get(prefix) or prefix.strip("/") or "robot"
+
+    def _truths(self) -> Mapping[str, tuple[float, float, float]]:
+        world = self._system.ros.world
+        if world is None:
+            return {}
+        return {name: (robot.x, robot.y, robot.yaw) for name, robot in world.robots.items()}

@@ -1,0 +1,88 @@
+"""Values of the environment and messages of ROS as plain JSON data of limited length."""
+
+import math
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+from jacaros.env.operation import OperationRequest
+from jacaros.env.values import Out, text
+
+LONGEST = 200
+"""Characters of a value or message that is recorded."""
+_FIELDS = 12
+"""Numbers of a message that are shown."""
+_LARGEST = 10**15
+
+
+def limited(words: str) -> str:
+    """Return *words*, cut to `LONGEST` characters."""
+    return words if len(words) <= LONGEST else f"{words[: LONGEST - 3]}..."
+
+
+def json_value(value: object) -> object:
+    """Return a plain value of the environment as JSON data: numbers, truth values and texts as they are, others as text."""
+    kind = type(value)
+    if kind is float:
+        return value if math.isfinite(value) else str(value)  # type: ignore[arg-type]
+    if value is None or kind is bool:
+        return value
+    if kind is int and -_LARGEST < value < _LARGEST:  # type: ignore[operator]
+        return value
+    return limited(_text(value))
+
+
+def json_values(values: Iterable[object]) -> list[object]:
+    """Return plain values as JSON data."""
+    return [json_value(value) for value in values]
+
+
+def call_text(name: str, arguments: Iterable[object]) -> str:
+    """Return an operation or a signal with its arguments as agents write it; output parameters are ``_``."""
+    written = ",".join("_" if isinstance(each, Out) else _text(each, quoted=True) for each in arguments)
+    return limited(f"{name}({written})" if written else name)
+
+
+def request_text(request: OperationRequest) -> str:
+    """Return what somebody asks of an artifact as agents write it."""
+    return call_text(request.operation, request.arguments)
+
+
+def _text(value: object, quoted: bool = False) -> str:
+    try:
+        return text(value, quoted)
+    except Exception:  # whatever the class of a user does in __str__: a record is no reason to fail
+        return type(value).__name__
+
+
+def message_text(message: Any) -> str:
+    """Return the numbers, texts and truth values of a message that are not 0 or empty, by their fields."""
+    found: list[str] = []
+    for path, value in _leaves(message, "", 4):
+        if len(found) == _FIELDS:
+            found.append("...")
+            break
+        found.append(f"{path}={value}")
+    return limited(", ".join(found))
+
+
+def _leaves(message: Any, path: str, depth: int) -> Iterator[tuple[str, object]]:
+    for name in _field_names(message):
+        value = getattr(message, name)
+        inner = f"{path}.{name}" if path else name
+        if isinstance(value, bool | int | float | str):
+            if value:
+                yield inner, f"{value:.4g}" if isinstance(value, float) else limited(str(value))
+        elif hasattr(value, "__len__"):
+            if len(value) and name != "covariance":
+                yield inner, f"[{len(value)} values]"
+        elif name != "header" and depth:
+            yield from _leaves(value, inner, depth - 1)
+
+
+def _field_names(message: Any) -> Iterable[str]:
+    """Names of the fields of a message, whatever library has made it."""
+    for attribute in ("__dataclass_fields__", "_fields_and_field_types", "__slots__"):
+        names = getattr(message, attribute, None)
+        if names is not None:
+            return [name for name in names if not name.startswith("_")]
+    return ()
