@@ -11,7 +11,7 @@ from jacaros.mas.launch import launch
 from jacaros.mas.options import RunOptions
 from jacaros.mas.system import System
 from jacaros.sim import GroundTruth
-from jacaros.sim.world_file import find_world
+from jacaros.sim.files.world import find_world
 from jacaros.testing import RunResult, run_project
 from jacaros.testing.paths import angle_between, distance, turns
 

@@ -10,7 +10,7 @@ from pages import ROOT
 
 from jacaros.artifacts.registry import BUILT_IN
 from jacaros.cli.main import COMMANDS
-from jacaros.sim.world_file import shipped_worlds
+from jacaros.sim.files.world import shipped_worlds
 
 REFERENCE = ROOT / "docs" / "reference"
 

@@ -22,10 +22,10 @@ from jacaros.ros.backend import Backend
 from jacaros.ros.drivers.memory.graph import MemoryGraph
 from jacaros.ros.open import open_backend
 from jacaros.ros.ros_clock import CLOCK_TYPE, RosClock
+from jacaros.sim.files.world import load_world
 from jacaros.sim.ground_truth import GroundTruth
 from jacaros.sim.node import SimNode
 from jacaros.sim.world import World
-from jacaros.sim.world_file import load_world
 
 PROGRAMS = Path(__file__).parent / "programs"
 

@@ -6,7 +6,7 @@ import pytest
 from examples_lab import EXAMPLES, checker, run, spoilt
 
 from jacaros.mas.loading import load_deployment
-from jacaros.sim.world_file import load_world
+from jacaros.sim.files.world import load_world
 from jacaros.testing import run_project
 
 DRIVING = {

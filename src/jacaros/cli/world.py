@@ -30,7 +30,7 @@ def command() -> None:
 @click.argument("worlds", metavar="WORLD...", nargs=-1, required=True)
 def check_command(worlds: tuple[str, ...]) -> int:
     """Report all mistakes of each WORLD, or what it consists of. The exit code is 1 if there is a mistake."""
-    from jacaros.sim.world_file import load_world  # here: YAML takes its time to load
+    from jacaros.sim.files.world import load_world  # here: YAML takes its time to load
 
     code = 0
     for name in worlds:
@@ -59,7 +59,7 @@ def check_command(worlds: tuple[str, ...]) -> int:
 )
 def show_command(world: str, output: Path | None, width: int) -> None:
     """Draw WORLD in the terminal, with docks, closed doors and robots; or write a picture of it."""
-    from jacaros.sim.world_file import load_world
+    from jacaros.sim.files.world import load_world
 
     if output is None:
         _draw(load_world(world))
@@ -115,7 +115,7 @@ def new_command(file: Path, map_file: Path | None, resolution: float | None) -> 
         raise UsageError(
             "error: --resolution is for the image of a map\n  = help: --map MAP.pgm --resolution 0.05"
         )
-    from jacaros.sim.world_template import described_map, new_world, world_of_map
+    from jacaros.sim.files.template import described_map, new_world, world_of_map
 
     described, files = map_file, [file]
     if map_file is not None and map_file.suffix in _IMAGES:
@@ -137,8 +137,8 @@ def export_command(world: str, file: Path) -> None:
     image = file.with_suffix(".pgm")
     check_output(file, "map")
     check_output(image, "map image")
-    from jacaros.sim.map_file import map_of_world
-    from jacaros.sim.world_file import load_world
+    from jacaros.sim.files.map import map_of_world
+    from jacaros.sim.files.world import load_world
 
     text, pixels = map_of_world(load_world(world), image.name)
     _write(file, text)

@@ -4,7 +4,7 @@ import math
 from typing import Any
 
 from jacaros.sim.description import Rectangle, Segment, WorldDescription
-from jacaros.sim.map_file import FREE, OCCUPIED, UNKNOWN, OccupancyMap
+from jacaros.sim.files.map import FREE, OCCUPIED, UNKNOWN, OccupancyMap
 
 SOLID = 50
 """Percent of certainty above which a cell counts as occupied."""

@@ -266,7 +266,7 @@ def _check_world(deployment: Deployment, findings: Findings) -> None:
         return
     from jacaros.mas.ros_graph import NO_WORLD  # here: most projects name none
     from jacaros.sim.description import UnknownWorld
-    from jacaros.sim.world_file import find_world, shipped_worlds, world_problems
+    from jacaros.sim.files.world import find_world, shipped_worlds, world_problems
 
     if deployment.world in (NO_WORLD, *shipped_worlds()):
         return
@@ -282,7 +282,7 @@ def _check_yaml(path: Path, findings: Findings, named: bool = True) -> None:
     """Check a world file, a fault file or a mapping file; one that is neither only if it is *named* on the command line."""
     from jacaros.artifacts.mapping.file import is_mapping  # here: see `_check_mapping`
     from jacaros.sim.faults.file import fault_file_problems, is_fault_file
-    from jacaros.sim.world_file import is_world, world_problems
+    from jacaros.sim.files.world import is_world, world_problems
 
     if is_world(path):
         _check_world_file(path, findings, world_problems)

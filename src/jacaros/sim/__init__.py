@@ -1,12 +1,12 @@
 """The embedded robot world: TurtleBot-like robots on a plane, reached over ROS topics only."""
 
 from jacaros.sim.description import PersonDescription, WorldDescription, WorldError
+from jacaros.sim.files.world import read_world, shipped_worlds
 from jacaros.sim.ground_truth import Event, GroundTruth, Sample
 from jacaros.sim.node import SimNode
 from jacaros.sim.process import serve
-from jacaros.sim.robot_node import RobotNode
+from jacaros.sim.robot.node import RobotNode
 from jacaros.sim.world import World
-from jacaros.sim.world_file import read_world, shipped_worlds
 
 __all__ = [
     "Event",

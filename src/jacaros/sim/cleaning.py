@@ -5,7 +5,7 @@ from typing import Any
 
 from jacaros.sim.description import CleaningTool, WorldDescription
 from jacaros.sim.dirt import DirtField
-from jacaros.sim.robot import Robot
+from jacaros.sim.robot.robot import Robot
 
 
 class Cleaning:

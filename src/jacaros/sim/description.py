@@ -1,6 +1,6 @@
 """What a world consists of, as plain data: metres, radians, seconds, percent.
 
-A world file (`jacaros.sim.world_file`) is read into these; the running `jacaros.sim.world.World` is made from
+A world file (`jacaros.sim.files.world`) is read into these; the running `jacaros.sim.world.World` is made from
 them, and viewers draw them.
 """
 

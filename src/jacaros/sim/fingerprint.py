@@ -5,7 +5,7 @@ import random
 import sys
 from array import array
 
-from jacaros.sim.robot import Robot
+from jacaros.sim.robot.robot import Robot
 from jacaros.sim.world import STEP, World
 
 _SCAN_PERIOD = 0.1

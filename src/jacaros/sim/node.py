@@ -12,8 +12,8 @@ from jacaros.sim.faults.server import FaultServer
 from jacaros.sim.map_server import MapServer
 from jacaros.sim.navigation.grid import Grid
 from jacaros.sim.navigation.robot import RobotNavigation
-from jacaros.sim.robot_node import RobotNode
-from jacaros.sim.robot_sensors import TICKS_PER_SECOND
+from jacaros.sim.robot.node import RobotNode
+from jacaros.sim.robot.on_graph import TICKS_PER_SECOND
 from jacaros.sim.world import World
 from jacaros.sim.world_time import WorldTime
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 from jacaros.sim.description import ObjectDescription
-from jacaros.sim.robot import Robot
+from jacaros.sim.robot.robot import Robot
 from jacaros.sim.trigonometry import sine_cosine
 
 _BEFORE = 0.05

@@ -11,7 +11,7 @@ from typing import Any
 from jacaros.errors import UsageError
 from jacaros.sim.contact import TOUCHING, WallIndex, push_apart
 from jacaros.sim.description import Door, PersonDescription
-from jacaros.sim.robot import Robot
+from jacaros.sim.robot.robot import Robot
 
 DISTANCE = 0.3
 """Metres that a careful person keeps from robots in front, and each person from closed doors."""

@@ -16,13 +16,13 @@ from jacaros.sim.contact import WallIndex, push_apart
 from jacaros.sim.description import PersonDescription, WorldDescription
 from jacaros.sim.faults.description import Fault
 from jacaros.sim.faults.schedule import Faults
+from jacaros.sim.files.world import load_world, read_world
 from jacaros.sim.ground_truth import Event, GroundTruth
-from jacaros.sim.laser import Circle
 from jacaros.sim.objects import Objects
 from jacaros.sim.people import People, Person
-from jacaros.sim.robot import Robot
-from jacaros.sim.sensors import Laser
-from jacaros.sim.world_file import load_world, read_world
+from jacaros.sim.robot.robot import Robot
+from jacaros.sim.robot.sensors.laser import Laser
+from jacaros.sim.robot.sensors.laser_plain import Circle
 
 STEP = 0.02
 """Length of a step in seconds: 50 Hz."""

@@ -18,7 +18,7 @@ from jacaros.env import (
 from jacaros.ros.backend import Backend, Sample
 from jacaros.ros.open import open_backend
 from jacaros.sim import SimNode, World
-from jacaros.sim.world_file import load_world
+from jacaros.sim.files.world import load_world
 
 TWIST = "geometry_msgs/msg/Twist"
 STANDSTILL = (0.0, 0.0)

@@ -8,7 +8,7 @@ from xml.etree import ElementTree
 import pytest
 
 from jacaros.cli.main import call
-from jacaros.sim.world_file import load_world, shipped_worlds, world_problems
+from jacaros.sim.files.world import load_world, shipped_worlds, world_problems
 
 
 @pytest.fixture

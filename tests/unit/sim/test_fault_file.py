@@ -6,7 +6,7 @@ import pytest
 
 from jacaros.sim.description import WorldError
 from jacaros.sim.faults.file import fault_file_problems, is_fault_file, load_faults, read_faults
-from jacaros.sim.world_file import read_world
+from jacaros.sim.files.world import read_world
 
 WORLD = read_world("""
 name: two

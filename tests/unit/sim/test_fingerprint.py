@@ -3,8 +3,9 @@
 import pytest
 
 from jacaros.cli.main import call
-from jacaros.sim import World, sensors
+from jacaros.sim import World
 from jacaros.sim.fingerprint import fingerprint
+from jacaros.sim.robot.sensors import laser
 
 WORLD = """
 name: two rooms
@@ -29,7 +30,7 @@ def test_it_is_the_same_on_every_machine() -> None:
 
 
 def test_it_is_the_same_without_numpy(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(sensors, "FEW_WALLS", 1000)
+    monkeypatch.setattr(laser, "FEW_WALLS", 1000)
     assert fingerprint(World.load(WORLD), 10.0) == EXPECTED
 
 

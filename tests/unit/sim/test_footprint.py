@@ -9,7 +9,7 @@ from jacaros.inspector.recording import Recording
 from jacaros.sim import World
 from jacaros.sim.contact import WallIndex, push_out_rectangle
 from jacaros.sim.description import Pose, Segment, WorldError
-from jacaros.sim.world_file import read_world
+from jacaros.sim.files.world import read_world
 
 WALL = Segment(1.0, -2.0, 1.0, 2.0)
 

@@ -7,8 +7,8 @@ import pytest
 from sensor_lab import heard
 
 from jacaros.sim.description import Segment
-from jacaros.sim.laser import Circle
-from jacaros.sim.robot_sonar import FIELD, echo
+from jacaros.sim.robot.sensors.laser_plain import Circle
+from jacaros.sim.robot.sensors.sonar import FIELD, echo
 
 
 def test_the_imu_measures_turning_and_what_a_curve_costs() -> None:

@@ -10,9 +10,9 @@ from collections.abc import Sequence
 import pytest
 
 from jacaros.sim.description import LaserSettings, Rectangle, Segment
-from jacaros.sim.laser import Beams, sweep_circles, sweep_walls
-from jacaros.sim.laser_numpy import WallArrays
-from jacaros.sim.sensors import Laser
+from jacaros.sim.robot.sensors.laser import Laser
+from jacaros.sim.robot.sensors.laser_numpy import WallArrays
+from jacaros.sim.robot.sensors.laser_plain import Beams, sweep_circles, sweep_walls
 from jacaros.sim.trigonometry import PI, sine_cosine
 
 
@@ -57,8 +57,8 @@ def test_numpy_without_its_processor_paths_gives_the_same_bits() -> None:
     program = (
         "import hashlib, random\n"
         "from jacaros.sim.description import LaserSettings, Segment\n"
-        "from jacaros.sim.laser import Beams\n"
-        "from jacaros.sim.laser_numpy import WallArrays\n"
+        "from jacaros.sim.robot.sensors.laser_plain import Beams\n"
+        "from jacaros.sim.robot.sensors.laser_numpy import WallArrays\n"
         "place = random.Random(3).uniform\n"
         "walls = [Segment(*(place(-5, 5) for _ in range(4))) for _ in range(60)]\n"
         "arrays = WallArrays(walls, Beams(LaserSettings()))\n"

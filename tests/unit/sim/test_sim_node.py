@@ -18,8 +18,8 @@ from jacaros.ros.message import to_seconds
 from jacaros.ros.open import open_backend
 from jacaros.sim import GroundTruth, SimNode, World, serve
 from jacaros.sim.process import GroundTruthFile
-from jacaros.sim.robot_node import RobotNode
-from jacaros.sim.robot_sensors import RobotOnGraph
+from jacaros.sim.robot.node import RobotNode
+from jacaros.sim.robot.on_graph import RobotOnGraph
 from jacaros.sim.scaled_clock import ScaledClock
 
 TWIST = "geometry_msgs/msg/Twist"

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from jacaros.sim import World, WorldError, read_world, shipped_worlds
-from jacaros.sim.robot_kinds import KINDS
+from jacaros.sim.robot.kinds import KINDS
 from jacaros.sim.trigonometry import PI
 
 FULL = """\

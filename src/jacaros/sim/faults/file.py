@@ -22,8 +22,8 @@ from pathlib import Path
 
 from jacaros.sim.description import PersonDescription, WorldDescription, WorldError
 from jacaros.sim.faults.description import AT_ONCE, KEYS, MESSAGES, WHEELS, Fault
-from jacaros.sim.people_file import read_path
-from jacaros.sim.robot_file import read_pose
+from jacaros.sim.files.people import read_path
+from jacaros.sim.files.robot import read_pose
 from jacaros.yaml_nodes import Node, Problem, read_document
 from jacaros.yaml_syntax import read_text, top_keys
 

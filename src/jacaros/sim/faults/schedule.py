@@ -10,7 +10,7 @@ from jacaros.errors import UsageError
 from jacaros.sim.description import PersonDescription, WorldDescription
 from jacaros.sim.faults.description import MESSAGES, Fault
 from jacaros.sim.faults.messages import Way, way_of
-from jacaros.sim.robot import Robot
+from jacaros.sim.robot.robot import Robot
 
 Undo = Callable[[], object]
 

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from jacaros.sim.description import RobotLimits
-from jacaros.sim.motion import clamp
 from jacaros.sim.navigation.placement import Placement, Point, distance
 from jacaros.sim.navigation.planner import Circle, Planner
+from jacaros.sim.robot.motion import clamp
 
 
 class Route:

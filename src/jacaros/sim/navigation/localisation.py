@@ -3,7 +3,7 @@
 import math
 
 from jacaros.sim.navigation.placement import Placement, distance
-from jacaros.sim.robot import Robot
+from jacaros.sim.robot.robot import Robot
 from jacaros.sim.trigonometry import PI, sine_cosine
 
 PERIOD = 0.5

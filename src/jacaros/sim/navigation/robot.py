@@ -14,7 +14,7 @@ from jacaros.sim.navigation.offers import Offers
 from jacaros.sim.navigation.placement import Point
 from jacaros.sim.navigation.planner import Planner
 from jacaros.sim.navigation.wheels import Wheels
-from jacaros.sim.robot import Robot
+from jacaros.sim.robot.robot import Robot
 from jacaros.sim.world_time import WorldTime
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from jacaros.sim.description import Door, Segment
 from jacaros.sim.navigation.placement import Placement, Point, distance
 from jacaros.sim.navigation.planner import Circle
-from jacaros.sim.robot import Robot
+from jacaros.sim.robot.robot import Robot
 from jacaros.sim.world import World
 
 RANGE = 3.0

@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from typing import Final, NamedTuple
 
 from jacaros.sim.description import Segment
-from jacaros.sim.laser import Circle
+from jacaros.sim.robot.sensors.laser_plain import Circle
 from jacaros.sim.trigonometry import radians, sine_cosine
 
 WIDTH, HEIGHT = 80, 60

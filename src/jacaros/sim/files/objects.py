@@ -4,8 +4,8 @@ objects:
   - {name: cup, x: 1, y: 0.5, radius: 0.03, color: red}
 """
 
-from jacaros.sim.box_file import read_color
 from jacaros.sim.description import ObjectDescription
+from jacaros.sim.files.box import read_color
 from jacaros.yaml_nodes import Node
 
 

@@ -19,8 +19,8 @@ from typing import Any
 from jacaros.ros.backend import Publisher
 from jacaros.ros.message import constant
 from jacaros.sim.navigation.sight import hidden
-from jacaros.sim.robot_cliffs import sees_cliff
-from jacaros.sim.robot_sensors import RobotOnGraph
+from jacaros.sim.robot.on_graph import RobotOnGraph
+from jacaros.sim.robot.sensors.cliffs import sees_cliff
 
 _TICKS_PER_HAZARD = 2
 _TICKS_PER_DOCK = 10

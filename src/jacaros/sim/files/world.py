@@ -1,10 +1,10 @@
 """World files: YAML text to a `WorldDescription`.
 
 Lengths are metres, times seconds, levels percent and angles degrees (the keys say so); inside, angles are
-radians.  Every key but ``robots`` may be left out; what a robot may say is in `jacaros.sim.robot_file`::
+radians.  Every key but ``robots`` may be left out; what a robot may say is in `jacaros.sim.files.robot`::
 
     name: patrol
-    map: office.yaml                  # of map_server, see `jacaros.sim.map_file`; its walls and bounds
+    map: office.yaml                  # of map_server, see `jacaros.sim.files.map`; its walls and bounds
     size: [6, 6]                      # centred at the origin; or bounds: {from: [x, y], to: [x, y]}
     border: walls                     # or open (the default)
     seed: 1
@@ -14,7 +14,7 @@ radians.  Every key but ``robots`` may be left out; what a robot may say is in `
         closed: true
       - box: {from: [2, 2], to: [2.5, 3], kind: table, color: brown}
     rooms:
-      kitchen: {from: [1, 1], to: [3, 3]}    # and dirt, see `jacaros.sim.room_file`
+      kitchen: {from: [1, 1], to: [3, 3]}    # and dirt, see `jacaros.sim.files.room`
     docks:
       - {name: dock, x: 1, y: 1, yaw_degrees: 0, radius: 0.25}
     doors:
@@ -24,8 +24,8 @@ radians.  Every key but ``robots`` may be left out; what a robot may say is in `
     robots:
       - name: turtlebot
         pose: {x: 0, y: 0, yaw_degrees: 0}
-    objects:                          # see `jacaros.sim.object_file`
-    people:                           # see `jacaros.sim.people_file`
+    objects:                          # see `jacaros.sim.files.objects`
+    people:                           # see `jacaros.sim.files.people`
       - {name: ann, path: [[0, 1], [2, 1]], loop: true}
 """
 
@@ -36,7 +36,6 @@ import re
 from collections.abc import Iterable
 from pathlib import Path
 
-from jacaros.sim.box_file import read_box
 from jacaros.sim.contact import WallIndex, push_out_rectangle
 from jacaros.sim.description import (
     Dock,
@@ -51,16 +50,17 @@ from jacaros.sim.description import (
     WorldDescription,
     WorldError,
 )
-from jacaros.sim.map_file import OccupancyMap, free_place, is_map, near_file, read_map
-from jacaros.sim.object_file import read_objects
-from jacaros.sim.people_file import check_people, read_person
-from jacaros.sim.robot_file import read_pose, read_robot
-from jacaros.sim.room_file import read_rectangle, read_rooms
+from jacaros.sim.files.box import read_box
+from jacaros.sim.files.map import OccupancyMap, free_place, is_map, near_file, read_map
+from jacaros.sim.files.objects import read_objects
+from jacaros.sim.files.people import check_people, read_person
+from jacaros.sim.files.robot import read_pose, read_robot
+from jacaros.sim.files.room import read_rectangle, read_rooms
 from jacaros.text_files import is_file
 from jacaros.yaml_nodes import Node, read_document
 from jacaros.yaml_syntax import read_text, top_keys
 
-_WORLDS = Path(__file__).parent / "worlds"
+_WORLDS = Path(__file__).parents[1] / "worlds"
 _KEYS = (
     "name",
     "map",

@@ -3,7 +3,7 @@
 Every key may be left out; these are the defaults, but for the errors of odometry and laser, which are 0::
 
     - name: turtlebot
-      kind: turtlebot               # or turtlebot2, turtlebot3, turtlebot4: other defaults, see `jacaros.sim.robot_kinds`
+      kind: turtlebot               # or turtlebot2, turtlebot3, turtlebot4: other defaults, see `jacaros.sim.robot.kinds`
       namespace: ""                 # prefix of the topics
       pose: {x: 0, y: 0, yaw_degrees: 0}
       radius: 0.17                  # or footprint: [length, width], a rectangle
@@ -33,7 +33,7 @@ from jacaros.sim.description import (
     RobotDescription,
     RobotLimits,
 )
-from jacaros.sim.robot_kinds import KINDS, USUAL
+from jacaros.sim.robot.kinds import KINDS, USUAL
 from jacaros.sim.trigonometry import TWO_PI, radians
 from jacaros.yaml_nodes import Node
 

@@ -1,4 +1,4 @@
-"""One robot of the world as it is seen on a ROS graph: its topics.
+"""One robot of the world as a ROS node: its topics.
 
 =========================================== ============================= ==========================
 topic (below the robot's namespace)         type                          direction and rate
@@ -11,14 +11,11 @@ topic (below the robot's namespace)         type                          direct
 ``/cleaning/task``                          ``std_msgs/msg/String``       in, logged with the true pose, starts a tool
 ``/cleaning/tool``                          ``std_msgs/msg/String``       in, starts a tool, "" stops; with tools only
 ``/initialpose``                            ``geometry_msgs/msg/PoseWithCovarianceStamped`` in, for localisation
-``/amcl_pose``                              the same                      out, latched, see `jacaros.sim.robot_transforms`
+``/amcl_pose``                              the same                      out, latched, see `jacaros.sim.robot.transforms`
 =========================================== ============================= ==========================
 
-Other sensors have files of their own: bumpers and the dock `jacaros.sim.robot_contacts`, cliffs
-`jacaros.sim.robot_cliffs`, ``/imu`` `jacaros.sim.robot_imu`, ``/sonar`` `jacaros.sim.robot_sonar`, the camera
-`jacaros.sim.robot_camera`, objects in its view `jacaros.sim.robot_recognition`, transforms `jacaros.sim.robot_transforms`;
-lights and sound are in `jacaros.sim.robot_lights`, the gripper is in `jacaros.sim.robot_gripper`.  What the robot can be
-asked to do by itself is in `jacaros.sim.navigation`.
+The other topics are listed in the modules of `jacaros.sim.robot.sensors`, and in `jacaros.sim.robot.transforms`,
+`jacaros.sim.robot.lights` and `jacaros.sim.robot.gripper`; navigation and docking are in `jacaros.sim.navigation`.
 """
 
 import math
@@ -28,24 +25,20 @@ from typing import Final
 from jacaros.ros.backend import Backend, Sample, Subscription
 from jacaros.sim.navigation.frames import MAP, pose_fault, pose_of
 from jacaros.sim.navigation.localisation import Localisation
-from jacaros.sim.robot import Robot
-from jacaros.sim.robot_camera import CameraSensor
-from jacaros.sim.robot_cliffs import CliffSensors
-from jacaros.sim.robot_contacts import RobotContacts
-from jacaros.sim.robot_gripper import Gripper
-from jacaros.sim.robot_imu import ImuSensor
-from jacaros.sim.robot_lights import LightsAndSound
-from jacaros.sim.robot_recognition import ObjectRecognition
-from jacaros.sim.robot_sensors import (
-    Actuator,
-    BatterySensor,
-    LaserSensor,
-    OdometrySensor,
-    RobotOnGraph,
-    Sensor,
-)
-from jacaros.sim.robot_sonar import SonarSensor
-from jacaros.sim.robot_transforms import AmclPose, RobotTransforms
+from jacaros.sim.robot.gripper import Gripper
+from jacaros.sim.robot.lights import LightsAndSound
+from jacaros.sim.robot.on_graph import Actuator, RobotOnGraph, Sensor
+from jacaros.sim.robot.robot import Robot
+from jacaros.sim.robot.sensors.battery import BatterySensor
+from jacaros.sim.robot.sensors.camera import CameraSensor
+from jacaros.sim.robot.sensors.cliffs import CliffSensors
+from jacaros.sim.robot.sensors.contacts import RobotContacts
+from jacaros.sim.robot.sensors.imu import ImuSensor
+from jacaros.sim.robot.sensors.laser_scan import LaserSensor
+from jacaros.sim.robot.sensors.odometry import OdometrySensor
+from jacaros.sim.robot.sensors.recognition import ObjectRecognition
+from jacaros.sim.robot.sensors.sonar import SonarSensor
+from jacaros.sim.robot.transforms import AmclPose, RobotTransforms
 from jacaros.sim.world_time import WorldTime
 
 SENSORS: Final[Sequence[Callable[[RobotOnGraph], Sensor]]] = (

@@ -16,10 +16,10 @@ from typing import Any, Final
 
 from jacaros.ros.backend import Publisher
 from jacaros.sim.description import Segment
-from jacaros.sim.laser import Circle
 from jacaros.sim.navigation.frames import CAMERA
-from jacaros.sim.rendering import FOCAL_LENGTH, HEIGHT, WIDTH, Look, colours, columns, depths
-from jacaros.sim.robot_sensors import RobotOnGraph
+from jacaros.sim.robot.on_graph import RobotOnGraph
+from jacaros.sim.robot.sensors.laser_plain import Circle
+from jacaros.sim.robot.sensors.rendering import FOCAL_LENGTH, HEIGHT, WIDTH, Look, colours, columns, depths
 
 _TICKS_PER_IMAGE = 4
 _WALL: Final = Look(2.5, (216, 211, 200))

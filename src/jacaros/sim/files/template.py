@@ -4,7 +4,7 @@ import os
 from pathlib import Path
 
 from jacaros.sim.description import WorldError
-from jacaros.sim.map_file import free_place, read_map
+from jacaros.sim.files.map import free_place, read_map
 
 _NEW = """\
 # A world of two rooms. Lengths are metres, angles degrees counter-clockwise from the x axis.

@@ -8,7 +8,7 @@ from typing import Any
 from jacaros.sim.contact import WallIndex, push_out, push_out_rectangle
 from jacaros.sim.description import BatterySettings, Dock, Pose, Rectangle, RobotDescription
 from jacaros.sim.ground_truth import Sample
-from jacaros.sim.motion import Odometry, advance, ramp
+from jacaros.sim.robot.motion import Odometry, advance, ramp
 from jacaros.sim.trigonometry import sine_cosine
 
 STILL_SPEED = 0.02

@@ -8,10 +8,10 @@ import math
 from collections.abc import Mapping
 from typing import Any, Final
 
-from jacaros.sim.motion import approach
 from jacaros.sim.navigation.offers import Goal, Offers
 from jacaros.sim.objects import Thing
-from jacaros.sim.robot_sensors import RobotOnGraph
+from jacaros.sim.robot.motion import approach
+from jacaros.sim.robot.on_graph import RobotOnGraph
 
 OPENING: Final = 0.1
 """Metres between the fingers when they are open, as they are at first."""

@@ -10,7 +10,7 @@ topic (below the namespace) type                                      event of t
 
 from jacaros.ros.backend import Sample
 from jacaros.ros.message import to_seconds
-from jacaros.sim.robot_sensors import RobotOnGraph
+from jacaros.sim.robot.on_graph import RobotOnGraph
 
 
 class LightsAndSound:

@@ -1,6 +1,6 @@
 """What a robot feels of its motion: an inertial measurement unit (IMU) at its centre."""
 
-from jacaros.sim.robot_sensors import RobotOnGraph
+from jacaros.sim.robot.on_graph import RobotOnGraph
 from jacaros.sim.trigonometry import sine_cosine
 
 GRAVITY = 9.80665

@@ -1,4 +1,4 @@
-"""The laser range finder on numpy: the operations of `jacaros.sim.laser.sweep_walls` in the same order.
+"""The laser range finder on numpy: the operations of `jacaros.sim.robot.sensors.laser_plain.sweep_walls` in the same order.
 
 Its ranges equal those of the plain version to the last bit, also with numpy's processor-specific paths
 switched off, because nothing but ``+ - * /`` and a minimum makes them.
@@ -11,7 +11,7 @@ from typing import Any
 import numpy
 
 from jacaros.sim.description import Segment
-from jacaros.sim.laser import Beams, Circle
+from jacaros.sim.robot.sensors.laser_plain import Beams, Circle
 from jacaros.sim.trigonometry import PI, TWO_PI, sine_cosine
 
 
@@ -25,7 +25,7 @@ class WallArrays:
         self._beams = beams
 
     def sweep(self, x: float, y: float, yaw: float, circles: Sequence[Circle] = ()) -> list[float]:
-        """Distances of a whole turn of beams, as `jacaros.sim.laser.sweep_walls` and `sweep_circles` give them."""
+        """Return the distances of a whole turn of beams: those of `sweep_walls` and `sweep_circles` in `laser_plain`."""
         count, scale = self._beams.count, self._beams.count / TWO_PI
         sine, cosine = sine_cosine(yaw)
         xs = cosine * self._cosines - sine * self._sines

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 from jacaros.sim.description import LaserSettings, Segment
-from jacaros.sim.laser import Beams, Circle, sweep_circles, sweep_walls
+from jacaros.sim.robot.sensors.laser_plain import Beams, Circle, sweep_circles, sweep_walls
 
 FEW_WALLS = 4
 """Up to so many walls plain Python is as fast as numpy, and saves its import."""
@@ -53,7 +53,7 @@ class Laser:
             return ranges
         if self._arrays is None:
             # numpy takes a third of a second to import: only the first wanted scan pays for it.
-            from jacaros.sim.laser_numpy import WallArrays
+            from jacaros.sim.robot.sensors.laser_numpy import WallArrays
 
             self._arrays = WallArrays(self._segments, self.beams)
         if len(circles) > FEW_CIRCLES:

@@ -5,8 +5,8 @@ JaCaROS has it from a program that looks at images.
 from collections.abc import Iterator
 
 from jacaros.sim.navigation.sight import hidden
-from jacaros.sim.rendering import FOCAL_LENGTH, WIDTH
-from jacaros.sim.robot_sensors import RobotOnGraph
+from jacaros.sim.robot.on_graph import RobotOnGraph
+from jacaros.sim.robot.sensors.rendering import FOCAL_LENGTH, WIDTH
 from jacaros.sim.trigonometry import sine_cosine
 
 RANGE = 4.0

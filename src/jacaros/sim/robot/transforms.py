@@ -14,8 +14,8 @@ from jacaros.ros.qos import QoS
 from jacaros.sim.navigation.frames import BASE, CAMERA, FOOTPRINT, MAP, ODOMETRY, SCAN
 from jacaros.sim.navigation.localisation import FOUND
 from jacaros.sim.navigation.placement import Placement, distance
-from jacaros.sim.rendering import CAMERA_HEIGHT
-from jacaros.sim.robot_sensors import RobotOnGraph
+from jacaros.sim.robot.on_graph import RobotOnGraph
+from jacaros.sim.robot.sensors.rendering import CAMERA_HEIGHT
 
 _TRANSFORM = "geometry_msgs/msg/TransformStamped"
 _HERE = Placement(0.0, 0.0)

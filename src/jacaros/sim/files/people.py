@@ -13,8 +13,8 @@ people:
 
 import itertools
 
-from jacaros.sim.box_file import read_color
 from jacaros.sim.description import PersonDescription, Segment, WorldDescription
+from jacaros.sim.files.box import read_color
 from jacaros.yaml_nodes import Node
 
 _TOUCHING = 0.001

@@ -6,7 +6,7 @@ box: {from: [2, 2], to: [2.5, 3], kind: table, color: brown}      # or color: "#
 import re
 
 from jacaros.sim.description import Furniture
-from jacaros.sim.room_file import corners_of
+from jacaros.sim.files.room import corners_of
 from jacaros.yaml_nodes import Node
 
 COLORS = {

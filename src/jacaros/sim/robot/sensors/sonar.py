@@ -5,8 +5,8 @@ from collections.abc import Iterable
 
 from jacaros.ros.message import constant
 from jacaros.sim.description import Segment
-from jacaros.sim.laser import Circle
-from jacaros.sim.robot_sensors import RobotOnGraph
+from jacaros.sim.robot.on_graph import RobotOnGraph
+from jacaros.sim.robot.sensors.laser_plain import Circle
 from jacaros.sim.trigonometry import radians, sine_cosine
 
 FIELD = radians(30.0)

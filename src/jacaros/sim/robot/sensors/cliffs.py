@@ -7,8 +7,8 @@ topic (below the namespace)             type
 ``/mobile_base/events/wheel_drop``      ``kobuki_msgs/msg/WheelDropEvent`` on changes
 ======================================= ================================= ==========
 
-A Create 3 tells the same on ``/hazard_detection``, see `jacaros.sim.robot_contacts`.  Nothing is computed unless somebody
-listens.
+A Create 3 publishes cliffs on ``/hazard_detection`` instead, see `jacaros.sim.robot.sensors.contacts`.  Nothing is
+computed without subscribers.
 """
 
 from collections.abc import Mapping
@@ -16,8 +16,8 @@ from typing import Any, Final
 
 from jacaros.ros.message import constant
 from jacaros.sim.description import Rectangle
-from jacaros.sim.robot import Robot
-from jacaros.sim.robot_sensors import RobotOnGraph
+from jacaros.sim.robot.on_graph import RobotOnGraph
+from jacaros.sim.robot.robot import Robot
 from jacaros.sim.trigonometry import radians, sine_cosine
 
 _SENSORS: Final[Mapping[str, float]] = {"LEFT": 60.0, "CENTER": 0.0, "RIGHT": -60.0}

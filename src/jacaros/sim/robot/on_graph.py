@@ -1,0 +1,90 @@
+"""A robot's place in a ROS graph, and the interfaces of its sensors and actuators.
+
+A sensor is a class with `publish` and `close`, made from a `RobotOnGraph`.  To add one, write the class and list it in
+`jacaros.sim.robot.node.SENSORS`.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from jacaros.ros.backend import Backend, Publisher, Sample, Subscription
+from jacaros.ros.errors import UnknownInterface
+from jacaros.ros.message import stamp
+from jacaros.ros.qos import DEFAULT_QOS, QoS
+from jacaros.sim.navigation.localisation import Localisation
+from jacaros.sim.robot.robot import Robot
+from jacaros.sim.world_time import WorldTime
+
+TICKS_PER_SECOND = 20
+
+
+@dataclass(frozen=True)
+class RobotOnGraph:
+    """A robot of the world and its place in a ROS graph.
+
+    Attributes:
+        time: the world, on a clock.
+        robot: which of its robots.
+        backend: the graph; it is started already.
+        localisation: where the robot believes to be.
+    """
+
+    time: WorldTime
+    robot: Robot
+    backend: Backend
+    localisation: Localisation
+
+    @property
+    def prefix(self) -> str:
+        """What stands before the names of the robot's topics."""
+        namespace = self.robot.description.namespace
+        return f"/{namespace}" if namespace else ""
+
+    @property
+    def frame_prefix(self) -> str:
+        """What stands before the names of its frames."""
+        namespace = self.robot.description.namespace
+        return f"{namespace}/" if namespace else ""
+
+    def publisher(self, topic: str, type_name: str, qos: QoS = DEFAULT_QOS) -> Publisher:
+        """Make a publisher below the robot's namespace; reliable: it serves subscriptions that ask for that, and others."""
+        return self.backend.publisher(self.prefix + topic, type_name, qos)
+
+    def publisher_if_known(self, topic: str, type_name: str) -> Publisher | None:
+        """The same; None where the type is not installed, for robots of that kind are not used there."""
+        try:
+            return self.publisher(topic, type_name)
+        except UnknownInterface:
+            return None
+
+    def subscription_if_known(
+        self, topic: str, type_name: str, callback: Callable[[Sample], None]
+    ) -> Subscription | None:
+        """Hear a topic below the robot's namespace; None where the type is not installed."""
+        try:
+            return self.backend.subscription(self.prefix + topic, type_name, callback)
+        except UnknownInterface:
+            return None
+
+    def fill_header(self, header: Any, frame: str) -> None:
+        """Give a header the time of the world, and one of the robot's frames."""
+        stamp(header.stamp, self.time.now())
+        header.frame_id = self.frame_prefix + frame
+
+
+class Sensor(Protocol):
+    """Something that a robot tells the graph."""
+
+    def publish(self, ticks: int) -> None:
+        """Publish what is due at this tick of 20 Hz; the world has caught up."""
+
+    def close(self) -> None:
+        """Leave the topics."""
+
+
+class Actuator(Protocol):
+    """Something that a robot does when the graph asks for it."""
+
+    def close(self) -> None:
+        """Leave the graph."""
