@@ -165,8 +165,8 @@ def command(
     options = RunOptions(
         remap=read_remaps(remap) if remap else {},
         orphans=orphan_policy(orphans),
-        show_world=outputs.any,
         explain=bool(explained),
+        show_world=outputs.ground_truth is not None,
         **given,
     )
     project: Path | Deployment = file

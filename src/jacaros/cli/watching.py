@@ -45,16 +45,17 @@ class Watching:
         Raises:
             UsageError: the ground truth is asked for and there is no world to tell it.
         """
-        world = mas.ros.world
         if self._outputs.ground_truth is not None:
-            self._ground_truth = _ground_truth_file(self._outputs.ground_truth, world, mas, self._warn)
+            self._ground_truth = _ground_truth_file(
+                self._outputs.ground_truth, mas.ros.world, mas, self._warn
+            )
         watchers: list[Watcher] = []
         if self._recorder is not None:
             watchers.append(self._recorder)
         if self._outputs.view:
             self._view = TerminalView(stream=self._terminal)
             watchers.append(self._view)
-        self._watch = watch_of(mas, watchers, world)
+        self._watch = watch_of(mas, watchers)
         self._watch.start()
 
     def print(self, agent: str, text: str) -> None:

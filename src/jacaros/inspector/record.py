@@ -37,7 +37,7 @@ def record(
     """
     keep = replay is not None or path is None
     recorder = Recorder(path, keep, lambda text: mas.system.console.log(f"warning: {text}", "warning"))
-    watch = watch_of(mas.system, [recorder], mas.world)
+    watch = watch_of(mas.system, [recorder])
     watch.start()
     end_prints = mas.on_print(watch.text)
     try:

@@ -1,6 +1,6 @@
 """What there is to see of a run, and of its robots: the embedded world, or whatever a real graph tells."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple, Protocol
 
 from jacaros.sim import World
@@ -58,20 +58,23 @@ class EmbeddedScene:
     """The embedded world, whose truth is known.
 
     Args:
-        world: the world.
+        find: gives the world; None until an agent needs a robot. A project without robots never has one.
     """
 
-    def __init__(self, world: World) -> None:
-        self._world = world
-        self._drawing = world.description.drawing()
+    def __init__(self, find: Callable[[], World | None]) -> None:
+        self._find = find
+        self._drawing: Mapping[str, Any] | None = None
 
-    def drawing(self) -> Mapping[str, Any]:
-        """The world, which does not change."""
+    def drawing(self) -> Mapping[str, Any] | None:
+        """The world, which does not change; None while there is none."""
+        if self._drawing is None and (world := self._find()) is not None:
+            self._drawing = world.description.drawing()
         return self._drawing
 
     def robots(self) -> list[RobotView]:
         """The robots where they truly are."""
-        return views_of(self._world)
+        world = self._find()
+        return views_of(world) if world is not None else []
 
     def close(self) -> None:
         """Nothing is held."""

@@ -3,20 +3,17 @@
 from jacaros.inspector.scene import EmbeddedScene, Scene
 from jacaros.inspector.watch import Watch, Watcher
 from jacaros.mas.system import System
-from jacaros.sim import World
 
 
-def watch_of(mas: System, watchers: list[Watcher], world: World | None = None) -> Watch:
-    """Make the watch of a system that has been started; *world* is its embedded world, if it has one."""
-    return Watch(mas.clock, watchers, _scene_of(mas, world), mas.history())
+def watch_of(mas: System, watchers: list[Watcher]) -> Watch:
+    """Make the watch of a system that has been started; its embedded world may come into being later."""
+    return Watch(mas.clock, watchers, _scene_of(mas), mas.history())
 
 
-def _scene_of(mas: System, world: World | None) -> Scene | None:
-    if world is not None:
-        return EmbeddedScene(world)
+def _scene_of(mas: System) -> Scene:
     backend = mas.ros.joined
-    if backend is None or backend.name == "memory":
-        return None
+    if mas.ros.world is not None or backend is None or backend.name == "memory":
+        return EmbeddedScene(lambda: mas.ros.world)
     from jacaros.inspector.graph_scene import GraphScene  # here: only for runs on a real graph
 
     return GraphScene(backend, mas.clock, mas.deployment.name)

@@ -81,6 +81,7 @@ class RosGraph:
         self._undeclared: UndeclaredParameters | None = None
         self._guard: RunGuard | None = None
         self.world: World | None = None
+        self._world_watchers: tuple[Callable[[World], None], ...] = ()
 
     async def start(self) -> None:
         """Join a real graph; make the world if it was asked for by name.
@@ -157,6 +158,18 @@ class RosGraph:
     def joined(self) -> "Backend | None":
         """Our node, None while nobody has asked for the graph."""
         return self._backend
+
+    def watch_world(self, watcher: "Callable[[World], None]") -> Callable[[], None]:
+        """Call *watcher* with the embedded world as soon as there is one, now or later; gives what ends that."""
+        if self.world is not None:
+            watcher(self.world)
+            return lambda: None
+        self._world_watchers = (*self._world_watchers, watcher)
+
+        def end() -> None:
+            self._world_watchers = tuple(each for each in self._world_watchers if each is not watcher)
+
+        return end
 
     def watch_parameters(self) -> None:
         """Everything is made: look whether the parameters that were given are declared."""
@@ -238,6 +251,9 @@ class RosGraph:
         self.world.ground_truth.keep = None if self._options.keep_ground_truth else _GROUND_TRUTH
         self._node = SimNode(self.world, backend, self._clock)
         self._node.start()
+        for watcher in self._world_watchers:
+            watcher(self.world)
+        self._world_watchers = ()
 
 
 def _finish_at_once(coroutine: Coroutine[Any, Any, None]) -> None:

@@ -35,6 +35,26 @@ def test_world_lines_and_goals_are_recorded(tmp_path: Path) -> None:
     assert (tmp_path / "run.html").read_text(encoding="utf-8").startswith("<!doctype html>")
 
 
+def test_a_run_without_robots_has_no_world() -> None:
+    worlds = []
+
+    async def main() -> None:
+        async with Mas() as mas:
+            mas.add_agent("ann", "+!go <- .wait(500).")
+            with record(mas) as recording:
+                assert recording is not None
+                await mas.agent("ann").achieve("go")
+                worlds.append(recording.world)
+                mas.ros  # noqa: B018  # the world comes into being when the graph is first asked for
+                await mas.agent("ann").achieve("go")
+                worlds.append(recording.world)
+                assert recording.frames[-1].robots
+
+    jacaros.run(main(), clock="fast")
+    assert worlds[0] == {}
+    assert worlds[1]["name"] == "empty"
+
+
 def test_a_file_alone_is_not_kept_in_memory(tmp_path: Path) -> None:
     async def main() -> None:
         async with Mas() as mas:

@@ -166,7 +166,7 @@ def watched_run() -> tuple[Recorder, World]:
         await backend.start()
         node = SimNode(world, backend, clock)
         node.start()
-        watch = Watch(clock, [recorder], EmbeddedScene(world))
+        watch = Watch(clock, [recorder], EmbeddedScene(lambda: world))
         watch.start()
         publisher = backend.publisher("/cmd_vel", "geometry_msgs/msg/Twist")
         for _ in range(20):

@@ -1,6 +1,8 @@
 import { button, element, setText } from "./elements.js";
 import { robotColor } from "./palette.js";
 
+const FEW = 4;  // robots whose cards show everything; of more, names and batteries
+
 /** A card for each robot: battery, pose, what happens to it, and the agents that use it. */
 export class RobotsView {
   constructor(root, { selection }, world, links) {
@@ -15,6 +17,7 @@ export class RobotsView {
 
   show(t) {
     for (let index = this.cards.length; index < this.world.robotCount; index++) this.cards.push(this.makeCard(index));
+    this.root.classList.toggle("many", this.cards.length > FEW);
     this.cards.forEach((card, index) => this.showCard(card, index, t));
   }
 
@@ -47,7 +50,7 @@ export class RobotsView {
     card.gauge.setAttribute("aria-valuenow", String(level));
     card.fill.style.width = `${Math.max(0, state.battery)}%`;
     card.fill.className = level > 50 ? "high" : level > 20 ? "middle" : "low";
-    setText(card.where, `x ${state.x.toFixed(2)}  y ${state.y.toFixed(2)}  ${Math.round(state.yaw * 180 / Math.PI)}°`);
+    setText(card.where, `x ${state.x.toFixed(2)}  y ${state.y.toFixed(2)}  ${degrees(state.yaw)}°`);
     card.state.className = `state ${state.charging ? "charging" : state.touching ? "touching" : ""}`;
     setText(card.state, state.charging ? "⚡ charging" : state.touching ? "⚠ touching" : "");
     setText(card.agents, agents.length ? `used by ${agents.join(", ")}` : "");
@@ -59,3 +62,6 @@ export class RobotsView {
     return robot === name || (agent !== undefined && this.links.robots(agent, t).includes(name));
   }
 }
+
+/** An angle in whole degrees, from -180 to 180. */
+function degrees(angle) { return Math.round(Math.atan2(Math.sin(angle), Math.cos(angle)) * 180 / Math.PI); }

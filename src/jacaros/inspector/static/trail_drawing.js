@@ -41,7 +41,6 @@ export class TrailDrawing {
   drawPiece(pen, first, last, states) {
     const { world, projection: p } = this;
     pen.lineWidth = Math.min(4, Math.max(1.5, p.scale * 0.028));
-    pen.globalAlpha = 0.8;
     world.columns.forEach((robot, index) => {
       const from = Math.max(first, robot.first);
       if (from > last) return;
@@ -51,6 +50,5 @@ export class TrailDrawing {
       if (states?.[index]) pen.lineTo(p.x(states[index].x), p.y(states[index].y));
       pen.stroke();
     });
-    pen.globalAlpha = 1;
   }
 }

@@ -132,7 +132,7 @@ function addRow(world, index, [x, y, yaw, battery, charging, touching]) {
   }
   const robot = world.columns[index];
   robot.x[last] = x; robot.y[last] = y; robot.yaw[last] = yaw; robot.battery[last] = battery; robot.flags[last] = flags;
-  world.widen(x - 0.3, y - 0.3, x + 0.3, y + 0.3);
+  world.widen(x, y, x, y);
 }
 
 function walk(world, t, data, known) {

@@ -14,6 +14,7 @@ from jacaros.trace import Tracer
 
 if TYPE_CHECKING:
     from jacaros.sim.ground_truth import Record
+    from jacaros.sim.world import World
 
 KEPT = 50_000
 """Records that are kept; older ones are forgotten."""
@@ -145,8 +146,18 @@ class History:
         return [*self._lasting.values(), *self.events]
 
     def _observe_world(self) -> Callable[[], None]:
-        world = self._system.ros.world
-        return world.ground_truth.listen(self._hear_world) if world is not None else lambda: None
+        ends: list[Callable[[], None]] = []
+
+        def listen(world: "World") -> None:
+            ends.append(world.ground_truth.listen(self._hear_world))
+
+        ends.append(self._system.ros.watch_world(listen))
+
+        def end() -> None:
+            for each in ends:
+                each()
+
+        return end
 
     def _hear_world(self, record: "Record") -> None:
         if record["kind"] == "event":
