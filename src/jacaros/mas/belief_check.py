@@ -12,11 +12,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from jacaros.asl import nodes
-from jacaros.asl.checks.beliefs import Beliefs, beliefs_of, is_misspelt
+from jacaros.asl.checks.beliefs import Beliefs, beliefs_of, is_fact_of, is_misspelt, source_of
 from jacaros.asl.checks.formulas import parts_of
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.formatter import format_term
-from jacaros.asl.slips import Slips
+from jacaros.asl.slips import Slips, is_slip_of
 from jacaros.bdi.actions.internal_action import STANDARD
 from jacaros.text_files import file_bytes
 
@@ -57,7 +57,11 @@ def check_beliefs(
     if any(each.is_open for each in found):
         return []
     folders = tuple(folders)
-    return [*_misspelt(found, types, folders), *_never_happening(found, types, folders)]
+    return [
+        *_misspelt(found, types, folders),
+        *_never_happening(found, types, folders),
+        *_from_wrong_source(found, types, folders),
+    ]
 
 
 def _misspelt(
@@ -78,11 +82,67 @@ def _misspelt(
         for name in asked
         if name not in made
     }
+    for name in slips:
+        slips[name] = slips[name] or _forms(name, asked[name], found)
     slips = {name: meant for name, meant in slips.items() if meant}
     only_here = _only_here({name: asked[name] for name in slips}, folders)
     return [
         _warning(name, slips[name][0], each) for name in slips if name in only_here for each in asked[name]
     ]
+
+
+def _forms(name: str, asked: Sequence[nodes.Literal], found: Sequence[Beliefs]) -> list[str]:
+    """Names that are another form of a word (``zone``, ``zones``) and have a fact that answers what is asked."""
+    return sorted(
+        {
+            known
+            for each in found
+            for known, facts in each.facts.items()
+            if is_slip_of(name, known) and any(is_fact_of(one, fact) for one in asked for fact in facts)
+        }
+    )
+
+
+def _from_wrong_source(
+    found: Sequence[Beliefs], types: "Callable[[], Sequence[type[Artifact]] | None]", folders: Sequence[Path]
+) -> list[Diagnostic]:
+    """Warnings about plans for beliefs from a source that they never have: percepts that only the agent notes, and notes
+    that only artifacts make."""
+    brought = {key for each in found for key in each.brought | set(each.concluded)}
+    said = {word for each in found for word in each.said} | _OF_THE_SYSTEM
+    wrong: list[tuple[str, nodes.Literal, bool]] = []
+    for each in found:
+        for key, events in each.events.items():
+            if key in brought or (key[0], 0) in brought or key[0] in said:
+                continue
+            for sign, literal in filter(lambda event: _is_own(event[1]), events):
+                source = source_of(literal)
+                if source == "percept" and key in each.noted:
+                    wrong.append((sign, literal, True))
+                elif source == "self" and key not in each.noted:
+                    wrong.append((sign, literal, False))
+    existing = types() if wrong else None
+    observables = None if existing is None else _observables(existing)
+    if observables is None:
+        return []
+    wrong = [each for each in wrong if (each[1].functor in observables) != each[2]]
+    places: dict[str, list[nodes.Literal]] = {}
+    for _, literal, _ in wrong:
+        places.setdefault(literal.functor, []).append(literal)
+    only_here = _only_here({name: each for name, each in places.items() if name not in observables}, folders)
+    certain = {*only_here, *observables}
+    return [_wrong_source(*each) for each in wrong if each[1].functor in certain]
+
+
+def _wrong_source(sign: str, literal: nodes.Literal, is_percept: bool) -> Diagnostic:
+    key = f"{literal.functor}/{len(literal.arguments)}"
+    if is_percept:
+        why = f"no artifact has `{literal.functor}`, so its source is never `percept`"
+        cure = "the agent notes it itself: write [source(self)], or leave the source out"
+    else:
+        why = f"only artifacts make `{literal.functor}`, so its source is never `self`"
+        cure = "write [source(percept)], or leave the source out"
+    return Diagnostic("warning", f"the event {sign}{key} never happens: {why}", literal.span, cure, NEVER)
 
 
 def _never_happening(

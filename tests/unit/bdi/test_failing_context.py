@@ -38,7 +38,24 @@ def test_the_failing_conjunct_is_shown_with_the_values_of_its_variables() -> Non
 
 
 def test_arguments_of_the_goal_are_values() -> None:
-    assert stop("!go(kitchen).\n+!go(R) : zone(R).") == "stops at `zone(R)` with R=kitchen"
+    assert stop("zone(hall). !go(kitchen).\n+!go(R) : zone(R).") == "stops at `zone(R)` with R=kitchen"
+
+
+def test_a_belief_that_the_agent_does_not_have_at_all_is_named() -> None:
+    assert stop("!go(a).\n+!go(R) : zone(R).") == "stops at `zone(R)` with R=a: no belief `zone`"
+    assert stop("zone(a). !go(a).\n+!go(R) : zones(R).") == (
+        "stops at `zones(R)` with R=a: no belief `zones`; did you mean `zone`?"
+    )
+    assert stop("redy. !go.\n+!go : ready.") == "stops at `ready`: no belief `ready`; did you mean `redy`?"
+    assert stop("at(1,2). !go.\n+!go : at(P).") == "stops at `at(P)`: no belief `at/1`; there is `at/2`"
+    assert (
+        stop("~safe(a). !go.\n+!go : ~save(a).")
+        == "stops at `~save(a)`: no belief `~save`; did you mean `~safe`?"
+    )
+
+
+def test_a_belief_that_a_rule_concludes_is_not_missing() -> None:
+    assert stop("low(X) :- X < 5. !go.\n+!go : low(7).") == "stops at `low(7)`"
 
 
 def test_the_deepest_conjunct_that_any_answer_reached_is_shown() -> None:
@@ -85,7 +102,7 @@ def test_a_failure_plan_that_does_not_fit_has_its_conjunct() -> None:
 def test_long_values_are_cut() -> None:
     found = stop(f"p([{'abcdefghij,' * 20}a]). !go.\n+!go : p(L) & q(L).")
     assert found.startswith("stops at `q(L)` with L=[abcdefghij,")
-    assert found.endswith("...")
+    assert found.endswith("...: no belief `q`")
     assert len(found) < 100
 
 

@@ -199,7 +199,7 @@ def details(program: str, verbose: int = 2) -> list[str]:
 
 WHY_NOT = [
     "no applicable plan for +alarm(fire)",
-    "does not fit: +alarm(T) (tester.asl:1), stops at `zones(T)` with T=fire",
+    "does not fit: +alarm(T) (tester.asl:1), stops at `zones(T)` with T=fire: no belief `zones`",
 ]
 
 

@@ -320,3 +320,57 @@ def test_properties_and_signals_of_artifacts_are_events(folder: Path) -> None:
 def test_an_event_that_another_file_mentions_may_happen(folder: Path, file: str, text: str) -> None:
     (folder / file).write_text(text, encoding="utf-8")
     assert never(folder, RULE + "+low <- .print(a).") == []
+
+
+@pytest.mark.parametrize(
+    "use",
+    ["+!go : zones(a) <- .print(a).", "+!go <- ?zones(a).", "near :- zones(a). +!go : near <- .print(a)."],
+)
+def test_another_form_of_a_word_is_a_slip_where_a_fact_answers(folder: Path, use: str) -> None:
+    assert told(folder, f"zone(a). !go. {use}") == ["zones/1 zone?"]
+
+
+@pytest.mark.parametrize("use", ["zones(b)", "zones(Z) & .print(Z)", "zones(a, b)", "zones([a])"])
+def test_another_form_of_a_word_is_a_name_of_its_own_elsewhere(folder: Path, use: str) -> None:
+    assert told(folder, f"zone(a). !go. +!go : {use} <- .print(a).") == []
+
+
+def test_a_note_is_never_a_percept(folder: Path) -> None:
+    program = "!go. +!go <- -+battery(5). +battery(B)[source(percept)] <- .print(B)."
+    assert never(folder, program) == [
+        (
+            "+battery/1 never happens: no artifact has `battery`, so its source is never `percept`; "
+            "the agent notes it itself: write [source(self)], or leave the source out"
+        )
+    ]
+
+
+def test_a_property_is_never_a_note(folder: Path) -> None:
+    assert never(folder, MAKES + "+obstacle(D)[source(self)] <- .print(D).") == [
+        (
+            "+obstacle/1 never happens: only artifacts make `obstacle`, so its source is never `self`; "
+            "write [source(percept)], or leave the source out"
+        )
+    ]
+
+
+@pytest.mark.parametrize(
+    "program",
+    [
+        MAKES + "+obstacle(D)[source(percept)] <- .print(D).",
+        MAKES + "+!note <- +obstacle(1). +obstacle(D)[source(self)] <- .print(D).",
+        "!go. +!go <- +battery(5)[source(percept)]. +battery(B)[source(percept)] <- .print(B).",
+        "!go. +!go <- +battery(5). +battery(B)[source(self)] <- .print(B).",
+        "!go. +!go <- +battery(5). +battery(B)[source(X)] <- .print(B, X).",
+        "!go. +!go <- +battery(5); .send(a, tell, battery(6)). +battery(B)[source(percept)] <- .print(B).",
+        "+seen(B)[source(percept)] <- .print(B).",
+        "!go. +!go <- +battery(5); .add_annot(battery(6), source(percept), X). +battery(B)[source(percept)] <- .print(B).",
+    ],
+)
+def test_sources_that_may_match_are_no_mistake(folder: Path, program: str) -> None:
+    assert never(folder, program) == []
+
+
+def test_a_percept_that_python_code_gives_is_no_mistake(folder: Path) -> None:
+    (folder / "run.py").write_text('agent.perceive("battery(5)")', encoding="utf-8")
+    assert never(folder, "!go. +!go <- +battery(5). +battery(B)[source(percept)] <- .print(B).") == []

@@ -8,6 +8,7 @@ from typing import Final
 from jacaros.asl import nodes
 from jacaros.asl.checks.formulas import clauses, in_order, parts_of
 from jacaros.asl.declaration import UNDECLARED, Declaration
+from jacaros.asl.formatter import format_term
 from jacaros.asl.slips import is_slip_of
 from jacaros.asl.walk import walk
 
@@ -36,6 +37,10 @@ class Beliefs:
         events: what plans and ``.wait`` react to, sign and belief: of the default namespace, without strong negation.
         made_as, concluded, mentioned_as: as `made`, but for rules; the conclusions of rules; as `mentioned`, without words.
         said: words of strings that are not only printed.
+        facts: initial beliefs, by name.
+        noted: beliefs that the agent itself makes: initial ones, and those of steps, without a source in annotations.
+        brought: beliefs made in other ways: by messages, with a source in annotations, by plans for tests, or in ways that
+            are not seen, because they appear in other terms.
     """
 
     asked: dict[str, list[nodes.Literal]] = field(default_factory=dict)
@@ -47,6 +52,9 @@ class Beliefs:
     concluded: dict[Key, nodes.Rule] = field(default_factory=dict)
     mentioned_as: set[Key] = field(default_factory=set)
     said: set[str] = field(default_factory=set)
+    facts: dict[str, list[nodes.Literal]] = field(default_factory=dict)
+    noted: set[Key] = field(default_factory=set)
+    brought: set[Key] = field(default_factory=set)
 
 
 def beliefs_of(program: nodes.Program, actions: Mapping[str, Declaration]) -> Beliefs:
@@ -61,6 +69,8 @@ def beliefs_of(program: nodes.Program, actions: Mapping[str, Declaration]) -> Be
             found.concluded.setdefault(key_of(belief.head), belief)
         else:
             found.made_as.update(_keys(belief))
+            found.facts.setdefault(_name(belief), []).append(belief)
+            _note(belief, found)
     asked: set[int] = set()
     for clause in clauses(program):
         for node, is_asked in in_order(clause):
@@ -71,6 +81,7 @@ def beliefs_of(program: nodes.Program, actions: Mapping[str, Declaration]) -> Be
     for plan in program.plans:
         _react(plan, found)
     printed: set[int] = set()
+    noted = _notes(program)
     for node in walk(program.beliefs, program.goals, program.plans):
         if isinstance(node, nodes.InternalAction) and actions.get(node.name, UNDECLARED).prints:
             printed.update(map(id, walk(node.arguments)))
@@ -78,6 +89,8 @@ def beliefs_of(program: nodes.Program, actions: Mapping[str, Declaration]) -> Be
             found.mentioned.add(_name(node))
             if id(node) not in heads and id(node) not in printed:
                 found.mentioned_as.add(key_of(node))
+                if id(node) not in noted:
+                    found.brought.add(key_of(node))
         elif isinstance(node, nodes.String):
             words = _WORD.findall(node.value)
             found.mentioned.update(words)
@@ -112,12 +125,14 @@ def _look_at(node: nodes.Node, is_asked: bool, asked: set[int], found: Beliefs) 
             _ask(node.literal, asked, found)
         elif node.kind == "?":
             _make(node.literal, found)
+            found.brought.update(_keys(node.literal))
     elif isinstance(node, nodes.BeliefChange):
         if id(node) in asked:
             return
         found.is_open = found.is_open or isinstance(node.operand, nodes.Variable)
         if isinstance(node.operand, nodes.Literal) and "+" in node.operator:
             _make(node.operand, found)
+            _note(node.operand, found)
     elif is_asked:
         _ask(node, asked, found)
 
@@ -131,6 +146,7 @@ def _look_at_call(node: nodes.InternalAction, action: Declaration, asked: set[in
     found.is_open = found.is_open or action.brings_in
     if action.performative is not None and node.arguments:
         _make(node.arguments[-1], found)
+        found.brought.update(_keys(node.arguments[-1]))
     if action.condition is not None:
         for condition in node.arguments[action.condition :][:1]:
             for part in parts_of(condition):
@@ -148,6 +164,41 @@ def _make(term: nodes.Node, found: Beliefs) -> None:
     """Note a belief that is made, or a list of them."""
     found.made.update(_names(term))
     found.made_as.update(_keys(term))
+
+
+def _notes(program: nodes.Program) -> set[int]:
+    """The literals that steps add or delete."""
+    steps = walk(program.plans)
+    return {id(step.operand) for step in steps if isinstance(step, nodes.BeliefChange)}
+
+
+def _note(belief: nodes.Literal, found: Beliefs) -> None:
+    """Note a belief whose source is the agent itself, unless its annotations may name another one."""
+    (found.noted if belief.annotations is None else found.brought).add(key_of(belief))
+
+
+def source_of(literal: nodes.Literal) -> str:
+    """The source that a literal asks for, such as ``percept``; empty if it asks for none, or for any."""
+    items = literal.annotations.items if literal.annotations is not None else ()
+    for each in items:
+        if isinstance(each, nodes.Literal) and each.functor == "source" and len(each.arguments) == 1:
+            source = each.arguments[0]
+            if isinstance(source, nodes.Literal) and not source.arguments:
+                return _name(source)
+    return ""
+
+
+def is_fact_of(asked: nodes.Literal, fact: nodes.Literal) -> bool:
+    """Whether a literal asks for values that a fact of another name has: its arguments that are written out are the same,
+    and there is one."""
+    if len(asked.arguments) != len(fact.arguments):
+        return False
+    pairs = [
+        (format_term(one), format_term(other))
+        for one, other in zip(asked.arguments, fact.arguments, strict=True)
+        if not isinstance(one, nodes.Variable)
+    ]
+    return bool(pairs) and all(one == other for one, other in pairs)
 
 
 def _keys(term: nodes.Node) -> Iterator[Key]:

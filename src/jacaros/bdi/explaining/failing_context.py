@@ -15,6 +15,7 @@ from jacaros.asl.formatter import format_term
 from jacaros.asl.lowering import Names, lower
 from jacaros.asl.walk import names_in, operands, walk
 from jacaros.bdi.actions.internal_action import InternalAction
+from jacaros.bdi.explaining.missing_beliefs import missing_belief
 from jacaros.bdi.explaining.step_text import unbracketed
 from jacaros.bdi.rules.context import Context
 from jacaros.bdi.rules.functions import OF_AGENT
@@ -34,7 +35,7 @@ from jacaros.terms.operators import ArithmeticFault
 from jacaros.terms.substitution import resolve
 from jacaros.terms.text import text
 from jacaros.terms.unifier import Trail, undo, unify
-from jacaros.terms.values import Functor, Term, Var, deref
+from jacaros.terms.values import Functor, Term, Var, deref, functor_of
 
 MOST_STEPS = 1_000
 """Steps of the search for one plan (some ten microseconds each): answers of conjuncts, rules and internal actions."""
@@ -56,16 +57,20 @@ class _Stop(NamedTuple):
         conjunct: as it is written.
         values: of its variables, as ``Name=value``, for the first answer of the conjuncts before it.
         answers: how many answers of the conjuncts before it there are.
+        missing: what the agent does not believe at all, empty unless that is why.
     """
 
     depth: int
     conjunct: str
     values: str
     answers: int
+    missing: str
 
     def __str__(self) -> str:
         told = f"`{self.conjunct}`{' with ' if self.values else ''}{self.values}"
-        return told if self.answers == 1 else f"{told} (the first of {self.answers} answers)"
+        if self.answers > 1:
+            told += f" (the first of {self.answers} answers)"
+        return f"{told}: {self.missing}" if self.missing else told
 
 
 class FailingContexts:
@@ -173,9 +178,18 @@ class _Search:
         """A conjunct has no answer with the present values."""
         deepest = self._deepest
         if deepest is None or depth > deepest.depth:
-            self._deepest = _Stop(depth, self._text(depth), self._values(self._conjuncts[depth]), 1)
+            conjunct = self._conjuncts[depth]
+            missing = self._missing(conjunct)
+            self._deepest = _Stop(depth, self._text(depth), self._values(conjunct), 1, missing)
         elif depth == deepest.depth:
             self._deepest = deepest._replace(answers=deepest.answers + 1)
+
+    def _missing(self, conjunct: nodes.Node) -> str:
+        """What of a literal the agent does not believe at all, with a near name."""
+        if not isinstance(conjunct, nodes.Literal):
+            return ""
+        symbol = functor_of(lower(conjunct, self._names.__getitem__))
+        return "" if symbol is None else self._agent.missing_belief(symbol)
 
     def _text(self, depth: int) -> str:
         conjunct = self._conjuncts[depth]
@@ -245,6 +259,10 @@ class _LookOnly:
         own = OF_AGENT.get(term[0].name)
         view = cast("Circumstance", self)
         return self._agent.call_own(term) if own is None else own.evaluate(view, term)
+
+    def missing_belief(self, symbol: Functor) -> str:
+        """Whether the agent has no belief of that name at all, in words."""
+        return missing_belief(self._agent.beliefs, symbol)
 
     def warn_of_operand(self, what: str, value: Term) -> None:
         """Say nothing: the warning has been logged."""

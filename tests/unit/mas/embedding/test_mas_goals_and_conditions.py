@@ -131,7 +131,7 @@ def test_a_failed_goal_raises_with_its_reasons() -> None:
         with pytest.raises(GoalFailed) as failed:
             await mas.agent("eve").achieve("open(hatch)")
         assert failed.value.__notes__ == [
-            "does not fit: +!open(D) (<eve>:1), stops at `shut(D)` with D=hatch"
+            "does not fit: +!open(D) (<eve>:1), stops at `shut(D)` with D=hatch: no belief `shut`"
         ]
         with pytest.raises(GoalFailed, match="no relevant plan for !missing"):
             await bob.achieve("missing")
