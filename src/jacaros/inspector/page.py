@@ -28,7 +28,7 @@ _PLACES = re.compile(
 
 
 def write_replay(recording: Recording, path: str | Path, title: str | None = None) -> None:
-    """Write the page; *title* is the world's name by default.
+    """Write the page; *title* is the name of the project, or of the world, by default.
 
     Raises:
         OSError: the file cannot be written.
@@ -38,7 +38,7 @@ def write_replay(recording: Recording, path: str | Path, title: str | None = Non
 
 def replay_html(recording: Recording, title: str | None = None) -> str:
     """Return the text of the page."""
-    shown = html.escape(title or str(recording.world.get("name") or "A run"))
+    shown = html.escape(title or _title(recording))
     style, script = (STATIC / "page.css").read_text(encoding="utf-8"), bundle(STATIC, "recorded")
     policy = f"default-src 'none'; img-src data:; script-src {_hash(script)}; style-src {_hash(style)}"
     parts = {
@@ -50,6 +50,11 @@ def replay_html(recording: Recording, title: str | None = None) -> str:
     page = (STATIC / "page.html").read_text(encoding="utf-8")
     # In one pass: a title may look like a place.
     return _PLACES.sub(lambda found: parts[found[0].partition(" ")[0].partition(">")[0]], page)
+
+
+def _title(recording: Recording) -> str:
+    names = (data.get("name") for _, kind, data in recording.events if kind == "run")
+    return str(next(names, None) or recording.world.get("name") or "A run")
 
 
 def packed(recording: Recording) -> str:

@@ -93,6 +93,13 @@ def test_the_page_needs_nothing_from_anywhere() -> None:
     assert "<title>A &lt;b&gt;run&lt;/b&gt;</title>" in page
 
 
+def test_a_page_is_named_after_the_project() -> None:
+    run = recording()
+    run.events.append((0.0, "run", {"name": "cleaners"}))
+    assert "<title>cleaners</title>" in replay_html(run)
+    assert "<title>house</title>" in replay_html(recording())
+
+
 def test_the_same_recording_gives_the_same_page() -> None:
     assert replay_html(recording()) == replay_html(recording())
 

@@ -25,9 +25,15 @@ export function clock(t) {
   return `${minutes}:${seconds < 10 ? "0" : ""}${seconds.toFixed(1)}`;
 }
 
+const colours = new Map();  // by theme and name: asking the document for a style may cost a layout
+
 /** A colour of the theme, such as `themeColor("wall")`. */
 export function themeColor(name) {
-  return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+  const key = `${document.documentElement.dataset.theme} ${name}`;
+  if (!colours.has(key)) {
+    colours.set(key, getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim());
+  }
+  return colours.get(key);
 }
 
 /** Whether the page is dark. */

@@ -8,6 +8,7 @@ const WORDS = {
   task: (d) => `${d.task}${d.room ? ` in the ${spaced(d.room)}` : ""}`,
   door_opened: (d) => `door ${d.door} opens`, door_closed: (d) => `door ${d.door} closes`,
   person_comes: (d) => `${d.person} comes`, person_goes: (d) => `${d.person} goes`,
+  obstacle_placed: (d) => `${spaced(d.obstacle)} placed`, obstacle_removed: (d) => `${spaced(d.obstacle)} removed`,
   picked: (d) => `picked up ${d.object}`, placed: (d) => `put down ${d.object}`,
   fault: (d) => `fault ${d.fault} (${spaced(d.kind)}) ${d.state}${d.why ? `: ${d.why}` : ""}`,
   fell: () => "fell down a cliff",
@@ -31,7 +32,7 @@ export function inWords(event, data, severalRobots) {
 
 /** The sort of mark for an event, undefined for none. */
 export function sortOf(event, data) {
-  if (FAILURES.has(event)) return event === "fault" && data.state === "ended" ? undefined : "failure";
+  if (FAILURES.has(event)) return event === "fault" && data.state === "ends" ? undefined : "failure";
   // Behaviours of trees fail without a reason as a matter of course.
   if (event === "goal") return data.state === "failed" && data.why ? "failure" : undefined;
   if (event === "operation") return undefined;

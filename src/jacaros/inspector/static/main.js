@@ -13,6 +13,7 @@ import { Tabs } from "./tabs.js";
 import { Time } from "./time.js";
 import { TimelineView } from "./timeline.js";
 import { World } from "./world.js";
+import { WorldTools } from "./world_tools.js";
 
 /** What a replay has in place of commands: nothing can be done to a run that is over. */
 export const NO_COMMANDS = {
@@ -39,14 +40,16 @@ export function startPage({ live, commands }) {
   const tabs = new Tabs(at("tabs"), [
     [at("agents"), new GoalsView(at("agents"), context, goals)],
   ], context);
-  const map = new MapView(at("map"), context, world, links);
+  const tools = new WorldTools(at("tools"), context, world);
+  const map = new MapView(at("map"), context, world, links, tools);
   const beside = [
+    [at("tools"), tools],
     [at("robots"), new RobotsView(at("robots"), context, world, links)],
     [at("log"), new LogView(at("log"), context, log)],
     [at("timeline"), new TimelineView(at("timeline"), context, log)],
   ];
 
-  const page = new Page({ run, selection, time, world, map, tabs, beside });
+  const page = new Page({ run, selection, time, commands, world, map, tabs, beside });
   listenToKeys(time);
   page.chooseTheme(fragment().get("theme") ?? (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light"));
   at("theme").addEventListener("click", () => page.chooseTheme(isDark() ? "light" : "dark"));
@@ -69,6 +72,7 @@ class Page {
     this.run.onChange(stale);
     this.time.onChange(stale);
     this.selection.onChange(stale);
+    this.commands.onChange(stale);
     const sizes = new ResizeObserver(stale);
     for (const id of ["map", "timeline", "log"]) sizes.observe(document.getElementById(id));
     document.body.classList.remove("starting");

@@ -1,23 +1,27 @@
 import { FloorDrawing } from "./floor_drawing.js";
 import { button, element } from "./elements.js";
-import { Projection } from "./projection.js";
+import { MapPointer } from "./map_pointer.js";
+import { Camera, Projection } from "./projection.js";
 import { drawBelieved, drawLaser, drawPlan, drawRobot } from "./robot_drawing.js";
-import { drawDirt, drawDoors, drawObjects, drawPeople } from "./thing_drawing.js";
+import { drawDirt, drawDoors, drawObjects, drawObstacles, drawPeople } from "./thing_drawing.js";
 import { TrailDrawing } from "./trail_drawing.js";
 
 const REACH = 8;  // pixels around a robot, a door or a person in which a click selects it
 
 /** The world from above. What stands still, and the paths so far, are kept on canvases of their own. */
 export class MapView {
-  constructor(root, { selection, run }, world, links) {
-    Object.assign(this, { root, selection, run, world, links });
+  /** @param {object} tools `canMove(robot)`, `move(robot, x, y)`, and `place(x, y)`: whether something was placed there. */
+  constructor(root, { selection }, world, links, tools) {
+    Object.assign(this, { root, selection, world, links, tools });
+    this.camera = new Camera();
+    this.dragged = null;  // a robot that the pointer holds, and where
     this.canvas = element("canvas");
     this.canvas.setAttribute("role", "img");
     this.pen = this.canvas.getContext("2d");
     this.floor = new FloorDrawing();
     this.trails = new TrailDrawing(world);
     root.append(this.canvas, this.makeLegend());
-    this.canvas.addEventListener("click", (event) => this.click(event));
+    new MapPointer(this.canvas, this);
     this.key = "";
   }
 
@@ -27,15 +31,25 @@ export class MapView {
     legend.setAttribute("role", "group");
     legend.setAttribute("aria-label", "Layers of the map");
     this.laserButton = this.layerButton("laser", "Laser");
-    legend.append(this.layerButton("trail", "Path so far"), this.laserButton);
+    legend.append(this.layerButton("trail", "Path so far"), this.laserButton,
+      this.zoomButton("+", "Enlarge the map", 1.4), this.zoomButton("−", "Reduce the map", 1 / 1.4));
     return legend;
+  }
+
+  zoomButton(sign, title, factor) {
+    const made = button("plain layer", () => {
+      this.camera.enlarge(factor);
+      this.redraw();
+    }, sign);
+    made.setAttribute("aria-label", title);
+    return made;
   }
 
   layerButton(layer, title) {
     const made = button("plain layer", () => {
       this.layers[layer] = !this.layers[layer];
       made.setAttribute("aria-pressed", String(this.layers[layer]));
-      this.show(this.t);
+      this.redraw();
     }, title);
     made.setAttribute("aria-pressed", "true");
     return made;
@@ -43,6 +57,8 @@ export class MapView {
 
   /** Draw everything anew next time, for example because the colours have changed. */
   invalidate() { this.key = ""; }
+
+  redraw() { this.show(this.t); }
 
   show(t) {
     this.t = t;
@@ -58,10 +74,12 @@ export class MapView {
   fit(box, t) {
     const ratio = window.devicePixelRatio || 1, drawing = this.world.drawing(t);
     const bounds = this.world.bounds.map((value, side) => (side < 2 ? Math.floor(value * 2) : Math.ceil(value * 2)) / 2);
-    const key = [box.width, box.height, ratio, this.world.version, this.world.drawings.since(t), ...bounds].join(" ");
+    const key = [box.width, box.height, ratio, this.world.version, this.world.drawings.since(t), ...bounds,
+      ...Object.values(this.camera)].join(" ");
     if (key === this.key) return;
     this.key = key;
-    this.projection = new Projection(bounds, box.width, box.height);
+    this.projection = new Projection(bounds, box.width, box.height, this.camera);
+    this.canvas.classList.toggle("enlarged", this.camera.zoom > 1);
     for (const canvas of [this.canvas, this.floor.canvas, this.trails.canvas]) {
       canvas.width = Math.max(1, Math.round(box.width * ratio));
       canvas.height = Math.max(1, Math.round(box.height * ratio));
@@ -83,6 +101,7 @@ export class MapView {
     drawDirt(pen, projection, world, t);
     drawDoors(pen, projection, world, t);
     if (this.layers.trail) this.trails.drawRest(pen, t, states);
+    drawObstacles(pen, projection, world, t);
     drawObjects(pen, projection, world, t);
     if (this.layers.laser) this.eachRobot(states, (robot, state, index) => drawLaser(pen, projection, world.scan(robot.name, t), state, index));
     this.eachRobot(states, (robot, state, index) => drawPlan(pen, projection, world.path(robot.name, t), index));
@@ -91,6 +110,15 @@ export class MapView {
     this.eachRobot(states, (robot, state, index) => drawRobot(pen, projection, robot, state, {
       index, named: states.length > 1, selected: this.isSelected(robot.name, t),
     }));
+    this.drawDragged(states);
+  }
+
+  /** Draw the robot that the pointer holds where it would be put down. */
+  drawDragged(states) {
+    if (!this.dragged) return;
+    this.eachRobot(states, (robot, state, index) => {
+      if (robot.name === this.dragged.robot) drawBelieved(this.pen, this.projection, robot, { ...state, ...this.dragged }, state, index);
+    });
   }
 
   eachRobot(states, act) {
@@ -115,8 +143,23 @@ export class MapView {
     if (this.canvas.getAttribute("aria-label") !== text) this.canvas.setAttribute("aria-label", text);
   }
 
-  click(event) {
-    const found = this.find(event.offsetX, event.offsetY);
+  canDrag(found) { return found.robot !== undefined && this.tools.canMove(); }
+
+  dragTo(found, x, y) {
+    if (!found) { this.dragged = null; return; }
+    const [worldX, worldY] = this.projection.point(x, y);
+    this.dragged = { robot: found.robot, x: worldX, y: worldY };
+  }
+
+  drop(found, x, y) {
+    this.dragged = null;
+    this.tools.move(found.robot, ...this.projection.point(x, y));
+    this.redraw();
+  }
+
+  click(x, y) {
+    if (this.tools.place(...this.projection.point(x, y))) return;
+    const found = this.find(x, y);
     if (found) this.selection.choose(found); else this.selection.clear();
   }
 
@@ -130,6 +173,8 @@ export class MapView {
     }
     const person = world.peopleAt(t).find((each) => near(each.x, each.y, each.radius * projection.scale));
     if (person) return { person: person.name };
+    const obstacle = world.obstaclesAt(t).find((each) => near(each.x, each.y, each.radius * projection.scale));
+    if (obstacle) return { obstacle: obstacle.name };
     const door = world.drawing(t).doors.find(({ segment: [ax, ay, bx, by] }) => near((ax + bx) / 2, (ay + by) / 2, Math.hypot(bx - ax, by - ay) / 2 * projection.scale));
     return door ? { door: door.name } : null;
   }

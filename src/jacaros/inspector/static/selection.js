@@ -1,6 +1,6 @@
 /**
  * What is selected: a plain object with some of `agent`, `robot`, `intention` (of the agent), `plan` (of the agent),
- * `artifact`, `cause` (the id of a link), `file` and `line`, `door`, `person`.
+ * `artifact`, `cause` (the id of a link), `file` and `line`, `door`, `person`, `obstacle`.
  *
  * Fires "change".
  */

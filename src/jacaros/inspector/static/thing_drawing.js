@@ -29,6 +29,22 @@ export function drawPeople(pen, projection, world, t) {
   }
 }
 
+/** Obstacles that were put on the floor: hatched, so that they are not taken for furniture. */
+export function drawObstacles(pen, projection, world, t) {
+  for (const obstacle of world.obstaclesAt(t)) {
+    const x = projection.x(obstacle.x), y = projection.y(obstacle.y), size = Math.max(4, obstacle.radius * projection.scale);
+    pen.save();
+    pen.beginPath(); pen.arc(x, y, size, 0, 7);
+    pen.fillStyle = themeColor("box"); pen.fill();
+    pen.strokeStyle = themeColor("wall"); pen.lineWidth = 2; pen.stroke();
+    pen.clip();
+    pen.lineWidth = 1; pen.beginPath();
+    for (let d = -2 * size; d <= 2 * size; d += 6) { pen.moveTo(x + d - size, y + size); pen.lineTo(x + d + size, y - size); }
+    pen.stroke();
+    pen.restore();
+  }
+}
+
 /** The objects that lie on the floor; a robot has the others. */
 export function drawObjects(pen, projection, world, t) {
   for (const { radius, color, place: [x, y] } of world.objectsAt(t)) {

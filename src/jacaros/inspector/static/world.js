@@ -21,6 +21,7 @@ export class World {
     this.doors = new Map();
     this.objects = new Map();
     this.people = new Map();
+    this.obstacles = new Map();
     this.dirt = new Map();
     this.bounds = null;  // of the drawings, and of where robots were
   }
@@ -38,6 +39,9 @@ export class World {
     const drawings = this.drawings.values, known = drawings[drawings.length - 1]?.robots[index];
     return { radius: 0.17, ...known, name: known?.name ?? this.names[index] ?? `robot ${index + 1}` };
   }
+
+  /** Number of a robot, -1 for an unknown name. */
+  indexOf(name) { return this.columns.findIndex((_, index) => this.robot(index).name === name); }
 
   get robotCount() { return this.columns.length; }
 
@@ -79,6 +83,9 @@ export class World {
     return found;
   }
 
+  /** The obstacles that were put on the floor and are there at time `t`. */
+  obstaclesAt(t) { return [...this.obstacles.values()].map((track) => track.at(t)).filter(Boolean); }
+
   /** Grams of dirt that are left at time `t`. */
   dirtLeft(room, dirt, t) { return this.dirt.get(`${room.name}/${dirt.kind}`)?.at(t) ?? dirt.grams; }
 
@@ -115,6 +122,8 @@ const TAKE = {
   person_walks(world, t, data) { walk(world, t, data); },
   person_stands(world, t, data) { walk(world, t, data); },
   person_goes(world, t, data) { track(world.people, data.person).add(t, { gone: true }); },
+  obstacle_placed(world, t, data) { track(world.obstacles, data.obstacle).add(t, { ...data, name: data.obstacle }); },
+  obstacle_removed(world, t, data) { track(world.obstacles, data.obstacle).add(t, null); },
   cleaned(world, t, data) { track(world.dirt, `${data.room}/${data.dirt}`).add(t, data.grams); },
 };
 
