@@ -23,7 +23,7 @@ def main() -> int:
     RUNS.mkdir(exist_ok=True)
     command = ["run", PROJECT, "--clock", "fast", "--seed", "1", "--record", RECORD, "--replay", REPLAY]
     if sys.stderr.isatty():
-        command.append("--view")
+        command.append("--view=terminal")
     print(f"$ jacaros {shlex.join(command)}\n", flush=True)
     began = time.perf_counter()
     code = subprocess.run(

@@ -8,6 +8,7 @@ from jacaros.errors import UsageError
 
 OUTPUT_GONE = 141
 """Exit code when the reader of the output is gone, as in ``| head``: 128 and the number of SIGPIPE."""
+LOOPBACK = "127.0.0.1"
 RECORD_LIMIT = 500
 """Megabytes that a recording may have."""
 
@@ -31,20 +32,26 @@ class Outputs:
         record: file for the recording, or None.
         replay: file for the page, or None.
         ground_truth: file for what truly happens in the world, or None.
-        view: show the world in the terminal.
+        view: show the run: ``page`` in a browser, ``terminal`` in the terminal, "" not at all.
+        view_address, view_port, view_token: where the page is served; see `jacaros.inspector.live.run_view.Place`.
         record_limit: bytes that the recording may have.
     """
 
     record: Path | None = None
     replay: Path | None = None
     ground_truth: Path | None = None
-    view: bool = False
+    view: str = ""
+    view_address: str = LOOPBACK
+    view_port: int = 0
+    view_token: str | None = None
     record_limit: int = RECORD_LIMIT * 1_000_000
 
     @property
     def any(self) -> bool:
         """Whether the run is watched at all."""
-        return self.view or any(path is not None for path in (self.record, self.replay, self.ground_truth))
+        return bool(self.view) or any(
+            path is not None for path in (self.record, self.replay, self.ground_truth)
+        )
 
     def check(self) -> None:
         """Refuse what cannot be written, before the run.
@@ -67,6 +74,23 @@ class Outputs:
             before = known.setdefault(path.resolve(), kind)
             if before != kind:
                 raise wrong_output(f"`{path}` cannot be both {before} and {kind}", "name two files")
+        if self.view == "page":
+            check_view(self.view_address, self.view_token)
+
+
+def check_view(address: str, token: str | None) -> None:
+    """Refuse a view that others can reach without a token that the user has chosen.
+
+    Raises:
+        UsageError: there is none, or it is too short.
+    """
+    from jacaros.inspector.live.access import SHORTEST_TOKEN, Access  # here: few runs have a page
+
+    if Access(address, token).exposed and token is None:
+        raise UsageError(
+            "error: a view for other machines needs a token\n"
+            f"  = help: set JACAROS_VIEW_TOKEN, or add --view-token TOKEN (at least {SHORTEST_TOKEN} characters)"
+        )
 
 
 def check_output(path: Path, kind: str, make_folder: bool = False) -> None:

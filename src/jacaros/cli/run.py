@@ -21,6 +21,7 @@ from jacaros.cli.graph_options import (
     ros_option,
 )
 from jacaros.cli.outputs import OUTPUT_GONE, RECORD_LIMIT, Outputs
+from jacaros.cli.view_options import ViewCommand, view_options
 from jacaros.errors import UsageError
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.console import StandardConsole
@@ -41,7 +42,7 @@ SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
 """Of files that can be run."""
 
 
-@click.command("run", short_help="Run an agent program or a project.")
+@click.command("run", cls=ViewCommand, short_help="Run an agent program or a project.")
 @click.argument("file", type=click.Path(path_type=Path))
 @click.option(
     "--clock",
@@ -132,7 +133,7 @@ SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
     help="Explain on the standard error output how EVENT is handled each time, such as '+alarm(_)' or '!go(dock)'. "
     "Repeatable.",
 )
-@click.option("--view", is_flag=True, help="Show the world in the terminal.")
+@view_options
 @click.option("--quiet", is_flag=True, help="Tell warnings and errors only.")
 def command(
     file: Path,
@@ -145,7 +146,10 @@ def command(
     record_limit: int,
     replay: Path | None,
     ground_truth: Path | None,
-    view: bool,
+    view: str | None,
+    view_port: int,
+    view_address: str,
+    view_token: str | None,
     quiet: bool,
     explained: tuple[str, ...],
     **given: Any,
@@ -159,7 +163,16 @@ def command(
     JACAROS_CACHE to another folder, or to 0 to keep nothing. You can remove the folder at any time.
     """  # fmt: skip
     check_file(file)
-    outputs = Outputs(record, replay, ground_truth, view, record_limit * 1_000_000)
+    outputs = Outputs(
+        record,
+        replay,
+        ground_truth,
+        view or "",
+        view_address,
+        view_port,
+        view_token,
+        record_limit * 1_000_000,
+    )
     outputs.check()
     _check_events(explained)
     options = RunOptions(

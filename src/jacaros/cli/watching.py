@@ -6,6 +6,7 @@ from pathlib import Path
 from types import TracebackType
 
 from jacaros.cli.outputs import Outputs
+from jacaros.cli.pages import serve_pages
 from jacaros.errors import UsageError
 from jacaros.inspector.page import write_replay
 from jacaros.inspector.recorder import Recorder
@@ -52,11 +53,16 @@ class Watching:
         watchers: list[Watcher] = []
         if self._recorder is not None:
             watchers.append(self._recorder)
-        if self._outputs.view:
+        if self._outputs.view == "terminal":
             self._view = TerminalView(stream=self._terminal)
             watchers.append(self._view)
+        pages = serve_pages(mas, self._outputs, self._console) if self._outputs.view == "page" else None
+        if pages is not None:
+            watchers.append(pages.watcher)
         self._watch = watch_of(mas, watchers)
         self._watch.start()
+        if pages is not None:
+            pages.begin()
 
     def print(self, agent: str, text: str) -> None:
         """Show a line of an agent's output; a view that draws on the terminal shows it itself."""

@@ -1,5 +1,6 @@
-"""Watching a run: recorder, replay page, still picture, and a live view in the terminal.  It reads only."""
+"""Watching a run: recorder, replay page, still picture, live pages, and a live view in the terminal."""
 
+from jacaros.inspector.live.view import view
 from jacaros.inspector.page import write_replay
 from jacaros.inspector.picture import write_picture
 from jacaros.inspector.record import record
@@ -18,6 +19,7 @@ __all__ = [
     "Watch",
     "Watcher",
     "record",
+    "view",
     "views_of",
     "write_picture",
     "write_replay",

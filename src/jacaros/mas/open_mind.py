@@ -8,12 +8,13 @@ from jacaros.asl.lowering import Names, lower_value
 from jacaros.bdi.mind import Mind
 from jacaros.bdi.rules import belief_update, goals
 from jacaros.bdi.state.act import Percept
+from jacaros.bdi.state.belief_base import parts
 from jacaros.body.values import to_value
 from jacaros.terms.order import annotation_set
 from jacaros.terms.substitution import is_ground, resolve
 from jacaros.terms.text import text
 from jacaros.terms.unifier import undo
-from jacaros.terms.values import SOURCE_PERCEPT, Term, annotations_of, bare
+from jacaros.terms.values import BY_SELF, SOURCE_PERCEPT, Term, annotations_of, bare
 
 
 class OpenMind:
@@ -56,6 +57,43 @@ class OpenMind:
                 belief_update.untell(self.mind, term)
 
         self._do(untell)
+
+    def replace_belief(self, written: str) -> None:
+        """Put a belief in the place of the agent's own note with the same functor, as ``-+b`` does.
+
+        Raises:
+            AslError: it is not a literal.
+        """
+        term = literal(written)
+
+        def replace() -> None:
+            symbol, _, annotations = parts(term)
+            if symbol is not None:
+                belief_update.delete_any(self.mind, symbol, annotations or BY_SELF)
+            belief_update.tell(self.mind, term)
+
+        self._do(replace)
+
+    def post_goal(self, written: str) -> None:
+        """Give the agent a goal, with an intention of its own.
+
+        Raises:
+            AslError: it is not a literal.
+        """
+        goal = literal(written)
+        self._do(lambda: self.mind.post_goal(goal))
+
+    def drop_goal(self, written: str) -> bool:
+        """Drop the intentions and events for a goal, as ``.drop_desire`` does; return whether there are any.
+
+        Raises:
+            AslError: it is not a literal.
+        """
+        goal = literal(written)
+        found = bool(goals.intentions_for(self.mind, goal) or goals.goal_events(self.mind, goal))
+        if found:
+            self._do(lambda: goals.drop_desire(self.mind, goal))
+        return found
 
     def _do(self, change: Callable[[], None]) -> None:
         mind = self.mind

@@ -171,6 +171,11 @@ class RosGraph:
 
         return end
 
+    def catch_up(self) -> None:
+        """Let the embedded world make all steps that are due."""
+        if self._node is not None:
+            self._node.time.catch_up()
+
     def watch_parameters(self) -> None:
         """Everything is made: look whether the parameters that were given are declared."""
         if not self._options.parameters:

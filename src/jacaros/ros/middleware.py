@@ -85,7 +85,7 @@ MIDDLEWARES: Mapping[str, Middleware] = {
     ),
     "rosbridge": Middleware(
         "jacaros.ros.drivers.rosbridge.backend:BACKEND",
-        library="websockets",
+        library="cbor2",
         install="Run `pip install 'jacaros[rosbridge]'`",
         option="bridge",
         keyword="url",

@@ -13,12 +13,13 @@ from typing import Any
 from jacaros.errors import UsageError
 from jacaros.sim.cleaning import Cleaning
 from jacaros.sim.contact import WallIndex, push_apart
-from jacaros.sim.description import PersonDescription, WorldDescription
+from jacaros.sim.description import PersonDescription, Pose, WorldDescription
 from jacaros.sim.faults.description import Fault
 from jacaros.sim.faults.schedule import Faults
 from jacaros.sim.files.world import load_world, read_world
 from jacaros.sim.ground_truth import Event, GroundTruth
 from jacaros.sim.objects import Objects
+from jacaros.sim.obstacles import Obstacle, Obstacles, overlapping
 from jacaros.sim.people import People, Person
 from jacaros.sim.robot.robot import Robot
 from jacaros.sim.robot.sensors.laser import Laser
@@ -42,6 +43,7 @@ class World:
         segments: all walls, and the doors that are closed.
         cleaning: the dirt, and the robots' tools that are at work.
         people: the people who walk about, by name.
+        obstacles: what was put on the floor during the run.
         objects: what robots with a gripper can carry.
         faults: what may go wrong.
         dead_docks: names of docks that give no current.
@@ -65,6 +67,7 @@ class World:
         self._put_up_walls()
         self._people = People(self.description.people, self._note_person)
         self.people = self._people.by_name
+        self.obstacles = Obstacles()
         self.cleaning = Cleaning(self.description, self.room_at, self._note)
         self.objects = Objects(self.description.objects, self._note)
         self._truth = GroundTruth(self.robots, description.drawing())
@@ -195,9 +198,13 @@ class World:
         return self.laser(name).scan(robot.x, robot.y, robot.yaw, self.others(robot))
 
     def others(self, robot: Robot) -> list[Circle]:
-        """All other robots, and people: what *robot*'s laser sees where no wall hides it (metres)."""
-        robots = [(other.x, other.y, other.description.radius) for other in self._row if other is not robot]
-        return robots + self._people.circles() if self.people else robots
+        """All other robots, people and obstacles: what *robot*'s laser sees where no wall hides it (metres)."""
+        others = [(other.x, other.y, other.description.radius) for other in self._row if other is not robot]
+        if self.people:
+            others += self._people.circles()
+        if self.obstacles.by_name:
+            others += self.obstacles.circles()
+        return others
 
     def laser(self, name: str) -> Laser:
         """A robot's laser, made when it is first asked for."""
@@ -230,6 +237,74 @@ class World:
         """
         self._people.remove(name)
 
+    def place(self, name: str, x: float, y: float, yaw: float | None = None) -> None:
+        """Put a robot down at another place, in metres and radians; the heading stays unless *yaw* is given.
+
+        Raises:
+            UsageError: the robot does not exist, or something is in the way there.
+        """
+        robot = self.robot(name)
+        self.check_room(x, y, robot.description.radius, robot.name)
+        robot.put_down(Pose(x, y, robot.yaw if yaw is None else yaw))
+        self._note(robot, "placed", {"x": x, "y": y, "yaw": robot.yaw})
+        self._sample_robots(all_of_them=True)
+
+    def add_obstacle(self, x: float, y: float, radius: float) -> Obstacle:
+        """Put a round obstacle on the floor, in metres.
+
+        Raises:
+            UsageError: the radius is not in 0.02 to 2, or something is in the way there.
+        """
+        if not 0.02 <= radius <= 2.0:
+            raise UsageError("the radius of an obstacle must be in 0.02 to 2 metres")
+        self.check_room(x, y, radius)
+        obstacle = self.obstacles.add(x, y, radius)
+        data = {"obstacle": obstacle.name, "x": x, "y": y, "radius": radius}
+        self._truth.record_event(Event(self.time, "", "obstacle_placed", x, y, 0.0, data))
+        return obstacle
+
+    def remove_obstacle(self, name: str) -> None:
+        """Take an obstacle away.
+
+        Raises:
+            UsageError: it does not exist.
+        """
+        gone = self.obstacles.remove(name)
+        self._truth.record_event(
+            Event(self.time, "", "obstacle_removed", gone.x, gone.y, 0.0, {"obstacle": name})
+        )
+
+    def set_battery(self, name: str, level: float) -> None:
+        """Set the level of a robot's battery, in percent.
+
+        Raises:
+            UsageError: the robot does not exist, or the level is not in 0 to 100.
+        """
+        robot = self.robot(name)
+        if not 0.0 <= level <= 100.0:
+            raise UsageError("the level of a battery must be in 0 to 100 percent")
+        robot.battery.level = level
+        robot.battery.feed(robot.battery.charging)
+        self._note(robot, "battery_set", {"level": level})
+
+    def check_room(self, x: float, y: float, radius: float, but_for: str = "") -> None:
+        """Refuse a place for something round.
+
+        Raises:
+            UsageError: it is outside of the world, in a wall or a box, or something else is there.
+        """
+        if not self.description.bounds.contains(x, y):
+            raise UsageError(f"({x:.2f}, {y:.2f}) is outside of the world")
+        in_box = any(box.contains(x, y) for box in self.description.boxes)
+        if in_box or any(wall.distance(x, y) < radius for wall in self.segments):
+            raise UsageError(f"no room at ({x:.2f}, {y:.2f}): a wall is in the way")
+        robots = ((each.name, each.x, each.y, each.description.radius) for each in self._row)
+        people = ((each.name, each.x, each.y, each.description.radius) for each in self.people.values())
+        others = (each for each in (*robots, *people) if each[0] != but_for)
+        name = overlapping(others, x, y, radius) or self.obstacles.near(x, y, radius)
+        if name:
+            raise UsageError(f"no room at ({x:.2f}, {y:.2f}): {name} is in the way")
+
     def step(self, dt: float = STEP) -> None:
         """Let *dt* seconds pass."""
         # Rounded to a nanosecond: fifty steps make a second, not almost a second.
@@ -242,6 +317,8 @@ class World:
             self._part_robots(dt)
         if self.people:
             self._people.step(dt, self._row, self._closed, self._walls)
+        if self.obstacles.by_name:
+            self.obstacles.hold_off(self._row, self._walls, dt)
         if self.cleaning.at_work:
             self.cleaning.step(dt, self.robots)
         if self.description.cliffs:

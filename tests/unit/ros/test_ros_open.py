@@ -31,11 +31,11 @@ def test_a_missing_library_names_itself_and_the_cure(kind: str, library: str) ->
         open_backend(kind, WallClock(), "node")
 
 
-def test_a_missing_websockets_names_the_extra(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_missing_cbor2_names_the_extra(monkeypatch: pytest.MonkeyPatch) -> None:
     for name in [name for name in sys.modules if "rosbridge" in name]:
         monkeypatch.delitem(sys.modules, name)
-    monkeypatch.setitem(sys.modules, "websockets", None)
-    with pytest.raises(BackendUnavailable, match=r"(?s)websockets.*pip install 'jacaros\[rosbridge\]'"):
+    monkeypatch.setitem(sys.modules, "cbor2", None)
+    with pytest.raises(BackendUnavailable, match=r"(?s)cbor2.*pip install 'jacaros\[rosbridge\]'"):
         open_backend("rosbridge", WallClock(), "node")
 
 

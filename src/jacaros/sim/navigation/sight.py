@@ -32,8 +32,9 @@ class Sight:
         self._closed: set[str] = set()
 
     def robots(self, believed: Placement) -> list[Circle]:
-        """The robots and people that no wall hides."""
-        if self._reach <= 0.0 or (len(self._world.robots) < 2 and not self._world.people):
+        """The robots, people and obstacles that no wall hides."""
+        world = self._world
+        if self._reach <= 0.0 or not (len(world.robots) > 1 or world.people or world.obstacles.by_name):
             return []
         true, seen = self._true(), []
         for x, y, radius in self._world.others(self._robot):

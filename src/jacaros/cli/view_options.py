@@ -1,0 +1,54 @@
+"""The options about the view of a run: a page in the browser, or the terminal."""
+
+from collections.abc import Callable
+from typing import Any
+
+import click
+
+from jacaros.cli.outputs import LOOPBACK
+
+place_options = (
+    click.option(
+        "--view-port",
+        type=click.IntRange(0, 65535),
+        default=0,
+        metavar="PORT",
+        help="Port of the page (default: a free one).",
+    ),
+    click.option(
+        "--view-address",
+        default=LOOPBACK,
+        metavar="ADDRESS",
+        show_default=True,
+        help="Address of this machine to serve the page at. Any but the default lets other machines see and change the "
+        "run, and needs a token.",
+    ),
+    click.option(
+        "--view-token",
+        metavar="TOKEN",
+        envvar="JACAROS_VIEW_TOKEN",
+        show_envvar=True,
+        help="Token in the address of the page, at least 16 characters (default: random).",
+    ),
+)
+"""Where the page is served."""
+
+
+def view_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Give a command the options ``--view`` and `place_options`; its class must be `ViewCommand`."""
+    for option in reversed(place_options):
+        command = option(command)
+    return click.option(
+        "--view",
+        type=click.Choice(["page", "terminal"]),
+        metavar="[=terminal]",
+        help="Show the run on a page in the browser: `--view`; or in the terminal: `--view=terminal`.",
+    )(command)
+
+
+class ViewCommand(click.Command):
+    """A command whose option ``--view`` has a value only after ``=``: what follows it may be the file to run."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Parse the arguments."""
+        return super().parse_args(ctx, ["--view=page" if each == "--view" else each for each in args])

@@ -1,0 +1,55 @@
+"""Real time for a loop on any clock: the timers of a loop on the virtual clock ring when nobody has anything to do."""
+
+import asyncio
+import threading
+import time
+
+PERIOD = 1 / 30
+"""Seconds between two beats."""
+
+
+class Beat:
+    """Wakes tasks of the running loop 30 times a second of real time, as long as any waits.
+
+    The waking comes from a thread, as a message from outside: it moves no virtual clock.
+    """
+
+    def __init__(self) -> None:
+        self._loop = asyncio.get_running_loop()
+        self._waiting: list[asyncio.Future[None]] = []
+        self._wanted = threading.Event()
+        self._closed = False
+        self._thread: threading.Thread | None = None
+
+    async def next(self) -> None:
+        """Wait for the next beat."""
+        future: asyncio.Future[None] = self._loop.create_future()
+        self._waiting.append(future)
+        self._wanted.set()
+        if self._thread is None:
+            self._thread = threading.Thread(target=self._run, name="jacaros beat", daemon=True)
+            self._thread.start()
+        await future
+
+    def close(self) -> None:
+        """End the thread; whoever still waits is woken."""
+        self._closed = True
+        self._wanted.set()
+        self._ring()
+
+    def _run(self) -> None:
+        while not self._closed:
+            self._wanted.wait()
+            time.sleep(PERIOD)
+            try:
+                self._loop.call_soon_threadsafe(self._ring)
+            except RuntimeError:  # the loop has been closed
+                return
+
+    def _ring(self) -> None:
+        waiting, self._waiting = self._waiting, []
+        if not self._closed:
+            self._wanted.clear()
+        for future in waiting:
+            if not future.done():
+                future.set_result(None)

@@ -1,0 +1,84 @@
+"""What one page is still to receive: bounded, and newest-only where only the newest counts."""
+
+import asyncio
+from collections import deque
+
+from jacaros.inspector.live.past import Past
+from jacaros.inspector.live.records import LiveRecord, json_text
+
+QUEUED = 10_000
+"""Records that may wait for one page."""
+PIECE = 400
+"""Records in one message: a few milliseconds to make text of."""
+AGAIN = 1_000
+"""Records that a page receives again, beside the state, after it was too slow."""
+
+
+class Delivery:
+    """The records for one page.
+
+    A page that is too slow loses records: it gets a note how many, then everything from the beginning, see `hello`.
+
+    Args:
+        past: what happened before.
+        hello: what every beginning begins with.
+
+    Attributes:
+        arrived: set while there is something to send.
+    """
+
+    def __init__(self, past: Past, hello: dict[str, object]) -> None:
+        self._past, self._hello = past, hello
+        self._queue: deque[LiveRecord] = deque()
+        self._newest: dict[str, LiveRecord] = {}
+        self._notes: deque[str] = deque([json_text(hello)])
+        self._first: deque[LiveRecord] = deque(past.records())
+        self._missed = 0
+        self.arrived = asyncio.Event()
+        self.arrived.set()
+
+    def offer(self, record: LiveRecord) -> None:
+        """Take a record that is new; never waits."""
+        if record.newest is not None:
+            self._newest[record.newest] = record
+        elif self._missed:
+            self._missed += 1
+        elif len(self._queue) >= QUEUED:
+            self._missed = len(self._queue) + len(self._first) + 1
+            self._queue.clear()
+            self._first.clear()
+        else:
+            self._queue.append(record)
+        self.arrived.set()
+
+    def take(self) -> str | None:
+        """Return the next message, None when there is nothing to send."""
+        if self._missed:
+            self._begin_again()
+        if self._notes:
+            return self._notes.popleft()
+        records = _piece(self._first) or _piece(self._queue)
+        if not self._first and not self._queue:
+            # Last, as the page expects records in the order of time.
+            records += sorted(self._newest.values(), key=lambda each: each.number)
+            self._newest.clear()
+        if not records:
+            self.arrived.clear()
+            return None
+        return f"[{','.join(each.text for each in records)}]"
+
+    @property
+    def complete(self) -> bool:
+        """Whether nothing waits."""
+        return not (self._missed or self._notes or self._first or self._queue or self._newest)
+
+    def _begin_again(self) -> None:
+        self._notes.append(json_text({"kind": "missed", "records": self._missed}))
+        self._notes.append(json_text(self._hello))
+        self._first = deque(self._past.records(AGAIN))
+        self._missed = 0
+        self._newest.clear()
+
+
+def _piece(waiting: deque[LiveRecord]) -> list[LiveRecord]:
+    return [waiting.popleft() for _ in range(min(PIECE, len(waiting)))]

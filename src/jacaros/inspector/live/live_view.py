@@ -1,0 +1,106 @@
+"""A run as its live pages see it: takes what watchers are told, keeps a bounded part, and delivers it."""
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from jacaros.inspector.live.commands import Commands
+from jacaros.inspector.live.delivery import Delivery
+from jacaros.inspector.live.past import Past
+from jacaros.inspector.live.records import LiveRecord
+from jacaros.inspector.scene import RobotView
+
+VERSION = 2
+"""Of the records."""
+_NEWEST = ("laser", "believed")
+"""Events of which only the newest of each robot counts."""
+
+
+class LiveView:
+    """Shows a run to pages; told of it like a recorder, see `jacaros.inspector.watch.Watcher`.
+
+    Args:
+        title: of the page.
+        commands: what pages can do.
+        live: whether the run continues; False for a recording.
+    """
+
+    def __init__(self, title: str, commands: Commands, live: bool = True) -> None:
+        self._title, self._commands, self._live = title, commands, live
+        self._past = Past()
+        self._deliveries: list[Delivery] = []
+        self._number = 0
+        self._rows: list[Any] | None = None
+        self._held: LiveRecord | None = None
+        """The last frame, if nothing moved since the one before."""
+
+    # ---- what watchers are told
+
+    def world(self, drawing: Mapping[str, Any]) -> None:
+        """Show the world."""
+        self._take({"kind": "world", "version": VERSION, "world": drawing})
+
+    def frame(self, t: float, robots: Iterable[RobotView]) -> None:
+        """Show the robots at a moment."""
+        rows = [_row(robot) for robot in robots]
+        frame = self._record({"kind": "frame", "t": round(t, 3), "robots": rows}, "frame")
+        if self._rows == rows:
+            self._held = frame  # pages see that time passes, but it is not kept
+        else:
+            if self._held is not None:
+                self._past.take(self._held)
+            self._past.take(frame)
+            self._rows, self._held = rows, None
+        self._offer(frame)
+
+    def text(self, t: float, agent: str, text: str) -> None:
+        """Show what an agent printed."""
+        self._take({"kind": "text", "t": round(t, 3), "agent": agent, "text": text})
+
+    def event(self, t: float, kind: str, data: Mapping[str, Any]) -> None:
+        """Show something that happened."""
+        newest = f"{kind} {data.get('robot')}" if kind in _NEWEST else None
+        self._take({"kind": "event", "t": round(t, 3), "event": kind, "data": data}, newest)
+
+    def close(self) -> None:
+        """Nothing is held."""
+
+    def _take(self, data: Mapping[str, Any], newest: str | None = None) -> None:
+        record = self._record(data, newest)
+        self._past.take(record)
+        self._offer(record)
+
+    def _record(self, data: Mapping[str, Any], newest: str | None) -> LiveRecord:
+        self._number += 1
+        return LiveRecord(self._number, data, newest)
+
+    def _offer(self, record: LiveRecord) -> None:
+        for delivery in self._deliveries:
+            delivery.offer(record)
+
+    # ---- what the server asks for
+
+    def begin(self) -> Delivery:
+        """Begin to deliver to another page."""
+        hello = {
+            "kind": "hello",
+            "version": VERSION,
+            "title": self._title,
+            "live": self._live,
+            "can": self._commands.names,
+        }
+        delivery = Delivery(self._past, hello)
+        self._deliveries.append(delivery)
+        return delivery
+
+    def end(self, delivery: Delivery) -> None:
+        """Deliver no more to a page."""
+        self._deliveries.remove(delivery)
+
+    async def answer(self, command: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Execute a command of a page."""
+        return await self._commands.answer(command)
+
+
+def _row(robot: RobotView) -> list[Any]:
+    _, x, y, yaw, battery, charging, touching = robot
+    return [round(x, 4), round(y, 4), round(yaw, 4), round(battery, 2), int(charging), int(touching)]

@@ -1,0 +1,176 @@
+"""Commands for agents: beliefs, goals, messages, and a console of AgentSpeak."""
+
+from collections.abc import Callable, Mapping
+from itertools import islice
+
+from jacaros.asl.loader import parse_term
+from jacaros.asl.lowering import Names, lower_value
+from jacaros.bdi.actions.internal_action import ActionError
+from jacaros.bdi.mind import Mind
+from jacaros.bdi.state.plan import Failure
+from jacaros.bdi.state.speech_act import SpeechAct
+from jacaros.body.values import UNKEPT, to_term
+from jacaros.inspector.live.commands import Command, Given, Refused, choice_in, text_in
+from jacaros.mas.open_mind import OpenMind, question
+from jacaros.mas.system import System
+from jacaros.terms.substitution import resolve
+from jacaros.terms.text import text
+from jacaros.terms.unifier import undo
+from jacaros.terms.values import Var
+
+YOU = "you"
+"""The sender of messages that are written on the page."""
+ANSWERS = 20
+"""Answers to a question that are shown."""
+PERFORMATIVES = (
+    "tell",
+    "untell",
+    "achieve",
+    "unachieve",
+    "signal",
+    "askOne",
+    "askAll",
+    "tellHow",
+    "untellHow",
+)
+_CONSOLE = "expected ?query, !goal, !!goal, +belief, -belief or -+belief"
+
+
+def mind_commands(system: System) -> Mapping[str, Command]:
+    """Return the commands for the agents of a system."""
+    commands = _MindCommands(system)
+    return {
+        "belief": commands.belief,
+        "goal": commands.goal,
+        "message": commands.message,
+        "console": commands.console,
+    }
+
+
+class _PageMind(OpenMind):
+    def __init__(self, mind: Mind) -> None:
+        self._mind = mind
+
+    @property
+    def mind(self) -> Mind:
+        """The agent itself."""
+        return self._mind
+
+
+class _MindCommands:
+    def __init__(self, system: System) -> None:
+        self._system = system
+        self._messages = 0
+
+    def _mind(self, given: Given) -> _PageMind:
+        name = text_in(given, "agent")
+        host = self._system.directory.find(name)
+        if host is None or host.ended:
+            raise Refused(f"unknown agent: `{name[:80]}`")
+        if not isinstance(host.mind, Mind):
+            raise Refused(f"`{name}` is written in Python: it has no beliefs and goals of the language")
+        return _PageMind(host.mind)
+
+    def belief(self, given: Given) -> None:
+        """Add or remove a belief."""
+        mind, written = self._mind(given), text_in(given, "text")
+        if choice_in(given, "op", ("+", "-")) == "+":
+            mind.add_belief(written)
+        else:
+            _remove(mind, written)
+
+    def goal(self, given: Given) -> None:
+        """Post or drop a goal."""
+        mind, written = self._mind(given), text_in(given, "text").lstrip("!")
+        if choice_in(given, "op", ("post", "drop")) == "post":
+            mind.post_goal(written)
+        elif not mind.drop_goal(written):
+            raise Refused(f"the agent does not pursue {written}")
+
+    def message(self, given: Given) -> None:
+        """Send a message to an agent."""
+        receiver, content = text_in(given, "agent"), text_in(given, "text")
+        performative = choice_in(given, "performative", PERFORMATIVES)
+        how = performative in ("tellHow", "untellHow")
+        term = to_term(content, UNKEPT) if how else lower_value(parse_term(content))
+        self._messages += 1
+        try:
+            known = self._system.deliver(SpeechAct(performative, YOU, receiver, term, self._messages))
+        except Failure as failure:
+            raise Refused(str(failure)) from None
+        if not known:
+            raise Refused(f"unknown agent: `{receiver[:80]}`")
+
+    def console(self, given: Given) -> str:
+        """Execute a line of AgentSpeak; returns what to print."""
+        mind, line = self._mind(given), text_in(given, "text").removesuffix(".")
+        for prefix, execute in _LINES.items():
+            if line.startswith(prefix):
+                written = line.removeprefix(prefix).strip()
+                if not written:
+                    break
+                return execute(mind, written)
+        raise Refused(_CONSOLE)
+
+
+def _ask(mind: OpenMind, formula: str) -> str:
+    """Return the answers of a formula, a line for each: ``X = 3, Y = kitchen``; ``yes`` or ``no`` without variables."""
+    agent = mind.mind
+    if agent.running:
+        raise Refused("the agent is in the middle of a step: ask again")
+    term, names = question(formula)
+    shown = Names({name: value for name, value in names.items() if name[0] != "_"})
+    mark, lines = len(agent.trail), []
+    try:
+        for _ in islice(agent.context.answers(term), ANSWERS + 1):
+            found = ((name, resolve(value)) for name, value in shown.items())
+            lines.append(
+                ", ".join(f"{name} = {text(value)}" for name, value in found if value.__class__ is not Var)
+                or "yes"
+            )
+    except (ActionError, Failure) as error:
+        raise Refused(str(error)) from None
+    finally:
+        undo(agent.trail, mark)
+    if not shown:
+        lines = lines[:1]
+    return "\n".join([*lines[:ANSWERS], *(["..."] if len(lines) > ANSWERS else [])]) or "no"
+
+
+def _values(names: Names) -> str:
+    """Return the variables that have a value: ``X = 3, Y = kitchen``."""
+    found = ((name, resolve(value)) for name, value in names.items())
+    return ", ".join(f"{name} = {text(value)}" for name, value in found if value.__class__ is not Var)
+
+
+def _post(mind: OpenMind, written: str) -> str:
+    mind.post_goal(written)
+    return f"posted !{written}"
+
+
+def _add(mind: OpenMind, written: str) -> str:
+    mind.add_belief(written)
+    return f"added {written}"
+
+
+def _remove(mind: OpenMind, written: str) -> str:
+    if not mind.believes(written):
+        raise Refused(f"the agent does not believe {written}")
+    mind.remove_belief(written)
+    return f"removed {written}"
+
+
+def _replace(mind: OpenMind, written: str) -> str:
+    mind.replace_belief(written)
+    return f"replaced {written}"
+
+
+_LINES: dict[str, Callable[[OpenMind, str], str]] = {
+    "?": _ask,
+    "!!": _post,
+    "!": _post,
+    "-+": _replace,
+    "+": _add,
+    "-": _remove,
+}
+"""How a line begins, longer beginnings first, and what it does."""

@@ -1,0 +1,136 @@
+"""What a page needs that is opened late: the last part of the run, and the state in which that part began."""
+
+from collections import deque
+from collections.abc import Callable, Mapping
+from heapq import merge
+from typing import Any, NamedTuple
+
+from jacaros.inspector.live.records import LiveRecord
+
+EVENTS, FRAMES = 20_000, 3_000
+"""Records that are kept, apart from those of the state."""
+
+Data = Mapping[str, Any]
+
+
+class _Rule(NamedTuple):
+    """How an event changes the state: the fields that say what it is about, and whether that is over."""
+
+    about: tuple[str, ...]
+    over: Callable[[Data], bool] = lambda _: False
+    first: bool = False
+    """The first record counts too, not the last one alone."""
+
+
+_GOAL_ENDS = ("achieved", "failed", "recovered", "dropped", "replaced")
+_RULES: dict[str, _Rule] = {
+    "run": _Rule(()),
+    "source": _Rule(("file",)),
+    "ended": _Rule(()),
+    "agent": _Rule(("agent",), lambda data: data.get("state") == "ended"),
+    "program": _Rule(("agent",)),
+    "belief": _Rule(("agent", "belief"), lambda data: data.get("op") == "-"),
+    "goal": _Rule(("agent", "id"), lambda data: data.get("state") in _GOAL_ENDS, first=True),
+    "intention": _Rule(("agent", "id"), lambda data: data.get("state") == "over"),
+    "message": _Rule(("id",), lambda data: data.get("state") == "read"),
+    "artifact": _Rule(("artifact",), lambda data: data.get("state") == "disposed"),
+    "focus": _Rule(("agent", "artifact"), lambda data: not data.get("on")),
+    "property": _Rule(("artifact", "name"), lambda data: data.get("values") is None),
+    "operation": _Rule(("id",), lambda data: data.get("state") != "began"),
+    "path": _Rule(("robot",), lambda data: not data.get("points")),
+    "laser": _Rule(("robot",)),
+    "believed": _Rule(("robot",)),
+    "graph": _Rule(()),
+    "debug": _Rule(()),
+    "fault": _Rule(("fault",), lambda data: data.get("state") != "begins"),
+    "door_opened": _Rule(("door",)),
+    "door_closed": _Rule(("door",)),
+    "person_comes": _Rule(("person",)),
+    "person_goes": _Rule(("person",)),
+    "person_walks": _Rule(("person",)),
+    "person_stands": _Rule(("person",)),
+    "obstacle_placed": _Rule(("obstacle",)),
+}
+_AS = {"door_closed": "door_opened", "person_stands": "person_walks"}
+"""Events that take the place of another one."""
+
+
+class State:
+    """The records that say how things are, of all that came so far: for each thing the last one."""
+
+    def __init__(self) -> None:
+        self._last: dict[tuple[Any, ...], list[LiveRecord]] = {}
+
+    def take(self, record: LiveRecord) -> None:
+        """Let a record change the state."""
+        data = record.data
+        kind = data["kind"]
+        if kind in ("world", "frame"):
+            self._put((kind,), [record])
+        elif kind == "event" and (rule := _RULES.get(data["event"])) is not None:
+            about = data["data"]
+            key = (_AS.get(data["event"], data["event"]), *(about.get(name) for name in rule.about))
+            before = self._last.get(key, [])
+            self._put(key, [] if rule.over(about) else [*before[:1], record] if rule.first else [record])
+
+    def _put(self, key: tuple[Any, ...], records: list[LiveRecord]) -> None:
+        self._last.pop(key, None)
+        if records:
+            self._last[key] = records
+
+    def copy(self) -> "State":
+        """Return another state, which later records do not change."""
+        copied = State()
+        copied._last = dict(self._last)
+        return copied
+
+    def records(self) -> list[LiveRecord]:
+        """Return the records of the state in the order of time."""
+        return sorted(
+            {each.number: each for row in self._last.values() for each in row}.values(), key=_number
+        )
+
+
+def _number(record: LiveRecord) -> int:
+    return record.number
+
+
+class Past:
+    """A bounded part of what happened, and the state before it.
+
+    Args:
+        events: records that are kept; the older ones are only counted in the state.
+        frames: frames that are kept.
+    """
+
+    def __init__(self, events: int = EVENTS, frames: int = FRAMES) -> None:
+        self._before = State()
+        self._events: deque[LiveRecord] = deque()
+        self._frames: deque[LiveRecord] = deque()
+        self._newest: dict[str, LiveRecord] = {}
+        self._limits = events, frames
+
+    def take(self, record: LiveRecord) -> None:
+        """Add a record."""
+        if record.data["kind"] == "frame":
+            self._add(self._frames, record, self._limits[1])
+        elif record.newest is not None:
+            self._newest[record.newest] = record
+        else:
+            self._add(self._events, record, self._limits[0])
+
+    def _add(self, kept: deque[LiveRecord], record: LiveRecord, limit: int) -> None:
+        kept.append(record)
+        if len(kept) > limit:
+            self._before.take(kept.popleft())
+
+    def records(self, last: int | None = None) -> list[LiveRecord]:
+        """Return all records that are kept, in the order of time, or a state and the *last* ones."""
+        state = self._before
+        kept = list(merge(self._events, self._frames, key=_number))
+        if last is not None and len(kept) > last:
+            state = state.copy()
+            for each in kept[:-last]:
+                state.take(each)
+            kept = kept[-last:]
+        return [*state.records(), *merge(kept, sorted(self._newest.values(), key=_number), key=_number)]

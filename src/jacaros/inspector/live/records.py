@@ -1,0 +1,56 @@
+"""Records on their way to pages: each is made text once, whatever the number of pages."""
+
+import json
+import math
+from collections.abc import Mapping
+from typing import Any
+
+LONGEST = 200_000
+"""Characters of a record; the texts of a longer one are cut to `_CUT` characters."""
+_CUT = 5_000
+
+
+class LiveRecord:
+    """A record, as in a line of a recording.
+
+    Args:
+        number: of the record, in the order of time.
+        data: the record as plain data.
+        newest: what it tells, if only the newest record of that counts; None when each one counts.
+    """
+
+    __slots__ = ("_text", "data", "newest", "number")
+
+    def __init__(self, number: int, data: Mapping[str, Any], newest: str | None = None) -> None:
+        self.number, self.data, self.newest = number, data, newest
+        self._text: str | None = None
+
+    @property
+    def text(self) -> str:
+        """The record as JSON."""
+        if self._text is None:
+            self._text = json_text(self.data)
+        return self._text
+
+
+def json_text(data: Any) -> str:
+    """Return *data* as JSON that browsers read: pure ASCII, null for NaN and infinite numbers, no text without end."""
+    try:
+        written = json.dumps(data, separators=(",", ":"), allow_nan=False, default=str)
+    except ValueError:
+        written = json.dumps(_plain(data), separators=(",", ":"), default=str)
+    if len(written) > LONGEST:
+        written = json.dumps(_plain(data, _CUT), separators=(",", ":"), default=str)
+    return written
+
+
+def _plain(data: Any, longest: int | None = None) -> Any:
+    if isinstance(data, Mapping):
+        return {str(key): _plain(value, longest) for key, value in data.items()}
+    if isinstance(data, list | tuple):
+        return [_plain(each, longest) for each in data]
+    if isinstance(data, float) and not math.isfinite(data):
+        return None
+    if isinstance(data, str) and longest is not None and len(data) > longest:
+        return f"{data[:longest]} …"
+    return data

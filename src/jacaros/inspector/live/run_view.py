@@ -1,0 +1,89 @@
+"""The live pages of a running system: their records, commands and server together."""
+
+import asyncio
+import contextlib
+from dataclasses import dataclass
+
+from jacaros.inspector.live.access import LOOPBACK, Access
+from jacaros.inspector.live.artifact_commands import artifact_commands
+from jacaros.inspector.live.commands import Commands
+from jacaros.inspector.live.live_view import LiveView
+from jacaros.inspector.live.mind_commands import mind_commands
+from jacaros.inspector.live.server import GOODBYE, LiveServer, bound_socket
+from jacaros.inspector.live.world_commands import world_commands
+from jacaros.mas.system import System
+
+FIRST_VISIT = 5.0
+"""Seconds that the end of a run waits for a browser that was opened and has not shown the run yet."""
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Where pages are served.
+
+    Attributes:
+        address: of this machine; that of the loopback can be reached from this machine alone.
+        port: 0 for a free one.
+        token: of the path; None for a random one.
+    """
+
+    address: str = LOOPBACK
+    port: int = 0
+    token: str | None = None
+
+
+class RunView:
+    """Serves the live pages of one run.
+
+    Args:
+        system: the run; it has been started.
+        place: where to serve.
+
+    Attributes:
+        watcher: is to be told of the run.
+        address: of the page.
+        awaited: whether a browser was opened, so that the end of the run waits until it has shown something.
+
+    Raises:
+        UsageError: the address cannot be served, or the token is invalid.
+    """
+
+    def __init__(self, system: System, place: Place) -> None:
+        self._system = system
+        self.awaited = False
+        self.commands = Commands(self._note)
+        self.watcher = LiveView(system.deployment.name, self.commands)
+        access = Access(place.address, place.token)
+        self._server = LiveServer(bound_socket(place.address, place.port), access, self.watcher)
+        self.address = self._server.address
+        self._serving: asyncio.Task[None] | None = None
+
+    def begin(self) -> None:
+        """Serve from now on, until the run ends or `close` is called."""
+        system, add = self._system, self.commands.add_changes
+        add(mind_commands(system))
+        add(artifact_commands(system))
+        # The world may come into being later: pages that are opened then can change it.
+        system.ros.watch_world(lambda world: add(world_commands(system, world)))
+        self._serving = asyncio.create_task(self._serve())
+        # A task that is cancelled before its first step executes no `finally`.
+        self._serving.add_done_callback(lambda _: self._server.release())
+
+    async def close(self) -> None:
+        """Send what waits, and disconnect the pages."""
+        if self._serving is not None:
+            self._serving.cancel()
+            with contextlib.suppress(asyncio.CancelledError):
+                await self._serving
+
+    async def _serve(self) -> None:
+        try:
+            await self._server.start()
+            await asyncio.get_running_loop().create_future()
+        finally:
+            # The run has ended, or is interrupted.
+            wait = self.awaited and self._server.visitors == 0 and self._system.exit_code in (0, 1)
+            await self._server.close(FIRST_VISIT if wait else GOODBYE)
+
+    def _note(self, what: str) -> None:
+        self._system.history().record("intervention", {"what": what})

@@ -1,0 +1,315 @@
+"""The server of live pages: files over HTTP, records and commands over a WebSocket, on the loop of the run.
+
+It uses no timer of the loop, which may run on the virtual clock: what needs real time waits for a `Beat`. The run waits for
+no page. What a page does not take is dropped, see `Delivery`.
+"""
+
+import asyncio
+import json
+import logging
+import socket
+from collections.abc import Awaitable, Callable, Mapping
+from contextlib import suppress
+from http import HTTPStatus
+from typing import Any, Protocol, cast
+
+from websockets.asyncio.server import Server, ServerConnection, serve
+from websockets.datastructures import Headers
+from websockets.exceptions import ConnectionClosed
+from websockets.http11 import Request, Response
+
+from jacaros.clock import real_time
+from jacaros.errors import UsageError
+from jacaros.inspector.live.access import LOOPBACK, Access
+from jacaros.inspector.live.beat import Beat
+from jacaros.inspector.live.delivery import Delivery
+from jacaros.inspector.live.pages import Pages, security_headers
+from jacaros.inspector.live.records import json_text
+
+LIVE = "live"
+"""Path of the WebSocket below the token."""
+CONNECTIONS, PAGES = 64, 16
+"""Connections at a time, and those of them that are pages."""
+LARGEST = 64 * 1024
+"""Bytes of a command."""
+BURST = 20
+"""Commands of one page between two beats."""
+PIECES = 4
+"""Messages to one page between two beats, while it receives what happened before it came."""
+PATIENCE = 20.0
+"""Seconds in which a page must take a message."""
+GOODBYE = 0.5
+"""Seconds for the last messages and for closing."""
+GARBAGE = 10
+"""Unreadable commands after which a page is disconnected."""
+
+Answer = Callable[[Mapping[str, Any]], Awaitable[Mapping[str, Any]]]
+
+
+class Source(Protocol):
+    """What pages are shown."""
+
+    def begin(self) -> Delivery:
+        """Begin to deliver to another page."""
+
+    def end(self, delivery: Delivery) -> None:
+        """Deliver no more."""
+
+    async def answer(self, command: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Execute a command of a page, and return the reply; raises nothing."""
+
+
+def bound_socket(address: str = LOOPBACK, port: int = 0) -> socket.socket:
+    """Return a listening socket; the system chooses a free port for 0.
+
+    Raises:
+        UsageError: the address is not one of this machine, or the port is taken.
+    """
+    family = socket.AF_INET6 if ":" in address else socket.AF_INET
+    try:
+        return socket.create_server((address, port), family=family, backlog=CONNECTIONS)
+    except (OSError, OverflowError) as error:
+        why = error.strerror if isinstance(error, OSError) else "the port must be in 0 to 65535"
+        raise UsageError(
+            f"error: cannot serve the view at {address}:{port}: {why}\n"
+            "  = help: choose another --view-port or --view-address"
+        ) from None
+
+
+class LiveServer:
+    """Serves pages until it is closed.
+
+    Args:
+        listening: the socket.
+        access: who may see them.
+        source: what they are shown.
+        pages: the files of the page.
+
+    Attributes:
+        visitors: pages that have been connected so far.
+    """
+
+    def __init__(
+        self, listening: socket.socket, access: Access, source: Source, pages: Pages | None = None
+    ) -> None:
+        self._socket, self._access, self._source = listening, access, source
+        self._pages = pages or Pages()
+        self._beat: Beat | None = None
+        self._server: Server | None = None
+        self._connections: dict[ServerConnection, None] = {}
+        self._deliveries: dict[ServerConnection, Delivery] = {}
+        self.visitors = 0
+
+    @property
+    def address(self) -> str:
+        """The address of the page, with the token."""
+        return address_of(self._socket, self._access)
+
+    @property
+    def complete(self) -> bool:
+        """Whether the pages that are connected have received everything."""
+        return all(each.complete for each in self._deliveries.values())
+
+    async def start(self) -> None:
+        """Begin to serve on the running loop."""
+        self._beat = Beat()
+        quiet = logging.Logger("jacaros.view", logging.CRITICAL + 1)  # what strangers send is nothing to log
+        self._server = await serve(
+            self._talk,
+            sock=self._socket,
+            process_request=self._respond,
+            create_connection=cast(Any, self._connection),  # any callable will do
+            server_header=None,
+            compression=None,
+            open_timeout=None,
+            ping_interval=None,
+            close_timeout=None,
+            max_size=LARGEST,
+            max_queue=4,
+            write_limit=LARGEST,
+            logger=quiet,
+        )
+
+    async def close(self, patience: float = GOODBYE) -> None:
+        """Send what waits for at most *patience* seconds of real time, then disconnect all."""
+        server, beat = self._server, self._beat
+        if server is None or beat is None:
+            self._socket.close()
+            return
+        self._server = None
+        until = real_time() + patience
+        while not self.complete and real_time() < until:
+            await beat.next()
+        server.close()
+        while self._connections and real_time() < until:
+            await beat.next()
+        for connection in tuple(self._connections):
+            self._disconnect(connection)
+        await server.wait_closed()
+        beat.close()
+
+    def release(self) -> None:
+        """Close the listening socket; closing twice does no harm."""
+        self._socket.close()
+
+    # ---- requests
+
+    def _connection(self, *arguments: Any, **options: Any) -> ServerConnection:
+        return _Connection(self, *arguments, **options)
+
+    def opened(self, connection: "_Connection") -> None:
+        """Take note of a connection; one too many displaces the oldest that is not a page."""
+        self._connections[connection] = None
+        if len(self._connections) > CONNECTIONS:
+            oldest = next((each for each in self._connections if each not in self._deliveries), connection)
+            self._disconnect(oldest)
+
+    def lost(self, connection: "_Connection") -> None:
+        """Take note of the end of a connection."""
+        self._connections.pop(connection, None)
+
+    def _disconnect(self, connection: ServerConnection) -> None:
+        """End a connection without waiting for the other side."""
+        if connection in self._connections:  # else its transport is closed, and cannot be aborted
+            connection.transport.abort()
+
+    def _respond(self, connection: ServerConnection, request: Request) -> Response | None:
+        """Return the answer to a request; None opens the WebSocket."""
+        hosts = request.headers.get_all("Host")
+        if not self._access.knows_host(hosts):
+            return _response(HTTPStatus.FORBIDDEN, {})
+        headers = security_headers(hosts[0])
+        if not self._access.knows_origin(request.headers.get_all("Origin"), hosts[0]):
+            return _response(HTTPStatus.FORBIDDEN, headers)
+        path = self._access.path(request.path)
+        if path is None:
+            return _response(HTTPStatus.NOT_FOUND, headers)
+        if path == LIVE and request.headers.get("Upgrade", "").lower() == "websocket":
+            full = len(self._deliveries) >= PAGES
+            return _response(HTTPStatus.SERVICE_UNAVAILABLE, headers) if full else None
+        if not path and not request.path.partition("?")[0].endswith("/"):
+            return _response(HTTPStatus.MOVED_PERMANENTLY, {**headers, "Location": f"/{self._access.token}/"})
+        found = self._pages.find(path)
+        if found is None:
+            return _response(HTTPStatus.NOT_FOUND, headers)
+        kind, content = found
+        return _response(HTTPStatus.OK, {**headers, "Content-Type": kind}, content)
+
+    # ---- pages
+
+    async def _talk(self, connection: ServerConnection) -> None:
+        """Send records to a page and execute its commands, until it goes."""
+        delivery = self._deliveries[connection] = self._source.begin()
+        self.visitors += 1
+        sending = asyncio.create_task(self._send(connection, delivery))
+        try:
+            await self._listen(connection)
+        except ConnectionClosed:
+            pass
+        finally:
+            self._source.end(delivery)
+            del self._deliveries[connection]
+            sending.cancel()
+            self._disconnect(connection)
+
+    async def _send(self, connection: ServerConnection, delivery: Delivery) -> None:
+        assert self._beat is not None
+        sent = 0
+        with suppress(ConnectionClosed):
+            while True:
+                await delivery.arrived.wait()
+                message = delivery.take()
+                if message is not None:
+                    await self._within_patience(connection, message)
+                    sent += 1
+                if message is None or sent >= PIECES or delivery.complete:
+                    sent = 0
+                    await self._beat.next()
+
+    async def _within_patience(self, connection: ServerConnection, message: str) -> None:
+        """Send a message; disconnect a page that takes nothing for `PATIENCE` seconds."""
+        assert self._beat is not None
+        sending = asyncio.ensure_future(connection.send(message))
+        await asyncio.sleep(0)
+        until = real_time() + PATIENCE
+        try:
+            while not sending.done():
+                if real_time() > until:
+                    self._disconnect(connection)
+                await self._beat.next()
+        finally:
+            sending.cancel()
+        sending.result()
+
+    async def _listen(self, connection: ServerConnection) -> None:
+        """Execute the commands of a page; those that wait for something do not hold up the next ones."""
+        assert self._beat is not None
+        garbage = count = 0
+        running: set[asyncio.Task[None]] = set()
+        try:
+            async for message in connection:
+                command = _command(message)
+                garbage += command is None
+                if garbage >= GARBAGE:
+                    self._disconnect(connection)
+                    return
+                task = asyncio.create_task(self._reply(connection, command))
+                running.add(task)
+                task.add_done_callback(running.discard)
+                count += 1
+                while count % BURST == 0 or len(running) >= BURST:
+                    await self._beat.next()
+                    count += 1
+        finally:
+            for task in running:
+                task.cancel()
+
+    async def _reply(self, connection: ServerConnection, command: Mapping[str, Any] | None) -> None:
+        reply: Mapping[str, Any] = {"kind": "reply", "id": None, "ok": False, "error": "unreadable command"}
+        if command is not None:
+            reply = await self._source.answer(command)
+        with suppress(ConnectionClosed):
+            await connection.send(json_text(reply))
+
+
+class _Connection(ServerConnection):
+    """A connection that the server knows from its first byte on."""
+
+    def __init__(self, pages: LiveServer, *arguments: Any, **options: Any) -> None:
+        super().__init__(*arguments, **options)
+        self._pages_server = pages
+
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        """Begin."""
+        super().connection_made(transport)
+        self._pages_server.opened(self)
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        """End."""
+        self._pages_server.lost(self)
+        super().connection_lost(exc)
+
+
+def address_of(listening: socket.socket, access: Access) -> str:
+    """Return the address of a page, with the token."""
+    host, port = listening.getsockname()[:2]
+    if host in ("0.0.0.0", "::"):
+        host = socket.gethostname()
+    return f"http://{f'[{host}]' if ':' in host else host}:{port}/{access.token}/"
+
+
+def _response(status: HTTPStatus, headers: Mapping[str, str], content: bytes | None = None) -> Response:
+    if content is None:
+        content = f"{status.value} {status.phrase}\n".encode()
+        headers = {"Content-Type": "text/plain; charset=utf-8", **headers}
+    fields = {**headers, "Content-Length": str(len(content)), "Connection": "close"}
+    return Response(status.value, status.phrase, Headers(fields), content)
+
+
+def _command(message: str | bytes) -> Mapping[str, Any] | None:
+    """Return the command in a message, None when it is unreadable."""
+    try:
+        command = json.loads(message)
+    except (ValueError, RecursionError):
+        return None
+    return command if isinstance(command, dict) else None

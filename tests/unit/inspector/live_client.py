@@ -1,0 +1,117 @@
+"""A page for tests: connects with a live server over real sockets, collects records, and sends commands."""
+
+import asyncio
+import json
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager, suppress
+from typing import Any
+from urllib.parse import urlsplit
+
+from websockets.asyncio.client import ClientConnection, connect
+from websockets.exceptions import ConnectionClosed
+
+PATIENCE = 20.0
+"""Seconds after which what does not come fails a test."""
+
+
+class LivePage:
+    """A connected page.
+
+    Attributes:
+        hello: the first message.
+        records: what came so far.
+        notes: other messages, replies excepted.
+    """
+
+    def __init__(self, socket: ClientConnection) -> None:
+        self.socket = socket
+        self.hello: dict[str, Any] = {}
+        self.records: list[dict[str, Any]] = []
+        self.notes: list[dict[str, Any]] = []
+        self._replies: dict[object, dict[str, Any]] = {}
+        self._changed = asyncio.Event()
+        self._count = 0
+
+    async def read(self) -> None:
+        """Take messages until the connection ends."""
+        async for message in self.socket:
+            self._take(json.loads(message))
+            self._changed.set()
+
+    def _take(self, message: Any) -> None:
+        if isinstance(message, list):
+            self.records += message
+        elif message["kind"] == "reply":
+            self._replies[message["id"]] = message
+        else:
+            self.notes.append(message)
+            self.hello = message if message["kind"] == "hello" else self.hello
+
+    async def until(self, condition: Callable[[], Any]) -> Any:
+        """Wait until a condition holds; its value."""
+        async with asyncio.timeout(PATIENCE):
+            while not (found := condition()):
+                self._changed.clear()
+                await self._changed.wait()
+        return found
+
+    async def event(self, name: str, **data: object) -> dict[str, Any]:
+        """Wait for an event whose data hold *data*; its data."""
+
+        def found() -> dict[str, Any] | None:
+            matching = (
+                each["data"]
+                for each in self.records
+                if each.get("event") == name and data.items() <= each["data"].items()
+            )
+            return next(matching, None)
+
+        result: dict[str, Any] = await self.until(found)
+        return result
+
+    async def do(self, command: str, **fields: object) -> dict[str, Any]:
+        """Send a command; the reply."""
+        self._count += 1
+        number = self._count
+        await self.socket.send(json.dumps({"id": number, "do": command, **fields}))
+        reply: dict[str, Any] = await self.until(lambda: self._replies.get(number))
+        return reply
+
+
+@asynccontextmanager
+async def live_page(address: str) -> AsyncIterator[LivePage]:
+    """Connect with a server, as the page at *address* does."""
+    async with connect(socket_address(address), max_size=None, compression=None) as socket:
+        page = LivePage(socket)
+        reading = asyncio.create_task(page.read())
+        try:
+            await page.until(lambda: page.hello)
+            yield page
+        finally:
+            reading.cancel()
+            with suppress(asyncio.CancelledError, ConnectionClosed):
+                await reading
+
+
+def socket_address(address: str) -> str:
+    """The address of the WebSocket of a page."""
+    return f"{address.replace('http', 'ws', 1)}live"
+
+
+async def get(address: str, path: str = "", **headers: str) -> tuple[int, dict[str, str], bytes]:
+    """Send a GET request; status, headers and content of the answer.  Fields with the value "" are left out."""
+    parts = urlsplit(address)
+    assert parts.hostname is not None
+    reader, writer = await asyncio.open_connection(parts.hostname, parts.port)
+    fields = {"Host": parts.netloc, **{name.replace("_", "-"): value for name, value in headers.items()}}
+    lines = [
+        f"GET {parts.path}{path} HTTP/1.1",
+        *(f"{name}: {value}" for name, value in fields.items() if value),
+    ]
+    writer.write(("\r\n".join(lines) + "\r\n\r\n").encode())
+    async with asyncio.timeout(PATIENCE):
+        answer = await reader.read()
+    writer.close()
+    head, _, content = answer.partition(b"\r\n\r\n")
+    first, *rest = head.decode().split("\r\n")
+    return int(first.split()[1]), dict(line.split(": ", 1) for line in rest), content

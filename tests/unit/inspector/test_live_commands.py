@@ -1,0 +1,318 @@
+"""What pages can do to a run, over real sockets: each command, its refusals, and the record that it leaves."""
+
+from collections.abc import Awaitable, Callable
+
+import pytest
+from live_client import LivePage, live_page
+
+import jacaros
+from jacaros import Mas, Out
+from jacaros.env import Artifact, operation
+from jacaros.inspector import view
+
+WORLD = """
+name: lab
+bounds: {from: [-3, -3], to: [3, 3]}
+border: walls
+walls:
+  - segment: [[0, 1], [0, 3]]
+doors:
+  - {name: gate, segment: [[1, -3], [1, -2]], open: false}
+robots:
+  - name: turtlebot
+    pose: {x: -1, y: 0, yaw_degrees: 0}
+"""
+PROGRAM = """
+ready. battery(12). battery(90).
+low :- battery(L) & L < 20.
+!wait.
++!wait <- .wait(found(_)).
++!go(X) <- +at(X).
++!never <- .wait(nothing).
++told(X)[source(S)] <- +heard(X, S).
+"""
+
+Test = Callable[[Mas, LivePage], Awaitable[None]]
+
+
+class Counter(Artifact):
+    """Counts."""
+
+    def init(self) -> None:
+        """Begin at 0."""
+        self.total = 0
+
+    @operation
+    def count(self, by: int, now: Out[int]) -> None:
+        """Count *by* more, and tell where it is now."""
+        self.total += by
+        now.set(self.total)
+
+    @operation
+    def refuse(self) -> None:
+        """Fail."""
+        self.fail("not today")
+
+
+def commanding(test: Test, world: str = "none") -> None:
+    """Run a test with an agent, an artifact and a page that is connected."""
+
+    async def main() -> None:
+        async with Mas(seed=1, world=world, on_print=lambda *_: None) as mas:
+            mas.add_agent("bob", PROGRAM)
+            await mas.make_artifact("counter", Counter)
+            async with view(mas) as address, live_page(address) as page:
+                await test(mas, page)
+
+    jacaros.run(main())
+
+
+async def refused(page: LivePage, command: str, **fields: object) -> str:
+    """Why a command is refused, in one line."""
+    reply = await page.do(command, **fields)
+    assert not reply["ok"]
+    assert "\n" not in reply["error"]
+    return str(reply["error"])
+
+
+async def done(page: LivePage, command: str, **fields: object) -> object:
+    """The result of a command."""
+    reply = await page.do(command, **fields)
+    assert reply["ok"], reply
+    return reply["result"]
+
+
+def test_a_belief_is_added_and_removed() -> None:
+    async def test(mas: Mas, page: LivePage) -> None:
+        bob = mas.agent("bob")
+        await done(page, "belief", agent="bob", op="+", text="found(key)")
+        assert bob.believes("found(key)")
+        await page.event("intervention", what="bob: +found(key)")
+        await bob.until("not .intend(wait)")
+        await done(page, "belief", agent="bob", op="-", text="found(key)")
+        assert not bob.believes("found(key)")
+        assert "does not believe" in await refused(page, "belief", agent="bob", op="-", text="found(key)")
+
+    commanding(test)
+
+
+def test_a_goal_is_posted_and_dropped() -> None:
+    async def test(mas: Mas, page: LivePage) -> None:
+        bob = mas.agent("bob")
+        await done(page, "goal", agent="bob", op="post", text="go(dock)")
+        await bob.until("at(dock)", 5)
+        await page.event("goal", agent="bob", goal="!go(dock)", state="achieved")
+        await done(page, "goal", agent="bob", op="post", text="!never")
+        await bob.until(".intend(never)", 5)
+        await done(page, "goal", agent="bob", op="drop", text="never")
+        assert not bob.believes(".intend(never)")
+        assert "does not pursue" in await refused(page, "goal", agent="bob", op="drop", text="never")
+
+    commanding(test)
+
+
+def test_a_message_is_sent() -> None:
+    async def test(mas: Mas, page: LivePage) -> None:
+        await done(page, "message", agent="bob", performative="tell", text="told(news)")
+        await mas.agent("bob").until("heard(news, you)", 5)
+        assert "unknown agent" in await refused(
+            page, "message", agent="eve", performative="tell", text="told(x)"
+        )
+        assert "must be one of" in await refused(
+            page, "message", agent="bob", performative="shout", text="told(x)"
+        )
+
+    commanding(test)
+
+
+@pytest.mark.parametrize(
+    ("line", "result"),
+    [
+        ("?ready", "yes"),
+        ("?ready.", "yes"),
+        ("?low", "yes"),
+        ("?nothing", "no"),
+        ("?X = Y & ready", "yes"),
+        ("?.nothing_of_the_kind(3)", "no"),
+        ("?battery(X)", "X = 12\nX = 90"),
+        ("?battery(X) & X > 50", "X = 90"),
+        ("? .member(X, [1, 2])", "X = 1\nX = 2"),
+        ("+seen(a)", "added seen(a)"),
+        ("-ready", "removed ready"),
+        ("-+battery(5)", "replaced battery(5)"),
+        ("!go(kitchen)", "posted !go(kitchen)"),
+        ("!!go(kitchen)", "posted !go(kitchen)"),
+    ],
+)
+def test_the_console_answers(line: str, result: str) -> None:
+    async def test(_: Mas, page: LivePage) -> None:
+        assert await done(page, "console", agent="bob", text=line) == result
+        await done(page, "belief", agent="bob", op="+", text="last")
+        await page.event("intervention", what="bob: +last")
+        noted = [each["data"]["what"] for each in page.records if each.get("event") == "intervention"]
+        assert noted == ([] if line.startswith("?") else [f"bob: {line}"]) + ["bob: +last"]
+
+    commanding(test)
+
+
+@pytest.mark.parametrize(
+    ("line", "why"),
+    [
+        ("ready", "expected ?query, !goal"),
+        ("?", "expected ?query, !goal"),
+        ("?ready(", "expected"),
+        ("+3", "a literal is expected"),
+        ("! ", "expected ?query, !goal"),
+        ("", "`text` must be a text"),
+    ],
+)
+def test_the_console_says_what_is_wrong_in_one_line(line: str, why: str) -> None:
+    async def test(_: Mas, page: LivePage) -> None:
+        assert why in await refused(page, "console", agent="bob", text=line)
+
+    commanding(test)
+
+
+def test_the_console_ends_long_answers() -> None:
+    async def test(_: Mas, page: LivePage) -> None:
+        answers = str(await done(page, "console", agent="bob", text="?.range(X, 1, 1000000000)")).splitlines()
+        assert answers[:2] == ["X = 1", "X = 2"]
+        assert answers[-1] == "..."
+        assert len(answers) < 50
+
+    commanding(test)
+
+
+def test_an_operation_is_executed() -> None:
+    async def test(_: Mas, page: LivePage) -> None:
+        assert await done(page, "operate", artifact="counter", text="count(3, Now)") == "Now = 3"
+        assert await done(page, "operate", artifact="/main/counter", text="count(4, X)") == "X = 7"
+        assert await refused(page, "operate", artifact="counter", text="refuse") == "not today"
+        assert "no operation nope/0" in await refused(page, "operate", artifact="counter", text="nope")
+        assert "unknown artifact" in await refused(page, "operate", artifact="clock", text="count(1, X)")
+
+    commanding(test)
+
+
+@pytest.mark.parametrize(
+    ("command", "why"),
+    [
+        ({"do": "nothing"}, "unknown command here: `nothing`"),
+        ({}, "unknown command here"),
+        ({"do": ["x"]}, "unknown command here"),
+        ({"do": "belief"}, "`agent` must be a text"),
+        ({"do": "belief", "agent": "eve"}, "unknown agent: `eve`"),
+        ({"do": "belief", "agent": 3}, "`agent` must be a text"),
+        ({"do": "belief", "agent": "bob", "text": "x", "op": "*"}, "`op` must be one of +, -"),
+    ],
+)
+def test_incomplete_commands_are_refused(command: dict[str, object], why: str) -> None:
+    async def test(_: Mas, page: LivePage) -> None:
+        name = command.get("do")
+        fields = {key: value for key, value in command.items() if key != "do"}
+        assert why in await refused(page, name, **fields)  # type: ignore[arg-type]
+
+    commanding(test)
+
+
+def test_only_what_works_is_offered() -> None:
+    async def test(_: Mas, page: LivePage) -> None:
+        assert {"belief", "console", "goal", "message", "operate"} <= set(page.hello["can"])
+        assert not {"move_robot", "door", "obstacle", "person", "battery", "fault"} & set(page.hello["can"])
+
+    commanding(test)
+
+
+def test_a_robot_is_moved() -> None:
+    async def test(mas: Mas, page: LivePage) -> None:
+        assert mas.world is not None
+        robot = mas.world.robot("turtlebot")
+        await done(page, "move_robot", robot="turtlebot", x=2, y=1, yaw=1.5)
+        assert (robot.x, robot.y, robot.yaw) == (2.0, 1.0, 1.5)
+        await page.event("intervention", what="turtlebot moved to (2, 1)")
+        await page.event("placed", robot="turtlebot", x=2.0, y=1.0)
+        await page.until(
+            lambda: any(each["kind"] == "frame" and each["robots"][0][:2] == [2, 1] for each in page.records)
+        )
+        assert "a wall is in the way" in await refused(page, "move_robot", robot="turtlebot", x=0, y=2)
+        assert "outside of the world" in await refused(page, "move_robot", robot="turtlebot", x=9, y=2)
+        assert "no robot 'r2'" in await refused(page, "move_robot", robot="r2", x=1, y=2)
+        assert "`x` must be a number" in await refused(page, "move_robot", robot="turtlebot", x="1", y=2)
+        assert "`yaw` must be a number" in await refused(
+            page, "move_robot", robot="turtlebot", x=1, y=1, yaw=True
+        )
+
+    commanding(test, WORLD)
+
+
+def test_a_door_is_opened_and_closed() -> None:
+    async def test(mas: Mas, page: LivePage) -> None:
+        assert mas.world is not None
+        await done(page, "door", name="gate", open=True)
+        assert mas.world.doors["gate"]
+        await page.event("door_opened", door="gate")
+        await done(page, "move_robot", robot="turtlebot", x=1, y=-2.5)
+        assert "turtlebot is in the way" in await refused(page, "door", name="gate", open=False)
+        assert "no door 'exit'" in await refused(page, "door", name="exit", open=True)
+
+    commanding(test, WORLD)
+
+
+def test_an_obstacle_stops_a_robot() -> None:
+    async def test(mas: Mas, page: LivePage) -> None:
+        assert mas.world is not None
+        name = await done(page, "obstacle", x=0, y=-0.5, radius=0.3)
+        await page.event("obstacle_placed", obstacle=name, radius=0.3)
+        assert "obstacle_1 is in the way" in await refused(page, "move_robot", robot="turtlebot", x=0, y=-0.4)
+        assert "turtlebot is in the way" in await refused(page, "obstacle", x=-1, y=0)
+        assert "0.02 to 2 metres" in await refused(page, "obstacle", x=2, y=2, radius=9)
+        await done(page, "obstacle", remove=name)
+        await page.event("obstacle_removed", obstacle=name)
+        assert not mas.world.obstacles.by_name
+
+    commanding(test, WORLD)
+
+
+def test_a_person_comes_and_goes() -> None:
+    async def test(mas: Mas, page: LivePage) -> None:
+        assert mas.world is not None
+        name = await done(page, "person", x=2, y=2)
+        await page.event("person_comes", person=name)
+        assert [(each.x, each.y) for each in mas.world.people.values()] == [(2.0, 2.0)]
+        assert "a wall is in the way" in await refused(page, "person", x=0, y=2)
+        await done(page, "person", remove=name)
+        assert not mas.world.people
+
+    commanding(test, WORLD)
+
+
+def test_a_battery_is_drained() -> None:
+    async def test(mas: Mas, page: LivePage) -> None:
+        assert mas.world is not None
+        await done(page, "battery", robot="turtlebot", level=7)
+        assert mas.world.robot().battery.level <= 7
+        await page.event("battery", robot="turtlebot", level=7)
+        assert "0 to 100" in await refused(page, "battery", robot="turtlebot", level=101)
+
+    commanding(test, WORLD)
+
+
+def test_a_fault_begins_and_ends() -> None:
+    faults = "faults:\n  stuck: {kind: blocked_wheel}\n"
+
+    async def main() -> None:
+        async with (
+            Mas(seed=1, world=WORLD, faults=faults) as mas,
+            view(mas) as address,
+            live_page(address) as page,
+        ):
+            assert mas.world is not None
+            await done(page, "fault", name="stuck", on=True)
+            assert mas.world.faults.at_work == ["stuck"]
+            await page.event("fault", fault="stuck", state="begins")
+            await done(page, "fault", name="stuck", on=False)
+            assert mas.world.faults.at_work == []
+            assert "there is no fault 'fire'" in await refused(page, "fault", name="fire", on=True)
+            assert "true or false" in await refused(page, "fault", name="stuck", on="yes")
+
+    jacaros.run(main())
