@@ -9,12 +9,12 @@ from pathlib import Path
 
 from jacaros.artifacts.map.cells import FREE, Cell
 from jacaros.artifacts.map.grids import Grid
-from jacaros.artifacts.map.poses import ORIGIN
 from jacaros.artifacts.robots.control import Pose
 from jacaros.errors import JacarosError
-from jacaros.grey_images import WHITE, GreyImage, ImageError, pgm_bytes, read_image
+from jacaros.grey_images import GreyImage, ImageError, pgm_bytes, read_image
+from jacaros.map_header import read_header
 from jacaros.text_files import file_text
-from jacaros.yaml_nodes import Node, Problem, YamlFileError, read_document
+from jacaros.yaml_nodes import Problem, YamlFileError, read_document
 
 _BLACK, _WHITE, _GREY = 0, 254, 205
 """Shades of obstacles, free cells and unknown ones, as map_saver writes them."""
@@ -95,7 +95,7 @@ def load(file: Path) -> Saved:
     try:
         text = file_text(file)
         problems: list[Problem] = []
-        header = _Header(read_document(text, problems, "a map"))
+        header = read_header(read_document(text, problems, "a map"))
         if problems:
             raise YamlFileError(file.name, text, problems)
         image = read_image(file.parent / header.image)
@@ -103,37 +103,8 @@ def load(file: Path) -> Saved:
         raise MapFileError(f"cannot read the map {file}: {error}; {error.cure}") from None
     except (OSError, ValueError, JacarosError) as error:
         raise MapFileError(f"cannot read the map {file}: {error}") from None
-    shades = [header.percent(shade / WHITE) for shade in range(WHITE + 1)]
-    rows = range(image.height - 1, -1, -1)
-    width = image.width
-    occupancy = [shades[shade] for row in rows for shade in image.pixels[row * width : (row + 1) * width]]
-    return Saved(Grid(header.resolution, width, header.origin, occupancy), header.places)
-
-
-class _Header:
-    """What the YAML file of a map says; its mistakes are noted at the document."""
-
-    def __init__(self, document: Node) -> None:
-        keys = document.mapping(required=("image", "resolution", "origin"))
-
-        def number(key: str, default: float) -> float:
-            return keys[key].number(0.0, default=default) if key in keys else default
-
-        self.image = keys["image"].text() if "image" in keys else ""
-        self.resolution = keys["resolution"].number(0.001, default=1.0) if "resolution" in keys else 1.0
-        self.origin = ORIGIN
-        if "origin" in keys:
-            numbers = [each.number() for each in keys["origin"].sequence()]
-            if len(numbers) == 3:
-                self.origin = Pose(*numbers)
-            else:
-                keys["origin"].wrong("'origin' must be x, y and yaw", "write [0, 0, 0]: metres and radians")
-        self.negate = number("negate", 0.0) != 0.0
-        self.occupied, self.free = number("occupied_thresh", 0.65), number("free_thresh", 0.25)
-        places = keys["places"].entries() if "places" in keys else ()
-        self.places = {name.text(): place.pair() for name, place in places}
-
-    def percent(self, shade: float) -> int:
-        """Return the occupancy that a shade from black (0) to white (1) means."""
-        share = shade if self.negate else 1.0 - shade
-        return 100 if share > self.occupied else 0 if share < self.free else -1
+    width, rows = image.width, range(image.height - 1, -1, -1)
+    occupancy = [
+        header.occupancy[shade] for row in rows for shade in image.pixels[row * width : (row + 1) * width]
+    ]
+    return Saved(Grid(header.resolution, width, Pose(*header.origin), occupancy), header.places)

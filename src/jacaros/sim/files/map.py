@@ -1,14 +1,6 @@
 """Maps of ROS's map_server (a YAML file and an image) as walls; and worlds as such maps.
 
-The keys and their meaning are those of Nav2's ``map_server`` and ROS 1's ``map_server``::
-
-    image: office.pgm           # or PNG; its path counts from this file
-    resolution: 0.05            # metres a pixel
-    origin: [-10, -5, 0]        # of the lower left corner: metres, and radians, which must be 0
-    negate: 0                   # 1: black is free
-    occupied_thresh: 0.65       # what is at least so dark is a wall
-    free_thresh: 0.25           # what is at most so dark is free; the rest is unknown
-    mode: trinary               # or scale, which means the same here; or raw: pixels are percent
+Their keys are those of `jacaros.map_header`; the origin must not be rotated.
 
 A laser sees through unknown cells and a robot can drive there; its map shows no wall.
 """
@@ -19,13 +11,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from jacaros.grey_images import GreyImage, ImageError, pgm_bytes, read_image
+from jacaros.map_header import KEYS, MapHeader, read_header
 from jacaros.sim.description import Rectangle, Segment, WorldDescription
 from jacaros.sim.navigation.grid import Grid
 from jacaros.yaml_nodes import Node, Problem, read_document
 from jacaros.yaml_syntax import read_text, top_keys
 
-_KEYS = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh", "mode")
-_REQUIRED = ("image", "resolution", "origin")
 FREE, OCCUPIED, UNKNOWN = 0, 1, 2
 _ROOM_FOR_ROBOT = 0.4
 """Metres from a robot, for which a place is looked for, to anything that may be a wall."""
@@ -155,7 +146,7 @@ def _changes(one: bytes, other: bytes) -> list[tuple[int, int]]:
 def is_map(path: Path) -> bool:
     """Whether a YAML file is one of a map_server, wrong as it may be."""
     keys = top_keys(path)
-    return "image" in keys and len(keys & set(_KEYS)) > 1
+    return "image" in keys and len(keys & set(KEYS)) > 1
 
 
 def read_map(path: Path) -> tuple[str, list[Problem], OccupancyMap | None]:
@@ -172,24 +163,25 @@ def read_map(path: Path) -> tuple[str, list[Problem], OccupancyMap | None]:
         return text, [wrong], None
     problems: list[Problem] = []
     document = read_document(text, problems, "a map")
-    found = None if problems else _map(document, path.parent)
+    found = None if problems else _map(read_header(document), path.parent)
     return text, problems, None if problems else found
 
 
-def _map(document: Node, folder: Path) -> OccupancyMap | None:
-    # Map servers ignore other keys; those that are like a known one are mistakes.
-    given = document.value if isinstance(document.value, dict) else {}
-    others = [str(key) for key in given if not difflib.get_close_matches(str(key), _KEYS, 1)]
-    entries = document.mapping(*_KEYS, *others, required=_REQUIRED)
-    resolution = entries["resolution"].number(0.001, 10.0, 1.0) if "resolution" in entries else 1.0
-    x_min, y_min = _origin(entries["origin"]) if "origin" in entries else (0.0, 0.0)
-    table = _meanings(entries)
-    image = _image(entries["image"], folder) if "image" in entries else None
+def _map(header: MapHeader, folder: Path) -> OccupancyMap | None:
+    x_min, y_min, heading = header.origin
+    if heading != 0.0:
+        header.nodes["origin"].wrong(
+            f"the map is rotated by {heading:g} radians", "rotate the image, and write 0 here"
+        )
+    image = _image(header.nodes["image"], folder / header.image) if header.image else None
     if image is None:
         return None
-    meant = image.pixels.translate(table)
+    meant = image.pixels.translate(bytes(_CELLS[percent] for percent in header.occupancy))
     rows = [meant[row * image.width : (row + 1) * image.width] for row in range(image.height)]
-    return OccupancyMap(resolution, x_min, y_min, image.width, image.height, b"".join(reversed(rows)))
+    return OccupancyMap(header.resolution, x_min, y_min, image.width, image.height, b"".join(reversed(rows)))
+
+
+_CELLS = {100: OCCUPIED, 0: FREE, -1: UNKNOWN}
 
 
 def free_place(found: OccupancyMap | None, problems: list[Problem]) -> tuple[float, float] | None:
@@ -202,50 +194,7 @@ def free_place(found: OccupancyMap | None, problems: list[Problem]) -> tuple[flo
     return place
 
 
-def _origin(node: Node) -> tuple[float, float]:
-    numbers = [item.number() for item in node.sequence()]
-    if not isinstance(node.value, list):
-        return 0.0, 0.0
-    if len(numbers) != 3:
-        node.wrong(f"{node.what} must be three numbers", "write [x, y, yaw] of the lower left corner")
-        return 0.0, 0.0
-    if numbers[2] != 0.0:
-        node.wrong(f"the map is rotated by {numbers[2]:g} radians", "rotate the image, and write 0 here")
-    return numbers[0], numbers[1]
-
-
-def _meanings(entries: dict[str, Node]) -> bytes:
-    """What each value of a pixel means."""
-    negate = entries.get("negate")
-    inverted = negate is not None and _truth(negate)
-    raw = "mode" in entries and entries["mode"].choice("trinary", "scale", "raw") == "raw"
-    occupied = entries["occupied_thresh"].number(0.0, 1.0, 0.65) if "occupied_thresh" in entries else 0.65
-    free = entries["free_thresh"].number(0.0, 1.0, 0.25) if "free_thresh" in entries else min(0.25, occupied)
-    if free > occupied:
-        entries.get("free_thresh", entries["occupied_thresh"]).wrong(
-            "'free_thresh' is more than 'occupied_thresh'",
-            "free cells are the bright ones: write 0.25 and 0.65",
-        )
-
-    def meaning(pixel: int) -> int:
-        if raw and pixel > 100:
-            return UNKNOWN
-        dark = pixel / 100 if raw else (pixel if inverted else 255 - pixel) / 255
-        return OCCUPIED if dark >= occupied else FREE if dark <= free else UNKNOWN
-
-    return bytes(meaning(pixel) for pixel in range(256))
-
-
-def _truth(node: Node) -> bool:
-    """``0`` or ``1``, as map_server writes it, or ``true`` or ``false``."""
-    return node.truth() if isinstance(node.value, bool) else node.number(0.0, 1.0) == 1.0
-
-
-def _image(node: Node, folder: Path) -> GreyImage | None:
-    name = node.text()
-    if not name:
-        return None
-    path = folder / name
+def _image(node: Node, path: Path) -> GreyImage | None:
     try:
         return read_image(path)
     except FileNotFoundError:

@@ -47,7 +47,11 @@ def test_the_map_of_another_tool_is_read(tmp_path: Path) -> None:
     ("text", "told"),
     [
         ("image: room.pgm\n", "lacks the key 'resolution'"),
-        ("image: room.pgm\nresolution: 0\norigin: [0, 0]\n", "'origin' must be x, y and yaw"),
+        ("image: room.pgm\nresolution: 0\norigin: [0, 0]\n", "'origin' must be three numbers"),
+        (
+            "image: room.pgm\nresolution: 1\norigin: [0, 0, 0]\nocupied_thresh: 1\n",
+            "did you mean 'occupied_thresh'",
+        ),
         ("image: none.pgm\nresolution: 1\norigin: [0, 0, 0]\n", "none.pgm"),
         ("image: room.yaml\nresolution: 1\norigin: [0, 0, 0]\n", "not a PGM or PNG image"),
         (

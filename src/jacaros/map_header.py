@@ -1,0 +1,94 @@
+"""The YAML file of a map, as ROS's ``map_server`` reads and writes it: the header of an image.
+
+The keys and their meaning are those of Nav2's ``map_server`` and ROS 1's ``map_server``::
+
+    image: office.pgm           # or PNG; its path is relative to this file
+    resolution: 0.05            # metres per pixel
+    origin: [-10, -5, 0]        # of the lower left corner: metres, and radians
+    negate: 0                   # 1: black is free
+    occupied_thresh: 0.65       # darker pixels are occupied
+    free_thresh: 0.25           # brighter pixels are free; the rest is unknown
+    mode: trinary               # or scale, which means the same here; or raw: pixels are percent
+
+Other keys are allowed, such as ``places`` (names and positions in metres), which map servers ignore.
+"""
+
+import difflib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Final
+
+from jacaros.yaml_nodes import Node
+
+KEYS: Final = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh", "mode")
+_REQUIRED: Final = ("image", "resolution", "origin")
+
+
+@dataclass(frozen=True, slots=True)
+class MapHeader:
+    """What the YAML file of a map contains.
+
+    Attributes:
+        nodes: the values by key, for further checks.
+        image: path of the image, relative to the file; empty after a mistake.
+        resolution: side of a pixel, in metres.
+        origin: x and y (metres) and heading (radians) of the lower left corner.
+        occupancy: percent occupied for each of the 256 values of a pixel: 100, 0, or -1 (unknown).
+        places: x and y by name, in metres.
+    """
+
+    nodes: Mapping[str, Node]
+    image: str
+    resolution: float
+    origin: tuple[float, float, float]
+    occupancy: tuple[int, ...]
+    places: Mapping[str, tuple[float, float]]
+
+
+def read_header(document: Node) -> MapHeader:
+    """Read the header of a map; mistakes are noted at the nodes of the *document*."""
+    # Map servers ignore unknown keys; an unknown key that resembles a known one is a mistake.
+    given = document.value if isinstance(document.value, dict) else {}
+    others = [str(key) for key in given if not difflib.get_close_matches(str(key), KEYS, 1)]
+    nodes = document.mapping(*KEYS, *others, required=_REQUIRED)
+    places = nodes["places"].entries() if "places" in nodes else ()
+    return MapHeader(
+        nodes,
+        nodes["image"].text() if "image" in nodes else "",
+        nodes["resolution"].number(0.001, 10.0, 1.0) if "resolution" in nodes else 1.0,
+        _origin(nodes["origin"]) if "origin" in nodes else (0.0, 0.0, 0.0),
+        _occupancy(nodes),
+        {name.text(): place.pair() for name, place in places},
+    )
+
+
+def _origin(node: Node) -> tuple[float, float, float]:
+    numbers = [item.number() for item in node.sequence()]
+    if isinstance(node.value, list) and len(numbers) != 3:
+        node.wrong(f"{node.what} must be three numbers", "write [x, y, yaw] of the lower left corner")
+    return (numbers[0], numbers[1], numbers[2]) if len(numbers) == 3 else (0.0, 0.0, 0.0)
+
+
+def _occupancy(nodes: Mapping[str, Node]) -> tuple[int, ...]:
+    inverted = "negate" in nodes and _truth(nodes["negate"])
+    raw = "mode" in nodes and nodes["mode"].choice("trinary", "scale", "raw") == "raw"
+    occupied = nodes["occupied_thresh"].number(0.0, 1.0, 0.65) if "occupied_thresh" in nodes else 0.65
+    free = nodes["free_thresh"].number(0.0, 1.0, 0.25) if "free_thresh" in nodes else min(0.25, occupied)
+    if free > occupied:
+        nodes.get("free_thresh", nodes["occupied_thresh"]).wrong(
+            "'free_thresh' is more than 'occupied_thresh'",
+            "free pixels are the bright ones: write 0.25 and 0.65",
+        )
+
+    def percent(pixel: int) -> int:
+        if raw and pixel > 100:
+            return -1
+        dark = pixel / 100 if raw else (pixel if inverted else 255 - pixel) / 255
+        return 100 if dark > occupied else 0 if dark < free else -1
+
+    return tuple(percent(pixel) for pixel in range(256))
+
+
+def _truth(node: Node) -> bool:
+    """Return ``0`` or ``1``, as map_server writes it, or ``false`` or ``true``."""
+    return node.truth() if isinstance(node.value, bool) else node.number(0.0, 1.0) == 1.0
