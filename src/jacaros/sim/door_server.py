@@ -1,11 +1,8 @@
-"""The doors of the world in the graph: a service that moves each, and a topic that tells how it is."""
+"""The doors of the world in the graph: a service that moves each, and a topic with its state."""
 
-from collections.abc import Mapping
-from typing import Any
-
-from jacaros.ros.backend import Backend, Publisher, Service
-from jacaros.ros.errors import UnknownInterface
+from jacaros.ros.backend import Backend, Publisher
 from jacaros.ros.qos import QoS
+from jacaros.sim.switch_service import SwitchService
 from jacaros.sim.world_time import WorldTime
 
 _LATCHED = QoS(durability="transient_local", depth=1)
@@ -25,31 +22,25 @@ class DoorServer:
 
     def __init__(self, time: WorldTime, name: str, backend: Backend) -> None:
         self._time, self._name = time, name
-        self._told: bool | None = None
+        self._published: bool | None = None
         self._publisher: Publisher = backend.publisher(
             f"/doors/{name}/is_open", "std_msgs/msg/Bool", _LATCHED
         )
-        self._service: Service | None = None
-        try:
-            self._service = backend.service(f"/doors/{name}/open", "std_srvs/srv/SetBool", self._move)
-        except UnknownInterface:
-            backend.rosout("warn", f"door {name} cannot be moved: std_srvs/srv/SetBool is not known here")
+        self._service = SwitchService(time, backend, f"/doors/{name}/open", self._move)
 
-    def _move(self, request: Any) -> Mapping[str, Any]:
-        self._time.catch_up()
-        problem = self._time.world.move_door(self._name, bool(request.data))
+    def _move(self, opened: bool) -> str | None:
+        problem = self._time.world.move_door(self._name, opened)
         self.publish()
-        return {"success": problem is None, "message": problem or ""}
+        return problem
 
     def publish(self) -> None:
-        """Tell how the door is, if that is news."""
+        """Publish whether the door is open, if that has changed."""
         now = self._time.world.doors[self._name]
-        if now is not self._told:
-            self._told = now
+        if now is not self._published:
+            self._published = now
             self._publisher.publish(self._publisher.message(data=now))
 
     def close(self) -> None:
         """Leave the topic and the service."""
         self._publisher.close()
-        if self._service is not None:
-            self._service.close()
+        self._service.close()

@@ -2,18 +2,19 @@
 
 import math
 from collections.abc import Sequence
+from functools import partial
 from typing import cast
 
 from jacaros.clock import Clock, Timer
 from jacaros.ros.backend import Backend
 from jacaros.sim.door_server import DoorServer
 from jacaros.sim.faults.graph import FaultyGraph
-from jacaros.sim.faults.server import FaultServer
 from jacaros.sim.map_server import MapServer
 from jacaros.sim.navigation.grid import Grid
 from jacaros.sim.navigation.robot import RobotNavigation
 from jacaros.sim.robot.node import RobotNode
 from jacaros.sim.robot.on_graph import TICKS_PER_SECOND
+from jacaros.sim.switch_service import SwitchService
 from jacaros.sim.world import World
 from jacaros.sim.world_time import WorldTime
 
@@ -35,7 +36,7 @@ class SimNode:
         self.robots: list[RobotNode] = []
         self.navigation: list[RobotNavigation] = []
         self.doors: list[DoorServer] = []
-        self.faults: list[FaultServer] = []
+        self.faults: list[SwitchService] = []
         self._map: MapServer | None = None
         self._grid: Grid | None = None
         self._timer: Timer | None = None
@@ -58,7 +59,11 @@ class SimNode:
         prefixes = [robot.prefix for robot in self.robots]
         self._map = MapServer(self.backend, prefixes, self.grid, self.time.now)
         self.doors = [DoorServer(self.time, door, self.backend) for door in self.world.doors]
-        self.faults = [FaultServer(self.time, fault, self.backend) for fault in self.world.faults.by_name]
+        faults = self.world.faults
+        self.faults = [
+            SwitchService(self.time, self.backend, f"/faults/{name}", partial(faults.switch, name))
+            for name in faults.by_name
+        ]
         if self._faulty is not None:
             self._faulty.check()
         self._ticks = 0

@@ -120,6 +120,17 @@ class Faults:
             undo()
             self._tell(fault, "ends")
 
+    def switch(self, name: str, on: bool) -> str | None:
+        """Begin or end a fault; return why it cannot begin, or None.
+
+        Raises:
+            UsageError: the fault is unknown.
+        """
+        if on:
+            return self.begin(name)
+        self.end(name)
+        return None
+
     def _named(self, name: str) -> Fault:
         if name not in self.by_name:
             raise UsageError(f"there is no fault '{name}', only: {', '.join(self.by_name) or 'none'}")
