@@ -11,7 +11,8 @@ import hashlib
 import html
 import json
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from itertools import pairwise
 from operator import itemgetter
 from pathlib import Path
 from typing import Any
@@ -58,19 +59,18 @@ def _title(recording: Recording) -> str:
 
 
 def packed(recording: Recording) -> str:
-    """Return the records of a recording as the page holds them."""
+    """Return the records of a recording as the page holds them: a line of frames, then a line for each other record."""
     lines = "\n".join(
         json.dumps(record, separators=(",", ":"), ensure_ascii=False, default=str)
-        for record in records(recording)
+        for record in (frames(recording), *records(recording))
     )
     return base64.b64encode(gzip.compress(lines.encode("utf-8", "replace"), 9, mtime=0)).decode("ascii")
 
 
 def records(recording: Recording) -> Iterator[dict[str, Any]]:
-    """Yield the records of a recording in the order of time, as its file has them."""
+    """Yield the records of a recording but for the frames, in the order of time, as its file has them."""
     yield {"kind": "world", "version": _VERSION, "world": recording.world}
     moments = [
-        *((t, {"kind": "frame", "t": _short(t), "robots": rows}) for t, rows in recording.frames),
         *(
             (t, {"kind": "text", "t": _short(t), "agent": agent, "text": text})
             for t, agent, text in recording.texts
@@ -82,6 +82,38 @@ def records(recording: Recording) -> Iterator[dict[str, Any]]:
     ]
     for _, record in sorted(moments, key=itemgetter(0)):
         yield record
+
+
+def frames(recording: Recording) -> dict[str, Any]:
+    """Return the frames as columns of differences of whole numbers (ms, mm, mrad, tenths of a percent).
+
+    They are a tenth as large, compressed, as a record for each frame. A robot that was found late has shorter columns.
+    """
+    rows = [frame.robots for frame in recording.frames]
+    robots = []
+    for index in range(max(map(len, rows), default=0)):
+        x, y, yaw, battery, charging, touching = zip(
+            *(row[index] for row in rows if len(row) > index), strict=True
+        )
+        robots.append(
+            {
+                "x": _differences(x, 1000),
+                "y": _differences(y, 1000),
+                "yaw": _differences(yaw, 1000),
+                "battery": _differences(battery, 10),
+                "flags": [int(bool(c)) + 2 * int(bool(b)) for c, b in zip(charging, touching, strict=True)],
+            }
+        )
+    return {
+        "kind": "frames",
+        "t": _differences((frame.t for frame in recording.frames), 1000),
+        "robots": robots,
+    }
+
+
+def _differences(values: Iterable[float], scale: int) -> list[int]:
+    whole = [round(value * scale) for value in values]
+    return [after - before for before, after in pairwise([0, *whole])]
 
 
 def _short(t: float) -> float:

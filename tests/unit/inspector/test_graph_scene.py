@@ -12,7 +12,7 @@ import pytest
 from jacaros.clock import VirtualClock, run
 from jacaros.inspector.graph_scene import GraphScene
 from jacaros.inspector.map_drawing import can_be_drawn, map_drawing
-from jacaros.inspector.page import records
+from jacaros.inspector.page import frames, records
 from jacaros.inspector.picture import picture_svg
 from jacaros.inspector.recorder import Recorder
 from jacaros.inspector.recording import Recording
@@ -184,11 +184,12 @@ def test_a_world_that_is_known_late_is_recorded_all_the_same(tmp_path: Path) -> 
     assert lines[0] == {"kind": "world", "version": 1, "world": {}}
     recording = Recording.read(path)
     assert recording.robots == ["robot_0", "robot_1"]
-    shown = list(records(recording))
-    assert shown[0]["world"]["name"] == "late"
-    rows = [record["robots"] for record in shown if record["kind"] == "frame"]
-    assert rows[0] == (), "nothing was known yet"
-    assert [row[0] for row in rows[-1]] == [-1.0, 1.0]
+    shown = frames(recording)
+    assert next(records(recording))["world"]["name"] == "late"
+    for robot, x in zip(shown["robots"], (-1000, 1000), strict=True):
+        assert 0 < len(robot["x"]) < len(shown["t"]), "nothing was known at first"
+        assert robot["x"][0] == x
+        assert set(robot["x"][1:]) == {0}
     picture = picture_svg(recording)
     assert picture.count('class="robot"') == 2
     assert ">robot_1</text>" in picture

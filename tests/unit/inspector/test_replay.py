@@ -3,6 +3,7 @@
 import asyncio
 import base64
 import gzip
+import itertools
 import json
 import re
 import xml.etree.ElementTree as ElementTree
@@ -70,12 +71,14 @@ def unpacked(page: str) -> list[dict[str, Any]]:
 
 def test_the_page_holds_all_records_in_the_order_of_time() -> None:
     run = recording()
-    held = unpacked(replay_html(run))
+    columns, *held = unpacked(replay_html(run))
     assert held == json.loads(json.dumps(list(records(run))))
     assert held[0]["world"]["name"] == "house"
-    frames = [record for record in held if record["kind"] == "frame"]
-    assert [frame["t"] for frame in frames] == [frame.t for frame in run.frames]
-    assert frames[-1]["robots"][0][4] == 1, "charging at the end"
+    assert list(itertools.accumulate(columns["t"])) == [round(frame.t * 1000) for frame in run.frames]
+    (robot,) = columns["robots"]
+    xs = [round(frame.robots[0][0] * 1000) for frame in run.frames]
+    assert list(itertools.accumulate(robot["x"])) == xs
+    assert robot["flags"][-1] == 1, "charging at the end"
     (text,) = (record for record in held if record["kind"] == "text")
     assert (text["agent"], text["text"]) == ("cleaner", "</script><b>mop & vacuum</b>")
     times = [record.get("t", 0.0) for record in held]
@@ -107,7 +110,7 @@ def test_the_same_recording_gives_the_same_page() -> None:
 def test_a_recording_without_frames_still_makes_a_page() -> None:
     recorder = Recorder()
     recorder.world(World.load("empty").description.drawing())
-    assert [record["kind"] for record in unpacked(replay_html(recorder.recording))] == ["world"]
+    assert [record["kind"] for record in unpacked(replay_html(recorder.recording))] == ["frames", "world"]
 
 
 def test_modules_are_joined_in_the_order_of_their_imports(tmp_path: Path) -> None:
@@ -307,4 +310,52 @@ def test_a_world_may_have_any_name() -> None:
     page = replay_html(made)
     assert "<title>&lt;link rel=" in page
     assert "<script>alert" not in page
-    assert unpacked(page)[0]["world"]["name"] == made.world["name"]
+    assert unpacked(page)[1]["world"]["name"] == made.world["name"]
+
+
+@needs_chromium
+def test_what_can_be_shown_of_broken_records_is_shown(tmp_path: Path) -> None:
+    async def test(page: Page) -> None:
+        assert "hello" in await page.text("#log")
+        assert (await page.text("#notice")).startswith("1 record is not shown: goal: ")
+
+    recorder = Recorder()
+    recorder.event(1.0, "goal", {"agent": "a", "goal": "!go", "state": "failed", "why": 5})
+    recorder.text(3.0, "a", "hello")
+    shown(recorder.recording, tmp_path, test)
+
+
+@needs_chromium
+@pytest.mark.parametrize(("width", "height"), [(1400, 900), (900, 800), (390, 844)])
+def test_the_page_fits_its_window(tmp_path: Path, width: int, height: int) -> None:
+    async def test(page: Page) -> None:
+        await page.resize(width, height, mobile=width < 500)
+        await page.wait_for(f"innerWidth === {width}")
+        await page.wait_for("document.querySelector('#map canvas').width > 100")
+        assert await page.evaluate("document.documentElement.scrollWidth") <= width
+        play = await page.evaluate("document.querySelector('#play').getBoundingClientRect().bottom")
+        assert play <= height, "the controls are seen without scrolling"
+
+    shown(recording("two_robots"), tmp_path, test)
+
+
+@needs_chromium
+def test_everything_that_can_be_pressed_is_reached_by_the_tab_key(tmp_path: Path) -> None:
+    async def test(page: Page) -> None:
+        reached = set()
+        for _ in range(30):
+            await page.press("Tab")
+            reached.add(
+                await page.evaluate(
+                    "(document.activeElement.closest('[id]') ?? document.body).id + ' ' + document.activeElement.className"
+                )
+            )
+        places = {each.split()[0] for each in reached if each.strip()}
+        assert places >= {"theme", "map", "robots", "tab-agents", "agents", "log", "play", "scrub", "speed"}
+        unnamed = await page.evaluate(
+            "[...document.querySelectorAll('button, input, select')].filter((each) => each.checkVisibility()"
+            " && !each.innerText && !each.ariaLabel && !each.labels?.length).map((each) => each.outerHTML)"
+        )
+        assert unnamed == []
+
+    shown(recording("two_robots"), tmp_path, test)

@@ -1,4 +1,4 @@
-import { element, isDark, setText } from "./elements.js";
+import { isDark, setText } from "./elements.js";
 import { Goals } from "./goals.js";
 import { GoalsView } from "./goals_view.js";
 import { listenToKeys } from "./keys.js";
@@ -64,6 +64,7 @@ export function fragment() { return new URLSearchParams(location.hash.slice(1));
 class Page {
   constructor(parts) {
     Object.assign(this, parts);
+    this.line = "";
     this.isStale = true;
   }
 
@@ -103,6 +104,7 @@ class Page {
     }
     if (!world.empty) map.show(t);  // last: the others decide how much room is left for it
     this.summarise(t);
+    this.showNotice();
   }
 
   summarise(t) {
@@ -125,10 +127,15 @@ class Page {
     setText(document.getElementById("title"), title);
   }
 
-  /** Show a line about the page itself, such as a lost connection; "" hides it. */
+  /** Show a line about the page itself, such as a lost connection; "" removes it. */
   notice(text) {
-    const notice = document.getElementById("notice");
+    this.line = text;
+    this.showNotice();
+  }
+
+  showNotice() {
+    const text = [this.line, this.run.warning].filter(Boolean).join(" "), notice = document.getElementById("notice");
+    setText(notice, text);
     notice.hidden = !text;
-    notice.replaceChildren(element("span", "", text));
   }
 }

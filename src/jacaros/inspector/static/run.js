@@ -1,3 +1,6 @@
+const VERSION = 2;  // of recordings that this page knows
+const FAULTS = 1000;
+
 /**
  * The records of a run, dispatched to models.
  *
@@ -11,7 +14,15 @@ export class Run {
     this.count = 0;  // records so far
     this.over = false;  // the run has ended
     this.faults = [];  // what models could not take, in words
+    this.version = VERSION;  // of the recording
     this.listeners = new Set();
+  }
+
+  /** What users should know about the records: that some are not shown, in words; "" when all is well. */
+  get warning() {
+    if (this.version > VERSION) return `This recording is of a newer version (${this.version}). What this page does not know is not shown.`;
+    const { length } = this.faults;
+    return length ? `${length} ${length === 1 ? "record is" : "records are"} not shown: ${this.faults[0]}` : "";
   }
 
   add(record) { this.addAll([record]); }
@@ -28,6 +39,7 @@ export class Run {
     this.count += 1;
     if (t > this.end) this.end = t;
     if (event === "ended") this.over = true;
+    if (record.kind === "world") this.version = record.version ?? 1;
     for (const model of this.models) {
       try { model.add(t, event, data); } catch (error) { this.reject(event, error); }
     }
@@ -35,7 +47,7 @@ export class Run {
 
   /** One broken record must not hide the others. */
   reject(event, error) {
-    if (this.faults.length < 100) this.faults.push(`${event}: ${error.message}`);
+    if (this.faults.length < FAULTS) this.faults.push(`${event}: ${error.message}`);
   }
 
   /** Call `listener` after each batch of records; returns the function that ends this. */
