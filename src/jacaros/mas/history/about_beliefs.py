@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from jacaros.asl.slips import close_matches
-from jacaros.mas.history.chains import chain, source_line
+from jacaros.mas.history.chains import chain, shown, source_line
 from jacaros.mas.history.explanation import Explanation, Fact, seconds
 from jacaros.mas.history.past import Data, Past, of_agent
 from jacaros.mas.history.patterns import Pattern, name_of
@@ -23,7 +23,7 @@ def explain_belief(past: Past, question: str, about: str, agent: str = "") -> Ex
         return _unknown(past, question, pattern, agent)
     t, last = changes[-1]
     does = "came to believe" if last.get("op") == "+" else "stopped believing"
-    answer = f"{last['agent']} {does} `{last['belief']}` at {seconds(t)}"
+    answer = f"{last['agent']} {does} `{shown(last['belief'])}` at {seconds(t)}"
     facts = (*_step(past, t, last), *_before(changes))
     return Explanation(question, answer, t, facts, chain(past, last.get("cause") or 0))
 
@@ -43,7 +43,7 @@ def _step(past: Past, t: float, change: Data) -> Iterator[Fact]:
 def _before(changes: list[tuple[float, Data]]) -> Iterator[Fact]:
     for t, data in reversed(changes[:-1][-MOST_CHANGES:]):
         yield Fact(
-            "belief", f"before: {data.get('op')}{data.get('belief')} at {seconds(t)}", t, data["agent"]
+            "belief", f"before: {data.get('op')}{shown(data.get('belief'))} at {seconds(t)}", t, data["agent"]
         )
     left = len(changes) - 1 - MOST_CHANGES
     if left > 0:
@@ -65,7 +65,7 @@ def _meant(past: Past, pattern: Pattern) -> Iterator[Fact]:
         yield Fact("note", f"it is the conclusion of a rule: {rule}")
     same = [str(data["belief"]) for _, data in past.beliefs if name_of(str(data["belief"])) == pattern.name]
     if same:
-        yield Fact("note", f"there was `{same[-1]}`")
+        yield Fact("note", f"there was `{shown(same[-1])}`")
         return
     names: set[Any] = {name_of(str(data["belief"])) for _, data in past.beliefs}
     near = close_matches(pattern.name, sorted(names), 0.7)

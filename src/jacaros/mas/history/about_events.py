@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from jacaros.asl.slips import close_matches
-from jacaros.mas.history.chains import chain, place_of, plan_name, plan_text
+from jacaros.mas.history.chains import chain, place_of, plan_name, plan_text, shown
 from jacaros.mas.history.explanation import Explanation, Fact, seconds
 from jacaros.mas.history.past import Data, Past, of_agent
 from jacaros.mas.history.patterns import Pattern, name_of, unsigned
@@ -21,7 +21,7 @@ def explain_event(past: Past, question: str, about: str, agent: str = "") -> Exp
     if not found:
         return _never(past, question, about, pattern, agent)
     t, last = found[-1]
-    facts = [*candidates(past, last), *_outcome(past, t, last), *_earlier(len(found), agent)]
+    facts = [*candidates(past, last), *_outcome(past, t, last), *_earlier(len(found))]
     return Explanation(question, _headline(past, t, last), t, tuple(facts), chain(past, last["id"]))
 
 
@@ -32,7 +32,7 @@ def explain_deliberation(past: Past, question: str, t: float, deliberation: Data
 
 
 def _headline(past: Past, t: float, deliberation: Data) -> str:
-    agent, trigger = deliberation["agent"], deliberation["trigger"]
+    agent, trigger = deliberation["agent"], shown(deliberation["trigger"])
     plan = past.plan(agent, deliberation.get("chosen"))
     if plan:
         file, line = place_of(plan)
@@ -78,10 +78,10 @@ def _outcome(past: Past, t: float, deliberation: Data) -> Iterator[Fact]:
             return
 
 
-def _earlier(count: int, agent: str) -> Iterator[Fact]:
+def _earlier(count: int) -> Iterator[Fact]:
     if count > 1:
         times = "once" if count == 2 else f"{count - 1} times"
-        yield Fact("note", f"it happened {times} before{'' if agent else ' (all agents)'}; ask with --at T")
+        yield Fact("note", f"it happened {times} before; ask with --at T")
 
 
 def _never(past: Past, question: str, about: str, pattern: Pattern, agent: str) -> Explanation:
@@ -89,7 +89,9 @@ def _never(past: Past, question: str, about: str, pattern: Pattern, agent: str) 
     changed = [] if pattern.kind else _changes(past, pattern, agent)
     if changed:
         t, data = changed[-1]
-        answer = f"{data['agent']} has no relevant plan for `{data['op']}{data['belief']}` at {seconds(t)}"
+        answer = (
+            f"{data['agent']} has no relevant plan for `{data['op']}{shown(data['belief'])}` at {seconds(t)}"
+        )
         cause = chain(past, data.get("cause") or 0)
         return Explanation(question, answer, t, tuple(_near_plans(past, pattern, str(data["agent"]))), cause)
     told = [each for each in past.goals if pattern.kind == "!" and pattern.fits(str(each[1].get("goal", "")))]
@@ -123,7 +125,7 @@ def _hints(past: Past, pattern: Pattern, agent: str) -> Iterator[Fact]:
     near = close_matches(pattern.name, sorted(known_names(past) - {pattern.name}), 0.75)
     if near:
         yield Fact("note", f"did you mean `{near[0]}`?")
-    seen = sorted({str(data.get("trigger")) for _, data in past.deliberations if _is_near(data, pattern)})
+    seen = sorted({shown(data.get("trigger")) for _, data in past.deliberations if _is_near(data, pattern)})
     if seen:
         yield Fact("note", f"events of that name: {', '.join(f'`{each}`' for each in seen[:MOST_PLANS])}")
 

@@ -5,15 +5,12 @@ from collections.abc import Iterator
 
 from jacaros.mas.history.chains import chain
 from jacaros.mas.history.explanation import Explanation, Fact, seconds
+from jacaros.mas.history.interruptions import AT_ONCE, Command, event_fact, events_before, interrupting_step
 from jacaros.mas.history.past import Data, Past
 
 _NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e-?\d+)?\b")
-AT_ONCE = 0.2
-"""Seconds before a stop in which a change of goals is named with it."""
 MOST_FACTS = 8
 """Facts beside the chain that an answer names."""
-
-Command = tuple[float, Data]
 
 
 def explain_stop(past: Past, question: str, agent: str = "", robot: str = "") -> Explanation:
@@ -27,9 +24,23 @@ def explain_stop(past: Past, question: str, agent: str = "", robot: str = "") ->
         answer = f"no command to stop until {seconds(past.end)}; the last command is `{last['what']}` at {seconds(t)}"
         return Explanation(question, answer, t, tuple(_world(past, t, robot)), chain(past, last["id"]))
     t, link = stop
-    facts = [*_ended_operation(past, link), *_changes(past, t, agent), *_world(past, t, robot)]
     answer = f"{robot or 'the robot'} stopped at {seconds(t)}: `{link['what']}`"
-    return Explanation(question, answer, t, tuple(facts[:MOST_FACTS]), chain(past, link["id"]))
+    if past.exit_code is not None and past.end - t <= AT_ONCE:
+        ended = Fact("note", f"the run ended at {seconds(past.end)}; robots are stopped then", past.end)
+        return Explanation(question, answer, t, (ended,), chain(past, link["id"]))
+    handled, goals = events_before(past, stop, agent), list(_goals_over(past, t, agent))
+    events = (event_fact(past, *each) for each in handled)
+    facts = [*_ended_operation(past, link), *events, *goals, *_world(past, t, robot)]
+    because = chain(past, link["id"])
+    if handled and goals and not any(fact.kind in ("operation", "act", "event") for fact in because):
+        # An operation that pauses publishes in the turn of the message that made its agent suspend it.
+        because = (
+            because[0],
+            *goals,
+            *interrupting_step(past, handled[-1][1]),
+            *chain(past, handled[-1][1]["id"]),
+        )
+    return Explanation(question, answer, t, tuple(facts[:MOST_FACTS]), because)
 
 
 def explain_command(past: Past, question: str, about: str = "", robot: str = "") -> Explanation:
@@ -109,29 +120,27 @@ def _ended_operation(past: Past, command: Data) -> Iterator[Fact]:
             return
 
 
-def _changes(past: Past, t: float, agent: str) -> Iterator[Fact]:
-    """What became of goals when the robot stopped, and the events that were handled just before."""
+def _goals_over(past: Past, t: float, agent: str) -> Iterator[Fact]:
+    """The goals that were suspended or ended at that time, one line for each intention."""
+    ended: dict[object, list[tuple[float, Data]]] = {}
     for at, data in past.goals:
-        ended = data.get("state") in ("dropped", "suspended", "failed")
-        if t - AT_ONCE <= at <= t + AT_ONCE and ended and agent in ("", data.get("agent")):
-            why = f": {data['why']}" if data.get("why") else ""
-            yield Fact(
-                "goal", f"{data['goal']} {data['state']} at {seconds(at)}{why}", at, str(data["agent"])
-            )
-    for at, data in past.deliberations:
-        handled = data.get("chosen") is not None and not _is_goal(data)
-        if t - AT_ONCE <= at <= t and handled and agent in ("", data.get("agent")):
-            yield Fact("event", f"{data['trigger']} handled at {seconds(at)}", at, str(data["agent"]))
-
-
-def _is_goal(deliberation: Data) -> bool:
-    return "!" in str(deliberation["trigger"])[:2]
+        over = data.get("state") in ("dropped", "suspended", "failed") and agent in ("", data.get("agent"))
+        if over and abs(at - t) <= AT_ONCE:
+            ended.setdefault((data.get("agent"), data.get("intention"), data["state"]), []).append((at, data))
+    for goals in ended.values():
+        at, data = goals[0]
+        count = len(goals) - 1
+        more = f" with {count} goal{'s' if count > 1 else ''} above it" if count else ""
+        why = f": {data['why']}" if data.get("why") else ""
+        yield Fact(
+            "goal", f"{data['goal']}{more} {data['state']} at {seconds(at)}{why}", at, str(data["agent"])
+        )
 
 
 def _world(past: Past, t: float, robot: str) -> Iterator[Fact]:
     """What the world did to the robot at that time."""
     for at, event, data in past.world:
-        if abs(at - t) <= AT_ONCE and robot in ("", data.get("robot")):
+        if event != "battery" and abs(at - t) <= AT_ONCE and robot in ("", data.get("robot")):
             yield Fact("note", f"{data.get('robot')}: {event} at {seconds(at)}", at)
 
 

@@ -5,7 +5,7 @@ from pathlib import PurePath
 
 from jacaros.errors import UsageError
 from jacaros.mas.history.about_events import explain_event
-from jacaros.mas.history.chains import chain, is_written, place_of, plan_name, plan_text
+from jacaros.mas.history.chains import chain, is_written, place_of, plan_name, plan_text, shown
 from jacaros.mas.history.explanation import Explanation, Fact, seconds
 from jacaros.mas.history.past import Data, Past, of_agent
 
@@ -42,7 +42,7 @@ def explain_plan(past: Past, question: str, about: str, agent: str = "") -> Expl
             question, f"{what} was never considered", None, (reason, *never.facts), never.because
         )
     t, data, how = considered[-1]
-    answer = f"{what} {_what_happened(how)} for `{data['trigger']}` at {seconds(t)}"
+    answer = f"{what} {_what_happened(how)} for `{shown(data['trigger'])}` at {seconds(t)}"
     facts = (*_reasons(past, name, data, plan, how), *_counts(considered))
     return Explanation(question, answer, t, facts, chain(past, data["id"]))
 

@@ -3,10 +3,12 @@
 from collections.abc import Iterator
 from itertools import islice
 
-from jacaros.mas.history.chains import chain, source_line
+from jacaros.mas.history.chains import chain, shown, source_line
 from jacaros.mas.history.explanation import Explanation, Fact, seconds
 from jacaros.mas.history.past import Data, Past
 
+MOST_GOALS = 5
+"""Goals of a stack that are named."""
 MOST_INTENTIONS = 20
 """Intentions that an answer names."""
 
@@ -32,11 +34,16 @@ def _intentions(past: Past, agent: str) -> Iterator[Fact]:
         top = stack[-1] if stack else {}
         file, line = str(top.get("file") or ""), int(top.get("line") or 0)
         step = str(top.get("step") or "") or source_line(past, file, line)
-        goals = " > ".join(str(each.get("goal", "")) for each in stack)
+        goals = " > ".join(_short([shown(each.get("goal", "")) for each in stack]))
         since = data.get("since")
         time = t if since is None else float(since)
         told = f"intention {number}{f', {goals},' if goals else ''} {_state(data)} since {seconds(time)}"
         yield Fact("intention", f"{told}{f', in `{step}`' if step else ''}", time, name, file, line)
+
+
+def _short(goals: list[str]) -> list[str]:
+    """Goals for people; of a deep stack only the first and the last ones."""
+    return goals if len(goals) <= MOST_GOALS else [*goals[:2], "...", *goals[-2:]]
 
 
 def _state(data: Data) -> str:
@@ -73,7 +80,7 @@ def _why_idle(past: Past, agent: str, last: tuple[float, Data] | None) -> str:
         return f"something happens: {len(running)} intentions run at {seconds(past.end)}"
     if _open(past, agent):
         return f"every open intention of {agent or 'all agents'} waits at {seconds(past.end)}"
-    when = "" if last is None else f"; the last event was `{last[1]['trigger']}` at {seconds(last[0])}"
+    when = "" if last is None else f"; the last event was `{shown(last[1]['trigger'])}` at {seconds(last[0])}"
     who = f"{agent} has neither a goal nor" if agent else "no agent has a goal or"
     return f"{who} an event at {seconds(past.end)}{when}"
 
@@ -107,7 +114,7 @@ def _silence(past: Past, last: tuple[float, Data] | None) -> Iterator[Fact]:
     if last is not None and last[1].get("chosen") is None:
         yield Fact(
             "event",
-            f"the last event `{last[1]['trigger']}` had no applicable plan",
+            f"the last event `{shown(last[1]['trigger'])}` had no applicable plan",
             last[0],
             last[1]["agent"],
         )

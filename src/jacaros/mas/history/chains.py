@@ -1,13 +1,21 @@
 """Chains of causes as lines of an answer: command, operation, step of a plan, event, percept, message."""
 
+import re
 from collections.abc import Iterator
 from typing import Any
 
 from jacaros.mas.history.explanation import Fact
 from jacaros.mas.history.past import Data, Past
 
+_UNNAMED = re.compile(r"\b_\d+\b")
+_OF_PERCEPTS = re.compile(r"\[artifact_id\([^\]]*source\(percept\)[^\]]*\]")
+
 LONGEST_CHAIN = 40
 """Links that are shown; of a longer chain the ones next to the effect and the first one."""
+
+
+LONGEST_SAMPLE = 100
+"""Characters of a message that are shown."""
 
 
 def chain(past: Past, number: Any) -> tuple[Fact, ...]:
@@ -29,7 +37,9 @@ def _event(past: Past, t: float, link: Data) -> Fact:
     agent = str(link.get("agent", ""))
     plan = past.plan(agent, link.get("chosen"))
     how = f", handled by {plan_name(plan)}" if plan else ""
-    return Fact("event", f"{link.get('trigger', link.get('what', ''))}{how}", t, agent, *place_of(plan))
+    return Fact(
+        "event", f"{shown(link.get('trigger', link.get('what', '')))}{how}", t, agent, *place_of(plan)
+    )
 
 
 def _act(past: Past, t: float, link: Data) -> Fact:
@@ -56,7 +66,8 @@ def _end(operation: Any) -> str:
 
 def _sample(_past: Past, t: float, link: Data) -> Fact:
     what, topic = str(link.get("what", "")), str(link.get("topic") or "")
-    return Fact("sample", what if topic in what else f"{topic}: {what}", t)
+    told = what if topic in what else f"{topic}: {what}"
+    return Fact("sample", told if len(told) <= LONGEST_SAMPLE else f"{told[: LONGEST_SAMPLE - 3]}...", t)
 
 
 def _message(_past: Past, t: float, link: Data) -> Fact:
@@ -93,7 +104,12 @@ def is_written(label: str) -> bool:
 def plan_text(plan: Data) -> str:
     """Trigger and context of a plan."""
     context = plan.get("context")
-    return f"{plan.get('trigger', '?')}{f' : {context}' if context else ''}"
+    return shown(f"{plan.get('trigger', '?')}{f' : {context}' if context else ''}")
+
+
+def shown(text: Any) -> str:
+    """A recorded text with `_` for unnamed variables and without the annotations that every percept has."""
+    return _OF_PERCEPTS.sub("[source(percept)]", _UNNAMED.sub("_", str(text)))
 
 
 def place_of(plan: Data) -> tuple[str, int]:
@@ -102,6 +118,9 @@ def place_of(plan: Data) -> tuple[str, int]:
 
 
 def source_line(past: Past, file: str, line: int) -> str:
-    """The text of a line of a program, without blanks around it; empty if it is unknown."""
+    """The code of a line of a program, without the arrow before it and the sign behind it; empty if it is unknown."""
     lines = past.sources.get(file, [])
-    return lines[line - 1].strip().removesuffix(";") if 0 < line <= len(lines) else ""
+    if not 0 < line <= len(lines):
+        return ""
+    code = lines[line - 1].partition("//")[0].strip()
+    return code.removeprefix("<-").strip().rstrip(";.")

@@ -35,6 +35,9 @@ FORMS = (
 )
 """The forms of questions, and what each asks."""
 
+MOST_NAMES = 12
+"""Names that the error of an unknown question lists."""
+
 _PLAN = re.compile(r"@\w+|[\w./\\-]+\.asl:\d+")
 _EVENT = re.compile(r"(?:^|(?<=[\s`'\"]))(?:[+\-]?[!?]|[+\-^])(?=~?[a-z_'])")
 _LITERAL = re.compile(r"~?[a-z]\w*(?=\()|(?:(?<=belief\s)|(?<=changed\s))~?[a-z]\w*")
@@ -83,8 +86,8 @@ class Question:
     about: str = ""
 
 
-def read_question(written: str) -> Question:
-    """Understand a question.
+def read_question(written: str, known: Iterable[str] = ()) -> Question:
+    """Understand a question; *known* names are suggested if it is not understood.
 
     Raises:
         UsageError: it has none of the `FORMS`; the text lists them.
@@ -103,10 +106,15 @@ def read_question(written: str) -> Question:
     words = asked.split()
     if words[:1] == ["plan"] and len(words) > 1:
         return Question(written, "plan", " ".join(words[1:]))
+    if asked.startswith("belief(") and asked.endswith(")"):
+        asked = f"belief {asked.removeprefix('belief(')[:-1]}"
     found = _LITERAL.search(asked)
     if found is not None:
         return Question(written, "belief", literal_at(asked, found.start()))
-    return _of_words(written, words)
+    question = _of_words(written, words)
+    if question is None:
+        raise unknown_question(written, known)
+    return question
 
 
 def literal_at(text: str, start: int) -> str:
@@ -125,7 +133,7 @@ def literal_at(text: str, start: int) -> str:
     return text[start:]
 
 
-def _of_words(written: str, words: list[str]) -> Question:
+def _of_words(written: str, words: list[str]) -> Question | None:
     low = [word.lower().strip(",;:") for word in words]
     for kind, known in _WORDS.items():
         at = next((index for index, word in enumerate(low) if word in known), None)
@@ -135,17 +143,23 @@ def _of_words(written: str, words: list[str]) -> Question:
     left = [word for word in words if word.lower() not in _FILLERS]
     if len(left) == 1 and _STARTS_NAME.match(left[0]):
         return Question(written, "name", left[0])
-    raise unknown_question(written)
+    return None
 
 
 def unknown_question(written: str, known: Iterable[str] = ()) -> UsageError:
     """The error of a question that is not understood; *known* are names that can be asked for."""
-    names = {word for words in _WORDS.values() for word in words}
+    words = {word for each in _WORDS.values() for word in each}
+    names = sorted(set(known))
     last = written.strip(" ?`'\"").split()[-1:] or [""]
-    near = close_matches(last[0].lstrip("+-!?"), sorted({*names, *known}), 0.7)
+    near = close_matches(last[0].lstrip("+-!?"), sorted({*words, *names}), 0.7)
     lines = [f"error: unknown question: `{written}`"]
     if near:
         lines.append(f"  = help: did you mean `{near[0]}`?")
+    if names:
+        more = ", ..." if len(names) > MOST_NAMES else ""
+        lines.append(
+            f"  = help: events, goals and beliefs of this run: {', '.join(names[:MOST_NAMES])}{more}"
+        )
     lines.append("  = help: ask one of")
     width = max(len(form) for form, _ in FORMS)
     lines += [f"      {form:{width}}  {what}" for form, what in FORMS]

@@ -29,8 +29,8 @@ def explain(
     Raises:
         UsageError: the question is not understood, or names a plan that does not exist.
     """
-    asked = read_question(question)
     past = Past.of(records, at)
+    asked = read_question(question, known_names(past))
     words = question.strip(" ?").split()
     agent = agent or next((word for word in words if word in past.agents), "")
     robot = robot or next((word for word in words if word in past.robots), "")
@@ -66,6 +66,10 @@ def _named(past: Past, asked: Question, agent: str) -> Question:
         return Question(asked.written, "belief", name)
     if any(name_of(str(data.get("goal", ""))) == name for _, data in past.goals):
         return Question(asked.written, "event", f"!{name}")
+    if any(
+        str(each.data.get("operation", "")).partition("(")[0] == name for each in past.operations.values()
+    ):
+        return Question(asked.written, "operation", name)
     labels = {str(plan.get("label") or "") for _, plan in past.plans(agent)}
     if name in labels:
         return Question(asked.written, "plan", f"@{name}")

@@ -4,7 +4,7 @@ import json
 from typing import Any
 
 import pytest
-from guard_story import RECORDS, event, plan
+from guard_story import PLANS, RECORDS, cause, event, plan
 
 from jacaros.errors import UsageError
 from jacaros.mas.history.explanation import Explanation
@@ -27,7 +27,7 @@ def test_a_stop_is_traced_back_to_the_message(question: str) -> None:
     act, handled = answer.because[2], answer.because[3]
     assert (
         act.written()
-        == "guard: step `+battery(B) : limit(L) & B < L <- .drop_intention(patrol(_)); stop.` of @low (guard.asl:8)"
+        == "guard: step `+battery(B) : limit(L) & B < L <- .drop_intention(patrol(_)); stop` of @low (guard.asl:8)"
     )
     assert handled.written() == "guard: +battery(12), handled by @low (guard.asl:7)"
     assert "!patrol(kitchen) dropped at 9.000 s" in answer.text()
@@ -187,7 +187,7 @@ def test_a_belief_that_a_step_changed() -> None:
     }
     answer = explain([*RECORDS, (13.0, "belief", change)], "belief seen(_)")
     assert answer.facts[0].written() == (
-        "the step `+alarm(T) : zones(T) <- .print(T).` of intention 2 did it (guard.asl:10)"
+        "the step `+alarm(T) : zones(T) <- .print(T)` of intention 2 did it (guard.asl:10)"
     )
 
 
@@ -256,3 +256,60 @@ def test_a_chain_that_is_a_circle_ends() -> None:
         (1.0, "cause", {"id": 2, "parent": 1, "kind": "operation", "what": "go", "at": 1.0}),
     ]
     assert kinds(explain(records, "command")) == ["command", "operation"]
+
+
+def test_a_stop_by_a_suspended_goal_names_the_step_and_the_event() -> None:
+    pause = plan(9, "p__9", "+near(_7)", "", 8)
+    cancelled = [each for each in RECORDS if each[0] < 5.0]
+    records = [
+        *cancelled,
+        (5.0, "program", {"agent": "guard", "plans": [*PLANS, pause], "rules": []}),
+        cause(5.0, 50, 0, "sample", "/scan", topic="/scan"),
+        cause(5.0, 51, 50, "property", "near(2)"),
+        event(5.0, 52, 51, "+near(2)", 9, intention=5),
+        (
+            5.0,
+            "goal",
+            {"agent": "guard", "goal": "!patrol(kitchen)", "state": "suspended", "id": 1, "intention": 1},
+        ),
+        (
+            5.0,
+            "goal",
+            {"agent": "guard", "goal": "!visit(_3)", "state": "suspended", "id": 2, "intention": 1},
+        ),
+        cause(5.0, 53, 50, "command", "/cmd_vel", topic="/cmd_vel"),
+        (9.0, "belief", {"agent": "guard", "op": "+", "belief": "late[source(self)]"}),
+    ]
+    answer = explain(records, "stopped")
+    assert kinds(answer) == ["command", "goal", "act", "event", "property", "sample"]
+    assert answer.because[1].text == "!patrol(kitchen) with 1 goal above it suspended at 5.000 s"
+    assert (
+        answer.because[2].written() == "guard: step `.drop_intention(patrol(_))` of `+near(_)` (guard.asl:8)"
+    )
+
+
+def test_a_stop_at_the_end_of_the_run_is_no_decision() -> None:
+    records = [
+        *(each for each in RECORDS if each[0] < 5.0),
+        cause(6.0, 50, 3, "command", "/cmd_vel", topic="/cmd_vel"),
+        (6.0, "ended", {"code": 0}),
+    ]
+    assert [fact.text for fact in explain(records, "stopped").facts] == [
+        "the run ended at 6.000 s; robots are stopped then"
+    ]
+
+
+def test_unnamed_variables_and_annotations_of_percepts_are_not_shown() -> None:
+    belief = (
+        'battery(7)[artifact_id(cobj_5),percept_type(obs_prop),source(percept),workspace("/main",cobj_1)]'
+    )
+    records = [(1.0, "belief", {"agent": "guard", "op": "+", "belief": belief})]
+    assert (
+        explain(records, "battery").answer == "guard came to believe `battery(7)[source(percept)]` at 1.000 s"
+    )
+    records = [event(1.0, 1, 0, "+!find(_17,a)", None)]
+    assert explain(records, "!find(_,a)").answer == "guard has no relevant plan for `+!find(_,a)` at 1.000 s"
+
+
+def test_a_lone_word_may_be_an_operation() -> None:
+    assert ask("go").answer.startswith("go(kitchen) of /main/wheels began")

@@ -1,0 +1,59 @@
+"""The events that interrupted what a robot did: handled just before it stopped."""
+
+import re
+from collections.abc import Iterator
+
+from jacaros.mas.history.chains import place_of, plan_name, shown
+from jacaros.mas.history.explanation import Fact, seconds
+from jacaros.mas.history.past import Data, Past
+from jacaros.mas.history.questions import literal_at
+
+AT_ONCE = 0.2
+"""Seconds before a stop in which events and changes of goals are named with it."""
+_INTERRUPTS = re.compile(r"\.(?=(?:suspend|drop_\w+|fail_goal|succeed_goal)\b)")
+
+Command = tuple[float, Data]
+"""When a message was published, and its link."""
+
+
+def events_before(past: Past, stop: Command, agent: str = "") -> list[tuple[float, Data]]:
+    """The events of beliefs that agents handled just before a stop; those of the same message, if there are any."""
+    t, link = stop
+    events = [
+        (at, data)
+        for at, data in past.deliberations
+        if t - AT_ONCE <= at <= t and data.get("chosen") is not None and _is_of(data, agent)
+    ]
+    roots = {each["id"] for _, each in past.chain(link["id"])}
+    related = [each for each in events if any(other["id"] in roots for _, other in past.chain(each[1]["id"]))]
+    return related or events
+
+
+def _is_of(deliberation: Data, agent: str) -> bool:
+    return "!" not in str(deliberation["trigger"])[:2] and agent in ("", deliberation.get("agent"))
+
+
+def event_fact(past: Past, t: float, deliberation: Data) -> Fact:
+    """An event that was handled, with its plan."""
+    agent = str(deliberation["agent"])
+    plan = past.plan(agent, deliberation["chosen"])
+    handled = f"{shown(deliberation['trigger'])} handled at {seconds(t)} with {plan_name(plan)}"
+    return Fact("event", handled, t, agent, *place_of(plan))
+
+
+def interrupting_step(past: Past, deliberation: Data) -> Iterator[Fact]:
+    """The step of a chosen plan that suspends or drops intentions, if it has exactly one."""
+    agent = str(deliberation["agent"])
+    plan = past.plan(agent, deliberation["chosen"])
+    file, first = place_of(plan)
+    lines = past.sources.get(file, [])
+    numbered = enumerate(lines[first - 1 : int(plan.get("end") or first)], first)
+    code = ((number, line.split("//")[0]) for number, line in numbered)
+    found = [
+        (number, f".{literal_at(line, match.end())}")
+        for number, line in code
+        for match in _INTERRUPTS.finditer(line)
+    ]
+    if len(found) == 1:
+        number, step = found[0]
+        yield Fact("act", f"step `{step}` of {plan_name(plan)}", None, agent, file, number)
