@@ -1,5 +1,6 @@
-"""What `make demo` shows: the patrol on the embedded world, its summary, and where the replay is."""
+"""What `make demo` shows: the patrol on the embedded world, its summary, and its page."""
 
+import contextlib
 import shlex
 import subprocess
 import sys
@@ -32,7 +33,16 @@ def main() -> int:
     took = time.perf_counter() - began
     if code == 0:
         summarise(Recording.read(ROOT / RECORD), took)
+        if sys.stdout.isatty():
+            show()
     return code
+
+
+def show() -> None:
+    """Serve the page of the run until Ctrl+C; the last lines are its address and how to end it."""
+    print(f"\n$ jacaros view {RECORD}\n", flush=True)
+    with contextlib.suppress(KeyboardInterrupt):
+        subprocess.run([str(Path(sys.executable).parent / "jacaros"), "view", RECORD], cwd=ROOT, check=False)
 
 
 def summarise(recording: Recording, took: float) -> None:

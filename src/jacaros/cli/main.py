@@ -24,6 +24,7 @@ COMMANDS = {
     "check": ("jacaros.cli.check", "Tell what is wrong in programs, projects and mappings."),
     "fmt": ("jacaros.cli.fmt", "Lay programs out in one style."),
     "compile": ("jacaros.cli.compile", "Show the Python code that is made of a program."),
+    "view": ("jacaros.cli.view", "Show a recorded run on a page in the browser."),
     "why": ("jacaros.cli.why", "Explain why something happened in a recorded run, or did not."),
     "test": ("jacaros.cli.test", "Run the tests of agent programs."),
     "sim": ("jacaros.cli.sim", "Run a robot world as a ROS node of its own."),

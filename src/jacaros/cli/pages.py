@@ -1,9 +1,10 @@
-"""The live page of a run, on the command line: where it is, and opening it in the browser."""
+"""Pages on the command line: where they are, and opening them in the browser."""
 
 import os
 import sys
 import threading
 import webbrowser
+from collections.abc import Callable
 
 from jacaros.cli.outputs import LOOPBACK, Outputs
 from jacaros.inspector.live.run_view import Place, RunView
@@ -19,16 +20,16 @@ def serve_pages(mas: System, outputs: Outputs, console: Console) -> RunView:
     """
     place = Place(outputs.view_address, outputs.view_port, outputs.view_token)
     view = RunView(mas, place)
-    tell_address(view.address, place.address, console)
+    tell_address(view.address, place.address, console.log)
     view.awaited = open_page(view.address)
     return view
 
 
-def tell_address(page: str, address: str, console: Console) -> None:
+def tell_address(page: str, address: str, log: Callable[[str, str], object]) -> None:
     """Print where a page is, and what it lets others do."""
-    console.log(f"view: {page}")
+    log(f"view: {page}", "info")
     if address not in (LOOPBACK, "localhost", "::1"):
-        console.log(
+        log(
             f"warning: all machines that reach {address} and know the token can see everything in this run, the programs "
             "included, and can command its agents and robots; the connection is not encrypted",
             "warning",

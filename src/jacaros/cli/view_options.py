@@ -7,7 +7,7 @@ import click
 
 from jacaros.cli.outputs import LOOPBACK
 
-place_options = (
+_PLACE = (
     click.option(
         "--view-port",
         type=click.IntRange(0, 65535),
@@ -31,13 +31,18 @@ place_options = (
         help="Token in the address of the page, at least 16 characters (default: random).",
     ),
 )
-"""Where the page is served."""
+
+
+def place_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Give a command the options that say where a page is served."""
+    for option in reversed(_PLACE):
+        command = option(command)
+    return command
 
 
 def view_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """Give a command the options ``--view`` and `place_options`; its class must be `ViewCommand`."""
-    for option in reversed(place_options):
-        command = option(command)
+    command = place_options(command)
     return click.option(
         "--view",
         type=click.Choice(["page", "terminal"]),

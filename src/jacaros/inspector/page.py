@@ -39,7 +39,7 @@ def write_replay(recording: Recording, path: str | Path, title: str | None = Non
 
 def replay_html(recording: Recording, title: str | None = None) -> str:
     """Return the text of the page."""
-    shown = html.escape(title or _title(recording))
+    shown = html.escape(title or title_of(recording))
     style, script = (STATIC / "page.css").read_text(encoding="utf-8"), bundle(STATIC, "recorded")
     policy = f"default-src 'none'; img-src data:; script-src {_hash(script)}; style-src {_hash(style)}"
     parts = {
@@ -53,7 +53,8 @@ def replay_html(recording: Recording, title: str | None = None) -> str:
     return _PLACES.sub(lambda found: parts[found[0].partition(" ")[0].partition(">")[0]], page)
 
 
-def _title(recording: Recording) -> str:
+def title_of(recording: Recording) -> str:
+    """Return the name of the project, or else of the world."""
     names = (data.get("name") for _, kind, data in recording.events if kind == "run")
     return str(next(names, None) or recording.world.get("name") or "A run")
 

@@ -2,8 +2,8 @@
 
 import asyncio
 from collections import deque
+from typing import Protocol
 
-from jacaros.inspector.live.past import Past
 from jacaros.inspector.live.records import LiveRecord, json_text
 
 QUEUED = 10_000
@@ -12,6 +12,13 @@ PIECE = 400
 """Records in one message: a few milliseconds to make text of."""
 AGAIN = 1_000
 """Records that a page receives again, beside the state, after it was too slow."""
+
+
+class Past(Protocol):
+    """What happened before a page came (`jacaros.inspector.live.past.Past`)."""
+
+    def records(self, last: int | None = None) -> list[LiveRecord]:
+        """Return the records of all that is known, or of a state and the *last* records after it."""
 
 
 class Delivery:

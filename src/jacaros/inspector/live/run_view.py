@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from jacaros.inspector.live.access import LOOPBACK, Access
 from jacaros.inspector.live.artifact_commands import artifact_commands
-from jacaros.inspector.live.commands import Commands
+from jacaros.inspector.live.commands import Commands, Given, number_in, text_in
 from jacaros.inspector.live.live_view import LiveView
 from jacaros.inspector.live.mind_commands import mind_commands
 from jacaros.inspector.live.server import GOODBYE, LiveServer, bound_socket
@@ -63,6 +63,7 @@ class RunView:
         system, add = self._system, self.commands.add_changes
         add(mind_commands(system))
         add(artifact_commands(system))
+        self.commands.add({"why": self._why})
         # The world may come into being later: pages that are opened then can change it.
         system.ros.watch_world(lambda world: add(world_commands(system, world)))
         self._serving = asyncio.create_task(self._serve())
@@ -84,6 +85,11 @@ class RunView:
             # The run has ended, or is interrupted.
             wait = self.awaited and self._server.visitors == 0 and self._system.exit_code in (0, 1)
             await self._server.close(FIRST_VISIT if wait else GOODBYE)
+
+    def _why(self, given: Given) -> str:
+        """Answer a question about the run so far, in lines."""
+        at = number_in(given, "at") if given.get("at") is not None else None
+        return self._system.answer(text_in(given, "question"), at).text()
 
     def _note(self, what: str) -> None:
         self._system.history().record("intervention", {"what": what})

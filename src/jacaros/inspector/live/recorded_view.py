@@ -1,0 +1,54 @@
+"""A recorded run on the page of live runs, without a run."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from jacaros.inspector.live.commands import Commands, Given, number_in, text_in
+from jacaros.inspector.live.delivery import Delivery
+from jacaros.inspector.live.live_view import VERSION
+from jacaros.inspector.live.records import LiveRecord
+from jacaros.inspector.page import records, title_of
+from jacaros.inspector.recording import Recording
+from jacaros.mas.history.why import explain
+
+
+class RecordedView:
+    """Shows a recording to pages, see `jacaros.inspector.live.server.Source`.
+
+    Args:
+        recording: the recording.
+        title: of the page; the name of the project, or of the world, by default.
+    """
+
+    def __init__(self, recording: Recording, title: str | None = None) -> None:
+        self._recording = recording
+        self._records = [LiveRecord(number, each) for number, each in enumerate(records(recording))]
+        self._commands = Commands()
+        self._commands.add({"why": self._why})
+        self._hello: dict[str, Any] = {
+            "kind": "hello",
+            "version": VERSION,
+            "title": title or title_of(recording),
+            "live": False,
+            "can": self._commands.names,
+        }
+
+    def records(self, last: int | None = None) -> list[LiveRecord]:
+        """Return all records, however many are asked for: nothing comes after them."""
+        del last
+        return self._records
+
+    def begin(self) -> Delivery:
+        """Begin to deliver to another page."""
+        return Delivery(self, self._hello)
+
+    def end(self, delivery: Delivery) -> None:
+        """Deliver no more: nothing is held."""
+
+    async def answer(self, command: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Execute a command of a page."""
+        return await self._commands.answer(command)
+
+    def _why(self, given: Given) -> str:
+        at = number_in(given, "at") if given.get("at") is not None else None
+        return explain(self._recording.events, text_in(given, "question"), at).text()
