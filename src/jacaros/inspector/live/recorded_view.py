@@ -1,6 +1,7 @@
 """A recorded run on the page of live runs, without a run."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from heapq import merge
 from typing import Any
 
 from jacaros.inspector.live.commands import Commands, Given, number_in, text_in
@@ -22,7 +23,7 @@ class RecordedView:
 
     def __init__(self, recording: Recording, title: str | None = None) -> None:
         self._recording = recording
-        self._records = [LiveRecord(number, each) for number, each in enumerate(records(recording))]
+        self._records = [LiveRecord(number, each) for number, each in enumerate(_all_records(recording))]
         self._commands = Commands()
         self._commands.add({"why": self._why})
         self._hello: dict[str, Any] = {
@@ -52,3 +53,11 @@ class RecordedView:
     def _why(self, given: Given) -> str:
         at = number_in(given, "at") if given.get("at") is not None else None
         return explain(self._recording.events, text_in(given, "question"), at).text()
+
+
+def _all_records(recording: Recording) -> Iterator[Mapping[str, Any]]:
+    """Yield the records of a recording in the order of time, frames before the others of a moment."""
+    world, *others = records(recording)
+    yield world
+    frames = ({"kind": "frame", "t": frame.t, "robots": frame.robots} for frame in recording.frames)
+    yield from merge(frames, others, key=lambda record: record["t"])

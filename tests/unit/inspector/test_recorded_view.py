@@ -1,0 +1,87 @@
+"""A recording on the page of live runs: its server, and ``jacaros view``."""
+
+import asyncio
+import re
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from live_client import PATIENCE, get, live_page
+
+from jacaros.inspector.live.access import Access
+from jacaros.inspector.live.recorded_view import RecordedView
+from jacaros.inspector.live.server import LiveServer, bound_socket
+from jacaros.inspector.recorder import Recorder
+from jacaros.inspector.recording import Recording
+from jacaros.inspector.scene import RobotView
+
+WORLD = {"name": "lab", "robots": [{"name": "r1", "pose": [0, 0, 0], "radius": 0.2}]}
+
+
+@pytest.fixture
+def recorded(tmp_path: Path) -> Path:
+    """A recording of a robot that drives, with more records than fit into one message."""
+    path = tmp_path / "run.jsonl"
+    recorder = Recorder(path)
+    recorder.world(WORLD)
+    recorder.event(0.0, "run", {"name": "patrol", "clock": "fast"})
+    for index in range(3000):
+        recorder.frame(index * 0.1, [RobotView("r1", index * 0.01, 0.0, 0.0, 90.0)])
+        recorder.text(index * 0.1, "bob", f"at {index}")
+    recorder.event(300.0, "ended", {"code": 0})
+    recorder.close()
+    return path
+
+
+def test_a_page_receives_the_whole_recording_in_the_order_of_time(recorded: Path) -> None:
+    async def main() -> None:
+        server = LiveServer(bound_socket(), Access(), RecordedView(Recording.read(recorded)))
+        await server.start()
+        assert (await get(server.address))[0] == 200
+        async with live_page(server.address) as page:
+            assert page.hello == {
+                "kind": "hello",
+                "version": 2,
+                "title": "patrol",
+                "live": False,
+                "can": ["why"],
+            }
+            await page.event("ended", code=0)
+            texts = [each["text"] for each in page.records if each["kind"] == "text"]
+            assert texts == [f"at {index}" for index in range(3000)]
+            frames = [each for each in page.records if each["kind"] == "frame"]
+            assert len(frames) == 3000
+            assert frames[-1]["robots"] == [[29.99, 0.0, 0.0, 90.0, 0, 0]]
+            times = [each["t"] for each in page.records[1:]]
+            assert times == sorted(times)
+            assert (await page.do("pause"))["ok"] is False
+            reply = await page.do("why", question="nothing")
+            assert reply["ok"]
+            assert isinstance(reply["result"], str)
+            assert "\n" not in (await page.do("why", question="gibberish of no kind"))["error"]
+        await server.close()
+
+    asyncio.run(main())
+
+
+@pytest.mark.slow
+def test_the_command_prints_the_address_serves_and_ends_with_ctrl_c(recorded: Path) -> None:
+    process = subprocess.Popen(
+        [sys.executable, "-m", "jacaros", "view", str(recorded)], stderr=subprocess.PIPE, text=True
+    )
+    assert process.stderr is not None
+    try:
+        found = re.fullmatch(r"view: (\S+:\d+/[\w-]+/)\n", process.stderr.readline())
+        assert found is not None
+        assert process.stderr.readline() == "press Ctrl+C to end\n"
+        status, _, content = asyncio.run(get(found[1]))
+        assert status == 200
+        assert b"live.js" in content
+        process.send_signal(signal.SIGINT)
+        assert process.wait(PATIENCE) == 0
+    finally:
+        process.kill()
+        process.stderr.close()
+        process.wait()
