@@ -180,7 +180,9 @@ def test_keys_move_through_time(tmp_path: Path) -> None:
             await page.press(key)
             await page.wait_for(f"document.querySelector('#now').textContent === '{now}'")
         await page.press(" ")
-        await page.wait_for("document.querySelector('#play').getAttribute('aria-label') === 'Pause'")
+        await page.wait_for(
+            "document.querySelector('#play').getAttribute('aria-label') === 'Pause the replay'"
+        )
         await page.wait_for("document.querySelector('#play').getAttribute('aria-label') === 'Play'")
         assert await page.text("#now") == "0:04.9", "it stops at the end"
 

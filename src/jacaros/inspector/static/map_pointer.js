@@ -30,7 +30,7 @@ export class MapPointer {
     start.moved ||= Math.hypot(x - start.x, y - start.y) > STILL;
     if (!start.moved) return;
     if (start.dragged) owner.dragTo(start.dragged, x, y);
-    else owner.camera.move(x - start.lastX, y - start.lastY);
+    else if (owner.camera.zoom > 1) owner.camera.move(x - start.lastX, y - start.lastY);
     Object.assign(start, { lastX: x, lastY: y });
     owner.redraw();
   }

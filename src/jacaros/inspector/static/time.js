@@ -52,7 +52,8 @@ export class Time {
     this.notify();
   }
 
-  toggle() { if (this.playing || this.live) this.pause(); else this.play(); }
+  /** Play or pause what was; a run that is followed is not held. */
+  toggle() { if (this.playing) this.pause(); else this.play(); }
 
   /** Move on by `seconds` of real time; true when the moment has changed. */
   tick(seconds) {

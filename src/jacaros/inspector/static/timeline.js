@@ -19,6 +19,7 @@ export class TimelineView {
   make() {
     this.play = button("round", () => this.time.toggle(), PLAY);
     this.play.id = "play";
+    this.onAir = element("span", "onair", "Live");
     this.now = element("b", "", "0:00.0");
     this.now.id = "now";
     this.end = element("span");
@@ -38,7 +39,7 @@ export class TimelineView {
     this.legend = element("ul", "legend");
     this.keys = element("span", "keys", ...keys());
     const track = element("div", "track", this.marks, this.slider, this.tip);
-    this.root.append(this.play, element("div", "clock", this.now, " ", this.end), track, this.live, this.speedLabel,
+    this.root.append(this.play, this.onAir, element("div", "clock", this.now, " ", this.end), track, this.live, this.speedLabel,
       element("div", "below", this.legend, this.keys));
   }
 
@@ -56,12 +57,12 @@ export class TimelineView {
     this.slider.max = String(run.end);
     this.slider.value = String(t);
     this.slider.setAttribute("aria-valuetext", clock(t));
-    const moving = time.playing || time.live;
-    setText(this.play, moving ? PAUSE : PLAY);
-    this.play.setAttribute("aria-label", moving ? (time.live ? "Hold the view" : "Pause") : "Play");
+    setText(this.play, time.playing ? PAUSE : PLAY);
+    this.play.setAttribute("aria-label", time.playing ? "Pause the replay" : "Play");
+    this.play.hidden = time.live;
+    this.onAir.hidden = !time.live;
     this.live.hidden = !time.canBeLive || time.live;
     this.speedLabel.hidden = time.live;
-    this.root.classList.toggle("following", time.live);
     this.showMarks();
   }
 

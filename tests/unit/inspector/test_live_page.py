@@ -1,0 +1,130 @@
+"""The live page in a real browser: it follows the run, changes its world, goes back in time, and survives its server."""
+
+from collections.abc import Awaitable, Callable
+
+from devtools import Page, chromium, needs_chromium
+
+import jacaros
+from jacaros import Mas
+from jacaros.inspector import view
+from jacaros.sim import World
+
+WORLD = """
+name: lab
+bounds: {from: [-3, -3], to: [3, 3]}
+border: walls
+doors:
+  - {name: gate, segment: [[1, -3], [1, -2]], open: false}
+robots:
+  - {name: turtlebot, pose: {x: -1, y: 0}}
+"""
+Test = Callable[[Mas, World, Page], Awaitable[None]]
+FORM = ".numbers:has([name=x])"
+
+
+def browsing(test: Test, width: int = 1400, height: int = 900) -> None:
+    """Run a test with an agent, a world with a robot, and a browser that shows them."""
+
+    async def main() -> None:
+        async with Mas(seed=1, world=WORLD, on_print=lambda *_: None) as mas:
+            mas.add_agent("bob", "!live. +!live <- .print(hello); .wait(100); .print(again); .wait(nothing).")
+            assert mas.world is not None
+            async with view(mas) as address, chromium(width, height) as page:
+                await page.open(address)
+                await page.wait_for("document.querySelector('.robot')?.checkVisibility()")
+                await test(mas, mas.world, page)
+                assert page.errors == []
+
+    jacaros.run(main())
+
+
+def pixel(x: float, y: float) -> str:
+    """An expression for the pixel of a point of the world, which the map shows with its six metres as high as fits."""
+    return f"""(() => {{
+        const box = document.querySelector("#map canvas").getBoundingClientRect();
+        const scale = Math.min((box.width - 52) / 6, (box.height - 70) / 6);
+        return [box.x + box.width / 2 + {x} * scale, box.y + (box.height - 18) / 2 - {y} * scale];
+    }})()"""
+
+
+@needs_chromium
+def test_a_robot_is_dragged() -> None:
+    async def test(mas: Mas, world: World, page: Page) -> None:
+        begin, end = await page.evaluate(pixel(-1, 0)), await page.evaluate(pixel(1, 2))
+        await page.drag(*begin, *end)
+        await page.wait_for("document.querySelector('.robot .where').textContent.startsWith('x 1.0')")
+        robot = world.robots["turtlebot"]
+        assert abs(robot.x - 1.0) < 0.05
+        assert abs(robot.y - 2.0) < 0.05
+        await page.wait_for("document.querySelector('#log').innerText.includes('turtlebot moved')")
+
+    browsing(test)
+
+
+@needs_chromium
+def test_doors_obstacles_and_batteries_change_by_keyboard() -> None:
+    async def test(mas: Mas, world: World, page: Page) -> None:
+        await page.evaluate("document.querySelector('[data-tool=\"door gate\"]').focus()")
+        await page.press("Enter")
+        await page.wait_for("document.activeElement.textContent === 'Close gate'")
+        assert world.doors["gate"]
+        await page.evaluate("document.querySelector('[data-tool=obstacle]').focus()")
+        await page.press("Enter")
+        await page.evaluate(f"document.querySelector('{FORM} [name=x]').select()")
+        await page.type("2")
+        await page.press("Enter")
+        await page.wait_for("document.querySelector('#log').innerText.includes('obstacle 1 placed')")
+        ((x, y, _),) = world.obstacles.circles()
+        assert (x, y) == (2.0, 0.0)
+        await page.evaluate("document.querySelector('.robot').focus()")
+        await page.press("Enter")
+        await page.evaluate("document.querySelector('[name=\"battery %\"]').select()")
+        await page.type("33")
+        await page.press("Enter")
+        await page.wait_for("document.querySelector('.robot .level').textContent === '33 %'")
+
+    browsing(test)
+
+
+@needs_chromium
+def test_a_refused_change_says_why() -> None:
+    async def test(mas: Mas, world: World, page: Page) -> None:
+        await page.click("[data-tool=obstacle]")
+        x, y = await page.evaluate(pixel(-1, 0))
+        await page.click_at(x, y)
+        await page.wait_for("document.querySelector('#tools [role=status]').innerText.length > 10")
+        assert not world.obstacles.circles()
+
+    browsing(test)
+
+
+@needs_chromium
+def test_the_page_goes_back_in_time_and_back_to_live() -> None:
+    async def test(mas: Mas, world: World, page: Page) -> None:
+        await page.wait_for("document.querySelector('#log').innerText.includes('again')")
+        assert await page.texts(".onair") == ["Live"]
+        await page.press("Home")
+        await page.wait_for("document.querySelector('#now').textContent === '0:00.0'")
+        await page.wait_for("!document.querySelector('#log').innerText.includes('again')")
+        assert not await page.evaluate("document.querySelector('#tools').checkVisibility()"), (
+            "the past is fixed"
+        )
+        await page.click(".live")
+        await page.wait_for("document.querySelector('#log').innerText.includes('again')")
+        assert await page.texts(".onair") == ["Live"]
+
+    browsing(test)
+
+
+@needs_chromium
+def test_the_past_stays_when_the_run_has_ended() -> None:
+    async def main() -> None:
+        async with chromium() as page:
+            async with Mas(seed=1, world=WORLD, on_print=lambda *_: None) as mas, view(mas) as address:
+                mas.add_agent("bob", "!live. +!live <- .print(hello).")
+                await page.open(address)
+                await page.wait_for("document.querySelector('#log').innerText.includes('hello')")
+            await page.wait_for("document.querySelector('#notice').checkVisibility()")
+            assert "hello" in await page.text("#log")
+
+    jacaros.run(main())
