@@ -70,6 +70,7 @@ def test_doors_obstacles_and_batteries_change_by_keyboard() -> None:
         assert world.doors["gate"]
         await page.evaluate("document.querySelector('[data-tool=obstacle]').focus()")
         await page.press("Enter")
+        await page.wait_for(f"document.querySelector('{FORM} [name=x]')")
         await page.evaluate(f"document.querySelector('{FORM} [name=x]').select()")
         await page.type("2")
         await page.press("Enter")
@@ -78,6 +79,7 @@ def test_doors_obstacles_and_batteries_change_by_keyboard() -> None:
         assert (x, y) == (2.0, 0.0)
         await page.evaluate("document.querySelector('.robot').focus()")
         await page.press("Enter")
+        await page.wait_for("document.querySelector('[name=\"battery %\"]')")
         await page.evaluate("document.querySelector('[name=\"battery %\"]').select()")
         await page.type("33")
         await page.press("Enter")
