@@ -3,11 +3,14 @@
 Agents, artifacts and the embedded world take time from a `Clock` alone.  The virtual clock belongs to an
 event loop made by `new_event_loop`: when no callback is ready and no other thread is at work for the loop,
 it moves to the next timer instead of sleeping, so a run is exactly repeatable and as fast as the machine.
+
+A clock can be paused: it stands still and no timer rings.  On a virtual clock, the callbacks of the run that are on
+their way then are held, too, so a run that was paused does the same as one that was not.  `of_run` marks them;
+the loop continues to serve everything else, such as a page that shows the run.
 """
 
 import asyncio
-import heapq
-import itertools
+import contextvars
 import selectors
 import threading
 import time
@@ -16,6 +19,8 @@ from collections.abc import Callable, Coroutine, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from functools import partial
 from typing import Any, Protocol, TypeVar
+
+from jacaros.timer_queue import QueuedTimer, TimerQueue
 
 VIRTUAL_EPOCH = 1_577_836_800.0
 """2020-01-01 00:00:00 UTC, in seconds since the Unix epoch: where every virtual run begins."""
@@ -56,55 +61,178 @@ class Clock(Protocol):
     def busy(self, cycles: int) -> None:
         """Be told that agents made *cycles* reasoning cycles without getting idle."""
 
+    @property
+    def paused(self) -> bool:
+        """Whether the clock is paused."""
+
+    def pause(self) -> None:
+        """Let time stand still and no timer ring until `resume`; no effect on a paused clock."""
+
+    def resume(self) -> None:
+        """Let time move again: pending timers ring after the rest of their delays."""
+
+
+_OF_RUN: contextvars.ContextVar[bool] = contextvars.ContextVar("jacaros_of_run", default=False)
+"""Whether what is executed belongs to a run, and so is held while a virtual clock is paused."""
+
+
+@contextmanager
+def of_run() -> Iterator[None]:
+    """Mark the callbacks and tasks that are begun inside, and those that they begin, as parts of a run."""
+    token = _OF_RUN.set(True)
+    try:
+        yield
+    finally:
+        _OF_RUN.reset(token)
+
+
+def run_context() -> contextvars.Context:
+    """Make a context in which what is begun is part of a run."""
+    context = contextvars.copy_context()
+    context.run(_OF_RUN.set, True)
+    return context
+
 
 class WallClock:
-    """The time of day, as the machine tells it; delays are measured on the monotonic clock."""
+    """The time of day; delays are measured on the monotonic clock.
+
+    While it is neither paused nor sped up, `now` is exactly the machine's time of day.  After that, it continues from
+    where it was.
+
+    Args:
+        speed: seconds of this clock in a second of real time, greater than 0.
+    """
 
     virtual = False
 
+    def __init__(self, speed: float = 1.0) -> None:
+        self._speed = 1.0
+        self._paused = False
+        self._reached = self._began = 0.0
+        """Seconds of this clock, and of the monotonic clock, when it was last paused, resumed or given a speed."""
+        self._ahead: float | None = None
+        """`now` minus `elapsed`; None while `now` is the time of day."""
+        self._timers = TimerQueue()
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._alarm: asyncio.TimerHandle | None = None
+        self._alarm_at = 0.0
+        if speed != 1.0:
+            self.speed = speed
+
     @property
     def elapsed(self) -> float:
-        """Seconds on the monotonic clock: nobody sets it."""
-        return time.monotonic()
+        """Seconds on the monotonic clock, as far as this clock followed it: nobody sets it."""
+        if self._paused:
+            return self._reached
+        return self._reached + (time.monotonic() - self._began) * self._speed
+
+    @property
+    def speed(self) -> float:
+        """Seconds of this clock in a second of real time."""
+        return self._speed
+
+    @speed.setter
+    def speed(self, speed: float) -> None:
+        if not 0.0 < speed < float("inf"):
+            raise ValueError(f"expected a speed greater than 0, found {speed}")
+        self._note_moment()
+        self._speed = speed
+        self._set_alarm()
+
+    @property
+    def paused(self) -> bool:
+        """Whether the clock is paused."""
+        return self._paused
+
+    def pause(self) -> None:
+        """Let time stand still and no timer ring until `resume`; no effect on a paused clock."""
+        if not self._paused:
+            self._note_moment()
+            self._paused = True
+            self._set_alarm()
+
+    def resume(self) -> None:
+        """Let time move again: pending timers ring after the rest of their delays."""
+        if self._paused:
+            self._began = time.monotonic()
+            self._paused = False
+            self._set_alarm()
 
     def now(self) -> float:
         """Seconds since the Unix epoch."""
-        return time.time()
+        return time.time() if self._ahead is None else self._ahead + self.elapsed
 
     def call_later(self, delay: float, callback: Callable[[], None]) -> Timer:
         """Call *callback* on the running loop after *delay* seconds."""
-        return asyncio.get_running_loop().call_later(delay, callback)
+        loop = asyncio.get_running_loop()
+        if loop is not self._loop:
+            self._move_to_loop(loop)
+        when = self.elapsed + max(0.0, delay)
+        timer = self._timers.add(when, callback)
+        if self._alarm is None or when < self._alarm_at:
+            self._set_alarm()
+        return timer
 
     async def sleep(self, delay: float) -> None:
         """Wait for *delay* seconds."""
-        await asyncio.sleep(max(0.0, delay))
+        await _sleep(self, delay)
 
     def busy(self, cycles: int) -> None:
         """Nothing: the wall clock moves by itself."""
 
+    def _note_moment(self) -> None:
+        elapsed = self.elapsed
+        if self._ahead is None:
+            self._ahead = time.time() - elapsed
+        self._reached, self._began = elapsed, time.monotonic()
 
-class _VirtualTimer:
-    __slots__ = ("callback", "cancelled", "number", "when")
+    def _move_to_loop(self, loop: asyncio.AbstractEventLoop) -> None:
+        """Serve another loop; timers of one that has ended are over."""
+        if self._loop is not None and self._loop.is_closed():
+            self._timers, self._alarm = TimerQueue(), None
+        self._loop = loop
 
-    def __init__(self, when: float, number: int, callback: Callable[[], None]) -> None:
-        self.when, self.number, self.cancelled = when, number, False
-        self.callback: Callable[[], None] | None = callback
+    def _set_alarm(self) -> None:
+        """Have the loop call for the earliest timer."""
+        if self._alarm is not None:
+            self._alarm.cancel()
+            self._alarm = None
+        moment = self._timers.first_moment()
+        if moment is None or self._paused or self._loop is None or self._loop.is_closed():
+            return
+        self._alarm_at = moment
+        self._alarm = self._loop.call_later(max(0.0, moment - self.elapsed) / self._speed, self._ring)
 
-    def __lt__(self, other: "_VirtualTimer") -> bool:
-        return (self.when, self.number) < (other.when, other.number)
+    def _ring(self) -> None:
+        """Let the timers ring that are due; those that they set ring in a later pass of the loop."""
+        self._alarm = None
+        moment = max(self._alarm_at, self.elapsed)  # the loop may be a billionth of a second early
+        due = deque(iter(lambda: self._timers.next_due(moment), None))
+        try:
+            while due and not self._paused:
+                due.popleft().ring()
+        finally:
+            for timer in due:
+                self._timers.put_back(timer)
+            self._set_alarm()
 
-    def cancel(self) -> None:
-        self.cancelled = True
-        self.callback = None  # what it holds may be large, and the moment far
 
-    def ring(self) -> None:
-        callback, self.callback = self.callback, None
-        if callback is not None:
-            callback()
+async def _sleep(clock: Clock, delay: float) -> None:
+    done: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+    timer = clock.call_later(delay, partial(_wake, done))
+    try:
+        await done
+    finally:
+        timer.cancel()
 
 
 class VirtualClock:
-    """Discrete-event time: it starts at a fixed epoch and jumps to the next timer when all wait."""
+    """Discrete-event time: it starts at a fixed epoch and jumps to the next timer when all wait.
+
+    Attributes:
+        paused: whether it is paused: it does not jump, and its loop holds the callbacks of the run.
+        when_paused: called with True after a pause began, and with False after it ended.
+    """
 
     virtual = True
     CYCLES_PER_MILLISECOND = 10_000
@@ -113,9 +241,11 @@ class VirtualClock:
     def __init__(self, start: float = VIRTUAL_EPOCH) -> None:
         self.start = start
         self.elapsed = 0.0
-        self._timers: list[_VirtualTimer] = []
-        self._numbers = itertools.count()
+        self.paused = False
+        self._timers = TimerQueue()
         self._cycles = 0
+        self._context = run_context()
+        self.when_paused: list[Callable[[bool], None]] = []
 
     def now(self) -> float:
         """Seconds since the Unix epoch."""
@@ -123,18 +253,25 @@ class VirtualClock:
 
     def call_later(self, delay: float, callback: Callable[[], None]) -> Timer:
         """Call *callback* after *delay* seconds of virtual time."""
-        timer = _VirtualTimer(self.elapsed + max(0.0, delay), next(self._numbers), callback)
-        heapq.heappush(self._timers, timer)
-        return timer
+        return self._timers.add(self.elapsed + max(0.0, delay), callback)
 
     async def sleep(self, delay: float) -> None:
         """Wait for *delay* seconds of virtual time."""
-        done: asyncio.Future[None] = asyncio.get_running_loop().create_future()
-        timer = self.call_later(delay, partial(_wake, done))
-        try:
-            await done
-        finally:
-            timer.cancel()
+        await _sleep(self, delay)
+
+    def pause(self) -> None:
+        """Stop jumping, and hold the callbacks of the run, until `resume`; no effect on a paused clock."""
+        if not self.paused:
+            self.paused = True
+            for told in tuple(self.when_paused):
+                told(True)
+
+    def resume(self) -> None:
+        """Continue exactly where the clock was paused."""
+        if self.paused:
+            self.paused = False
+            for told in tuple(self.when_paused):
+                told(False)
 
     def busy(self, cycles: int) -> None:
         """Move 1 ms on for every 10,000 cycles that agents made without getting idle.
@@ -152,10 +289,7 @@ class VirtualClock:
         Args:
             at_most: seconds to move if the next timer is further away, or if there is none.
         """
-        timers = self._timers
-        while timers and timers[0].cancelled:
-            heapq.heappop(timers)
-        moment = timers[0].when if timers else None
+        moment = self._timers.first_moment()
         if at_most is not None and (moment is None or moment > self.elapsed + at_most):
             moment = self.elapsed + at_most
         if moment is None:
@@ -166,33 +300,28 @@ class VirtualClock:
 
     def pending(self) -> Sequence[Timer]:
         """The timers that are still to ring, in no order."""
-        return [timer for timer in self._timers if not timer.cancelled]
+        return self._timers.pending()
 
     def _move_to(self, moment: float) -> None:
-        timers = self._timers
-        while timers and timers[0].when <= moment:
-            timer = heapq.heappop(timers)
-            if not timer.cancelled:
-                if timer.when > self.elapsed:
-                    self.elapsed = timer.when
-                _call_soon(timer.ring)
+        while (timer := self._timers.next_due(moment)) is not None:
+            self.elapsed = max(self.elapsed, timer.when)
+            self._call_soon(timer)
         if moment > self.elapsed:
             self.elapsed = moment
+
+    def _call_soon(self, timer: QueuedTimer) -> None:
+        """Let the running loop ring a timer, so that errors reach its handler; without a loop let it ring now."""
+        try:
+            loop = asyncio.get_running_loop()
+        except RuntimeError:
+            timer.ring()
+        else:
+            loop.call_soon(timer.ring, context=self._context)
 
 
 def _wake(sleeper: asyncio.Future[None]) -> None:
     if not sleeper.done():
         sleeper.set_result(None)
-
-
-def _call_soon(callback: Callable[[], None]) -> None:
-    """Let the running loop call *callback*, so that errors reach its handler; without a loop call it now."""
-    try:
-        loop = asyncio.get_running_loop()
-    except RuntimeError:
-        callback()
-    else:
-        loop.call_soon(callback)
 
 
 class _VirtualSelector(selectors.DefaultSelector):
@@ -207,8 +336,33 @@ class _VirtualSelector(selectors.DefaultSelector):
         self.foreign_work = 0
         self.when_stuck: list[Callable[[], bool]] = []
         self._passed = 0
+        self.ready: deque[asyncio.Handle] = deque()
+        self.held: deque[asyncio.Handle] = deque()
+        clock.when_paused.append(self._hold)
+
+    def _hold(self, paused: bool) -> None:
+        """Hold the callbacks of the run, or let them go."""
+        if not paused:
+            self.ready.extend(self.held)
+            self.held.clear()
+            return
+        for place in range(len(self.ready)):  # other threads may append meanwhile
+            handle = self.ready[place]
+            if _is_of_run(handle):
+                self.held.append(handle)
+                # The loop has counted the callbacks of this pass: something must be in its place.
+                self.ready[place] = asyncio.Handle(_nothing, (), asyncio.get_running_loop())
+
+    def _select_paused(self, timeout: float | None) -> list[tuple[selectors.SelectorKey, int]]:
+        """Serve sockets, and callbacks that do not belong to the run."""
+        for _ in range(len(self.ready)):
+            handle = self.ready.popleft()
+            (self.held if _is_of_run(handle) else self.ready).append(handle)
+        return super().select(0 if timeout is not None and timeout <= 0 else None)
 
     def select(self, timeout: float | None = None) -> list[tuple[selectors.SelectorKey, int]]:
+        if self.clock.paused:
+            return self._select_paused(timeout)
         if timeout is not None and timeout <= 0:
             self._passed += 1
             if self._passed < self.PATIENCE:
@@ -224,6 +378,15 @@ class _VirtualSelector(selectors.DefaultSelector):
             if timeout is None and [told for told in self.when_stuck if told()]:
                 return []
         return super().select(timeout)
+
+
+def _nothing() -> None:
+    """Stand for a callback that is held."""
+
+
+def _is_of_run(handle: asyncio.Handle) -> bool:
+    context: contextvars.Context = handle._context  # type: ignore[attr-defined]
+    return context.get(_OF_RUN, False)
 
 
 def start_thread(work: Callable[[], T]) -> asyncio.Future[T]:
@@ -300,6 +463,7 @@ class VirtualEventLoop(_DaemonThreads, asyncio.SelectorEventLoop):
         self._virtual_clock = clock
         self.virtual_selector = _VirtualSelector(clock)
         super().__init__(self.virtual_selector)
+        self.virtual_selector.ready = self._ready  # type: ignore[attr-defined]
 
     def when_stuck(self, told: Callable[[], bool]) -> Callable[[], None]:
         """Call *told* when everybody waits and no timer is left: only something from outside could go on then.

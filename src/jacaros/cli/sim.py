@@ -83,7 +83,6 @@ def command(
         return
     from jacaros.ros.node import to_stderr
     from jacaros.sim import serve
-    from jacaros.sim.scaled_clock import ScaledClock
 
     if clock == "fast" and (ros != "memory" or seconds is None):
         raise UsageError(
@@ -91,7 +90,7 @@ def command(
         )
     if clock == "fast" and speed is not None:
         raise UsageError("--speed goes with --clock real; --clock fast is as fast as the machine can")
-    time: Clock = VirtualClock() if clock == "fast" else WallClock() if speed is None else ScaledClock(speed)
+    time: Clock = VirtualClock() if clock == "fast" else WallClock(speed or 1.0)
     assert ros is not None  # the option sees to it
     address = GraphAddress(ros, remap=read_remaps(remap), **graph)
     address.check()

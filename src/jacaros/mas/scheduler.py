@@ -5,14 +5,17 @@ Nothing runs, and nothing is asked, while no agent is ready: an idle system cost
 Between two rounds of turns the loop polls its sockets and calls what is due.  In real time a round is bounded in time, so a
 sensor's message is read within some two milliseconds however busy the agents are.  On the virtual clock it is bounded in
 cycles: the machine's speed must not change the order in which things happen.
+
+A scheduler can be paused, also in the middle of a turn.  The round continues then where it was interrupted: with the same
+agent, and with the cycles that were left to it.
 """
 
 import asyncio
 from collections import deque
 from collections.abc import Callable
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
-from jacaros.clock import Clock, real_time
+from jacaros.clock import Clock, real_time, run_context
 
 
 class Runnable(Protocol):
@@ -25,6 +28,22 @@ class Runnable(Protocol):
         """Make up to *fuel* reasoning cycles; True when there is more to do."""
 
 
+class _Interrupted(NamedTuple):
+    """A round that was paused.
+
+    Attributes:
+        agent: whose turn it was; None between two turns.
+        queued: whether it waits for another turn after this one.
+        fuel: cycles that are left of the turn.
+        cycles: cycles of the turns before in this round.
+    """
+
+    agent: Runnable | None
+    queued: bool
+    fuel: int
+    cycles: int
+
+
 class Scheduler:
     """Gives ready agents their turns, first come first served.
 
@@ -34,6 +53,11 @@ class Scheduler:
         on_error: told of what escapes from an agent: a defect of JaCaROS itself.
         idle_work: in real time, does a little of what can wait whenever no agent is ready; False when nothing is left.
         real_time: seconds of a steady clock, which bound a round of turns unless *clock* is virtual.
+
+    Attributes:
+        paused: whether no agent has a turn.
+        count_cycles: the number of cycles that an agent has made, for pauses in the middle of a turn; None when there are
+            none.
     """
 
     QUANTUM = 50
@@ -66,11 +90,42 @@ class Scheduler:
         self._taking_turns = False
         self._poll_soon = False
         self._stopped = False
+        self._context = run_context()
+        self.paused = False
+        self.count_cycles: Callable[[Runnable], int] | None = None
+        self._interrupted: _Interrupted | None = None
 
     @property
     def idle(self) -> bool:
-        """True when no agent is ready."""
-        return not self._queue
+        """True when no agent is ready; not while paused: what agents have yet to do is not known."""
+        return not self._queue and not self.paused
+
+    def pause(self) -> None:
+        """Give no agent another turn until `resume`; the turn under way goes on until the agent gives it back."""
+        self.paused = True
+
+    def resume(self) -> None:
+        """Continue with the turn that was interrupted, or with the next one."""
+        if not self.paused:
+            return
+        self.paused = False
+        if self._stopped:
+            return
+        if self._interrupted is not None:
+            self._loop_in_use().call_soon(self._continue_round, context=self._context)
+        elif self._queue and not self._due:
+            self._call_soon()
+        elif not self._due:
+            self._on_idle()
+
+    def _continue_round(self) -> None:
+        """Finish the round that was interrupted, and do what follows a round."""
+        if self.paused:
+            return
+        if self._due:  # the next round is scheduled already
+            self._round()
+        else:
+            self._turns()
 
     def make_ready(self, agent: Runnable) -> None:
         """Let *agent* have a turn soon; nothing happens when it already waits for one."""
@@ -83,7 +138,7 @@ class Scheduler:
 
     def hurry(self) -> None:
         """Let the ready agents have their turns now and not in the next pass of the loop, unless one has its turn."""
-        if self._queue and not self._taking_turns:
+        if self._queue and not self._taking_turns and not self.paused:
             self._round()
 
     def poll_soon(self) -> None:
@@ -94,16 +149,23 @@ class Scheduler:
         """Let nobody have a turn any more."""
         self._stopped = True
         self._queue.clear()
+        self._interrupted = None
 
     def _call_soon(self) -> None:
         self._due = True
+        self._loop_in_use().call_soon(self._turns, context=self._context)
+
+    def _loop_in_use(self) -> asyncio.AbstractEventLoop:
         if self._loop is None:
             self._loop = asyncio.get_running_loop()
-        self._loop.call_soon(self._turns)
+        return self._loop
 
     def _turns(self) -> None:
-        self._round()
+        if not self.paused:
+            self._round()
         self._due = False
+        if self.paused:
+            return
         if self._queue:
             if self._clock.virtual:
                 self._call_soon()
@@ -117,7 +179,7 @@ class Scheduler:
     def _work_idly(self) -> None:
         """Do a little of what can wait, and go on after the next poll, unless an agent has something to do by then."""
         self._works_idly = False
-        if self._due or self._stopped:
+        if self._due or self._stopped or self.paused:
             return
         try:
             more = self._idle_work()
@@ -138,42 +200,93 @@ class Scheduler:
         self._due = True
         if passes:
             assert self._loop is not None
-            self._loop.call_soon(self._call_after, passes - 1)
+            self._loop.call_soon(self._call_after, passes - 1, context=self._context)
         else:
             self._call_soon()
 
     def _round(self) -> None:
         """Let the ready agents have their turns until it is time to poll."""
-        queue, virtual, now = self._queue, self._clock.virtual, self._real_time
-        quantum, cycles = self.QUANTUM if virtual else self._quantum, 0
-        look = self.CYCLES_PER_ROUND if virtual else quantum
-        began = moment = 0.0 if virtual else now()
         self._taking_turns = True
         self._poll_soon = False
+        cycles = 0
         try:
-            while queue:
-                agent = queue.popleft()
-                agent.queued = False
-                if agent.run(quantum):
-                    cycles += quantum
-                    if not agent.queued and not self._stopped:
-                        agent.queued = True
-                        queue.append(agent)
-                else:
-                    cycles += 1
-                if cycles >= look or self._poll_soon:
-                    if virtual:
-                        break
-                    before, moment = moment, now()
-                    quantum = self._fitting_quantum(moment - before)
-                    if self._poll_soon or moment - began >= self.SECONDS_PER_ROUND:
-                        break
-                    look = cycles + quantum
+            cycles = self._virtual_turns() if self._clock.virtual else self._real_turns()
         except Exception as error:
             self._report(error)
         finally:
             self._taking_turns = False
-        self._clock.busy(cycles)
+        if not self.paused:
+            self._clock.busy(cycles)
+
+    def _virtual_turns(self) -> int:
+        """Give turns until enough cycles were made; the cycles."""
+        queue, quantum, count, cycles = self._queue, self.QUANTUM, self.count_cycles, 0
+        if self._interrupted is not None:
+            cycles = self._finish_turn(self._interrupted)
+        while queue and cycles < self.CYCLES_PER_ROUND and not self.paused:
+            agent = queue.popleft()
+            agent.queued = False
+            if count is not None:
+                cycles = self._counted_turn(agent, quantum, cycles)
+            elif agent.run(quantum):
+                cycles += quantum
+                self._requeue(agent)
+            else:
+                cycles += 1
+        if self.paused and self._interrupted is None:
+            self._interrupted = _Interrupted(None, False, 0, cycles)
+        return cycles
+
+    def _counted_turn(self, agent: Runnable, fuel: int, cycles: int) -> int:
+        """Give a turn that a pause may interrupt; the cycles of the round, this turn included when it is over."""
+        count = self.count_cycles
+        assert count is not None
+        before = count(agent)
+        more = agent.run(fuel)
+        left = fuel - (count(agent) - before)
+        if self.paused and more and left > 0:
+            self._interrupted = _Interrupted(agent, agent.queued, left, cycles)
+            agent.queued = True  # it gets the rest of its turn anyway
+            return cycles
+        if more:
+            self._requeue(agent)
+        return cycles + (self.QUANTUM if more else 1)
+
+    def _finish_turn(self, interrupted: _Interrupted) -> int:
+        """Give an agent the rest of its turn; the cycles of the round so far."""
+        self._interrupted = None
+        agent, queued, fuel, cycles = interrupted
+        if agent is None:
+            return cycles
+        agent.queued = queued
+        return self._counted_turn(agent, fuel, cycles)
+
+    def _requeue(self, agent: Runnable) -> None:
+        if not agent.queued and not self._stopped:
+            agent.queued = True
+            self._queue.append(agent)
+
+    def _real_turns(self) -> int:
+        """Give turns until it is time to poll; the cycles."""
+        queue, now = self._queue, self._real_time
+        look = quantum = self._quantum
+        cycles = 0
+        began = moment = now()
+        while queue and not self.paused:
+            agent = queue.popleft()
+            agent.queued = False
+            if agent.run(quantum):
+                cycles += quantum
+                self._requeue(agent)
+            else:
+                cycles += 1
+            if cycles >= look or self._poll_soon:
+                before, moment = moment, now()
+                quantum = self._fitting_quantum(moment - before)
+                if self._poll_soon or moment - began >= self.SECONDS_PER_ROUND:
+                    break
+                look = cycles + quantum
+        return cycles
 
     def _fitting_quantum(self, seconds: float) -> int:
         """The quantum, now that the last one took *seconds*: long cycles make it smaller, so that a round ends in time."""

@@ -6,14 +6,13 @@ goes on waiting for the rest of the delay: nobody waits for a moment that will n
 """
 
 import asyncio
-import heapq
-import itertools
 from collections.abc import Callable
 from typing import Any, Protocol
 
 from jacaros.clock import Timer
 from jacaros.ros.message import to_seconds
 from jacaros.ros.qos import QoS
+from jacaros.timer_queue import TimerQueue
 
 CLOCK_TOPIC = "/clock"
 CLOCK_TYPE = "rosgraph_msgs/msg/Clock"
@@ -41,25 +40,6 @@ class ClockSource(Protocol):
         """Have *callback* called for each message."""
 
 
-class _Timer:
-    __slots__ = ("callback", "number", "when")
-
-    def __init__(self, when: float, number: int, callback: Callable[[], None]) -> None:
-        self.when, self.number = when, number
-        self.callback: Callable[[], None] | None = callback
-
-    def __lt__(self, other: "_Timer") -> bool:
-        return (self.when, self.number) < (other.when, other.number)
-
-    def cancel(self) -> None:
-        self.callback = None
-
-    def ring(self) -> None:
-        callback, self.callback = self.callback, None
-        if callback is not None:
-            callback()
-
-
 class RosClock:
     """Time as ``/clock`` tells it; it stands at 0 until the first message, as in all ROS nodes.
 
@@ -67,7 +47,8 @@ class RosClock:
         log: takes one line: the clock is silent, it came, it stands still, it jumped back.
 
     Attributes:
-        elapsed: seconds that have passed forward since the first message.
+        elapsed: seconds that have passed forward since the first message, pauses left out.
+        paused: whether no timer rings, although the simulator may continue.
     """
 
     virtual = False
@@ -76,8 +57,8 @@ class RosClock:
         self.elapsed = 0.0
         self._log = log
         self._time: float | None = None
-        self._timers: list[_Timer] = []
-        self._numbers = itertools.count()
+        self.paused = False
+        self._timers = TimerQueue()
         self._on_jump: list[Callable[[float], None]] = []
         self._watch: asyncio.TimerHandle | None = None
         self._moved = False
@@ -95,11 +76,9 @@ class RosClock:
 
     def call_later(self, delay: float, callback: Callable[[], None]) -> Timer:
         """Call *callback* when ``/clock`` has gone forward by *delay* seconds."""
-        timer = _Timer(self.elapsed + max(0.0, delay), next(self._numbers), callback)
+        timer = self._timers.add(self.elapsed + max(0.0, delay), callback)
         if delay <= 0.0:
-            asyncio.get_running_loop().call_soon(timer.ring)
-        else:
-            heapq.heappush(self._timers, timer)
+            asyncio.get_running_loop().call_soon(self._ring)
         return timer
 
     async def sleep(self, delay: float) -> None:
@@ -113,6 +92,16 @@ class RosClock:
 
     def busy(self, cycles: int) -> None:
         """Nothing: the simulator moves the time."""
+
+    def pause(self) -> None:
+        """Let no timer ring until `resume`; `now` still follows the simulator, which is not paused."""
+        self.paused = True
+
+    def resume(self) -> None:
+        """Let timers ring after the rest of their delays."""
+        if self.paused:
+            self.paused = False
+            asyncio.get_running_loop().call_soon(self._ring)
 
     def on_jump(self, told: Callable[[float], None]) -> Callable[[], None]:
         """Have *told* called after time jumped, with the jump in seconds: below zero when it jumped back.
@@ -150,7 +139,7 @@ class RosClock:
             self._log(f"{CLOCK_TOPIC} is there: it is {time:.3f} s")
         elif time < before:
             self._jump(time - before)
-        else:
+        elif not self.paused:
             self.elapsed += time - before
             self._ring()
             if time - before > AHEAD:
@@ -158,13 +147,12 @@ class RosClock:
         self._note_motion()
 
     def _ring(self) -> None:
-        timers, loop = self._timers, asyncio.get_running_loop()
-        due = self.elapsed + NEARLY
-        while timers and (timers[0].callback is None or timers[0].when <= due):
-            timer = heapq.heappop(timers)
-            if timer.callback is not None:
-                # Through the loop, so that an error reaches its handler and not the middleware.
-                loop.call_soon(timer.ring)
+        if self.paused:
+            return
+        loop, due = asyncio.get_running_loop(), self.elapsed + NEARLY
+        while (timer := self._timers.next_due(due)) is not None:
+            # Through the loop, so that an error reaches its handler and not the middleware.
+            loop.call_soon(timer.ring)
 
     def _jump(self, by: float) -> None:
         if by < 0:

@@ -395,6 +395,7 @@ class _MeteredWallClock(WallClock):
     """The time of day, and told of the cycles of agents."""
 
     def __init__(self, on_busy: Callable[[int], None]) -> None:
+        super().__init__()
         self._on_busy = on_busy
 
     def busy(self, cycles: int) -> None:

@@ -7,7 +7,6 @@ import signal
 import threading
 from collections.abc import Awaitable, Callable
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -20,7 +19,6 @@ from jacaros.sim import GroundTruth, SimNode, World, serve
 from jacaros.sim.process import GroundTruthFile
 from jacaros.sim.robot.node import RobotNode
 from jacaros.sim.robot.on_graph import RobotOnGraph
-from jacaros.sim.scaled_clock import ScaledClock
 
 TWIST = "geometry_msgs/msg/Twist"
 
@@ -321,21 +319,6 @@ def test_the_time_of_the_world_goes_to_clock() -> None:
     assert len(times) == pytest.approx(200, abs=2)
     assert times == sorted(times)
     assert times[-1] - times[0] == pytest.approx(2.0, abs=0.02)
-
-
-def test_a_scaled_clock_runs_at_its_speed(monkeypatch: pytest.MonkeyPatch) -> None:
-    passed = [100.0]
-    monkeypatch.setattr("time.monotonic", lambda: passed[0])
-    fast, slow = ScaledClock(4.0), ScaledClock(0.5)
-    begun = (fast.now(), slow.now())
-    passed[0] += 3.0
-    assert (fast.now() - begun[0], slow.now() - begun[1]) == pytest.approx((12.0, 1.5))
-    delays: list[float] = []
-    loop = SimpleNamespace(call_later=lambda delay, callback: delays.append(delay))
-    monkeypatch.setattr("asyncio.get_running_loop", lambda: loop)
-    fast.call_later(2.0, lambda: None)
-    slow.call_later(2.0, lambda: None)
-    assert delays == [0.5, 4.0]
 
 
 class Sonar:

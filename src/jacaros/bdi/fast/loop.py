@@ -48,7 +48,7 @@ def run(agent: Circumstance, fuel: int) -> bool:  # noqa: C901 - written out for
         option_filter = agent.selections.option_filter
         always = options.percept_interval == 1
         while fuel > 0 and not agent.stopped:
-            if agent.incoming.called or not always:
+            if (agent.incoming.called or not always) and agent.held is None:
                 look_around(agent, agent.counts.cycles + begun - fuel)
                 events, intentions = agent.events, agent.intentions
             if agent.features.special or option_filter.rows or not agent.selections.plain:

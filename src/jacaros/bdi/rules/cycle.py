@@ -9,10 +9,18 @@ from contextlib import contextmanager
 from jacaros.bdi.rules import failure, meta_events, waits
 from jacaros.bdi.rules.clr_int import end_achieved_goals
 from jacaros.bdi.rules.exec_int import execute, select_intention
+from jacaros.bdi.rules.holding import is_held_before_step, take_held_event, take_held_intention
 from jacaros.bdi.rules.perceiving import take_percepts
 from jacaros.bdi.rules.proc_msg import read_message
-from jacaros.bdi.rules.sel_ev import event_of, handle_atomic_event, handle_event, is_ready
+from jacaros.bdi.rules.sel_ev import (
+    event_of,
+    handle_atomic_event,
+    handle_event,
+    handle_held_event,
+    is_ready,
+)
 from jacaros.bdi.state.circumstance import INTERVAL, Circumstance
+from jacaros.bdi.state.intention import Intention
 from jacaros.errors import InternalError
 from jacaros.terms.arithmetic import RUNNING
 
@@ -66,20 +74,49 @@ def begin_turn(agent: Circumstance) -> None:
 
 def _cycle(agent: Circumstance) -> bool:
     """One reasoning cycle; False when there is nothing to do."""
-    if agent.incoming.called or agent.options.percept_interval != 1:
+    if (agent.incoming.called or agent.options.percept_interval != 1) and agent.held is None:
         look_around(agent, agent.counts.cycles)
     return deliberate(agent)
 
 
 def deliberate(agent: Circumstance) -> bool:
-    """A reasoning cycle after its look at what has come."""
+    """A reasoning cycle after its look at what has come; False when nothing is left to do, or the agent is held."""
+    if agent.held is not None:
+        return _continue_held(agent)
     if agent.events:
         _take_up_event(agent)
+        if agent.held is not None:
+            return False
+    return _select_and_execute(agent)
+
+
+def _continue_held(agent: Circumstance) -> bool:
+    """Finish the cycle in which an observer held the agent."""
+    if agent.observers.step is not None and agent.observers.step.paused:
+        return False
+    intention = take_held_intention(agent)
+    if intention is not None:
+        return _execute(agent, intention)
+    event = take_held_event(agent)
+    if event is not None:
+        handle_held_event(agent, event)
+        if agent.held is not None:
+            return False
+    return _select_and_execute(agent)
+
+
+def _select_and_execute(agent: Circumstance) -> bool:
     if agent.features.goal_conditions:
         end_achieved_goals(agent)
     intention = select_intention(agent)
     if intention is None:
         return _waits(agent)
+    if is_held_before_step(agent, intention):
+        return False
+    return _execute(agent, intention)
+
+
+def _execute(agent: Circumstance, intention: Intention) -> bool:
     try:
         execute(agent, intention)
     except InternalError:

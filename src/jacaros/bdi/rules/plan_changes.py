@@ -46,7 +46,12 @@ def look_at_plans(agent: Circumstance) -> None:
     agent.features.meta = agent.observers.goal is not None or agent.library.has_meta_plans()
     agent.features.subplans = agent.features.subplans or agent.library.has_subplans()
     agent.features.goal_conditions = agent.features.goal_conditions or agent.library.has_goal_conditions()
-    agent.features.special = agent.features.meta or agent.features.subplans or agent.features.goal_conditions
+    agent.features.special = (
+        agent.features.meta
+        or agent.features.subplans
+        or agent.features.goal_conditions
+        or agent.observers.step is not None
+    )
     agent.incoming.called = True
     agent.features.edges = agent.features.subplans or any(
         agent.library.selects[kind] is not None for kind in (SLEEPING, AWAKING)

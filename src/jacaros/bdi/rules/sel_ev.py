@@ -4,6 +4,7 @@ from jacaros.bdi.rules import failure, meta_events, subplans
 from jacaros.bdi.rules.add_im import log_inapplicable, push, select_plan
 from jacaros.bdi.rules.clr_int import remove_event
 from jacaros.bdi.rules.goal_failure import unplanned
+from jacaros.bdi.rules.holding import is_held_before_event
 from jacaros.bdi.state.circumstance import CROWD, Circumstance
 from jacaros.bdi.state.event import EVENT_INTENTION, Event
 from jacaros.bdi.state.intention import PLAN, Frame, Intention
@@ -14,13 +15,26 @@ from jacaros.terms.values import BY_SELF
 def handle_event(agent: Circumstance) -> None:
     """Rule SelEv and what follows: one event is handled; external events without plan are passed over."""
     while (event := agent.selections.select_event()) is not None:
-        try:
-            if _is_taken_up(agent, event):
-                return
-        except InternalError:
-            raise
-        except Exception as fault:
-            pass_over(agent, event, fault)
+        if is_held_before_event(agent, event) or _is_handled(agent, event):
+            return
+
+
+def handle_held_event(agent: Circumstance, event: Event) -> None:
+    """Handle the event before which the agent was held."""
+    if agent.atomic is not None:
+        _push_atomic(agent, agent.atomic, event)
+    elif not _is_handled(agent, event):
+        handle_event(agent)
+
+
+def _is_handled(agent: Circumstance, event: Event) -> bool:
+    try:
+        return _is_taken_up(agent, event)
+    except InternalError:
+        raise
+    except Exception as fault:
+        pass_over(agent, event, fault)
+        return False
 
 
 def _is_taken_up(agent: Circumstance, event: Event) -> bool:
@@ -41,14 +55,19 @@ def handle_atomic_event(agent: Circumstance, intention: Intention) -> None:
     event = event_of(agent, intention)
     if event is not None:
         remove_event(agent, event)
-        goal, _, annotations, _ = event
-        try:
-            if push(agent, intention, goal, annotations):
-                agent.make_ready(intention)
-        except InternalError:
-            raise
-        except Exception as fault:
-            pass_over(agent, event, fault)
+        if not is_held_before_event(agent, event):
+            _push_atomic(agent, intention, event)
+
+
+def _push_atomic(agent: Circumstance, intention: Intention, event: Event) -> None:
+    goal, _, annotations, _ = event
+    try:
+        if push(agent, intention, goal, annotations):
+            agent.make_ready(intention)
+    except InternalError:
+        raise
+    except Exception as fault:
+        pass_over(agent, event, fault)
 
 
 def is_ready(agent: Circumstance, intention: Intention) -> bool:

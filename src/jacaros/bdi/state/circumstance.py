@@ -93,19 +93,38 @@ class Incoming:
         return bool(self.messages or self.percepts or self.tasks)
 
 
+class StepObserver(Protocol):
+    """What may hold an agent before it handles an event or makes a step: a debugger.
+
+    A held agent finishes its reasoning cycle in its next turn, from the point where it was held.
+    """
+
+    @property
+    def paused(self) -> bool:
+        """Whether a held agent must not continue yet."""
+
+    def holds_event(self, agent: Any, event: Event) -> bool:
+        """Whether *agent* is held before it selects a plan for *event*."""
+
+    def holds_step(self, agent: Any, intention: Intention) -> bool:
+        """Whether *agent* is held before it makes the next step of *intention*."""
+
+
 class Observers:
     """Who is told of the goals of an agent.
 
     Attributes:
         goal: told of each goal that changes, or None, see `jacaros.bdi.rules.meta_events.observe_goals`.
         lost: called with what people are told of each lost goal (first line, further lines, place), or None.
+        step: may hold the agent before an event or a step, or None, see `jacaros.bdi.rules.holding.observe_steps`.
     """
 
-    __slots__ = ("goal", "lost")
+    __slots__ = ("goal", "lost", "step")
 
     def __init__(self) -> None:
         self.goal: Callable[[str, str, int, int, str], None] | None = None
         self.lost: Callable[[str, Sequence[str], Span | None], None] | None = None
+        self.step: StepObserver | None = None
 
 
 class Counts:
@@ -172,7 +191,7 @@ class Features:
         meta: plans or an observer want to hear of changes of goal states.
         goal_conditions: plans have goal conditions, which are tested in every cycle.
         subplans: plans have plans of their own.
-        special: one of these three.
+        special: one of these three, or an observer may hold the agent.
         edges: there may be plans for falling asleep and awaking.
         usual_events: external events without a plan are passed over, events of belief changes in plans belong to the
             intentions that made them, and no agent class is asked about these changes.
@@ -213,6 +232,8 @@ class Circumstance:
         observers: who is told of goals.
         counts: how much it has done.
         context: the view of itself that it gives to internal actions.
+        held: the event or intention before which an observer holds the agent, in the middle of a reasoning cycle; it is in
+            its queue meanwhile.  None when the agent is not held.
         running: the agent has its turn: whoever gave it finds out at its end whether there is more to do.
         stopped: the agent is over.
         sleep: ``drowsy``: it has had nothing to do since it last awoke, and has been told so; ``asleep``: and has done what
@@ -234,6 +255,7 @@ class Circumstance:
         "events",
         "features",
         "functions",
+        "held",
         "incoming",
         "intentions",
         "library",
@@ -289,6 +311,7 @@ class Circumstance:
         self.sleep: Sleep = "awake"
         self.outer_frame: Any = None
         self.context: Any = None
+        self.held: Event | Intention | None = None
         self.running = False
         self.stopped = False
 

@@ -1,0 +1,59 @@
+"""An observer holds an agent in the middle of a reasoning cycle: before an event is handled, or before a step is made."""
+
+from jacaros.bdi.rules.plan_changes import look_at_plans
+from jacaros.bdi.state.circumstance import Circumstance, StepObserver
+from jacaros.bdi.state.event import Event
+from jacaros.bdi.state.intention import Intention
+
+
+def observe_steps(agent: Circumstance, observer: StepObserver | None) -> None:
+    """Have *observer* asked before each event and each step; None ends it, and lets a held agent continue."""
+    agent.observers.step = observer
+    if observer is None:
+        agent.held = None
+    look_at_plans(agent)
+
+
+def is_held_before_event(agent: Circumstance, event: Event) -> bool:
+    """Whether the observer holds the agent before an event, which then is the first of the queue again."""
+    observer = agent.observers.step
+    if observer is None or not observer.holds_event(agent, event):
+        return False
+    agent.held = event
+    agent.events.appendleft(event)
+    return True
+
+
+def is_held_before_step(agent: Circumstance, intention: Intention) -> bool:
+    """Whether the observer holds the agent before a step of an intention, which then is the next one again."""
+    observer = agent.observers.step
+    if observer is None or not observer.holds_step(agent, intention):
+        return False
+    agent.held = intention
+    agent.intentions.appendleft(intention)
+    return True
+
+
+def take_held_event(agent: Circumstance) -> Event | None:
+    """The event before which the agent was held, out of its queue; None when it was not, or the event is gone."""
+    event = agent.held
+    if event is None or isinstance(event, Intention):
+        return None
+    agent.held = None
+    place = next((place for place, queued in enumerate(agent.events) if queued is event), None)
+    if place is None:
+        return None
+    del agent.events[place]
+    return event
+
+
+def take_held_intention(agent: Circumstance) -> Intention | None:
+    """The intention before whose step the agent was held, out of its queue; None when it was not, or cannot run now."""
+    intention = agent.held
+    if not isinstance(intention, Intention):
+        return None
+    agent.held = None
+    if intention.dropped or intention.suspended is not None or intention not in agent.intentions:
+        return None
+    agent.intentions.remove(intention)
+    return intention

@@ -1,0 +1,90 @@
+"""Timers in the order of their moments: the queue that every clock of a run keeps."""
+
+import heapq
+import itertools
+from collections.abc import Callable, Sequence
+
+COMPACT_ABOVE = 100
+"""Cancelled timers that a queue may hold before it looks whether they are more than half of all."""
+
+
+class QueuedTimer:
+    """A call at a moment.
+
+    Attributes:
+        when: the moment, in seconds of the clock.
+    """
+
+    __slots__ = ("_queue", "callback", "number", "when")
+
+    def __init__(self, when: float, number: int, callback: Callable[[], None], queue: "TimerQueue") -> None:
+        self.when, self.number = when, number
+        self.callback: Callable[[], None] | None = callback
+        self._queue = queue
+
+    def __lt__(self, other: "QueuedTimer") -> bool:
+        return (self.when, self.number) < (other.when, other.number)
+
+    def cancel(self) -> None:
+        """Take the call back; no effect after it."""
+        if self.callback is not None:
+            self.callback = None  # what it holds may be large, and the moment far
+            self._queue.note_cancelled()
+
+    def ring(self) -> None:
+        """Make the call, unless it was cancelled or made."""
+        callback, self.callback = self.callback, None
+        if callback is not None:
+            callback()
+
+
+class TimerQueue:
+    """The pending timers of a clock, earliest first; equal moments keep the order in which they were set."""
+
+    __slots__ = ("_cancelled", "_heap", "_numbers")
+
+    def __init__(self) -> None:
+        self._heap: list[QueuedTimer] = []
+        self._numbers = itertools.count()
+        self._cancelled = 0
+
+    def __len__(self) -> int:
+        return len(self._heap)
+
+    def add(self, when: float, callback: Callable[[], None]) -> QueuedTimer:
+        """Set a timer."""
+        timer = QueuedTimer(when, next(self._numbers), callback, self)
+        heapq.heappush(self._heap, timer)
+        return timer
+
+    def put_back(self, timer: QueuedTimer) -> None:
+        """Take a timer again that `next_due` gave and that has not rung."""
+        heapq.heappush(self._heap, timer)
+
+    def first_moment(self) -> float | None:
+        """The moment of the earliest timer; None without one."""
+        heap = self._heap
+        while heap and heap[0].callback is None:
+            heapq.heappop(heap)
+        return heap[0].when if heap else None
+
+    def next_due(self, moment: float) -> QueuedTimer | None:
+        """Take out the earliest timer that is due at *moment*; None when none is."""
+        heap = self._heap
+        while heap and heap[0].when <= moment:
+            timer = heapq.heappop(heap)
+            if timer.callback is not None:
+                return timer
+        return None
+
+    def pending(self) -> Sequence[QueuedTimer]:
+        """The timers that are still to ring, in no order."""
+        return [timer for timer in self._heap if timer.callback is not None]
+
+    def note_cancelled(self) -> None:
+        """Count a timer that was cancelled; drop cancelled ones when they are many."""
+        self._cancelled += 1
+        if self._cancelled > COMPACT_ABOVE and 2 * self._cancelled > len(self._heap):
+            self._heap = list(self.pending())
+            heapq.heapify(self._heap)
+            self._cancelled = 0
