@@ -86,6 +86,16 @@ def of_run() -> Iterator[None]:
         _OF_RUN.reset(token)
 
 
+@contextmanager
+def outside_run() -> Iterator[None]:
+    """Mark what is begun inside as no part of a run: a virtual clock that is paused does not hold it."""
+    token = _OF_RUN.set(False)
+    try:
+        yield
+    finally:
+        _OF_RUN.reset(token)
+
+
 def run_context() -> contextvars.Context:
     """Make a context in which what is begun is part of a run."""
     context = contextvars.copy_context()

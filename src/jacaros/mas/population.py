@@ -93,7 +93,7 @@ class Population:
         self._specs[name] = spec
         seed = f"{self._seed}/{name}"
         options = replace(mind_options(spec.options), plans_from_others=not self._code.restricted)
-        plans = self._plans_of(program)
+        plans = self.plans_of(program)
         host = self._classes.make(spec, _initial(spec, program), self._run, seed, options, self._code, plans)
         self._directory.add(name, host)
         self._situate(host, spec)
@@ -101,7 +101,7 @@ class Population:
             self._when_made(host)
         return host
 
-    def _plans_of(self, program: Program) -> ProgramPlans:
+    def plans_of(self, program: Program) -> ProgramPlans:
         """The plans of a program: agents that run the same one share them, compiled."""
         made = self._plans.get(id(program.plans))
         if made is None:
@@ -110,6 +110,10 @@ class Population:
             self._plans[id(program.plans)] = made
             self._uncompiled.append(made)
         return made
+
+    def spec(self, name: str) -> AgentSpec | None:
+        """What an agent was made from; None when the run has made no agent of that name."""
+        return self._specs.get(name)
 
     def compile_ahead(self) -> bool:
         """Compile a little of what no event has asked for yet, some milliseconds at most; False when nothing is left."""

@@ -83,6 +83,19 @@ class Programs:
             raise AslError(wrong)
         return programs
 
+    def read_again(self, agents: Sequence[AgentSpec]) -> list[nodes.Program]:
+        """The programs of agents, as `load_all`, from their files as they are now.
+
+        Raises:
+            AslError: with the errors of all programs; agents made later run what was read before.
+        """
+        before, self._read = self._read, {}
+        try:
+            return self.load_all(agents)
+        except BaseException:
+            self._read = before
+            raise
+
     def load(self, agent: AgentSpec, written: str | None = None) -> nodes.Program:
         """The program of one agent; of one that is written in Python an empty one.
 

@@ -28,6 +28,19 @@ class Runnable(Protocol):
         """Make up to *fuel* reasoning cycles; True when there is more to do."""
 
 
+class Pauses(Protocol):
+    """What may pause a scheduler in the middle of a turn."""
+
+    def cycles(self, agent: Runnable) -> int:
+        """The reasoning cycles that an agent has made."""
+
+    def is_held(self, agent: Runnable) -> bool:
+        """Whether an agent is held before it has used its turn up."""
+
+    def turn_ended(self, agent: Runnable) -> None:
+        """Take note that an agent has used its turn up."""
+
+
 class _Interrupted(NamedTuple):
     """A round that was paused.
 
@@ -56,8 +69,7 @@ class Scheduler:
 
     Attributes:
         paused: whether no agent has a turn.
-        count_cycles: the number of cycles that an agent has made, for pauses in the middle of a turn; None when there are
-            none.
+        pauses: what may pause in the middle of a turn; None when nothing does.
     """
 
     QUANTUM = 50
@@ -92,7 +104,7 @@ class Scheduler:
         self._stopped = False
         self._context = run_context()
         self.paused = False
-        self.count_cycles: Callable[[Runnable], int] | None = None
+        self.pauses: Pauses | None = None
         self._interrupted: _Interrupted | None = None
 
     @property
@@ -220,14 +232,14 @@ class Scheduler:
 
     def _virtual_turns(self) -> int:
         """Give turns until enough cycles were made; the cycles."""
-        queue, quantum, count, cycles = self._queue, self.QUANTUM, self.count_cycles, 0
+        queue, quantum, pauses, cycles = self._queue, self.QUANTUM, self.pauses, 0
         if self._interrupted is not None:
             cycles = self._finish_turn(self._interrupted)
         while queue and cycles < self.CYCLES_PER_ROUND and not self.paused:
             agent = queue.popleft()
             agent.queued = False
-            if count is not None:
-                cycles = self._counted_turn(agent, quantum, cycles)
+            if pauses is not None:
+                cycles = self._counted_turn(pauses, agent, quantum, cycles)
             elif agent.run(quantum):
                 cycles += quantum
                 self._requeue(agent)
@@ -237,29 +249,28 @@ class Scheduler:
             self._interrupted = _Interrupted(None, False, 0, cycles)
         return cycles
 
-    def _counted_turn(self, agent: Runnable, fuel: int, cycles: int) -> int:
+    def _counted_turn(self, pauses: Pauses, agent: Runnable, fuel: int, cycles: int) -> int:
         """Give a turn that a pause may interrupt; the cycles of the round, this turn included when it is over."""
-        count = self.count_cycles
-        assert count is not None
-        before = count(agent)
+        before = pauses.cycles(agent)
         more = agent.run(fuel)
-        left = fuel - (count(agent) - before)
-        if self.paused and more and left > 0:
+        if self.paused and pauses.is_held(agent):
+            left = fuel - (pauses.cycles(agent) - before)
             self._interrupted = _Interrupted(agent, agent.queued, left, cycles)
             agent.queued = True  # it gets the rest of its turn anyway
             return cycles
         if more:
             self._requeue(agent)
+        pauses.turn_ended(agent)
         return cycles + (self.QUANTUM if more else 1)
 
     def _finish_turn(self, interrupted: _Interrupted) -> int:
         """Give an agent the rest of its turn; the cycles of the round so far."""
         self._interrupted = None
         agent, queued, fuel, cycles = interrupted
-        if agent is None:
+        if agent is None or self.pauses is None:
             return cycles
         agent.queued = queued
-        return self._counted_turn(agent, fuel, cycles)
+        return self._counted_turn(self.pauses, agent, fuel, cycles)
 
     def _requeue(self, agent: Runnable) -> None:
         if not agent.queued and not self._stopped:
@@ -280,6 +291,8 @@ class Scheduler:
                 self._requeue(agent)
             else:
                 cycles += 1
+            if self.pauses is not None:
+                self.pauses.turn_ended(agent)
             if cycles >= look or self._poll_soon:
                 before, moment = moment, now()
                 quantum = self._fitting_quantum(moment - before)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import jacaros.bdi.actions.standard  # noqa: F401 - fills the table of internal actions
 from jacaros.asl.nodes import Program
 from jacaros.bdi.mind import Mind
-from jacaros.clock import Clock
+from jacaros.clock import Clock, of_run
 from jacaros.mas.agent_classes import AgentClasses
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.code_folder import code_folder
@@ -30,6 +30,7 @@ from jacaros.project_modules import ProjectModules
 
 if TYPE_CHECKING:
     from jacaros.env.environment import Environment
+    from jacaros.mas.debugging.debugger import Debugger
     from jacaros.mas.diagnostics import Diagnostics
     from jacaros.mas.environment import RunEnvironment
     from jacaros.mas.history.explanation import Explanation
@@ -93,6 +94,7 @@ class System:
         self._situated: Callable[[Environment], None] | None = None
         self._history: History | None = None
         self._keeps_history = False
+        self._debugger: Debugger | None = None
         self._diagnostics: Diagnostics | None = None
         self.ros = self._find_graph()
         self._modules = ProjectModules(deployment.base_path, *deployment.source_paths)
@@ -203,6 +205,15 @@ class System:
         """Call *told* with text and level of each line that is logged from now on; gives what ends that."""
         return self._log.listen(told)
 
+    @property
+    def debugger(self) -> "Debugger":
+        """What pauses and steps the run, made when it is first asked for."""
+        if self._debugger is None:
+            from jacaros.mas.debugging.debugger import Debugger  # here: most runs are not debugged
+
+            self._debugger = Debugger(self)
+        return self._debugger
+
     def history(self) -> "History":
         """What happens in the run, for recordings, views and explanations; made when it is first asked for."""
         if self._history is None:
@@ -245,6 +256,10 @@ class System:
         Raises:
             JacarosError: the project cannot be started; the text tells what is wrong.
         """
+        with of_run():
+            await self._start()
+
+    async def _start(self) -> None:
         self._ended = asyncio.get_running_loop().create_future()
         for diagnostic in self.deployment.ignored:
             self.console.log(diagnostic.render(), "warning")
@@ -354,6 +369,8 @@ class System:
         self.idleness.stop()
         for host in self.directory:
             host.halt()
+        if self._debugger is not None:
+            self._debugger.run_ended()
         if self._history is not None:
             self._history.run_ended(exit_code)
         if self._ended is not None and not self._ended.done():

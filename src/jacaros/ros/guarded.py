@@ -25,6 +25,7 @@ class Guarded:
         self._topics: Counter[Named] = Counter()
         self._actions: Counter[Named] = Counter()
         self._motions: list[Callable[[], None]] = []
+        self._drives: list[Callable[[], None]] = []
 
     @property
     def topics(self) -> list[Named]:
@@ -55,6 +56,16 @@ class Guarded:
         if group[item] == 1:
             self.on_change()
         return remove
+
+    def on_standstill(self, command: Callable[[], None]) -> Callable[[], None]:
+        """Call *command*, which commands zero velocity, when the run is paused; the result ends that."""
+        self._drives.append(command)
+        return lambda: self._drives.remove(command)
+
+    def stand_still(self) -> None:
+        """Command zero velocity to all that the node drives; motions continue with their next command."""
+        for command in list(self._drives):
+            command()
 
     def on_interruption(self, callback: Callable[[], None]) -> Callable[[], None]:
         """Call *callback*, on the loop, when a guard has stopped the robot; the result ends that."""

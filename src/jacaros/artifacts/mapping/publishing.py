@@ -57,6 +57,7 @@ class Publishing:
         if self._drives:
             self._motions = motion_queue_of(host.ros, host.robot_prefix)
             host.at_dispose(host.ros.add_exit_hook(self._stand))
+            host.at_dispose(guarded_by(host.ros).on_standstill(self._stand))
             host.at_dispose(self._halt)
 
     def _end_values(self, type_name: str, values: tuple[ValuePart, ...]) -> tuple[ValuePart, ...] | None:

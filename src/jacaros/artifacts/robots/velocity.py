@@ -123,6 +123,7 @@ class WheeledArtifact(RosArtifact):
         self.subscription(topic, ODOMETRY, self.odometer.take, SENSOR_DATA)
         self._drove = False
         self.at_dispose(self.ros.add_exit_hook(self._stand))
+        self.at_dispose(guarded_by(self.ros).on_standstill(self._stand))
         self.at_dispose(self._halt)
 
     def _placed(self) -> Callable[[Odometry], Odometry | None] | None:

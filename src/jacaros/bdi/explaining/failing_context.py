@@ -123,6 +123,24 @@ class FailingContexts:
         return unify(pattern, literal_of(self._goal, self._annotations), trail)
 
 
+def holds(agent: Circumstance, condition: nodes.Node) -> bool:
+    """Whether a condition holds now, by the same search; False when that cannot be found out."""
+    trail = Trail()
+    trail.serial = agent.trail.serial
+    view = _LookOnly(agent, SearchBudget(MOST_STEPS))
+    budget, running = agent.beliefs.budget, RUNNING.set(view)
+    agent.beliefs.budget = view.beliefs.budget
+    try:
+        view.refuse_effects(condition)
+        return any(True for _ in view.answers(lower(condition, Names().__getitem__), trail))
+    except Exception:
+        return False
+    finally:
+        undo(trail, 0)
+        agent.beliefs.budget = budget
+        RUNNING.reset(running)
+
+
 class _Search:
     """One search of a context, conjunct by conjunct, from the left."""
 

@@ -34,7 +34,7 @@ from jacaros.terms.values import (
 ERROR = functor("error", 1)
 
 
-def _same(left: nodes.Plan, right: nodes.Plan) -> bool:
+def same_plan(left: nodes.Plan, right: nodes.Plan) -> bool:
     """Whether two plans are equal, labels aside."""
     return left.trigger.operator == right.trigger.operator and shape(
         (left.trigger, left.context, left.body, left.goal_condition, left.subplans)
@@ -93,7 +93,7 @@ def include_plans(agent: Circumstance, plan_nodes: tuple[nodes.Plan, ...]) -> No
     for node in plan_nodes:
         if node.label is not None:
             held = agent.library.by_label(label_of(node, 0))
-            if held is not None and not _same(held.node, node):
+            if held is not None and not same_plan(held.node, node):
                 raise _label_taken(held.label)
     for node in plan_nodes:
         _add_node(agent, node, SELF, first=False)
@@ -105,7 +105,7 @@ def _label_taken(label: Term) -> ActionError:
 
 def _add_node(agent: Circumstance, node: nodes.Plan, source: Term, first: bool) -> None:
     for held in agent.library.plans:
-        if _same(held.node, node):
+        if same_plan(held.node, node):
             sources = agent.library.sources(held)
             if source not in sources:
                 agent.library.set_sources(held, (*sources, source))
@@ -124,7 +124,7 @@ def remove_plan(agent: Circumstance, wanted: Term, source: Term = SELF) -> None:
     term = resolve(wanted)
     if term.__class__ is tuple and term[0] is PLAN:
         node = Reflection(shared=False).plan(term)
-        found = next((p for p in agent.library.plans if _same(p.node, node)), None)
+        found = next((p for p in agent.library.plans if same_plan(p.node, node)), None)
     else:
         found = agent.library.by_label(term)
     if found is None:

@@ -5,7 +5,7 @@ from collections.abc import Callable, Coroutine
 from dataclasses import replace
 from functools import partial
 from types import TracebackType
-from typing import Any, Literal, Self, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, Self, TypeVar
 
 from jacaros.clock import Clock, VirtualClock, VirtualEventLoop, WallClock, clock_of, new_event_loop
 from jacaros.errors import UsageError
@@ -16,6 +16,9 @@ from jacaros.mas.embedding.waits import Waits
 from jacaros.mas.history.explanation import Explanation
 from jacaros.mas.options import RunOptions
 from jacaros.mas.system import System
+
+if TYPE_CHECKING:
+    from jacaros.mas.debugging.debugger import Debugger
 
 
 class EmbeddedRun:
@@ -178,6 +181,21 @@ class EmbeddedRun:
             await waits.wait(idle, lambda: "the agents did not get idle", timeout)
         finally:
             stop()
+
+    # ---- debugging
+
+    @property
+    def debugger(self) -> "Debugger":
+        """What pauses and steps the run, and sets breakpoints."""
+        return self._open.debugger
+
+    def reload(self) -> list[str]:
+        """Read the changed programs again, and replace plans and rules, see `jacaros.mas.debugging.Debugger.reload`.
+
+        Raises:
+            AslError: a program is wrong; nothing has been replaced.
+        """
+        return self._open.debugger.reload()
 
     # ---- time
 

@@ -1,0 +1,6 @@
+"""Stop a running system to look at it: pause, step, speed, breakpoints, and reload of changed programs."""
+
+from jacaros.mas.debugging.breakpoints import Breakpoint
+from jacaros.mas.debugging.debugger import Debugger, DebugState, Step
+
+__all__ = ["Breakpoint", "DebugState", "Debugger", "Step"]

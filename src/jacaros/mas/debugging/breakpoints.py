@@ -1,0 +1,234 @@
+"""Breakpoints: where a debugger stops a run, before an event is handled or before a step is made."""
+
+from collections.abc import Mapping
+from typing import Any, Protocol
+
+from jacaros.asl.loader import parse_trigger
+from jacaros.asl.lowering import Names, lower_value
+from jacaros.bdi.state.circumstance import Circumstance
+from jacaros.bdi.state.event import EVENT_ANNOTATIONS, EVENT_GOAL, Event
+from jacaros.bdi.state.intention import PLAN, STEP, Frame, Intention
+from jacaros.bdi.state.literals import literal_of
+from jacaros.bdi.state.plan import Plan, StepInfo
+from jacaros.errors import UsageError
+from jacaros.mas.debugging.condition import Condition
+from jacaros.terms.text import text
+from jacaros.terms.unifier import Trail, undo, unify
+from jacaros.terms.values import annotations_of, functor_of
+
+
+class Breakpoint(Protocol):
+    """Where a run stops."""
+
+    @property
+    def text(self) -> str:
+        """What it is, such as ``patrol.asl:14``; no two breakpoints of a debugger have the same text."""
+
+    def meets_event(self, agent: Circumstance, event: Event) -> bool:
+        """Whether the run stops before *agent* selects a plan for *event*."""
+
+    def meets_step(self, agent: Circumstance, intention: Intention) -> bool:
+        """Whether the run stops before *agent* makes the next step of *intention*."""
+
+
+class LineBreakpoint:
+    """Stops before the first step on a line of a program, or on the line where a plan begins before its first step.
+
+    Args:
+        file: name of the file as in diagnostics, or the end of it, such as ``patrol.asl``.
+        line: number of the line, from 1.
+    """
+
+    def __init__(self, file: str, line: int) -> None:
+        self.file, self.line = file, line
+        self.text = f"{file}:{line}"
+
+    def meets_event(self, agent: Circumstance, event: Event) -> bool:
+        """False: lines have steps."""
+        del agent, event
+        return False
+
+    def meets_step(self, agent: Circumstance, intention: Intention) -> bool:
+        """Whether the step is the first one on the line, of those of its plan."""
+        del agent
+        frame: Frame = intention.frames[-1]
+        plan: Plan = frame[PLAN]
+        return self._is_in(plan.file) and (
+            first_line(frame) == self.line or (is_at_first_step(frame) and self.line in head_lines(plan))
+        )
+
+    def _is_in(self, file: str) -> bool:
+        return file == self.file or file.endswith(f"/{self.file}")
+
+
+class PlanBreakpoint:
+    """Stops before the first step of a plan.
+
+    Args:
+        label: of the plan; plans without one are called ``p__N``.
+        agent: name of the agent; None for all.
+    """
+
+    def __init__(self, label: str, agent: str | None = None) -> None:
+        self.label, self.agent = label.removeprefix("@"), agent
+        self.text = f"@{self.label}" + (f" of {agent}" if agent is not None else "")
+
+    def meets_event(self, agent: Circumstance, event: Event) -> bool:
+        """False: it is not known yet which plan is taken."""
+        del agent, event
+        return False
+
+    def meets_step(self, agent: Circumstance, intention: Intention) -> bool:
+        """Whether it is the first step of the plan."""
+        frame: Frame = intention.frames[-1]
+        return (
+            self.agent in (None, agent.name)
+            and is_at_first_step(frame)
+            and text(frame[PLAN].label) == self.label
+        )
+
+
+class EventBreakpoint:
+    """Stops before a plan is selected for an event that unifies with a pattern.
+
+    Args:
+        pattern: a trigger, such as ``+low``, ``+!go(_)`` or ``-battery(0)[source(percept)]``.
+        agent: name of the agent; None for all.
+
+    Raises:
+        AslError: the pattern is not a trigger.
+        UsageError: the pattern is a variable.
+    """
+
+    def __init__(self, pattern: str, agent: str | None = None) -> None:
+        node = parse_trigger(pattern)
+        self._operator, self._kind = node.operator, node.kind
+        names = Names()
+        self._pattern = lower_value(node.literal, names.__getitem__)
+        self._functor = functor_of(self._pattern)
+        if self._functor is None:
+            raise UsageError(f"the event {pattern} is a variable; name what happens, such as +!go(_)")
+        self.agent = agent
+        self.text = pattern + (f" of {agent}" if agent is not None else "")
+
+    def meets_event(self, agent: Circumstance, event: Event) -> bool:
+        """Whether the event unifies with the pattern."""
+        goal = event[EVENT_GOAL]
+        kind = goal[0]
+        if kind.operator != self._operator or kind.kind != self._kind or kind.functor is not self._functor:
+            return False
+        if self.agent not in (None, agent.name):
+            return False
+        literal = literal_of(goal, event[EVENT_ANNOTATIONS] if annotations_of(self._pattern) else ())
+        trail = Trail()
+        try:
+            return unify(self._pattern, literal, trail)
+        finally:
+            undo(trail, 0)
+
+    def meets_step(self, agent: Circumstance, intention: Intention) -> bool:
+        """False: the event has been handled."""
+        del agent, intention
+        return False
+
+
+class ConditionBreakpoint:
+    """Stops when a condition of an agent becomes true; it is tested before each of the agent's events and steps.
+
+    Args:
+        condition: such as ``battery(B) & B < 20``.
+        agent: name of the agent.
+
+    Raises:
+        AslError: the text is not a condition.
+        UsageError: the condition calls an internal action that acts or waits.
+    """
+
+    def __init__(self, condition: str, agent: str) -> None:
+        self._condition = Condition(condition)
+        self.agent = agent
+        self.text = f"{condition} of {agent}"
+        self._held: bool | None = None
+
+    def becomes_true(self, agent: Circumstance) -> bool:
+        """Whether the condition holds, and did not at the last test; at the first test, false."""
+        if agent.name != self.agent:
+            return False
+        before, self._held = self._held, self._condition.holds(agent)
+        return self._held and before is False
+
+    def meets_event(self, agent: Circumstance, event: Event) -> bool:
+        """Whether the condition has become true."""
+        del event
+        return self.becomes_true(agent)
+
+    def meets_step(self, agent: Circumstance, intention: Intention) -> bool:
+        """Whether the condition has become true."""
+        del intention
+        return self.becomes_true(agent)
+
+
+def is_at_first_step(frame: Frame) -> bool:
+    """Whether nothing of the plan of a frame has been done."""
+    return frame[STEP] is frame[PLAN].first
+
+
+def step_line(info: StepInfo | None) -> int:
+    """The line of a step; 0 when it is not known."""
+    return info.node.span.line if info is not None and info.node.span is not None else 0
+
+
+def first_line(frame: Frame) -> int:
+    """The line of the next step when it is the first one on that line of its plan, else 0: a line stops a run once."""
+    step: Any = frame[STEP]
+    info: StepInfo | None = getattr(step, "info", None)
+    line = step_line(info)
+    if not line:
+        return 0
+    steps: dict[str, StepInfo] = getattr(step, "steps", frame[PLAN].steps)
+    on_line = [
+        each.node.span for each in steps.values() if step_line(each) == line and each.node.span is not None
+    ]
+    assert info is not None
+    assert info.node.span is not None
+    return line if info.node.span.column <= min(span.column for span in on_line) else 0
+
+
+def head_lines(plan: Plan) -> range:
+    """The lines from the beginning of a plan to the line before its first step; the whole plan without steps."""
+    span, body = plan.node.span, plan.node.body
+    if span is None:
+        return range(0)
+    steps = getattr(body, "steps", ())
+    first = steps[0].span.line if steps and steps[0].span is not None else span.end_line + 1
+    return range(span.line, first)
+
+
+def breakpoint_at(at: Mapping[str, Any]) -> Breakpoint:
+    """The breakpoint that data describes.
+
+    Args:
+        at: ``{"line": {"file": F, "line": N}}``, ``{"plan": {"plan": LABEL, "agent": A}}``,
+            ``{"event": TRIGGER, "agent": A}`` or ``{"condition": CONDITION, "agent": A}``; the agent of plans and events
+            may be left out.
+
+    Raises:
+        AslError: a trigger or condition is wrong.
+        UsageError: the data describes no breakpoint.
+    """
+    agent = at.get("agent")
+    try:
+        if "line" in at:
+            return LineBreakpoint(str(at["line"]["file"]), int(at["line"]["line"]))
+        if "plan" in at:
+            plan = at["plan"]
+            return PlanBreakpoint(str(plan["plan"]), plan.get("agent"))
+        if "event" in at:
+            return EventBreakpoint(str(at["event"]), agent)
+        if "condition" in at:
+            if agent is None:
+                raise UsageError("a condition needs the name of an agent")
+            return ConditionBreakpoint(str(at["condition"]), str(agent))
+    except (KeyError, TypeError, ValueError, AttributeError) as wrong:
+        raise UsageError(f"invalid breakpoint: {dict(at)!r}") from wrong
+    raise UsageError(f"invalid breakpoint: {dict(at)!r}; expected line, plan, event or condition")

@@ -1,0 +1,379 @@
+"""The debugger of a running system: it stops agents, timers and the embedded world together."""
+
+import asyncio
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass
+from typing import Any, Literal, Protocol, get_args
+
+from jacaros.bdi.mind import Mind
+from jacaros.bdi.rules.holding import observe_steps
+from jacaros.bdi.state.circumstance import Circumstance
+from jacaros.bdi.state.event import Event
+from jacaros.bdi.state.intention import PLAN, STEP, Intention
+from jacaros.clock import Clock, WallClock, outside_run
+from jacaros.errors import UsageError
+from jacaros.mas.agent_host import AgentHost
+from jacaros.mas.debugging.breakpoints import Breakpoint, ConditionBreakpoint, breakpoint_at, step_line
+from jacaros.mas.debugging.reload import reload_programs
+from jacaros.mas.debugging.unpaused import command_standstill, not_paused
+from jacaros.mas.directory import Directory
+from jacaros.mas.options import RunOptions
+from jacaros.mas.population import Population
+from jacaros.mas.ros_graph import RosGraph
+from jacaros.mas.scheduler import Runnable, Scheduler
+
+Step = Literal["cycle", "step", "event"]
+"""What a run is stepped by: a reasoning cycle, a plan step, or until the next event is handled."""
+
+STEPS = get_args(Step)
+
+
+@dataclass(frozen=True)
+class DebugState:
+    """What a debugger reports: the data of a ``debug`` record, see ``docs/reference/recordings.md``.
+
+    Attributes:
+        state: ``paused`` or ``running``.
+        why: why the run was paused, such as ``pause``, ``step`` or ``breakpoint patrol.asl:14``; empty while it runs.
+        speed: seconds of the run's clock in a second of real time; 0.0 for the virtual clock.
+        cannot: what a pause does not stop, in words.
+        agent: the agent that is held before an event or a step; empty when none is.
+        file, line: of the step before which it is held; empty and 0 when it is not a step.
+        intention: the number of its intention; 0 without one.
+    """
+
+    state: Literal["paused", "running"]
+    why: str = ""
+    speed: float = 1.0
+    cannot: tuple[str, ...] = ()
+    agent: str = ""
+    file: str = ""
+    line: int = 0
+    intention: int = 0
+
+    def data(self) -> dict[str, Any]:
+        """Plain data for JSON."""
+        return {**asdict(self), "cannot": list(self.cannot)}
+
+
+Listener = Callable[[DebugState], None]
+
+
+class DebuggedSystem(Protocol):
+    """A running system as its debugger sees it (`jacaros.mas.system.System`)."""
+
+    clock: Clock
+    options: RunOptions
+    scheduler: Scheduler
+    directory: Directory[AgentHost]
+    population: Population
+    ros: RosGraph
+
+
+class Debugger:
+    """Pauses, steps and continues a run, and changes its speed and programs.
+
+    All methods are for the thread of the run's loop.  Several systems on one loop with the virtual clock share this clock:
+    a pause stops the time of all of them.
+
+    Args:
+        system: the system.
+    """
+
+    def __init__(self, system: DebuggedSystem) -> None:
+        self._system = system
+        self._breakpoints: dict[str, Breakpoint] = {}
+        self._listeners: tuple[Listener, ...] = ()
+        self._state = DebugState("running", speed=self.speed)
+        self._stepping: tuple[Step, str | None] | None = None
+        self._stepped_from: dict[str, int] = {}
+        """By agent, the number of the cycle in which a step began."""
+        self._watches = False
+
+    # ---- what is shown
+
+    @property
+    def paused(self) -> bool:
+        """Whether the run is paused."""
+        return self._state.state == "paused"
+
+    @property
+    def state(self) -> DebugState:
+        """The newest state, as listeners got it."""
+        return self._state
+
+    def listen(self, listener: Listener) -> Callable[[], None]:
+        """Call *listener* with every new state; gives what ends that."""
+        self._listeners = (*self._listeners, listener)
+
+        def end() -> None:
+            self._listeners = tuple(each for each in self._listeners if each is not listener)
+
+        return end
+
+    async def wait_until_paused(self, timeout: float | None = None) -> DebugState:
+        """Wait until the run is paused, by a breakpoint or otherwise; the state.
+
+        Args:
+            timeout: seconds of real time; None to wait as long as it takes.  Not for the virtual clock.
+
+        Raises:
+            TimeoutError: it was not paused in time.
+        """
+        if self.paused:
+            return self._state
+        found: asyncio.Future[DebugState] = asyncio.get_running_loop().create_future()
+        end = self.listen(lambda state: found.set_result(state) if _is_news(state, found) else None)
+        try:
+            return await asyncio.wait_for(found, timeout)
+        finally:
+            end()
+
+    # ---- pause and continue
+
+    def pause(self, why: str = "pause") -> None:
+        """Pause agents, timers and the embedded world; on a real graph, command zero velocity first.
+
+        An agent in the middle of its turn is held before its next step.  No effect on a paused run.
+        """
+        if not self.paused:
+            self._hook()
+            self._stop(DebugState("paused", why))
+
+    def resume(self) -> None:
+        """Continue where the run was paused; no effect on a running one."""
+        if not self.paused:
+            return
+        self._change(DebugState("running"))
+        self._system.scheduler.resume()
+        self._system.clock.resume()
+
+    def step(self, what: Step = "step", agent: str | None = None) -> None:
+        """Continue until the next reasoning cycle, plan step or event, and pause before it.
+
+        Time moves meanwhile, and other agents have their turns.
+
+        Args:
+            what: ``cycle``, ``step`` or ``event``.
+            agent: name of the agent to step; None for the one that is next.
+
+        Raises:
+            UsageError: *what* or *agent* is unknown.
+        """
+        if what not in STEPS:
+            raise UsageError(f"unknown step `{what}`; expected {', '.join(STEPS)}")
+        if agent is not None and self._system.directory.find(agent) is None:
+            raise UsageError(f"unknown agent: {agent}")
+        self._hook()
+        self._stepping = (what, agent)
+        self._stepped_from = {
+            host.name: mind.counts.cycles for host, mind in self._minds() if mind.held is not None
+        }
+        self.resume()
+
+    def run_ended(self) -> None:
+        """Let the run end: what a pause holds would never end."""
+        self._stepping = None
+        self._breakpoints.clear()
+        self.resume()
+
+    # ---- speed
+
+    @property
+    def speed(self) -> float:
+        """Seconds of the run's clock in a second of real time; 0.0 for the virtual clock, which has no speed."""
+        clock = self._system.clock
+        return clock.speed if isinstance(clock, WallClock) else 0.0 if clock.virtual else 1.0
+
+    @speed.setter
+    def speed(self, factor: float) -> None:
+        if not self.has_speed:
+            raise UsageError("only a run with --clock real and --ros memory has a speed")
+        if not 0.0 < factor < float("inf"):
+            raise UsageError(f"expected a speed greater than 0, found {factor}")
+        assert isinstance(self._system.clock, WallClock)
+        self._system.clock.speed = factor
+        self._change(self._state)
+
+    @property
+    def has_speed(self) -> bool:
+        """Whether the speed can be changed: in real time, with the embedded world or none."""
+        return isinstance(self._system.clock, WallClock) and self._system.options.ros == "memory"
+
+    # ---- breakpoints
+
+    @property
+    def breakpoints(self) -> list[Breakpoint]:
+        """The breakpoints, in the order in which they were set."""
+        return list(self._breakpoints.values())
+
+    def add_breakpoint(self, at: Breakpoint | Mapping[str, Any]) -> Breakpoint:
+        """Set a breakpoint, also for agents that come later.
+
+        Args:
+            at: the breakpoint, or data that describes it (`jacaros.mas.debugging.breakpoints.breakpoint_at`).
+
+        Raises:
+            AslError: a trigger or condition is wrong.
+            UsageError: the data describes no breakpoint.
+        """
+        made = breakpoint_at(at) if isinstance(at, Mapping) else at
+        known = self._breakpoints.setdefault(made.text, made)
+        self._hook()
+        if isinstance(known, ConditionBreakpoint):
+            host = self._system.directory.find(known.agent)
+            if host is not None and isinstance(host.mind, Mind):
+                known.becomes_true(host.mind)
+        return known
+
+    def remove_breakpoint(self, at: Breakpoint | Mapping[str, Any]) -> bool:
+        """Remove a breakpoint; False when it was not set.
+
+        Raises:
+            AslError: a trigger or condition is wrong.
+            UsageError: the data describes no breakpoint.
+        """
+        made = breakpoint_at(at) if isinstance(at, Mapping) else at
+        return self._breakpoints.pop(made.text, None) is not None
+
+    # ---- programs
+
+    def reload(self) -> list[str]:
+        """Read the changed programs (``.asl``) again, and replace their plans and rules in the agents that run them.
+
+        Beliefs and intentions are kept.  An intention keeps its old plan until this plan ends.  Agents do not adopt new
+        initial beliefs and goals.
+
+        Returns:
+            what was replaced, and what could not be, one line each.
+
+        Raises:
+            AslError: a program is wrong; nothing has been replaced.
+        """
+        return reload_programs(self._system.directory, self._system.population)
+
+    # ---- asked by minds, see `jacaros.bdi.state.circumstance.StepObserver`
+
+    def holds_event(self, agent: Circumstance, event: Event) -> bool:
+        """Whether *agent* is held before it selects a plan for *event*."""
+        if self.paused:
+            return True
+        why = self._why_before(agent, "event") or self._met(lambda each: each.meets_event(agent, event))
+        return self._hold(agent, why, None)
+
+    def holds_step(self, agent: Circumstance, intention: Intention) -> bool:
+        """Whether *agent* is held before it makes the next step of *intention*."""
+        if self.paused:
+            return True
+        if not (self._breakpoints or self._stepping):
+            observe_steps(agent, None)  # from now on, the agent costs no more than without a debugger
+            return False
+        why = self._met(lambda each: each.meets_step(agent, intention))
+        if not why and intention.frames[-1][STEP] is not None:
+            why = self._why_before(agent, "step")
+        return self._hold(agent, why, intention)
+
+    def _met(self, test: Callable[[Breakpoint], bool]) -> str:
+        # All are asked: conditions note at each test whether they hold.
+        met = [each.text for each in self._breakpoints.values() if test(each)]
+        return f"breakpoint {', '.join(met)}" if met else ""
+
+    def _why_before(self, agent: Circumstance, what: Step) -> str:
+        """``step`` when the step that was asked for ends here."""
+        if self._stepping is None or self._stepping[1] not in (None, agent.name):
+            return ""
+        wanted = self._stepping[0]
+        if wanted == "cycle":
+            return "" if self._stepped_from.get(agent.name) == agent.counts.cycles else "step"
+        return "step" if wanted == what else ""
+
+    def _hold(self, agent: Circumstance, why: str, intention: Intention | None) -> bool:
+        if not why:
+            return False
+        file, line, number = "", 0, 0
+        if intention is not None:
+            number, frame = intention.id, intention.frames[-1]
+            file, line = frame[PLAN].file, step_line(getattr(frame[STEP], "info", None))
+        self._stop(DebugState("paused", why, agent=agent.name, file=file, line=line, intention=number))
+        return True
+
+    # ---- the run itself
+
+    def _stop(self, state: DebugState) -> None:
+        system = self._system
+        self._stepping = None
+        system.scheduler.pause()
+        command_standstill(system.ros, system.options)
+        system.clock.pause()
+        self._change(state, not_paused(system.directory, system.ros, system.options, system.clock))
+
+    def _change(self, state: DebugState, cannot: tuple[str, ...] = ()) -> None:
+        self._state = DebugState(**{**asdict(state), "speed": self.speed, "cannot": cannot})
+        with outside_run():
+            for listener in self._listeners:
+                listener(self._state)
+
+    def _minds(self) -> list[tuple[AgentHost, Mind]]:
+        return [(host, host.mind) for host in self._system.directory if isinstance(host.mind, Mind)]
+
+    def _hook(self) -> None:
+        """Be asked by all agents, also by those that come later."""
+        self._system.scheduler.pauses = _Turns(self)
+        for host, _ in self._minds():
+            self._hook_agent(host)
+        if not self._watches:
+            self._watches = True
+            self._system.directory.watch(self._agent_came)
+
+    def _agent_came(self, name: str, present: bool) -> None:
+        host = self._system.directory.find(name)
+        if present and host is not None and (self._breakpoints or self._stepping or self.paused):
+            self._hook_agent(host)
+
+    def _hook_agent(self, host: AgentHost) -> None:
+        mind = host.mind
+        if not isinstance(mind, Mind):
+            return
+        if mind.observers.step is not self:
+            observe_steps(mind, self)
+
+    def turn_ended(self, agent: Circumstance) -> None:
+        """Test conditions also after a turn: a percept that no plan handles is followed by no step."""
+        if self.paused:
+            return
+        conditions = [each for each in self._breakpoints.values() if isinstance(each, ConditionBreakpoint)]
+        met = [each.text for each in conditions if each.becomes_true(agent)]
+        if met:
+            self._stop(DebugState("paused", f"breakpoint {', '.join(met)}", agent=agent.name))
+
+
+def _is_news(state: DebugState, found: "asyncio.Future[DebugState]") -> bool:
+    return state.state == "paused" and not found.done()
+
+
+class _Turns:
+    """What the scheduler asks about turns that the debugger may interrupt."""
+
+    def __init__(self, debugger: Debugger) -> None:
+        self._debugger = debugger
+
+    def cycles(self, agent: Runnable) -> int:
+        """The reasoning cycles that an agent has made."""
+        mind = _mind_of(agent)
+        return mind.counts.cycles if mind is not None else 0
+
+    def is_held(self, agent: Runnable) -> bool:
+        """Whether an agent is held in the middle of a cycle."""
+        mind = _mind_of(agent)
+        return mind is not None and mind.held is not None
+
+    def turn_ended(self, agent: Runnable) -> None:
+        """Have the debugger look at an agent after its turn."""
+        mind = _mind_of(agent)
+        if mind is not None:
+            self._debugger.turn_ended(mind)
+
+
+def _mind_of(agent: Runnable) -> Mind | None:
+    mind = agent.mind if isinstance(agent, AgentHost) else None
+    return mind if isinstance(mind, Mind) else None

@@ -1,0 +1,89 @@
+"""Changed programs are read again, and replace those that agents run."""
+
+from collections.abc import Iterator
+
+from jacaros.asl import nodes
+from jacaros.asl.formatter import format_term
+from jacaros.asl.walk import shape
+from jacaros.bdi.mind import Mind
+from jacaros.bdi.rules.reloading import outdated_plans, replace_plans, replace_rules
+from jacaros.mas.agent_host import AgentHost
+from jacaros.mas.directory import Directory
+from jacaros.mas.population import Population
+
+NOTHING = "no program has changed"
+
+
+def reload_programs(directory: Directory[AgentHost], population: Population) -> list[str]:
+    """Read the programs of all agents again, and replace plans and rules where a program has changed.
+
+    Returns:
+        what was replaced, and what could not be, one line each.
+
+    Raises:
+        AslError: a program is wrong; nothing has been replaced.
+    """
+    agents = [
+        (host.mind, spec)
+        for host in directory
+        if isinstance(host.mind, Mind)
+        and (spec := population.spec(host.name)) is not None
+        and spec.source_path.suffix == ".asl"
+        and not spec.is_python
+    ]
+    programs = population.programs.read_again([spec for _, spec in agents])
+    lines: list[str] = []
+    for (mind, _), program in zip(agents, programs, strict=True):
+        if _texts(program) != _texts(mind.program):
+            lines += _report(mind, program)
+            _replace_soon(mind, program, population)
+    return lines or [NOTHING]
+
+
+def _texts(program: nodes.Program) -> set[tuple[str, str]]:
+    """Names and texts of the files of a program; what the project declares is not in a file."""
+    clauses = (*program.plans, *program.beliefs, *program.goals)
+    return {(clause.span.file.name, clause.span.file.text) for clause in clauses if clause.span is not None}
+
+
+def _replace_soon(mind: Mind, program: nodes.Program, population: Population) -> None:
+    """Replace the program, before the next step of an agent that has its turn now."""
+    if mind.running:
+        mind.do_soon(lambda _: _replace(mind, program, population))
+    else:
+        _replace(mind, program, population)
+    mind.architecture.ready()
+
+
+def _replace(mind: Mind, program: nodes.Program, population: Population) -> None:
+    mind.register_functions(program.functions)
+    replace_rules(mind, mind.program.beliefs, program.beliefs)
+    replace_plans(mind, population.plans_of(program))
+    mind.program = program
+
+
+def _report(mind: Mind, new: nodes.Program) -> list[str]:
+    old, agent = mind.program, f"agent {mind.name}"
+    before, after = {shape(plan) for plan in old.plans}, {shape(plan) for plan in new.plans}
+    return [
+        f"{agent}: {len(before - after)} plans gone, {len(after - before)} new, {len(before & after)} unchanged",
+        *(
+            f"{agent}: intention {number} continues with its old plan {_place(plan.node)}"
+            for number, plan in outdated_plans(mind, new.plans)
+        ),
+        *(f"{agent}: the new initial {what} is not adopted" for what in _new_facts(old, new)),
+    ]
+
+
+def _new_facts(old: nodes.Program, new: nodes.Program) -> Iterator[str]:
+    """The initial beliefs and goals that only the new program has; rules are replaced."""
+    for what, before, after in (("belief", old.beliefs, new.beliefs), ("goal", old.goals, new.goals)):
+        known = {shape(node) for node in before}
+        for node in after:
+            if not isinstance(node, nodes.Rule) and shape(node) not in known:
+                yield f"{what} {format_term(node)}"
+
+
+def _place(node: nodes.Plan) -> str:
+    place = "" if node.span is None else f" ({node.span.file.name}:{node.span.line})"
+    return f"{format_term(node.trigger)}{place}"

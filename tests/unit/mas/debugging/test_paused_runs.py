@@ -1,0 +1,70 @@
+"""A run that was paused and continued does the same as one that was not."""
+
+import asyncio
+from random import Random
+
+import pytest
+from debugged_runs import EXAMPLES, Observed, observed
+
+from jacaros import Mas
+
+PROJECTS = {
+    "patrol": (EXAMPLES / "04_patrol" / "patrol.jcm", 25.0),
+    "three robots": (EXAMPLES / "09_three_robots" / "three_robots.jcm", 12.0),
+    "mastermind": (EXAMPLES / "06_mastermind" / "mastermind.mas2j", 5.0),
+}
+
+
+def pauses_at_random(seed: int, times: int, seconds: float):
+    """Pause at random moments, also in the middle of what happens at one moment, and see that nothing goes on."""
+
+    async def during(mas: Mas, found: Observed) -> None:
+        random, debugger = Random(seed), mas.debugger
+        for _ in range(times):
+            await mas.sleep(random.expovariate(times / seconds))
+            for _ in range(random.randrange(12)):
+                await asyncio.sleep(0)
+            if mas.exit_code is not None:
+                return
+            debugger.pause()
+            before = mas.clock.elapsed, len(found.lines), len(found.frames)
+            for _ in range(random.randrange(40)):
+                await asyncio.sleep(0)
+            assert (mas.clock.elapsed, len(found.lines), len(found.frames)) == before
+            debugger.resume()
+
+    return during
+
+
+@pytest.mark.parametrize("name", PROJECTS)
+@pytest.mark.parametrize("seed", range(3))
+def test_pauses_at_random_moments_change_nothing(name: str, seed: int) -> None:
+    project, seconds = PROJECTS[name]
+    plain = observed(project, seconds)
+    paused = observed(project, seconds, pauses_at_random(seed, 60, seconds))
+    assert plain.lines or plain.frames
+    assert paused.lines == plain.lines
+    assert paused.frames == plain.frames
+
+
+@pytest.mark.parametrize("what", ["cycle", "step", "event"])
+@pytest.mark.parametrize("name", ["patrol", "three robots"])
+def test_a_run_that_is_stepped_does_the_same(name: str, what: str) -> None:
+    project, seconds = PROJECTS[name][0], 4.0
+    stops = []
+
+    async def during(mas: Mas, found: Observed) -> None:
+        debugger = mas.debugger
+        debugger.listen(lambda state: stops.append(state.agent) if state.state == "paused" else None)
+        ended = asyncio.ensure_future(mas.ended())
+        while not ended.done():
+            debugger.step(what)  # type: ignore[arg-type]
+            paused = asyncio.ensure_future(debugger.wait_until_paused())
+            await asyncio.wait({paused, ended}, return_when=asyncio.FIRST_COMPLETED)
+            paused.cancel()
+
+    stepped = observed(project, seconds, during)
+    plain = observed(project, seconds)
+    assert len(stops) > 10
+    assert stepped.lines == plain.lines
+    assert stepped.frames == plain.frames
