@@ -133,5 +133,5 @@ def test_the_map_keeps_robots_away_from_cliffs() -> None:
 
 
 def test_a_robot_must_not_begin_over_a_cliff() -> None:
-    with pytest.raises(WorldError, match=r"the robot 'robot' stands at \[1.5, 0\], over a cliff"):
+    with pytest.raises(WorldError, match=r"the robot 'robot' is at \[1.5, 0\], over a cliff"):
         read_world(STAIRS.replace("x: 0", "x: 1.5"))

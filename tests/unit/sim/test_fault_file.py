@@ -10,6 +10,9 @@ from jacaros.sim.files.world import read_world
 
 WORLD = read_world("""
 name: two
+border: walls
+walls:
+  - box: {from: [0, -2.5], to: [1, -1.5]}
 doors:
   - {name: kitchen, segment: [[2, -1], [2, 1]]}
 robots:
@@ -34,6 +37,15 @@ robots:
         ("{kind: battery_drop, robot: one}", "needs 'to'"),
         ("{kind: battery_drop, robot: one, to: 15, for: 3}", "happens at once"),
         ("{kind: kidnapped_robot, robot: one, to: {z: 1}}", "'to' has no key 'z'"),
+        (
+            "{kind: kidnapped_robot, robot: one, to: {x: -2.9}}",
+            "it puts the robot 'one' at [-2.9, 0], in a wall: 0.10 m from it, with a radius of 0.17 m",
+        ),
+        (
+            "{kind: kidnapped_robot, robot: two, to: {x: 5}}",
+            "it puts the robot 'two' at [5, 0], outside the world",
+        ),
+        ("{kind: kidnapped_robot, robot: two, to: {x: 0.2, y: -2}}", "inside a box"),
         ("{kind: person}", "it is not said where the person stands"),
         ("{kind: dead}", "it is not said which topic it happens to"),
         ("{kind: dead, topic: /scan, at: -1}", "'at' is -1, but must be at least 0"),
@@ -44,6 +56,11 @@ def test_a_mistake_is_told_with_its_place(fault: str, message: str) -> None:
         read_faults(f"faults:\n  # one\n  f: {fault}\n", WORLD, "f.yaml")
     assert message in str(told.value)
     assert str(told.value).startswith("f.yaml:3:")
+
+
+def test_a_robot_is_put_into_a_doorway_that_can_be_open_by_then() -> None:
+    (fault,) = read_faults("faults: {f: {kind: kidnapped_robot, robot: one, to: {x: 2, y: 0}}}", WORLD)
+    assert fault.pose == (2.0, 0.0, 0.0)
 
 
 def test_topics_are_the_robots_unless_they_begin_with_a_slash() -> None:

@@ -193,7 +193,7 @@ def test_a_world_file_builds_upon_a_map(tmp_path: Path) -> None:
     assert (0, 0, 1, 0) in world.segments
     assert (0.5, 0, 1.5, 0.5) in world.boxes
     path.write_text(text.replace("y: -1", "y: 0.25").replace("x: 0", "x: 1"))
-    with pytest.raises(WorldError, match="inside of a box"):
+    with pytest.raises(WorldError, match="inside a box"):
         load_world(str(path))
     path.write_text(text.replace("map:", "size: [2, 2]\nmap:"))
     assert load_world(str(path)).bounds == (-1, -1, 1, 1)

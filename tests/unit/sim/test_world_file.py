@@ -263,10 +263,10 @@ def test_robots_that_stand_where_they_cannot_are_told_all_at_once() -> None:
     with pytest.raises(WorldError) as wrong:
         read_world(WALLED + "\n".join(lines))
     assert [(problem.line, problem.message) for problem in wrong.value.problems] == [
-        (10, "the robot 'far' stands at [9, 0], outside of the world"),
-        (11, "the robot 'boxed' stands at [0, 0], inside of a box"),
-        (12, "the robot 'walled' stands at [1.4, 0.5], in a wall: 0.10 m from it, with a radius of 0.17 m"),
-        (13, "the robot 'stuck' stands at [-1.5, 1.6], in a wall: 0.10 m from it, with a radius of 0.17 m"),
+        (10, "the robot 'far' is at [9, 0], outside the world"),
+        (11, "the robot 'boxed' is at [0, 0], inside a box"),
+        (12, "the robot 'walled' is at [1.4, 0.5], in a wall: 0.10 m from it, with a radius of 0.17 m"),
+        (13, "the robot 'stuck' is at [-1.5, 1.6], in a wall: 0.10 m from it, with a radius of 0.17 m"),
     ]
 
 

@@ -20,9 +20,10 @@ import re
 from dataclasses import replace
 from pathlib import Path
 
-from jacaros.sim.description import PersonDescription, WorldDescription, WorldError
+from jacaros.sim.description import PersonDescription, Pose, WorldDescription, WorldError
 from jacaros.sim.faults.description import AT_ONCE, KEYS, MESSAGES, WHEELS, Fault
 from jacaros.sim.files.people import read_path
+from jacaros.sim.files.places import place_problem
 from jacaros.sim.files.robot import read_pose
 from jacaros.yaml_nodes import Node, Problem, read_document
 from jacaros.yaml_syntax import read_text, top_keys
@@ -145,8 +146,22 @@ def _placed(fault: Fault, node: Node, entries: dict[str, Node], world: WorldDesc
     elif fault.kind == "battery_drop":
         return replace(fault, level=entries["to"].number(0.0, 100.0))
     elif fault.kind == "kidnapped_robot":
-        return replace(fault, pose=read_pose(entries["to"].mapping("x", "y", "yaw_degrees")))
+        return replace(fault, pose=_landing(entries["to"], fault.robot, world))
     return fault
+
+
+def _landing(node: Node, name: str, world: WorldDescription | None) -> Pose:
+    """Read where a robot is put down; doors do not count, as they can be open by then."""
+    mistakes = len(node.problems)
+    pose = read_pose(node.mapping("x", "y", "yaw_degrees"))
+    robots = () if world is None or len(node.problems) > mistakes else world.robots
+    for robot in robots:
+        if world is not None and robot.name == name:
+            problem, cure = place_problem(robot, pose, world, world.segments)
+            if problem:
+                where = f"it puts the robot '{name}' at [{pose.x:g}, {pose.y:g}], {problem}"
+                node.wrong(where, cure or "write another place under 'to'")
+    return pose
 
 
 _TO = {

@@ -31,12 +31,10 @@ radians.  Every key but ``robots`` may be left out; what a robot may say is in `
 
 import difflib
 import itertools
-import math
 import re
 from collections.abc import Iterable
 from pathlib import Path
 
-from jacaros.sim.contact import WallIndex, push_out_rectangle
 from jacaros.sim.description import (
     Dock,
     Door,
@@ -54,6 +52,7 @@ from jacaros.sim.files.box import read_box
 from jacaros.sim.files.map import OccupancyMap, free_place, is_map, near_file, read_map
 from jacaros.sim.files.objects import read_objects
 from jacaros.sim.files.people import check_people, read_person
+from jacaros.sim.files.places import place_problem
 from jacaros.sim.files.robot import read_pose, read_robot
 from jacaros.sim.files.room import read_rectangle, read_rooms
 from jacaros.text_files import is_file
@@ -79,8 +78,6 @@ _KEYS = (
 )
 _TELLING = frozenset(_KEYS) - {"name", "seed"}
 """Keys that few other YAML files have."""
-_TOUCHING = 0.001
-"""Metres that a robot may stand in a wall: so much is lost when its place is rounded."""
 _DOOR_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 
 
@@ -217,43 +214,24 @@ def _world(document: Node, folder: Path) -> WorldDescription:
     )
     if not document.problems:  # else places may be made up
         walled = "border" in entries and entries["border"].value == "walls"
-        _check_places(robots, world, walled)
+        _check_places(robots, world)
         check_people(people, world, walled)
     return world
 
 
-def _check_places(items: list[Node], world: WorldDescription, walled: bool) -> None:
-    """Each robot must stand in the world, and neither in furniture nor in a wall or a closed door."""
-    closed = [door.segment for door in world.doors if not door.open]
+def _check_places(items: list[Node], world: WorldDescription) -> None:
+    """Note robots that are outside the world, in furniture, over a cliff, or in a wall or a closed door."""
+    solid = (*world.segments, *(door.segment for door in world.doors if not door.open))
     for item, robot in zip(items, world.robots, strict=True):
         x, y, _ = robot.pose
-        where = f"the robot '{robot.name}' stands at [{x:g}, {y:g}]"
-        cure = "write another place under 'pose'"
-        near = min((wall.distance(x, y) for wall in (*world.segments, *closed)), default=math.inf)
-        if walled and not world.bounds.contains(x, y):
-            left, bottom, right, top = world.bounds
+        problem, cure = place_problem(robot, robot.pose, world, solid)
+        if not problem and any(cliff.contains(x, y) for cliff in world.cliffs):
+            problem = "over a cliff"
+        if problem:
             item.wrong(
-                f"{where}, outside of the world",
-                f"the world goes from [{left:g}, {bottom:g}] to [{right:g}, {top:g}]",
+                f"the robot '{robot.name}' is at [{x:g}, {y:g}], {problem}",
+                cure or "write another place under 'pose'",
             )
-        elif any(box.contains(x, y) for box in world.boxes):
-            item.wrong(f"{where}, inside of a box", cure)
-        elif any(cliff.contains(x, y) for cliff in world.cliffs):
-            item.wrong(f"{where}, over a cliff", cure)
-        elif robot.footprint is not None and _is_in_wall(robot, (*world.segments, *closed)):
-            length, width = robot.footprint
-            item.wrong(f"{where}, in a wall, with a footprint of {length:g} x {width:g} m", cure)
-        elif robot.footprint is None and near < robot.radius - _TOUCHING:
-            item.wrong(f"{where}, in a wall: {near:.2f} m from it, with a radius of {robot.radius:g} m", cure)
-
-
-def _is_in_wall(robot: RobotDescription, segments: Iterable[Segment]) -> bool:
-    """Whether a rectangular robot would be pushed by more than is lost in rounding."""
-    assert robot.footprint is not None
-    length, width = robot.footprint
-    walls = WallIndex(segments, robot.radius).near(robot.pose.x, robot.pose.y)
-    x, y, _ = push_out_rectangle(robot.pose, 0.5 * length, 0.5 * width, walls)
-    return math.dist((x, y), robot.pose[:2]) > _TOUCHING
 
 
 def _map(node: Node, folder: Path) -> OccupancyMap | None:
