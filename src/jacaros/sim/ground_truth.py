@@ -173,7 +173,7 @@ class GroundTruth:
         try:
             return cls._of_records(_records(path))
         except (ValueError, LookupError, TypeError, AttributeError, RecursionError, OverflowError) as error:
-            told = f"{path} is no ground truth file: {type(error).__name__}: {str(error)[:200]}"
+            told = f"{path} is not a ground truth file: {type(error).__name__}: {str(error)[:200]}"
             raise JacarosError(told) from None
 
     @classmethod

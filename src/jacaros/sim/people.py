@@ -118,7 +118,7 @@ class People:
             UsageError: there is no such person.
         """
         if name not in self.by_name:
-            raise UsageError(f"there is no person '{name}', only: {', '.join(self.by_name) or 'nobody'}")
+            raise UsageError(f"unknown person '{name}'; people: {', '.join(self.by_name) or 'none'}")
         self._tell(self.by_name.pop(name), "person_goes", {})
 
     def circles(self) -> list[tuple[float, float, float]]:

@@ -143,7 +143,7 @@ def test_an_image_alone_gets_a_map_file(folder: Path, capsys: pytest.CaptureFixt
             1,
             "broken.yaml:1:1: error: a map lacks the key 'origin'",
         ),
-        (("new", "a.yaml", "--map", "missing.yaml"), 1, "missing.yaml:1:1: error: it cannot be read"),
+        (("new", "a.yaml", "--map", "missing.yaml"), 1, "missing.yaml:1:1: error: cannot read the file"),
     ],
 )
 def test_wrong_calls_say_what_to_do(

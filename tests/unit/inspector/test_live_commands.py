@@ -312,7 +312,7 @@ def test_a_fault_begins_and_ends() -> None:
             await page.event("fault", fault="stuck", state="begins")
             await done(page, "fault", name="stuck", on=False)
             assert mas.world.faults.at_work == []
-            assert "there is no fault 'fire'" in await refused(page, "fault", name="fire", on=True)
+            assert "unknown fault 'fire'" in await refused(page, "fault", name="fire", on=True)
             assert "true or false" in await refused(page, "fault", name="stuck", on="yes")
 
     jacaros.run(main())

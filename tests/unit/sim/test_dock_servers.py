@@ -28,7 +28,7 @@ def test_docking_and_undocking_as_nav2_has_it() -> None:
         assert (outside.status, outside.result.success) == (GoalStatus.ABORTED, False)
         unknown = await lab.do("/dock_robot", "nav2_msgs/action/DockRobot", dock_id="dok")
         assert (unknown.status, unknown.result.error_code) == (GoalStatus.ABORTED, 901)
-        assert unknown.result.error_msg == "there is no dock 'dok'; the docks are: dock"
+        assert unknown.result.error_msg == "unknown dock 'dok'; docks: dock"
         assert not unknown.result.success
         by_pose = await lab.do(
             "/dock_robot", "nav2_msgs/action/DockRobot", use_dock_id=False, dock_pose=pose(1, 1.2)

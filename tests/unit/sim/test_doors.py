@@ -90,7 +90,7 @@ def test_the_way_fails_at_a_closed_door_and_not_when_it_is_open() -> None:
     async def body(lab: Lab) -> None:
         failed = await lab.go(1, 0)
         assert (failed.status, failed.result.error_code) == (GoalStatus.ABORTED, 208)
-        assert failed.result.error_msg == "the door 'kitchen' is closed, and there is no way round"
+        assert failed.result.error_msg == "the door 'kitchen' is closed, and there is no other path"
         assert 15.0 < lab.clock.elapsed < 45.0
         await lab.stands()
         docking = await lab.do("/dock_robot", "nav2_msgs/action/DockRobot", dock_id="dock")

@@ -26,16 +26,16 @@ robots:
     [
         ("{kind: wheel_slp}", "3:13: error: 'kind' is 'wheel_slp'"),
         ("{at: 3}", "3:6: error: 'f' lacks the key 'kind'"),
-        ("{kind: wheel_slip}", "it is not said which robot it happens to"),
-        ("{kind: wheel_slip, robot: three}", "the world has no robot 'three'"),
+        ("{kind: wheel_slip}", "'f' lacks the key 'robot'"),
+        ("{kind: wheel_slip, robot: three}", "unknown robot 'three'"),
         ("{kind: wheel_slip, robot: one, share: 2}", "'share' is 2, but must lie between 0 and 1"),
         ("{kind: wheel_slip, robot: one, topic: /scan}", "'f' has no key 'topic'"),
-        ("{kind: closed_door, door: hall}", "the world has no door 'hall'"),
-        ("{kind: closed_door}", "it is not said which door it happens to"),
-        ("{kind: closed_door, door: kitchen, robot: one}", "concerns no robot"),
-        ("{kind: dead_dock, dock: home}", "the world has no dock 'home'"),
-        ("{kind: battery_drop, robot: one}", "needs 'to'"),
-        ("{kind: battery_drop, robot: one, to: 15, for: 3}", "happens at once"),
+        ("{kind: closed_door, door: hall}", "unknown door 'hall'"),
+        ("{kind: closed_door}", "'f' lacks the key 'door'"),
+        ("{kind: closed_door, door: kitchen, robot: one}", "'closed_door' does not concern a robot"),
+        ("{kind: dead_dock, dock: home}", "unknown dock 'home'"),
+        ("{kind: battery_drop, robot: one}", "'f' lacks the key 'to'"),
+        ("{kind: battery_drop, robot: one, to: 15, for: 3}", "'battery_drop' has no duration"),
         ("{kind: kidnapped_robot, robot: one, to: {z: 1}}", "'to' has no key 'z'"),
         (
             "{kind: kidnapped_robot, robot: one, to: {x: -2.9}}",
@@ -46,8 +46,8 @@ robots:
             "it puts the robot 'two' at [5, 0], outside the world",
         ),
         ("{kind: kidnapped_robot, robot: two, to: {x: 0.2, y: -2}}", "inside a box"),
-        ("{kind: person}", "it is not said where the person stands"),
-        ("{kind: dead}", "it is not said which topic it happens to"),
+        ("{kind: person}", "'f' lacks the key 'path'"),
+        ("{kind: dead}", "'f' lacks the key 'topic'"),
         ("{kind: dead, topic: /scan, at: -1}", "'at' is -1, but must be at least 0"),
     ],
 )
@@ -79,5 +79,5 @@ def test_a_file_is_told_from_others_and_checked_without_a_world(tmp_path: Path) 
 
 
 def test_a_missing_file_is_told(tmp_path: Path) -> None:
-    with pytest.raises(WorldError, match="it cannot be read"):
+    with pytest.raises(WorldError, match="cannot read the file"):
         load_faults(tmp_path / "none.yaml", WORLD)

@@ -73,7 +73,7 @@ def test_a_place_beside_a_wall_is_checked_by_its_edges() -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        (world(more=", radius: 0.2"), "'radius' and 'footprint' say the same thing"),
+        (world(more=", radius: 0.2"), "'radius' and 'footprint' are alternatives"),
         (world(footprint="[0.6, 0]"), "a footprint is from 0.04 to 4 m long and wide"),
     ],
 )

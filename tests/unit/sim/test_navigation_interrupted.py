@@ -134,7 +134,7 @@ def test_a_robot_that_never_moves_blocks_a_corridor() -> None:
         outcome = await lab.go(2, 0, robot="/one")
         assert outcome.status == GoalStatus.ABORTED
         assert outcome.result.error_code == 208
-        assert "another robot stands in the way" in outcome.result.error_msg
+        assert "another robot blocks the path" in outcome.result.error_msg
         assert lab.feedback[-1].number_of_recoveries == 3
         assert 15.0 < lab.clock.elapsed < 45.0
         await lab.stands("one")

@@ -37,7 +37,7 @@ def test_a_person_in_a_corridor_blocks_the_way() -> None:
     async def body(lab: Lab) -> None:
         outcome = await lab.go(2, 0)
         assert outcome.result.error_code == 208
-        assert "another robot or a person stands in the way" in outcome.result.error_msg
+        assert "another robot or a person blocks the path" in outcome.result.error_msg
         assert bumps(lab.world) == []
 
     in_world(CORRIDOR, body)

@@ -158,7 +158,7 @@ def test_a_person_comes_neither_twice_nor_onto_a_robot() -> None:
         flat.add_person(PersonDescription("a", ((1.0, 1.0),)))
     with pytest.raises(UsageError, match="a stands where 'bob' is to come"):
         flat.add_person(PersonDescription("bob", ((0.3, 0.0),)))
-    with pytest.raises(UsageError, match="there is no person 'bob', only: ann"):
+    with pytest.raises(UsageError, match="unknown person 'bob'; people: ann"):
         flat.remove_person("bob")
 
 

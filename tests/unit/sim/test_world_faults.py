@@ -136,7 +136,7 @@ def test_faults_begin_and_end_on_command() -> None:
     world.faults.end("f")
     world.faults.end("f")
     assert states(world) == [(1.0, "begins"), (1.0, "ends")]
-    with pytest.raises(UsageError, match="there is no fault 'g', only: f"):
+    with pytest.raises(UsageError, match="unknown fault 'g'; faults: f"):
         world.faults.begin("g")
 
 
@@ -249,7 +249,7 @@ def test_every_fault_has_a_service() -> None:
 
 
 def test_a_fault_of_a_topic_that_nobody_has_is_refused() -> None:
-    with pytest.raises(UsageError, match=r"fault f: the world has no topic /skan; did you mean /scan\?"):
+    with pytest.raises(UsageError, match=r"fault f: unknown topic /skan; did you mean /scan\?"):
         heard("{kind: dead, topic: /skan}", *SCAN)
 
 

@@ -100,7 +100,7 @@ def test_all_mistakes_are_told_at_once_with_line_excerpt_and_cure() -> None:
     assert "  = help: did you mean 'walls'?" in told
     assert "'x' must be a number, not 'left'" in told
     assert "the robot of line 7 has the same name 'a'" in told
-    assert "'2bad' is no ROS namespace" in told
+    assert "'2bad' is not a ROS namespace" in told
 
 
 @pytest.mark.parametrize(
@@ -113,7 +113,7 @@ def test_all_mistakes_are_told_at_once_with_line_excerpt_and_cure() -> None:
         ("just a text", "must be a mapping"),
         ("robots: []", "needs a robot"),
         ("robots: [{name: a}]\nsize: [0, 3]", "must be positive"),
-        ("robots: [{name: a}]\nsize: [1, 3]\nbounds: {from: [0, 0], to: [1, 1]}", "say the same thing"),
+        ("robots: [{name: a}]\nsize: [1, 3]\nbounds: {from: [0, 0], to: [1, 1]}", "are alternatives"),
         ("robots: [{name: a}]\nwalls: [{box: {from: [0, 0], to: [0, 1]}}]", "has no area"),
         ("robots: [{name: a}]\nwalls: [{polyline: [[0, 0]]}]", "has 1 points"),
         ("robots: [{name: a}]\nwalls: [{segment: [[0, 0], [0, 0]]}]", "twice in a row"),

@@ -221,7 +221,7 @@ class ArtMap(ArtSlamData):
         if pose is None:
             self.fail("no odometry came yet", "no_odometry")
         if not self.way:
-            self.fail("there is no route: call getRoute first", "no_route")
+            self.fail("no route: call getRoute first", "no_route")
         longest = self._metres("leg", 1.0)
         found = next_leg(self.way, self.enterable(), pose, Leg(self.size, longest))
         degrees.set(math.degrees(found[0]))

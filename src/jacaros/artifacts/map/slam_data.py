@@ -299,7 +299,7 @@ class ArtSlamData(RosArtifact):
             self.fail(f"cell {goal[0]}, {goal[1]} is not known to be free{near}", "no_route", *goal)
         way = route(free, self.here, goal)
         if way is None:
-            self.fail(f"there is no route to cell {goal[0]}, {goal[1]}", "no_route", *goal)
+            self.fail(f"no route to cell {goal[0]}, {goal[1]}", "no_route", *goal)
         self.way = way
         cells = [Structure("cell", cell) for cell in way]
         self.update_property("route", cells)

@@ -84,7 +84,7 @@ def read_with_problems(path: Path) -> tuple[MappingFile, list[Problem]]:
         cure = f"give the path of a mapping file, or one that comes with jacaros: {', '.join(shipped_mappings())}"
         return MappingFile(name, ""), [Problem(1, 1, "there is no such mapping file", cure)]
     except OSError as error:
-        return MappingFile(name, ""), [Problem(1, 1, f"it cannot be read: {error}")]
+        return MappingFile(name, ""), [Problem(1, 1, f"cannot read the file: {error}")]
     if wrong is not None:
         return MappingFile(name, text), [wrong]
     problems: list[Problem] = []

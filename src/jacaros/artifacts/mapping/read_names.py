@@ -62,7 +62,7 @@ def namespace(node: Node) -> str:
     if value in (None, "", "/"):
         return ""
     if not isinstance(value, str) or not _NAMESPACE.fullmatch(value):
-        node.wrong(f"{shown(value)} is no ROS namespace", "write it like r1 or fleet/r1")
+        node.wrong(f"{shown(value)} is not a ROS namespace", "write it like r1 or fleet/r1")
         return ""
     return str(value).strip("/")
 

@@ -222,7 +222,7 @@ def _view(node: Node, each: bool) -> RangeOfView:
     if not isinstance(node.value, dict):
         return RangeOfView(1.0, place)  # told already
     if "distance" in entries and ("at" in entries or "from" in entries):
-        node.wrong("'distance' and 'at' say the same thing", "leave one of them out")
+        node.wrong("'distance' and 'at' are alternatives", "remove one of them")
     if "distance" not in entries and "at" not in entries:
         node.wrong(
             "'range_of_view' needs a place", "add 'at: [position.x, position.y]', or 'distance: range'"

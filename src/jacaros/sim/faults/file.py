@@ -73,7 +73,7 @@ def _read(path: Path, world: WorldDescription | None) -> tuple[str, list[Problem
         text, wrong = read_text(path)
     except OSError as error:
         cure = "give the path of a file that begins with `faults:`"
-        return "", [Problem(1, 1, f"it cannot be read: {error.strerror}", cure)], ()
+        return "", [Problem(1, 1, f"cannot read the file: {error.strerror}", cure)], ()
     return (text, [wrong], ()) if wrong is not None else (text, *_faults(text, world))
 
 
@@ -91,7 +91,7 @@ def _faults(text: str, world: WorldDescription | None) -> tuple[list[Problem], t
 def _fault(key: Node, node: Node, world: WorldDescription | None) -> Fault:
     name = key.text()
     if not _NAME.fullmatch(name):
-        key.wrong(f"'{name}' is no name for a fault", "write letters, digits and underscores")
+        key.wrong(f"invalid fault name '{name}'", "begin with a letter, and use letters, digits and _ only")
     kinds = node.value.get("kind") if isinstance(node.value, dict) else None
     keys = KEYS.get(kinds, ()) if isinstance(kinds, str) else ()
     every = tuple(dict.fromkeys(key for keys in KEYS.values() for key in keys))
@@ -115,7 +115,7 @@ def _fault(key: Node, node: Node, world: WorldDescription | None) -> Fault:
         copies=entries["copies"].whole(2, 2) if "copies" in entries else 2,
     )
     if kind in AT_ONCE and "for" in entries:
-        entries["for"].wrong(f"a fault of the kind '{kind}' happens at once", "leave 'for' out")
+        entries["for"].wrong(f"'{kind}' has no duration", "remove 'for'")
     return _placed(fault, node, entries, world)
 
 
@@ -124,7 +124,7 @@ def _placed(fault: Fault, node: Node, entries: dict[str, Node], world: WorldDesc
     if fault.kind in (*WHEELS, *AT_ONCE, *MESSAGES):
         fault = replace(fault, robot=_robot(node, entries.get("robot"), fault.kind, world))
     elif "robot" in entries:
-        entries["robot"].wrong(f"a fault of the kind '{fault.kind}' concerns no robot", "leave 'robot' out")
+        entries["robot"].wrong(f"'{fault.kind}' does not concern a robot", "remove 'robot'")
     if fault.kind in MESSAGES:
         return replace(fault, topic=_topic(node, entries.get("topic"), fault.robot, world))
     docks = None if world is None else [dock.name for dock in world.docks]
@@ -142,7 +142,7 @@ def _placed(fault: Fault, node: Node, entries: dict[str, Node], world: WorldDesc
     if fault.kind == "person":
         return replace(fault, person=_person(fault.name, node, entries))
     if fault.kind in AT_ONCE and "to" not in entries:
-        node.wrong(f"a fault of the kind '{fault.kind}' needs 'to'", _TO[fault.kind])
+        node.wrong(f"{node.what} lacks the key 'to'", _TO[fault.kind])
     elif fault.kind == "battery_drop":
         return replace(fault, level=entries["to"].number(0.0, 100.0))
     elif fault.kind == "kidnapped_robot":
@@ -165,8 +165,8 @@ def _landing(node: Node, name: str, world: WorldDescription | None) -> Pose:
 
 
 _TO = {
-    "battery_drop": "say how many percent are left: to: 15",
-    "kidnapped_robot": "say where it is put: to: {x: 1, y: 2, yaw_degrees: 90}",
+    "battery_drop": "add the remaining percent: to: 15",
+    "kidnapped_robot": "add the new place: to: {x: 1, y: 2, yaw_degrees: 90}",
 }
 
 
@@ -176,18 +176,18 @@ def _robot(node: Node, given: Node | None, kind: str, world: WorldDescription | 
     names = [robot.name for robot in world.robots]
     if given is None:
         if len(names) > 1 and kind not in MESSAGES:
-            node.wrong("it is not said which robot it happens to", f"write 'robot: {names[0]}', for one")
+            node.wrong(f"{node.what} lacks the key 'robot'", f"add a robot of the world: 'robot: {names[0]}'")
         return names[0] if len(names) == 1 else ""
     name = given.text()
     if name not in names:
-        given.wrong(f"the world has no robot '{name}'", f"its robots: {', '.join(names) or 'none'}")
+        given.wrong(f"unknown robot '{name}'", f"robots of the world: {', '.join(names) or 'none'}")
     return name
 
 
 def _topic(node: Node, given: Node | None, robot: str, world: WorldDescription | None) -> str:
     """An absolute name; a relative one is the robot's."""
     if given is None:
-        node.wrong("it is not said which topic it happens to", "write 'topic: /scan', for one")
+        node.wrong(f"{node.what} lacks the key 'topic'", "add a topic of the world, such as 'topic: /scan'")
         return ""
     written = given.text()
     if written.startswith("/"):
@@ -199,19 +199,19 @@ def _topic(node: Node, given: Node | None, robot: str, world: WorldDescription |
 
 def _one_of(node: Node, entries: dict[str, Node], what: str, names: list[str] | None) -> str:
     if what not in entries:
-        node.wrong(f"it is not said which {what} it happens to", f"write '{what}: NAME'")
+        node.wrong(f"{node.what} lacks the key '{what}'", f"add '{what}: NAME'")
         return ""
     name = entries[what].text()
     if names is not None and name not in names:
-        known = f"its {what}s: {', '.join(names)}" if names else f"it has no {what}s"
-        entries[what].wrong(f"the world has no {what} '{name}'", known)
+        known = f"{what}s of the world: {', '.join(names) or 'none'}"
+        entries[what].wrong(f"unknown {what} '{name}'", known)
     return name
 
 
 def _person(name: str, node: Node, entries: dict[str, Node]) -> PersonDescription:
     usual = PersonDescription(name, ((0.0, 0.0),))
     if "path" not in entries:
-        node.wrong("it is not said where the person stands", "write 'path: [[1, 0]]', in metres")
+        node.wrong(f"{node.what} lacks the key 'path'", "add 'path: [[1, 0]]', in metres")
         return usual
     return PersonDescription(
         name,

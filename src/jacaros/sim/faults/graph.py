@@ -61,8 +61,12 @@ class FaultyGraph:
         for fault in self._faults.by_name.values():
             if fault.topic and fault.topic not in self._made:
                 near = difflib.get_close_matches(fault.topic, self._made, 1)
-                cure = f"did you mean {near[0]}?" if near else f"its topics: {', '.join(sorted(self._made))}"
-                raise UsageError(f"fault {fault.name}: the world has no topic {fault.topic}; {cure}")
+                cure = (
+                    f"did you mean {near[0]}?"
+                    if near
+                    else f"topics of the world: {', '.join(sorted(self._made))}"
+                )
+                raise UsageError(f"fault {fault.name}: unknown topic {fault.topic}; {cure}")
 
     def _pass_on(self, topic: str, message: Any, send: Callable[[Any], None]) -> None:
         passing: Sequence[tuple[float, Any]] = ((0.0, message),)

@@ -88,7 +88,7 @@ class Faults:
             Why it cannot happen, or None.
 
         Raises:
-            UsageError: there is no such fault.
+            UsageError: the fault is unknown.
         """
         fault = self._named(name)
         if name in self._undo:
@@ -110,7 +110,7 @@ class Faults:
         """End a fault; one that is not at work stays so.
 
         Raises:
-            UsageError: there is no such fault.
+            UsageError: the fault is unknown.
         """
         fault = self._named(name)
         self._ends.pop(name, None)
@@ -133,7 +133,7 @@ class Faults:
 
     def _named(self, name: str) -> Fault:
         if name not in self.by_name:
-            raise UsageError(f"there is no fault '{name}', only: {', '.join(self.by_name) or 'none'}")
+            raise UsageError(f"unknown fault '{name}'; faults: {', '.join(self.by_name) or 'none'}")
         return self.by_name[name]
 
     def _tell(self, fault: Fault, state: str, **more: str) -> None:

@@ -156,7 +156,11 @@ def read_map(path: Path) -> tuple[str, list[Problem], OccupancyMap | None]:
     except OSError as error:
         return (
             "",
-            [Problem(1, 1, f"it cannot be read: {error}", "check that the file exists and its permissions")],
+            [
+                Problem(
+                    1, 1, f"cannot read the file: {error}", "check that the file exists and its permissions"
+                )
+            ],
             None,
         )
     if wrong is not None:
@@ -199,10 +203,10 @@ def _image(node: Node, path: Path) -> GreyImage | None:
         return read_image(path)
     except FileNotFoundError:
         node.wrong(
-            f"image not found: `{path}`", near_file(path, "*.pgm") or "its path counts from the map file"
+            f"image not found: `{path}`", near_file(path, "*.pgm") or "its path is relative to the map file"
         )
     except OSError as error:
-        node.wrong(f"image `{path}` cannot be read: {error}", "check its permissions")
+        node.wrong(f"cannot read the image `{path}`: {error}", "check its permissions")
     except ImageError as error:
         node.wrong(f"image `{path}`: {error}", error.cure)
     return None

@@ -63,7 +63,7 @@ def read_robot(node: Node) -> RobotDescription:
     usual = KINDS[entries["kind"].choice(*KINDS)] if "kind" in entries else KINDS[USUAL]
     footprint = _footprint(entries["footprint"]) if "footprint" in entries else None
     if footprint is not None and "radius" in entries:
-        entries["radius"].wrong("'radius' and 'footprint' say the same thing", "leave one of them out")
+        entries["radius"].wrong("'radius' and 'footprint' are alternatives", "remove one of them")
     return RobotDescription(
         name=entries["name"].text() if "name" in entries else "turtlebot",
         namespace=_namespace(entries.get("namespace")),
@@ -115,7 +115,7 @@ def _namespace(node: Node | None) -> str:
     text = node.text() if node is not None else ""
     if node is not None and text and not _NAMESPACE.fullmatch(text):
         node.wrong(
-            f"'{text}' is no ROS namespace", "use letters, digits and _, with / between parts: robot_1"
+            f"'{text}' is not a ROS namespace", "use letters, digits and _, with / between parts: robot_1"
         )
     return text.strip("/")
 

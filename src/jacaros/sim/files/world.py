@@ -153,7 +153,7 @@ def _read(path: Path) -> tuple[str, list[Problem], WorldDescription | None]:
     try:
         text, wrong = read_text(path)
     except OSError as error:
-        return "", [Problem(1, 1, f"it cannot be read: {error}")], None
+        return "", [Problem(1, 1, f"cannot read the file: {error}")], None
     return (text, [wrong], None) if wrong is not None else (text, *_described(text, path.parent))
 
 
@@ -241,7 +241,7 @@ def _map(node: Node, folder: Path) -> OccupancyMap | None:
     path = folder / name
     if not is_file(path):
         node.wrong(
-            f"map not found: `{path}`", near_file(path, "*.y*ml") or "its path counts from the world file"
+            f"map not found: `{path}`", near_file(path, "*.y*ml") or "its path is relative to the world file"
         )
         return None
     _, problems, found = read_map(path)
@@ -253,7 +253,7 @@ def _map(node: Node, folder: Path) -> OccupancyMap | None:
 def _bounds(entries: dict[str, Node]) -> Rectangle:
     if "bounds" in entries:
         if "size" in entries:
-            entries["size"].wrong("'size' and 'bounds' say the same thing", "leave one of them out")
+            entries["size"].wrong("'size' and 'bounds' are alternatives", "remove one of them")
         return read_rectangle(entries["bounds"])
     if "size" not in entries:
         return Rectangle(-3.0, -3.0, 3.0, 3.0)
@@ -333,7 +333,7 @@ def _doors(node: Node | None) -> tuple[Door, ...]:
                 f"'{name}' cannot be part of a ROS name", "use letters, digits and _ for a door's name"
             )
         if any(door.name == name for door in doors):
-            entries["name"].wrong(f"there is a door '{name}' already", "give it another name")
+            entries["name"].wrong(f"duplicate door '{name}'", "give it another name")
         pieces: list[Segment] = []
         _straight(entries["segment"], pieces)
         doors.extend(Door(name, piece, opened) for piece in pieces)

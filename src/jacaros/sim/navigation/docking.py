@@ -56,7 +56,7 @@ class Docking:
             if dock.name == name:
                 return dock
         known = ", ".join(dock.name for dock in docks) or "none"
-        raise NavigationFailure(DOCK_NOT_IN_DB, f"there is no dock '{name}'; the docks are: {known}")
+        raise NavigationFailure(DOCK_NOT_IN_DB, f"unknown dock '{name}'; docks: {known}")
 
     def dock_near(self, place: Placement, within: float) -> Dock:
         """The nearest dock, at most *within* metres from a place.
@@ -70,7 +70,7 @@ class Docking:
 
         near = [dock for dock in self.navigator.docks() if apart(dock) <= within]
         if not near:
-            raise NavigationFailure(DOCK_NOT_VALID, f"no dock stands at ({place.x:.2f}, {place.y:.2f})")
+            raise NavigationFailure(DOCK_NOT_VALID, f"no dock at ({place.x:.2f}, {place.y:.2f})")
         return min(near, key=apart)
 
     def visible_dock(self) -> Dock | None:
@@ -129,7 +129,7 @@ class Docking:
                     return
         if clock.now() >= over:
             raise NavigationFailure(DOCKING_TIMEOUT, f"not out of dock '{dock.name}' after {limit:g} s")
-        raise NavigationFailure(FAILED_TO_CONTROL, f"there is no room to leave dock '{dock.name}'")
+        raise NavigationFailure(FAILED_TO_CONTROL, f"no room to leave dock '{dock.name}'")
 
     async def turn_away(self) -> None:
         """Turn round, as a Create 3 does at the end of undocking."""

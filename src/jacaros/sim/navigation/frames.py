@@ -83,7 +83,7 @@ def pose_fault(pose: Any) -> str | None:
     if not all(math.isfinite(value) for value in (place.x, place.y, *turn)):
         return "the pose has numbers that are not finite"
     if sum(value * value for value in turn) < 1e-6:
-        return "the orientation of the pose is no rotation: all of it is 0; write w: 1 for straight ahead"
+        return "the orientation of the pose is not a rotation: all its components are 0; write w: 1 for straight ahead"
     return None
 
 

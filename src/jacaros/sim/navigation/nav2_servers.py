@@ -114,7 +114,7 @@ class NavigationServers:
 
         poses = _poses(goal.request)
         if not poses:
-            goal.abort("there are no poses to go through", error_code=NO_POSES)
+            goal.abort("the goal has no poses", error_code=NO_POSES)
         with self._navigating(_THROUGH_POSES, goal):
             await self._go(goal, poses, tell, through_poses)
         return {}
@@ -134,7 +134,7 @@ class NavigationServers:
         """Stop at each waypoint; one that cannot be reached is missed, and the next one tried."""
         poses = _poses(goal.request)
         if not poses:
-            goal.abort("there are no waypoints", error_code=NO_VALID_WAYPOINTS)
+            goal.abort("the goal has no waypoints", error_code=NO_VALID_WAYPOINTS)
         missed = []
         for turn in range(goal.request.number_of_loops + 1):
             for index in range(goal.request.goal_index if turn == 0 else 0, len(poses)):

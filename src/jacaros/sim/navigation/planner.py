@@ -60,7 +60,7 @@ class Planner:
         goal_cell = self._goal(goal, weights)
         cells = cheapest_path(weights, self.grid.width, start_cell, goal_cell)
         if cells is None:
-            raise NavigationFailure(NO_VALID_PATH, f"there is no way from {told(start)} to {told(goal)}")
+            raise NavigationFailure(NO_VALID_PATH, f"no path from {told(start)} to {told(goal)}")
         points = [start, *map(self.grid.centre, cells[1:-1] if len(cells) > 2 else cells[1:]), goal]
         if self.grid.cell(*goal) != goal_cell:
             points.insert(-1, self.grid.centre(goal_cell))
@@ -99,7 +99,7 @@ class Planner:
             )
         free = self._nearest_free(goal, weights, MARGIN + 2.0 * self.grid.resolution)
         if free is None:
-            raise NavigationFailure(NO_VALID_PATH, f"something stands at the goal {told(goal)}")
+            raise NavigationFailure(NO_VALID_PATH, f"the goal {told(goal)} is occupied")
         return free
 
     def _nearest_free(self, point: Point, weights: Sequence[float], reach: float) -> int | None:

@@ -287,13 +287,13 @@ class Trip:
         for name, door in self.navigator.sight.closed_doors(self._pose).items():
             if in_the_way(self._route, door, radius, self._route.remaining):
                 raise NavigationFailure(
-                    NO_VALID_PATH, f"the door '{name}' is closed, and there is no way round"
+                    NO_VALID_PATH, f"the door '{name}' is closed, and there is no other path"
                 )
         for x, y, other in self._others:
             if in_the_way(self._route, [(x, y, other)], radius, self._route.remaining):
                 who = "another robot or a person" if self.navigator.time.world.people else "another robot"
                 raise NavigationFailure(
-                    NO_VALID_PATH, f"{who} stands in the way at {told((x, y))}, and there is no way round"
+                    NO_VALID_PATH, f"{who} blocks the path at {told((x, y))}, and there is no other path"
                 )
         raise NavigationFailure(FAILED_TO_MAKE_PROGRESS, f"the robot does not get any further at {here}")
 

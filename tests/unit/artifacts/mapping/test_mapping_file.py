@@ -91,7 +91,7 @@ WRONG = {
         "properties: {a: 'my topic'}",
         "1:17: 'my topic' is no ROS name | write it like cmd_vel or /robot/cmd_vel",
     ),
-    "namespace": ("namespace: 'a b'", "1:12: 'a b' is no ROS namespace | write it like r1 or fleet/r1"),
+    "namespace": ("namespace: 'a b'", "1:12: 'a b' is not a ROS namespace | write it like r1 or fleet/r1"),
     "type name": (
         "properties: {a: {topic: t, type: Odometry}}",
         "1:34: 'Odometry' is no type of messages | write it like nav_msgs/msg/Odometry",
