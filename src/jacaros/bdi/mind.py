@@ -31,7 +31,7 @@ from jacaros.bdi.state.belief_base import parts
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.event import Posted, Raised
 from jacaros.bdi.state.intention import Frame, NextStep
-from jacaros.bdi.state.literals import EventAnnotations, own_annotations
+from jacaros.bdi.state.literals import EventAnnotations, apart, own_annotations
 from jacaros.bdi.state.options import Options
 from jacaros.bdi.state.plan import FAILED, SUSPENDED, Fail, Failure
 from jacaros.bdi.state.plan_library import ProgramPlans
@@ -42,7 +42,7 @@ from jacaros.bdi.state.waiting import ACTION, ActWait, Waiting
 from jacaros.terms import functions as _functions  # noqa: F401 - fills the table of arithmetic functions
 from jacaros.terms.operators import ArithmeticFault
 from jacaros.terms.plans import is_body
-from jacaros.terms.substitution import ATOMIC, free_variables, rename, resolve
+from jacaros.terms.substitution import free_variables, rename, resolve
 from jacaros.terms.unifier import undo, unify
 from jacaros.terms.values import (
     BY_SELF,
@@ -351,10 +351,9 @@ class Mind(Circumstance):
         annotations: EventAnnotations = BY_SELF
         if isinstance(goal, Posted):
             annotations, goal = goal.annotations, goal.goal
-        names: dict[Var, Var] = {}
-        apart: Goal = (goal[0], *(a if a.__class__ in ATOMIC else rename(a, names) for a in goal[1:]))
         current = self.current
-        meta_events.post_new_goal(self, (apart, None, annotations, current.cause if current else None))
+        cause = self.cause_now() or (current.cause if current else None)
+        meta_events.post_new_goal(self, (apart(goal), None, annotations, cause))
 
     def begin_act(
         self, symbol: Functor, arguments: tuple[Term, ...], annotations: tuple[Term, ...], next_step: NextStep
@@ -364,8 +363,11 @@ class Mind(Circumstance):
         assert intention is not None
         self._acts += 1
         number = self._beginning = self._acts
+        act = Act(number, symbol, arguments, annotations, intention.id, intention.cause)
+        if self.observers.mind is not None:
+            act.cause, act.place = self.cause_now() or act.cause, self.observers.mind.place(intention)
         try:
-            self.architecture.act(Act(number, symbol, arguments, annotations, intention.id, intention.cause))
+            self.architecture.act(act)
         finally:
             self._beginning = 0
             completion, self._ended_at_once = self._ended_at_once, None

@@ -147,6 +147,9 @@ class Mailboxes:
     Args:
         find: from an agent's name to where its messages go, None when there is no such agent.
         find_other: the same for participants that are no agents of this run; asked after *find*.
+
+    Attributes:
+        observer: called with each message that is delivered, or None.
     """
 
     def __init__(
@@ -156,6 +159,7 @@ class Mailboxes:
     ) -> None:
         self._find = find
         self._find_other = find_other
+        self.observer: Callable[[SpeechAct], None] | None = None
 
     def deliver(self, message: SpeechAct) -> bool:
         """Put *message* into the mailbox of its receiver; False when nobody of that name is known.
@@ -173,6 +177,8 @@ class Mailboxes:
                 return False
         if not message.flat:
             message = _parted(message)
+        if self.observer is not None:
+            self.observer(message)
         receiver.receive(message)
         return True
 

@@ -146,13 +146,14 @@ def test_what_led_to_an_act_is_recorded_from_the_message_on(tmp_path: Path) -> N
 
     jacaros.run(main(), clock="fast")
     lines = [json.loads(line) for line in (tmp_path / "run.jsonl").read_text().splitlines()]
-    causes = {line["data"]["id"]: line["data"] for line in lines if line.get("event") == "cause"}
-    [link] = [cause for cause in causes.values() if cause["what"] == "ann lookupArtifact/2"]
+    linked = [line["data"] for line in lines if line.get("event") in ("cause", "deliberation")]
+    causes = {data["id"]: {"kind": "event", **data} for data in linked}
+    [link] = [cause for cause in causes.values() if cause.get("what") == "ann lookupArtifact/2"]
     chain = [link]
     while link["parent"]:
         link = causes[link["parent"]]
         chain.append(link)
-    assert [each["kind"] for each in chain] == ["act", "property", "sample"]
+    assert [each["kind"] for each in chain] == ["act", "event", "property", "sample"]
     assert chain[-1]["topic"] == "/odom"
     assert "pose.pose.position.x=" in chain[-1]["what"]
     assert chain[-1]["at"] <= chain[0]["at"] < 5

@@ -104,6 +104,7 @@ def take_in(agent: Circumstance, percepts: list[Percept]) -> None:
         agent.waits.events
         or agent.waits.conditions
         or agent.features.subplans
+        or agent.observers.mind is not None
         or not _has_room(agent, len(percepts))
     ):
         perceiving.take_in(agent, percepts)

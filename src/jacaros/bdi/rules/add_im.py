@@ -6,8 +6,9 @@ from jacaros.bdi.rules.goal_failure import has_room, too_deep, unplanned
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.event import Event
 from jacaros.bdi.state.intention import GOAL, PLAN, STEP, Frame, Intention
-from jacaros.bdi.state.literals import EventAnnotations
+from jacaros.bdi.state.literals import EventAnnotations, apart
 from jacaros.bdi.state.triggers import Goal
+from jacaros.trace import Cause
 
 
 def select_plan(
@@ -26,9 +27,25 @@ def select_plan(
     return frame
 
 
+def select_for_reasons(
+    agent: Circumstance,
+    goal: Goal,
+    annotations: EventAnnotations,
+    intention: Intention | None,
+    cause: Cause | None,
+) -> tuple[Frame | None, Cause | None]:
+    """Select a plan and let the observer know; the cause is that of what the plan does."""
+    observer = agent.observers.mind
+    if observer is None:
+        return select_plan(agent, goal, annotations, intention), cause
+    asked = apart(goal)  # heads of plans bind variables of the goal
+    frame = select_plan(agent, goal, annotations, intention)
+    return frame, observer.selected(asked, annotations, intention, frame, cause)
+
+
 def push(agent: Circumstance, intention: Intention, goal: Goal, annotations: EventAnnotations) -> bool:
     """Rule AddIM: put a plan for the goal on the intention; False when the intention goes no further now."""
-    frame = select_plan(agent, goal, annotations, intention)
+    frame, _ = select_for_reasons(agent, goal, annotations, intention, None)
     return (frame is not None and add_frame(agent, intention, frame)) or go_without(
         agent, intention, goal, annotations, frame
     )

@@ -9,11 +9,12 @@ from jacaros.bdi.rules.searching import unify_rows
 from jacaros.bdi.state.belief_base import Row, Table, literal, parts, take_away, with_source
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.event import Posted, Raised
+from jacaros.bdi.state.literals import apart as with_own_variables
 from jacaros.bdi.state.literals import resolve_all
 from jacaros.bdi.state.rule import OpenFact, Rule
 from jacaros.bdi.state.triggers import Goal, Trigger
 from jacaros.terms.order import merge_annotations
-from jacaros.terms.substitution import ATOMIC, free_variables, is_key, rename, resolve
+from jacaros.terms.substitution import free_variables, is_key, rename, resolve
 from jacaros.terms.unifier import undo, unify_annotations
 from jacaros.terms.values import (
     BY_SELF,
@@ -64,6 +65,8 @@ def own_event(
     if new is None:
         return None
     note_change(agent, symbol, row)
+    if agent.observers.mind is not None:
+        agent.observers.mind.changed("+", symbol, row, new, agent.cause_now())
     return _raise(agent, (agent.beliefs[symbol].added, *row), new, apart)
 
 
@@ -73,7 +76,7 @@ def _raise(agent: Circumstance, goal: Goal, annotations: Annotations, apart: boo
     if apart or agent.options.new_focus:
         if unplanned and not agent.waits.events:
             return None
-        agent.post((_apart(goal), None, annotations, None))
+        agent.post((with_own_variables(goal), None, annotations, agent.cause_now()))
         return None
     if unplanned and not (agent.events or agent.intentions or agent.waits.events):
         # Nothing comes in between: the event would only be taken up and passed over.
@@ -84,12 +87,6 @@ def _raise(agent: Circumstance, goal: Goal, annotations: Annotations, apart: boo
 def _is_kept(agent: Circumstance, kind: Trigger) -> bool:
     """Whether an external event would not simply be taken up and passed over."""
     return agent.may_handle(kind) or agent.options.events != "discard"
-
-
-def _apart(goal: Goal) -> Goal:
-    """An event for another intention, which shares no variables with this one."""
-    names: dict[Var, Var] = {}
-    return (goal[0], *(a if a.__class__ in ATOMIC else rename(a, names) for a in goal[1:]))
 
 
 def note_change(agent: Circumstance, symbol: Functor, row: Row) -> None:
@@ -143,6 +140,8 @@ def delete_belief(
 def deleted(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations, apart: bool) -> Raised:
     """Raise the event of a belief that a step has deleted."""
     note_change(agent, symbol, row)
+    if agent.observers.mind is not None:
+        agent.observers.mind.changed("-", symbol, row, annotations, agent.cause_now())
     return _raise(agent, (agent.beliefs[symbol].deleted, *row), annotations, apart)
 
 
@@ -251,8 +250,13 @@ def external_change(
     row: Row,
     annotations: Annotations,
     cause: Cause | None = None,
+    believed: bool = True,
 ) -> None:
-    """Raise the external event of a belief change, if anybody cares."""
+    """Raise the external event of a belief change, or (not *believed*) of a signal, if anybody cares."""
+    if agent.observers.mind is not None:
+        cause = cause or agent.cause_now()
+        if believed:
+            agent.observers.mind.changed(operator, symbol, row, annotations, cause)
     table = agent.beliefs[symbol]
     kind = table.added if operator == "+" else table.deleted
     if agent.library.selects[kind] is not None or agent.waits.events or _is_kept(agent, kind):

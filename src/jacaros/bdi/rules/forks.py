@@ -44,7 +44,7 @@ def fork(
     point = Fork(operator == "and", len(parent.frames) - 1, next_step, len(firsts))
     del frame
     for number, first in enumerate(firsts):
-        branch = agent.new_intention(parent.cause)
+        branch = agent.new_intention(agent.cause_now() or parent.cause)
         branch.frames = copied(parent.frames)
         branch.frames[-1][STEP] = first
         branch.handlers = list(parent.handlers)

@@ -9,6 +9,7 @@ from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.event import EVENT_ANNOTATIONS, EVENT_GOAL, Event
 from jacaros.bdi.state.intention import ANNOTATIONS, GOAL, SERIAL, Frame, Intention
 from jacaros.bdi.state.literals import EventAnnotations, annotations_of_event, literal_of
+from jacaros.bdi.state.observing import MindObserver
 from jacaros.bdi.state.triggers import Goal, trigger
 from jacaros.terms.order import annotation_set
 from jacaros.terms.text import text
@@ -124,6 +125,16 @@ def observe_goals(agent: Circumstance, observer: GoalObserver) -> None:
     """
     agent.observers.goal = observer
     agent.features.meta = agent.features.special = agent.incoming.called = True
+
+
+def observe_mind(agent: Circumstance, observer: MindObserver | None) -> None:
+    """Have an observer told of plans that are selected, of beliefs and messages; None ends that.
+
+    All of it is done as the rules say then: what is written out for speed has no room for an observer.
+    """
+    agent.observers.mind = observer
+    agent.features.special = agent.incoming.called = True
+    agent.features.usual_events = False
 
 
 SLEEPING = trigger("+", "", functor("jag_sleeping", 0))

@@ -62,7 +62,8 @@ def take(agent: Circumstance, percept: Percept) -> None:
         own = _own_row(row)
     if own is not None:
         operator = "-" if percept.kind == "remove" else "+"
-        external_change(agent, operator, symbol, own, percept.annotations, percept.cause)
+        believed = percept.kind in ("add", "remove")
+        external_change(agent, operator, symbol, own, percept.annotations, percept.cause, believed)
 
 
 def _believe(agent: Circumstance, symbol: Functor, row: Row, percept: Percept) -> Row | None:

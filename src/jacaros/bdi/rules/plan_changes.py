@@ -51,6 +51,7 @@ def look_at_plans(agent: Circumstance) -> None:
         or agent.features.subplans
         or agent.features.goal_conditions
         or agent.observers.step is not None
+        or agent.observers.mind is not None
     )
     agent.incoming.called = True
     agent.features.edges = agent.features.subplans or any(
@@ -60,6 +61,8 @@ def look_at_plans(agent: Circumstance) -> None:
         # Nobody would notice, and an agent that gets such a plan later is awake then.
         agent.sleep = "awake"
     urgency.plans_changed(agent)
+    if agent.observers.mind is not None:
+        agent.observers.mind.plans_changed()
 
 
 def add_plan(agent: Circumstance, term: Term, source: Term = SELF, first: bool = False) -> None:

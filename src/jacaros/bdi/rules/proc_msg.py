@@ -50,6 +50,9 @@ RECEIVED = trigger("+", "!", functor("kqml_received", 4))
 
 def read_message(agent: Circumstance, message: SpeechAct) -> None:
     """Rule ProcMsg for a message whose turn it is."""
+    observer = agent.observers.mind
+    if observer is not None:
+        observer.reads(message)
     try:
         if (
             message.in_reply_to is None
@@ -66,6 +69,8 @@ def read_message(agent: Circumstance, message: SpeechAct) -> None:
         failure.passed_over(agent, f"a message ({message.performative}) from {message.sender}", fault)
         if message.performative.startswith("ask"):
             answer(agent, message, None)
+    if observer is not None:
+        observer.reads(None)
 
 
 def _process(agent: Circumstance, message: SpeechAct) -> None:
@@ -149,7 +154,7 @@ def _handled_by_program(agent: Circumstance, message: SpeechAct) -> bool:
     undo(agent.trail, 0)
     if frame is None:
         return False
-    agent.post((goal, None, BY_SELF, None))
+    agent.post((goal, None, BY_SELF, agent.cause_now()))
     return True
 
 
@@ -216,15 +221,16 @@ def _achieve(agent: Circumstance, message: SpeechAct) -> None:
         content = message.content
         symbol, row = (content[0], content[1:]) if content.__class__ is tuple else (content, ())
         if symbol is not CONS and symbol is not NIL:
-            goal: Goal = (_achieved(symbol),) + row  # type: ignore[assignment]  # noqa: RUF005 - without a list in between
-            agent.post((goal, None, _only_from(message.sender), None))
+            flat: Goal = (_achieved(symbol),) + row  # type: ignore[assignment]  # noqa: RUF005 - without a list in between
+            agent.post((flat, None, _only_from(message.sender), None))
             return
     for content in _contents(message.content):
         symbol, arguments, annotations = literal_from(content, message.sender)
         if symbol is None:
             _refuse(agent, message)
         else:
-            post_new_goal(agent, ((trigger("+", "!", symbol), *arguments), None, annotations, None))
+            goal: Goal = (trigger("+", "!", symbol), *arguments)
+            post_new_goal(agent, (goal, None, annotations, agent.cause_now()))
 
 
 def _unachieve(agent: Circumstance, message: SpeechAct) -> None:
@@ -238,7 +244,7 @@ def _signal(agent: Circumstance, message: SpeechAct) -> None:
             _refuse(agent, message)
         else:
             marked = annotation_set((*annotations, atom("signal")))
-            belief_update.external_change(agent, "+", symbol, row, marked)
+            belief_update.external_change(agent, "+", symbol, row, marked, believed=False)
 
 
 def _refuse(agent: Circumstance, message: SpeechAct) -> None:

@@ -1,12 +1,12 @@
 """An event is taken up: rule SelEv, and the intention that it begins or goes on with."""
 
 from jacaros.bdi.rules import failure, meta_events, subplans
-from jacaros.bdi.rules.add_im import log_inapplicable, push, select_plan
+from jacaros.bdi.rules.add_im import log_inapplicable, push, select_for_reasons
 from jacaros.bdi.rules.clr_int import remove_event
 from jacaros.bdi.rules.goal_failure import unplanned
 from jacaros.bdi.rules.holding import is_held_before_event
 from jacaros.bdi.state.circumstance import CROWD, Circumstance
-from jacaros.bdi.state.event import EVENT_INTENTION, Event
+from jacaros.bdi.state.event import EVENT_CAUSE, EVENT_INTENTION, Event
 from jacaros.bdi.state.intention import PLAN, Frame, Intention
 from jacaros.errors import InternalError
 from jacaros.terms.values import BY_SELF
@@ -94,9 +94,12 @@ def pass_over(agent: Circumstance, event: Event, fault: Exception) -> None:
 
 def begin_intention(agent: Circumstance, event: Event) -> bool:
     """Begin an intention for an external event; False when it has no plan and is dropped silently."""
-    goal, _, annotations, _ = event
+    goal, _, annotations, cause = event
     reacted = agent.features.subplans and goal[0].kind == "" and _react(agent, event)
-    return begin_with(agent, event, select_plan(agent, goal, annotations), reacted)
+    frame, why = select_for_reasons(agent, goal, annotations, None, cause)
+    if why is not cause:
+        event = (goal, None, annotations, why)
+    return begin_with(agent, event, frame, reacted)
 
 
 def begin_with(agent: Circumstance, event: Event, frame: Frame | None, reacted: bool) -> bool:
@@ -135,6 +138,8 @@ def _react(agent: Circumstance, event: Event) -> bool:
     goal, _, annotations, cause = event
     reactions = subplans.react(agent, goal, annotations)
     for owner, outer, frame in reactions:
+        if agent.observers.mind is not None:
+            cause = agent.observers.mind.selected(goal, annotations, None, frame, event[EVENT_CAUSE])
         intention = agent.new_intention(cause)
         intention.frames.append(frame)
         intention.outer = (owner, outer)

@@ -1,5 +1,6 @@
 """External actions: what a mind wants done in its environment, and how it ended."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -20,6 +21,7 @@ class Act:
         annotations: of the action, such as ``artifact_id(Id)``.
         intention: id of the intention, so that the environment can keep a current workspace for each.
         cause: why it is done.
+        place: plan, file and line of the step, when somebody watches.
     """
 
     id: int
@@ -28,6 +30,7 @@ class Act:
     annotations: tuple[Term, ...]
     intention: int
     cause: Cause | None = None
+    place: Mapping[str, Any] | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,6 +13,7 @@ from jacaros.bdi.state.budget import SearchBudget, budgets
 from jacaros.bdi.state.condition_waits import ConditionWaits
 from jacaros.bdi.state.event import EVENT_GOAL, EVENT_INTENTION, Event
 from jacaros.bdi.state.intention import Intention
+from jacaros.bdi.state.observing import MindObserver
 from jacaros.bdi.state.options import Options
 from jacaros.bdi.state.plan_library import PlanLibrary, ProgramPlans
 from jacaros.bdi.state.selections import Selections
@@ -22,6 +23,7 @@ from jacaros.bdi.state.waiting import ActWait, Alarm, AnswerWait, EventWaits, Wa
 from jacaros.terms.text import text
 from jacaros.terms.unifier import Trail
 from jacaros.terms.values import Term
+from jacaros.trace import Cause
 
 INTERVAL = 1_000
 """Reasoning cycles between two looks at the names that an agent uses; more when there are more names."""
@@ -111,20 +113,22 @@ class StepObserver(Protocol):
 
 
 class Observers:
-    """Who is told of the goals of an agent.
+    """Who is told of the goals of an agent, and of its reasons.
 
     Attributes:
         goal: told of each goal that changes, or None, see `jacaros.bdi.rules.meta_events.observe_goals`.
         lost: called with what people are told of each lost goal (first line, further lines, place), or None.
         step: may hold the agent before an event or a step, or None, see `jacaros.bdi.rules.holding.observe_steps`.
+        mind: told of plans, beliefs and messages, or None; see `jacaros.bdi.rules.meta_events.observe_mind`.
     """
 
-    __slots__ = ("goal", "lost", "step")
+    __slots__ = ("goal", "lost", "mind", "step")
 
     def __init__(self) -> None:
         self.goal: Callable[[str, str, int, int, str], None] | None = None
         self.lost: Callable[[str, Sequence[str], Span | None], None] | None = None
         self.step: StepObserver | None = None
+        self.mind: MindObserver | None = None
 
 
 class Counts:
@@ -191,7 +195,7 @@ class Features:
         meta: plans or an observer want to hear of changes of goal states.
         goal_conditions: plans have goal conditions, which are tested in every cycle.
         subplans: plans have plans of their own.
-        special: one of these three, or an observer may hold the agent.
+        special: one of these three, or an observer hears of its reasons or may hold the agent.
         edges: there may be plans for falling asleep and awaking.
         usual_events: external events without a plan are passed over, events of belief changes in plans belong to the
             intentions that made them, and no agent class is asked about these changes.
@@ -229,7 +233,7 @@ class Circumstance:
         outer_frame: frame of the plan whose sub-plans are being tried.
         waits: what intentions wait for, and what has been put off.
         budgets: what refuses more than a limit allows, by the name of the option.
-        observers: who is told of goals.
+        observers: who is told of goals and reasons.
         counts: how much it has done.
         context: the view of itself that it gives to internal actions.
         held: the event or intention before which an observer holds the agent, in the middle of a reasoning cycle; it is in
@@ -318,6 +322,11 @@ class Circumstance:
     def warn_of_operand(self, what: str, value: Term) -> None:
         """Take note of an operand that is no number."""
         self.architecture.log("warning", f"{what} is no number: {text(value)}")
+
+    def cause_now(self) -> Cause | None:
+        """Return what led to what the agent is doing, as far as it is observed."""
+        observer = self.observers.mind
+        return None if observer is None else observer.cause()
 
     def new_intention(self, cause: Any = None) -> Intention:
         """An intention with a number of its own; it is not in any queue yet."""

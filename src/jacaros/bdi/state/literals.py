@@ -5,13 +5,14 @@ from typing import Protocol
 from jacaros.bdi.state.triggers import Goal
 from jacaros.terms.negation import positive_form
 from jacaros.terms.order import annotation_set
-from jacaros.terms.substitution import resolve
+from jacaros.terms.substitution import ATOMIC, rename, resolve
 from jacaros.terms.values import (
     SOURCE,
     SOURCE_SELF,
     Annotated,
     Functor,
     Term,
+    Var,
     annotations_of,
     atom,
     bare,
@@ -36,6 +37,12 @@ def literal_of(goal: Goal, annotations: EventAnnotations) -> Term:
     term = (symbol, *goal[1:]) if len(goal) > 1 else symbol
     found = annotations_of_event(annotations)
     return Annotated(term, found) if found else term
+
+
+def apart(goal: Goal) -> Goal:
+    """Return a goal or event that shares no unbound variable with this one."""
+    names: dict[Var, Var] = {}
+    return (goal[0], *(a if a.__class__ in ATOMIC else rename(a, names) for a in goal[1:]))
 
 
 def annotations_of_event(annotations: EventAnnotations) -> tuple[Term, ...]:

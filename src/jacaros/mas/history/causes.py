@@ -11,6 +11,8 @@ KEPT = 10_000
 """Causes that are remembered at most until something needs them; most sensor messages lead to nothing."""
 COMMAND_PERIOD = 0.5
 """Seconds between two records of commands that one operation sends to one topic; the last one is recorded, too."""
+RECORDED = ("event", "message")
+"""Links that have records of their own, deliberations and messages; what led to them is recorded with these."""
 LARGE = 4096
 """Elements of the field ``data`` from which on a message, such as an image, is not remembered."""
 
@@ -70,6 +72,8 @@ class CauseRecords:
         """Make the next link of a chain, see `jacaros.trace.Tracer`."""
         self._last += 1
         made = Cause(self._last, parent.id if parent is not None else 0, kind, what)
+        if kind in RECORDED:
+            return made
         if kind == "sample":
             self._passed("in", what, about)
             about = _small(about)
@@ -158,7 +162,7 @@ def _operation_details(_: str, request: Any) -> dict[str, Any]:
 
 def _act_details(_: str, about: Any) -> dict[str, Any]:
     agent, act = about
-    return {"agent": agent, "intention": act.intention}
+    return {"agent": agent, "intention": act.intention, **(act.place or {})}
 
 
 _DETAILS: Mapping[str, Callable[[str, Any], dict[str, Any]]] = {

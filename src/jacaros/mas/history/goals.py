@@ -8,7 +8,7 @@ from itertools import count
 from jacaros.bdi.mind import Mind
 from jacaros.bdi.rules.meta_events import observe_goals
 from jacaros.mas.agent_host import AgentHost
-from jacaros.mas.directory import Directory
+from jacaros.mas.history.words import named
 from jacaros.mas.python_agents.host import PythonAgentHost
 
 Tell = Callable[[dict[str, object]], None]
@@ -48,18 +48,6 @@ class GoalRecords:
         self._newest: dict[str, int] = {}
         """By agent, the largest number of the mind's so far."""
 
-    def listen_to_all(self, directory: Directory[AgentHost]) -> Callable[[], None]:
-        """Hear of the goals of all agents of a run, also of those that come later; gives what ends that."""
-        for host in directory:
-            self.listen(host)
-
-        def came(name: str, present: bool) -> None:
-            host = directory.find(name)
-            if present and host is not None:
-                self.listen(host)
-
-        return directory.watch(came)
-
     def listen(self, host: AgentHost) -> None:
         """Hear of the goals of an agent from now on."""
         if isinstance(host, PythonAgentHost):
@@ -94,7 +82,13 @@ class GoalRecords:
         is_news = known.state != shown and not (known.state in _AT_WORK and shown in _AT_WORK)
         known.state, known.text, known.intention = shown, goal, intention
         if is_news:
-            told = {"agent": agent, "goal": goal, "state": shown, "id": known.number, "intention": intention}
+            told = {
+                "agent": agent,
+                "goal": named(goal),
+                "state": shown,
+                "id": known.number,
+                "intention": intention,
+            }
             self._tell({**told, "why": why} if why else told)
         if state in _OVER:
             del self._goals[agent, which]

@@ -6,11 +6,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 from jacaros.clock import Clock
 from jacaros.mas.agent_host import AgentHost
+from jacaros.mas.deployment import Deployment
 from jacaros.mas.directory import Directory
-from jacaros.mas.history.goals import GoalRecords
+from jacaros.mas.history.agents import AgentRecords, PopulatedSystem
 from jacaros.mas.history.surroundings import SurroundedSystem, Surroundings
+from jacaros.mas.options import RunOptions
 from jacaros.mas.ros_graph import RosGraph
-from jacaros.trace import Tracer
+from jacaros.version import VERSION
 
 if TYPE_CHECKING:
     from jacaros.sim.ground_truth import Record
@@ -47,15 +49,26 @@ _LASTING: Mapping[str, tuple[str, ...]] = {
 """Records that describe what is there: the newest of each is kept while it is there, by these fields of it."""
 
 
-class ObservedSystem(SurroundedSystem, Protocol):
+class ObservedSystem(SurroundedSystem, PopulatedSystem, Protocol):
     """A running system as its history sees it (`jacaros.mas.system.System`)."""
 
     clock: Clock
     directory: Directory[AgentHost]
     ros: RosGraph
+    deployment: Deployment
+    options: RunOptions
 
-    def trace(self, tracer: Tracer | None) -> None:
-        """Have *tracer* make the causes; None ends it."""
+
+def run_data(system: ObservedSystem) -> dict[str, Any]:
+    """Return what a run is, for the record ``run``."""
+    clock, options = system.clock, system.options
+    return {
+        "name": system.deployment.name,
+        "clock": "fast" if clock.virtual else "ros" if options.ros_clock else "real",
+        "ros": options.ros,
+        "seed": options.seed,
+        "jacaros": VERSION,
+    }
 
 
 class History:
@@ -80,7 +93,7 @@ class History:
         self._listeners: tuple[Listener, ...] = ()
         self._ends: list[Callable[[], None]] = []
         self._starts = 0
-        self._goals = GoalRecords(lambda goal: self.record("goal", goal))
+        self._agents: AgentRecords | None = None
 
     def listen(self, listener: Listener) -> Callable[[], None]:
         """Have *listener* called with every record from now on; gives what ends that."""
@@ -96,12 +109,10 @@ class History:
         self._starts += 1
         if self._starts > 1:
             return
+        self.record("run", run_data(self._system))
         self.surroundings = Surroundings(self._system, self.beginning, self.record)
-        self._ends += [
-            self.surroundings.start(),
-            self._goals.listen_to_all(self._system.directory),
-            self._observe_world(),
-        ]
+        self._agents = AgentRecords(self._system, self.surroundings.causes, self.t, self.record)
+        self._ends += [self.surroundings.start(), self._agents.start(), self._observe_world()]
 
     def stop(self) -> None:
         """End the observation, unless somebody else has started it, too; what was recorded is kept."""
@@ -112,13 +123,13 @@ class History:
 
     def run_ended(self, code: int) -> None:
         """Take note of the end of the run: goals that are open are dropped."""
-        if self._starts:
-            self._goals.drop_all()
+        if self._starts and self._agents is not None:
+            self._agents.run_ended()
             self.record("ended", {"code": code})
 
-    def t(self) -> float:
-        """Seconds since the beginning, in milliseconds."""
-        return round(self._system.clock.now() - self.beginning, 3)
+    def t(self, moment: float | None = None) -> float:
+        """Seconds from the beginning to a moment of the run's clock, or to now, to the millisecond."""
+        return round((self._system.clock.now() if moment is None else moment) - self.beginning, 3)
 
     def record(self, event: str, data: Mapping[str, Any]) -> None:
         """Keep a record of something that happened now, and pass it to the listeners."""

@@ -13,7 +13,8 @@ def records_of(
     during: Callable[[Mas], None] | None = None,
     **options: Any,
 ) -> list[tuple[float, str, dict[str, Any]]]:
-    """The records of a run: agents by name, with their programs; *during* is called when half the time is over."""
+    """The records of a run: agents by name, with their programs; *during* is called when half the time is over,
+    *project* is a project file with further agents."""
     found: list[tuple[float, str, dict[str, Any]]] = []
 
     async def main() -> None:

@@ -1,0 +1,122 @@
+"""Observes the agents of a run as they come and go: what they do, why, and the messages between them."""
+
+from collections.abc import Callable, Mapping
+from typing import Any, Protocol
+
+from jacaros.bdi.mind import Mind
+from jacaros.clock import Clock
+from jacaros.mas.agent_host import AgentHost
+from jacaros.mas.directory import Directory, Mailboxes
+from jacaros.mas.history.deliberations import Links
+from jacaros.mas.history.goals import GoalRecords
+from jacaros.mas.history.intentions import Looks
+from jacaros.mas.history.messages import MessageRecords
+from jacaros.mas.history.minds import MindRecords, Records
+from jacaros.mas.history.programs import ProgramRecords
+from jacaros.mas.python_agents.host import PythonAgentHost
+from jacaros.trace import Cause
+
+Tell = Callable[[str, Mapping[str, Any]], None]
+
+
+class PopulatedSystem(Protocol):
+    """A running system with its agents (`jacaros.mas.system.System`)."""
+
+    clock: Clock
+    directory: Directory[AgentHost]
+    mailboxes: Mailboxes
+
+
+class AgentRecords:
+    """Records the agents of a run.
+
+    Args:
+        system: the run.
+        links: makes the links of chains.
+        t: seconds of the run's clock since the beginning, of a moment of the clock or (None) of now.
+        tell: takes the kind of a record and its data.
+    """
+
+    def __init__(
+        self, system: PopulatedSystem, links: Links, t: Callable[[float | None], float], tell: Tell
+    ) -> None:
+        self._system, self._tell = system, tell
+        self._looks = Looks(system.clock)
+        self._goals = GoalRecords(lambda goal: tell("goal", goal))
+        messages = MessageRecords(links, self._cause, tell)
+        self._records = Records(tell, t, links, ProgramRecords(tell), messages, self._looks)
+        self._minds: dict[str, MindRecords] = {}
+        self._ends: dict[str, Callable[[], None]] = {}
+
+    def start(self) -> Callable[[], None]:
+        """Observe all agents, also those that come later; gives what ends that."""
+        for host in self._system.directory:
+            self._began(host)
+        end_watch = self._system.directory.watch(self._changed)
+        self._system.mailboxes.observer = self._records.messages.sent
+
+        def end() -> None:
+            end_watch()
+            self._system.mailboxes.observer = None
+            self._looks.look()
+            self._looks.stop()
+            for name in list(self._ends):
+                self._ends.pop(name)()
+
+        return end
+
+    def run_ended(self) -> None:
+        """Record what the agents were at, and that goals that are open are dropped."""
+        self._looks.look()
+        self._goals.drop_all()
+
+    def _changed(self, name: str, present: bool) -> None:
+        host = self._system.directory.find(name)
+        if present and host is not None:
+            self._began(host)
+        elif not present:
+            self._ended(name)
+
+    def _began(self, host: AgentHost) -> None:
+        what = "python" if isinstance(host, PythonAgentHost) else "asl"
+        self._tell("agent", {"agent": host.name, "what": what, "state": "began"})
+        self._goals.listen(host)
+        if isinstance(host.mind, Mind):
+            mind = self._minds[host.name] = MindRecords(host.mind, self._records)
+            mind.had_turn()
+            end_turns = observe_turns(host, mind.had_turn)
+
+            def end() -> None:
+                end_turns()
+                mind.end()
+
+            self._ends[host.name] = end
+
+    def _ended(self, name: str) -> None:
+        self._minds.pop(name, None)
+        end = self._ends.pop(name, None)
+        if end is not None:
+            end()
+        self._tell("agent", {"agent": name, "what": "", "state": "ended"})
+
+    def _cause(self, sender: str) -> Cause | None:
+        mind = self._minds.get(sender)
+        return None if mind is None else mind.cause()
+
+
+def observe_turns(host: AgentHost, had_turn: Callable[[], None]) -> Callable[[], None]:
+    """Call *had_turn* after each turn of an agent; gives what ends that."""
+    run = host.run
+
+    def observed(fuel: int) -> bool:
+        more = run(fuel)
+        had_turn()
+        return more
+
+    host.run = observed
+
+    def end() -> None:
+        if host.run is observed:
+            host.run = run
+
+    return end

@@ -1,0 +1,152 @@
+"""Records of intentions: at most ten times a second what has changed in those of agents that had a turn."""
+
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple, Protocol
+
+from jacaros.bdi.mind import Mind
+from jacaros.bdi.rules.urgency import Urgent
+from jacaros.bdi.state.intention import PLAN, STEP, Frame, Intention
+from jacaros.bdi.state.waiting import OwnSuspension, TimedWait, Waiting
+from jacaros.clock import Clock, Timer
+from jacaros.mas.history.programs import PlanNumbers
+from jacaros.mas.history.steps import stack_of
+from jacaros.mas.history.waiting import waits_for
+from jacaros.mas.history.words import shown
+from jacaros.trace import Cause
+
+PERIOD = 0.1
+"""Seconds of the run's clock between two looks at an agent."""
+MOST = 100
+"""Intentions of one agent that are looked at."""
+
+Tell = Callable[[str, Mapping[str, Any]], None]
+
+
+class Looking(Protocol):
+    """Looks at one agent."""
+
+    def look(self) -> None:
+        """Record what has changed."""
+
+
+class Looks:
+    """Looks at agents that had a turn, `PERIOD` seconds after the first of them had it.
+
+    Args:
+        clock: of the run.
+    """
+
+    def __init__(self, clock: Clock) -> None:
+        self._clock = clock
+        self._due: list[Looking] = []
+        self._timer: Timer | None = None
+
+    def soon(self, agent: Looking) -> None:
+        """Look at an agent soon."""
+        self._due.append(agent)
+        if self._timer is None:
+            self._timer = self._clock.call_later(PERIOD, self.look)
+
+    def look(self) -> None:
+        """Look now at the agents that are due."""
+        self.stop()
+        due, self._due = self._due, []
+        for agent in due:
+            agent.look()
+
+    def stop(self) -> None:
+        """Look no more until an agent has a turn."""
+        if self._timer is not None:
+            self._timer.cancel()
+            self._timer = None
+
+
+class _Seen(NamedTuple):
+    """What was recorded of an intention: its stack, its step, and what it waits for; compared by identity."""
+
+    depth: int
+    frame: Frame
+    step: object
+    waiting: Waiting | None
+    suspended: object
+
+    def is_still(self, intention: Intention) -> bool:
+        """Whether nothing of it has changed."""
+        frames = intention.frames
+        return (
+            self.depth == len(frames)
+            and self.frame is frames[-1]
+            and self.step is frames[-1][STEP]
+            and self.waiting is intention.waiting
+            and self.suspended is intention.suspended
+        )
+
+
+class IntentionRecords:
+    """Records the intentions of one agent that last: those that begin and end between two looks are left out.
+
+    Args:
+        mind: of the agent.
+        numbers: of its plans.
+        cause: what led to the step that an intention is at.
+        now: seconds of the run's clock, to the millisecond.
+        tell: takes the kind of a record and its data.
+        looks: looks at the agent when it had a turn.
+    """
+
+    def __init__(
+        self,
+        mind: Mind,
+        numbers: PlanNumbers,
+        cause: Callable[[Intention], Cause | None],
+        t: Callable[[float | None], float],
+        tell: Tell,
+        looks: Looks,
+    ) -> None:
+        self._mind, self._numbers, self._cause, self._t = mind, numbers, cause, t
+        self._tell, self._looks = tell, looks
+        self._seen: dict[int, _Seen] = {}
+        self._is_due = False
+
+    def had_turn(self) -> None:
+        """Have a look at the agent soon."""
+        if not self._is_due:
+            self._is_due = True
+            self._looks.soon(self)
+
+    def look(self) -> None:
+        """Record the intentions that have changed since the last look, and those that are over."""
+        self._is_due = False
+        alive = self._mind.alive
+        for number in [number for number in self._seen if number not in alive]:
+            del self._seen[number]
+            self._tell("intention", {"agent": self._mind.name, "id": number, "state": "over"})
+        for _, intention in zip(range(MOST), list(alive.values()), strict=False):
+            seen = self._seen.get(intention.id)
+            if intention.frames and (seen is None or not seen.is_still(intention)):
+                frame = intention.frames[-1]
+                new = _Seen(len(intention.frames), frame, frame[STEP], intention.waiting, intention.suspended)
+                self._seen[intention.id] = new
+                self._record(intention)
+
+    def _record(self, intention: Intention) -> None:
+        waiting, cause = intention.waiting, self._cause(intention)
+        suspended = intention.suspended is not None or isinstance(waiting, OwnSuspension)
+        record = {
+            "agent": self._mind.name,
+            "id": intention.id,
+            "state": "suspended" if suspended else "waits" if waiting is not None else "runs",
+            "stack": stack_of(intention, self._numbers),
+            "waits": "" if waiting is None else waits_for(waiting),
+            "since": self._t(waiting.began if isinstance(waiting, TimedWait) else None),
+            "reason": "" if intention.suspended is None else shown(intention.suspended),
+            "urgency": self._urgency(intention),
+            "cause": 0 if cause is None else cause.id,
+        }
+        self._tell("intention", record)
+
+    def _urgency(self, intention: Intention) -> int:
+        selections = self._mind.selections
+        if not isinstance(selections, Urgent):
+            return 0
+        return max(selections.of_plan(frame[PLAN]) for frame in intention.frames)

@@ -1,0 +1,159 @@
+"""What the mind of one agent does and why: its plans, beliefs, messages and intentions."""
+
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
+
+from jacaros.bdi.mind import Mind
+from jacaros.bdi.rules.meta_events import observe_mind
+from jacaros.bdi.state.belief_base import literal
+from jacaros.bdi.state.intention import Frame, Intention
+from jacaros.bdi.state.literals import EventAnnotations
+from jacaros.bdi.state.rule import OpenFact, Rule
+from jacaros.bdi.state.speech_act import SpeechAct
+from jacaros.bdi.state.triggers import Goal
+from jacaros.mas.history.deliberations import DeliberationRecords, Links
+from jacaros.mas.history.intentions import IntentionRecords, Looks
+from jacaros.mas.history.messages import MessageRecords
+from jacaros.mas.history.programs import ProgramRecords
+from jacaros.mas.history.steps import place_of
+from jacaros.mas.history.words import shown
+from jacaros.terms.values import Annotated, Functor, Term, atom
+from jacaros.trace import Cause
+
+MOST_BELIEFS = 1000
+"""Beliefs of one agent that are recorded when its observation begins."""
+
+Annotations = tuple[Term, ...]
+_NOTHING = atom("nothing")
+
+
+class Records(NamedTuple):
+    """What the records of all minds of a run share.
+
+    Attributes:
+        tell: takes the kind of a record and its data.
+        t: seconds of the run's clock since the beginning, of a moment of the clock or (None) of now.
+        links: makes the links of chains.
+        programs, messages, looks: record programs and messages, look at intentions.
+    """
+
+    tell: Callable[[str, Mapping[str, Any]], None]
+    t: Callable[[float | None], float]
+    links: Links
+    programs: ProgramRecords
+    messages: MessageRecords
+    looks: Looks
+
+
+class MindRecords:
+    """Records one mind; it is its `jacaros.bdi.state.observing.MindObserver`.
+
+    Args:
+        mind: the mind.
+        records: what it shares with those of other minds.
+    """
+
+    def __init__(self, mind: Mind, records: Records) -> None:
+        self._mind, self._records = mind, records
+        self._numbers = records.programs.begin(mind)
+        self._deliberations = DeliberationRecords(
+            mind, self._numbers, records.links, lambda: records.t(None), records.tell
+        )
+        cause_of = self._deliberations.cause_of
+        self.intentions = IntentionRecords(
+            mind, self._numbers, cause_of, records.t, records.tell, records.looks
+        )
+        self._message: Cause | None = None
+        self._told: dict[int, tuple[Annotations, str]] = {}
+        """The texts of annotations, which many beliefs share."""
+        self._plans_changed = False
+        self._record_beliefs()
+        observe_mind(mind, self)
+
+    def end(self) -> None:
+        """Observe no more."""
+        observe_mind(self._mind, None)
+
+    def had_turn(self) -> None:
+        """Take note that the mind made cycles."""
+        if self._plans_changed:
+            self._plans_changed = False
+            self._records.programs.record(self._mind, self._numbers)
+        self.intentions.had_turn()
+
+    # ---- what the mind tells
+
+    def selected(
+        self,
+        goal: Goal,
+        annotations: EventAnnotations,
+        intention: Intention | None,
+        frame: Frame | None,
+        cause: Cause | None,
+    ) -> Cause | None:
+        """Record a deliberation."""
+        return self._deliberations.selected(goal, annotations, intention, frame, cause)
+
+    def cause(self) -> Cause | None:
+        """Return what led to the step, or the message, that the mind is at."""
+        current = self._mind.current
+        return self._message if current is None else self._deliberations.cause_of(current)
+
+    def place(self, intention: Intention) -> Mapping[str, Any]:
+        """Return plan, file and line of the step that an intention is at."""
+        return place_of(intention, self._numbers)
+
+    def changed(
+        self,
+        operator: str,
+        symbol: Functor,
+        row: tuple[Term, ...],
+        annotations: Annotations,
+        cause: Cause | None,
+    ) -> None:
+        """Record a belief that was added or deleted."""
+        record: dict[str, Any] = {
+            "agent": self._mind.name,
+            "op": operator,
+            "belief": shown(literal(symbol, row)) + self._shown_annotations(annotations),
+        }
+        if cause is not None:
+            record["cause"] = cause.id
+        current = self._mind.current
+        if current is not None:
+            place = place_of(current, self._numbers)
+            record |= {"intention": current.id, "file": place.get("file", ""), "line": place.get("line", 0)}
+        self._records.tell("belief", record)
+
+    def reads(self, message: SpeechAct | None) -> None:
+        """Record a message that is read; what it leads to is because of it."""
+        self._message = None if message is None else self._records.messages.read(message)
+
+    def plans_changed(self) -> None:
+        """Record the program anew at the end of the turn."""
+        self._deliberations.plans_changed()
+        self._plans_changed = True
+
+    # ---- beliefs
+
+    def _record_beliefs(self) -> None:
+        """Record what is believed already."""
+        left = MOST_BELIEFS
+        for symbol, table in list(self._mind.beliefs.items()):
+            for entry, annotations in table.entries()[: max(0, left)]:
+                left -= 1
+                if not isinstance(entry, Rule):
+                    fact = entry.head() if isinstance(entry, OpenFact) else literal(symbol, entry)
+                    told = shown(fact) + self._shown_annotations(annotations)
+                    self._records.tell("belief", {"agent": self._mind.name, "op": "+", "belief": told})
+
+    def _shown_annotations(self, annotations: Annotations) -> str:
+        if not annotations:
+            return ""
+        known = self._told.get(id(annotations))
+        if known is None or known[0] is not annotations:
+            if len(self._told) > MOST_BELIEFS:
+                self._told.clear()
+            told = shown(Annotated(_NOTHING, annotations)).removeprefix(_NOTHING.name)
+            known = self._told[id(annotations)] = annotations, told
+        return known[1]

@@ -1,0 +1,115 @@
+"""Records of programs: source files, and the plans of each agent by number."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any
+
+from jacaros.asl import nodes
+from jacaros.asl.formatter import format_term
+from jacaros.asl.source import SourceFile
+from jacaros.bdi.explaining.step_text import unbracketed
+from jacaros.bdi.mind import Mind
+from jacaros.bdi.state.plan import Plan
+from jacaros.bdi.state.plan_library import ProgramPlans
+from jacaros.bdi.state.rule import Rule
+from jacaros.terms.text import text
+
+Tell = Callable[[str, Mapping[str, Any]], None]
+
+
+class ProgramRecords:
+    """Records what agents run; agents of one program share the texts.
+
+    Args:
+        tell: takes the kind of a record and its data.
+    """
+
+    def __init__(self, tell: Tell) -> None:
+        self._tell = tell
+        self._files: dict[str, str] = {}
+        self._known: dict[int, tuple[ProgramPlans, list[dict[str, Any]]]] = {}
+
+    def begin(self, mind: Mind) -> "PlanNumbers":
+        """Record the program of an agent; gives the numbers of its plans."""
+        numbers = PlanNumbers(mind.library.program.plans)
+        self.record(mind, numbers)
+        return numbers
+
+    def record(self, mind: Mind, numbers: "PlanNumbers") -> None:
+        """Record the plans and rules of an agent as they are now."""
+        library = mind.library
+        if library.plans is library.program.plans:
+            plans = self._of_program(library.program)
+        else:
+            plans = [_plan(plan, numbers[plan]) for plan in _with_inner(library.plans)]
+        rules = list(_rules(mind))
+        for span in (each.span for each in (*(plan.node for plan in library.plans), *rules)):
+            if span is not None:
+                self._source(span.file)
+        shown = [_written(rule) for rule in rules]
+        self._tell("program", {"agent": mind.name, "plans": plans, "rules": shown})
+
+    def _of_program(self, program: ProgramPlans) -> list[dict[str, Any]]:
+        known = self._known.get(id(program))
+        if known is None:
+            numbers = PlanNumbers(program.plans)
+            known = program, [_plan(plan, numbers[plan]) for plan in _with_inner(program.plans)]
+            self._known[id(program)] = known
+        return known[1]
+
+    def _source(self, file: SourceFile) -> None:
+        if self._files.get(file.name) != file.text:
+            self._files[file.name] = file.text
+            self._tell("source", {"file": file.name, "text": file.text})
+
+
+class PlanNumbers(dict[Plan, int]):
+    """The numbers of the plans of an agent, in the order of its program; later ones follow."""
+
+    def __init__(self, plans: Sequence[Plan]) -> None:
+        super().__init__()
+        for plan in _with_inner(plans):
+            self[plan]  # numbered as it is asked for
+
+    def __missing__(self, plan: Plan) -> int:
+        self[plan] = number = len(self) + 1
+        return number
+
+
+def _with_inner(plans: Sequence[Plan]) -> Iterator[Plan]:
+    for plan in plans:
+        yield plan
+        yield from _with_inner(plan.subplans)
+
+
+def _plan(plan: Plan, number: int) -> dict[str, Any]:
+    node, span = plan.node, plan.node.span
+    return {
+        "id": number,
+        "label": text(plan.label),
+        "trigger": format_term(node.trigger),
+        "context": "" if node.context is None else _written(node.context),
+        "file": plan.file,
+        "line": 0 if span is None else span.line,
+        "end": 0 if span is None else span.end_line,
+    }
+
+
+def _written(node: nodes.Node) -> str:
+    """Return a formula or rule as it is written, on one line."""
+    span = node.span
+    if span is None:
+        return unbracketed(format_term(node))
+    lines = list(span.file.lines[span.line - 1 : span.end_line])
+    lines[-1] = lines[-1][: span.end_column - 1]
+    lines[0] = lines[0][span.column - 1 :]
+    return " ".join(line.strip() for line in lines)
+
+
+def _rules(mind: Mind) -> Iterator[nodes.Rule]:
+    """The rules of the program, which an agent that has not begun does not know yet, and those added at run time."""
+    yield from (each for each in mind.program.beliefs if isinstance(each, nodes.Rule))
+    for table in list(mind.beliefs.values()):
+        if not table.plain:
+            for entry, _ in table.entries():
+                if isinstance(entry, Rule) and not entry.of_program:
+                    yield entry.written

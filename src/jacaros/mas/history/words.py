@@ -1,0 +1,46 @@
+"""Terms in records: short, with the names that users gave."""
+
+import re
+
+from jacaros.bdi.state.literals import EventAnnotations, literal_of
+from jacaros.bdi.state.triggers import Goal
+from jacaros.terms.deep import CyclicTerm, excerpt
+from jacaros.terms.operators import ArithmeticFault
+from jacaros.terms.substitution import is_flat
+from jacaros.terms.text import text
+from jacaros.terms.values import Term
+
+LONGEST = 300
+"""Characters of a term that are recorded."""
+_UNNAMED = re.compile(r'"(?:[^"\\]|\\.)*"|\b_\w+')
+
+
+def shown(term: Term) -> str:
+    """Return a term as text: the beginning of a large one, and ``_`` for variables that nobody named."""
+    if is_flat(term):
+        return cut(text(term))
+    try:
+        return cut(named(text(excerpt(term))))
+    except (ArithmeticFault, CyclicTerm, RecursionError):
+        return "..."
+
+
+def shown_event(goal: Goal, annotations: EventAnnotations = ()) -> str:
+    """Return a goal or event with its operator, such as ``+!go(dock)`` or ``+battery(12)``."""
+    kind = goal[0]
+    return f"{kind.operator}{kind.kind}{shown(literal_of(goal, annotations))}"
+
+
+def named(told: str) -> str:
+    """Put ``_`` in place of variables such as ``_22`` that have no name of their own."""
+    return _UNNAMED.sub(_name, told) if "_" in told else told
+
+
+def _name(found: re.Match[str]) -> str:
+    word = found.group()
+    return word if word[0] == '"' else "_"
+
+
+def cut(told: str) -> str:
+    """Return the beginning of a long text."""
+    return told if len(told) <= LONGEST else f"{told[: LONGEST - 3]}..."
