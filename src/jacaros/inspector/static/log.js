@@ -1,6 +1,9 @@
 import { indexAt } from "./track.js";
 import { inWords, markText, sortOf } from "./happenings.js";
 
+const LINES = 100000;  // that are kept: a live page may be open for days
+const MARKS = 20000;
+
 /** What agents printed and what happened, in the order of time; and the marks of the timeline. */
 export class Log {
   constructor() {
@@ -17,11 +20,15 @@ export class Log {
     const words = inWords(event, data, several), sort = sortOf(event, data);
     if (words) this.enter({ t, who: "", text: words, sort: sort ?? "world", robot: data.robot });
     if (sort) this.marks.push({ t, sort, text: markText(event, data, several), leads: leads(data) });
+    if (this.marks.length > MARKS) this.marks.splice(0, MARKS >> 2);
   }
 
   enter(entry) {
     this.times.push(entry.t);
     this.entries.push(entry);
+    if (this.entries.length <= LINES) return;
+    this.times.splice(0, LINES >> 2);
+    this.entries.splice(0, LINES >> 2);
   }
 
   /** How many entries there are up to time `t`. */

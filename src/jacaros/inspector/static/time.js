@@ -1,4 +1,4 @@
-const EASE = 0.3;  // part of the lag behind the run that each animation frame makes up for: robots glide between samples
+const LAG = 0.15;  // seconds that the page is behind the run, so that robots glide from one sample to the next
 const JUMP = 3;  // seconds of lag that are made up for in one step
 
 /**
@@ -58,14 +58,14 @@ export class Time {
   /** Move on by `seconds` of real time; true when the moment has changed. */
   tick(seconds) {
     const before = this.now;
-    if (this.live) this.approach();
+    if (this.live) this.approach(seconds);
     else if (this.playing) this.advance(seconds * this.speed);
     return this.now !== before;
   }
 
-  approach() {
-    const lag = this.run.end - this.now;
-    this.now = lag < 0.004 || lag > JUMP ? this.run.end : this.now + lag * EASE;
+  approach(seconds) {
+    const lag = this.run.end - this.now, step = lag * Math.min(1, seconds / LAG);
+    this.now = lag < 0.002 || lag > JUMP ? this.run.end : this.now + step;
   }
 
   advance(seconds) {

@@ -10,7 +10,7 @@ const PLAY = "▶", PAUSE = "❚❚";
 export class TimelineView {
   constructor(root, context, log) {
     Object.assign(this, { root, log, time: context.time, run: context.run, selection: context.selection });
-    this.drawn = "";
+    this.drawn = { end: -1, length: 0, width: 0 };
     this.hasSpeed = false;
     this.make();
     this.listen();
@@ -75,9 +75,11 @@ export class TimelineView {
   }
 
   showMarks() {
-    const width = this.marks.clientWidth, key = `${this.log.marks.length} ${width} ${this.run.end.toFixed(1)}`;
-    if (key === this.drawn) return;
-    this.drawn = key;
+    const width = this.marks.clientWidth, { end } = this.run, { length } = this.log.marks;
+    // While a run continues, the marks move together: they are placed anew when that is a pixel.
+    const moved = Math.abs(end - this.drawn.end) * width > Math.max(1, end);
+    if (!moved && length === this.drawn.length && width === this.drawn.width) return;
+    this.drawn = { end, length, width };
     const groups = this.run.end > 0 ? grouped(this.log.marks, width / this.run.end) : [];
     const focused = this.marks.contains(document.activeElement) ? Number(document.activeElement.dataset.t) : null;
     this.marks.replaceChildren(...groups.map((group, index) => this.mark(group, index === 0)));

@@ -1,6 +1,8 @@
 import { Track, indexAt } from "./track.js";
 
-const SCANS = 20000;  // scans of all robots that are kept: a live page may be open for days
+// A live page may be open for days: what is older is forgotten.
+const SCANS = 20000;  // of all robots
+const ROWS = 2000000;  // of frames: one for each robot
 
 const EMPTY = {
   name: "", bounds: null, walls: [], boxes: [], furniture: [], rooms: [], docks: [], doors: [], cliffs: [], robots: [],
@@ -110,6 +112,7 @@ const TAKE = {
     if (!rows.length) return;
     world.times.push(t);
     rows.forEach((row, index) => addRow(world, index, row));
+    if (world.times.length * rows.length > ROWS) forget(world, world.times.length >> 2);
   },
   laser(world, t, data) { track(world.lasers, data.robot, SCANS / Math.max(1, world.lasers.size)).add(t, data); },
   path(world, t, data) { track(world.paths, data.robot).add(t, data.points); },
@@ -142,6 +145,16 @@ function addRow(world, index, [x, y, yaw, battery, charging, touching]) {
   const robot = world.columns[index];
   robot.x[last] = x; robot.y[last] = y; robot.yaw[last] = yaw; robot.battery[last] = battery; robot.flags[last] = flags;
   world.widen(x, y, x, y);
+}
+
+/** Forget the oldest frames. */
+function forget(world, count) {
+  world.times.splice(0, count);
+  for (const robot of world.columns) {
+    for (const values of [robot.x, robot.y, robot.yaw, robot.battery, robot.flags]) values.splice(0, count);
+    robot.first = Math.max(0, robot.first - count);
+  }
+  world.version += 1;
 }
 
 function walk(world, t, data, known) {
