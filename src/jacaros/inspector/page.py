@@ -1,8 +1,8 @@
 """Makes one self-contained page of a recording: a file to open, to mail, to keep with a CI run.
 
 The page loads nothing.  It holds the modules of ``static/`` as one script, and the records, gzipped and base64-coded, which
-the browser unpacks with its own ``DecompressionStream``.  Its content security policy names the hashes of this one style
-sheet and this one script, so nothing else runs, whatever a recording says.
+the browser unpacks with its own ``DecompressionStream``.  Its content security policy names the hashes of these style
+sheets and this one script, so nothing else runs, whatever a recording says.
 """
 
 import base64
@@ -24,7 +24,7 @@ STATIC = Path(__file__).parent / "static"
 """The page and its modules; a server serves this folder as it is."""
 _VERSION = 2
 _PLACES = re.compile(
-    r'<title>[^<]*</title>|<link rel="stylesheet" href="page\.css">|<script type="module" src="live\.js"></script>'
+    r'<title>[^<]*</title>|<link rel="stylesheet" href="(\w+)\.css">|<script type="module" src="live\.js"></script>'
 )
 
 
@@ -40,17 +40,25 @@ def write_replay(recording: Recording, path: str | Path, title: str | None = Non
 def replay_html(recording: Recording, title: str | None = None) -> str:
     """Return the text of the page."""
     shown = html.escape(title or title_of(recording))
-    style, script = (STATIC / "page.css").read_text(encoding="utf-8"), bundle(STATIC, "recorded")
-    policy = f"default-src 'none'; img-src data:; script-src {_hash(script)}; style-src {_hash(style)}"
+    page, script = (STATIC / "page.html").read_text(encoding="utf-8"), bundle(STATIC, "recorded")
+    styles = {
+        name: (STATIC / f"{name}.css").read_text(encoding="utf-8") for name in _PLACES.findall(page) if name
+    }
+    hashes = " ".join(map(_hash, styles.values()))
+    policy = f"default-src 'none'; img-src data:; script-src {_hash(script)}; style-src {hashes}"
     parts = {
         "<title": f'<meta http-equiv="Content-Security-Policy" content="{policy}">\n<title>{shown}</title>',
-        "<link": f"<style>{style}</style>",
         "<script": f'<script type="text/plain" id="recording">{packed(recording)}</script>\n'
         f'<script type="module">{script}</script>',
     }
-    page = (STATIC / "page.html").read_text(encoding="utf-8")
+
+    def part(found: re.Match[str]) -> str:
+        if found[1]:
+            return f"<style>{styles[found[1]]}</style>"
+        return parts[found[0].partition(" ")[0].partition(">")[0]]
+
     # In one pass: a title may look like a place.
-    return _PLACES.sub(lambda found: parts[found[0].partition(" ")[0].partition(">")[0]], page)
+    return _PLACES.sub(part, page)
 
 
 def title_of(recording: Recording) -> str:

@@ -1,11 +1,23 @@
+import { Actions } from "./actions.js";
+import { AgentsView } from "./agents_view.js";
+import { ArtifactsView } from "./artifacts_view.js";
+import { Breakpoints } from "./breakpoints.js";
+import { Causes } from "./causes.js";
+import { CausesView } from "./causes_view.js";
+import { ControlsView } from "./controls_view.js";
+import { Debugging } from "./debugging.js";
 import { isDark, setText } from "./elements.js";
-import { Goals } from "./goals.js";
-import { GoalsView } from "./goals_view.js";
+import { Environment } from "./environment.js";
+import { GraphView } from "./graph_view.js";
 import { listenToKeys } from "./keys.js";
 import { Links } from "./links.js";
 import { Log } from "./log.js";
 import { LogView } from "./log_view.js";
 import { MapView } from "./map_view.js";
+import { Messages } from "./messages.js";
+import { MessagesView } from "./messages_view.js";
+import { Minds } from "./minds.js";
+import { ProgramView } from "./program_view.js";
 import { RobotsView } from "./robots_view.js";
 import { Run } from "./run.js";
 import { Selection } from "./selection.js";
@@ -31,19 +43,27 @@ export const NO_COMMANDS = {
  * @returns {object} `run`, which takes the records, `time`, `selection`, and `show()`, which draws what has changed.
  */
 export function startPage({ live, commands }) {
-  const world = new World(), links = new Links(), log = new Log(), goals = new Goals();
-  const models = [world, links, log, goals];
+  const world = new World(), links = new Links(), log = new Log(), minds = new Minds();
+  const environment = new Environment(), messages = new Messages(), causes = new Causes(), debugging = new Debugging();
+  const models = [world, links, log, minds, environment, messages, causes, debugging];
   const run = new Run(models), selection = new Selection(), time = new Time(run, live);
-  const context = { run, selection, commands, time, open: (panel) => tabs.open(panel) };
+  const context = { run, selection, commands, time, open: (panel) => tabs.open(panel), actions: new Actions() };
+  context.breakpoints = new Breakpoints(context);
   const at = (id) => document.getElementById(id);
 
   const tabs = new Tabs(at("tabs"), [
-    [at("agents"), new GoalsView(at("agents"), context, goals)],
+    [at("agents"), new AgentsView(at("agents"), context, { minds, links })],
+    [at("program"), new ProgramView(at("program"), context, minds)],
+    [at("artifacts"), new ArtifactsView(at("artifacts"), context, environment)],
+    [at("messages"), new MessagesView(at("messages"), context, messages)],
+    [at("graph"), new GraphView(at("graph"), context, environment)],
+    [at("causes"), new CausesView(at("causes"), context, { causes, minds, links, environment })],
   ], context);
   const tools = new WorldTools(at("tools"), context, world);
   const map = new MapView(at("map"), context, world, links, tools);
   const beside = [
     [at("tools"), tools],
+    [at("controls"), new ControlsView(at("controls"), context, { debugging, minds })],
     [at("robots"), new RobotsView(at("robots"), context, world, links)],
     [at("log"), new LogView(at("log"), context, log)],
     [at("timeline"), new TimelineView(at("timeline"), context, log)],
@@ -96,15 +116,23 @@ class Page {
     const { world, map } = this;
     document.getElementById("stage").hidden = world.empty;
     document.body.classList.toggle("no-world", world.empty);
-    this.tabs.show(t);
+    this.attempt(() => this.tabs.show(t));
     document.getElementById("nothing").hidden = this.tabs.available.length > 0;
     for (const [root, view] of this.beside) {
       root.hidden = view.empty === true;
-      if (!root.hidden) view.show(t);
+      if (!root.hidden) this.attempt(() => view.show(t));
     }
-    if (!world.empty) map.show(t);  // last: the others decide how much room is left for it
+    if (!world.empty) this.attempt(() => map.show(t));  // last: the others decide how much room is left for it
     this.summarise(t);
     this.showNotice();
+  }
+
+  /** Draw one view: records that it cannot show must not hide the others. */
+  attempt(draw) {
+    try { draw(); } catch (error) {
+      this.run.reject("page", error);
+      console.error(error);
+    }
   }
 
   summarise(t) {

@@ -9,7 +9,7 @@ export class Tabs {
   /** @param {Array<[HTMLElement, object]>} panels elements with their views; a view without content is `empty`. */
   constructor(list, panels, context) {
     this.list = list;
-    this.selection = context.selection;
+    this.time = context.time;
     this.panels = panels.map(([panel, view]) => ({ panel, view, tab: this.makeTab(panel) }));
     this.chosen = null;
     list.addEventListener("keydown", (event) => this.press(event));
@@ -32,6 +32,7 @@ export class Tabs {
   open(id) {
     this.chosen = id;
     this.arrange();
+    this.time.notify();
   }
 
   /** Panels that have something to show. */

@@ -1,0 +1,72 @@
+import { button, element } from "./elements.js";
+import { showWhy } from "./jumps.js";
+import { placeName } from "./link_words.js";
+import { keyed, moveByArrows } from "./refill.js";
+import { age } from "./section.js";
+
+const MOST = 200;  // beliefs that are shown in one list
+const ANNOTATION = /\[[^\]]*source\([^)]*\)[^\]]*\]$/;
+
+/** The beliefs of an agent with a filter; recent changes come first and are marked. */
+export class BeliefList {
+  constructor(context) {
+    this.context = context;
+    this.filter = element("input", "search");
+    Object.assign(this.filter, { type: "search", placeholder: "Filter beliefs", spellcheck: false });
+    this.filter.setAttribute("aria-label", "Filter beliefs");
+    this.filter.addEventListener("input", () => context.time.notify());
+    this.head = [this.filter];
+  }
+
+  count(mind, t) { return mind.beliefs.at(t).size; }
+
+  stamp(mind, t) {
+    const recent = mind.beliefs.between(t - 2, t);
+    return `${mind.beliefs.countAt(t)} ${recent.length} ${this.filter.value} ${this.context.commands.can.has("belief")}`;
+  }
+
+  nodes(mind, t) {
+    const wanted = this.filter.value.trim().toLowerCase(), fits = ({ belief }) => belief.toLowerCase().includes(wanted);
+    const held = mind.beliefsAt(t).filter(fits), gone = mind.beliefsGone(t).filter(fits);
+    const rank = (belief) => (mind.isRecent(belief, t) ? 0 : 1);
+    held.sort((a, b) => rank(a) - rank(b));
+    const rows = [
+      ...gone.map((belief) => this.row(mind, { ...belief, since: belief.t }, "gone")),
+      ...held.slice(0, MOST).map((belief) => this.row(mind, belief, rank(belief) ? "" : "recent")),
+    ];
+    this.filter.hidden = mind.beliefs.at(t).size < 6 && !wanted;
+    if (!rows.length) return [element("p", "empty", wanted ? `No belief contains “${wanted}”.` : "No beliefs.")];
+    const list = element("ul", "beliefs", ...rows);
+    moveByArrows(list, ".belief");
+    return held.length > MOST ? [list, element("p", "empty", `${held.length - MOST} more: use the filter.`)] : [list];
+  }
+
+  row(mind, belief, kind) {
+    const { belief: text, since } = belief, key = `belief ${kind === "gone" ? "-" : ""}${text}`;
+    const main = text.replace(ANNOTATION, ""), sign = { recent: "+", gone: "−" }[kind] ?? "";
+    const name = element("code", "", main);
+    const row = button("belief", () => this.choose(mind, belief), element("span", "sign", sign), name, element("span", "by", ...this.by(belief, text)), age(since));
+    row.title = `${kind === "gone" ? "removed: " : ""}${text}`;
+    const item = element("li", kind, keyed(key, row));
+    const { commands, actions } = this.context;
+    if (commands.can.has("belief") && kind !== "gone") {
+      item.append(keyed(`${key} remove`, actions.button("×", `Remove ${main}`, () => commands.send("belief", { agent: mind.name, op: "-", text }))));
+    }
+    return item;
+  }
+
+  by({ cause, file, line, since }, text) {
+    if (file) return [placeName({ file, line })];
+    const source = /source\(([^)]*)\)/.exec(text)?.[1];
+    if (source && source !== "self") return [`from ${source === "percept" ? "perception" : source}`];
+    return [cause ? "" : since === 0 ? "initial" : ""];
+  }
+
+  choose(mind, { cause, file, line }) {
+    if (cause) showWhy(this.context, { agent: mind.name, cause });
+    else if (file) {
+      this.context.selection.choose({ agent: mind.name, file, line });
+      this.context.open("program");
+    } else this.context.selection.choose({ agent: mind.name });
+  }
+}

@@ -1,0 +1,92 @@
+import { indexAt } from "./track.js";
+
+const LONGEST = 60;  // links of a chain that are shown
+const MOST = 120;  // effects that are shown
+
+/** The links between what happened: by id, back to what led to one, and forward to what it led to. */
+export class Causes {
+  constructor() {
+    this.links = new Map();
+    this.effects = new Map();  // by id: the ids of the links that it led to directly
+    this.times = [];  // of the links, in the order in which they came
+    this.order = [];
+  }
+
+  add(t, event, data) {
+    if (event === "cause") this.link({ ...data, t: data.at ?? t });
+    else if (event === "deliberation") this.link({ ...data, kind: "event", what: data.trigger, t });
+    else if (event === "operation") this.endOperation(t, data);
+    else if (event === "message" && data.state === "sent") this.addMessage(t, data);
+    else if (event === "belief" && data.cause) this.addBelief(t, data);
+  }
+
+  link(link) {
+    const known = this.links.get(link.id);
+    if (known) {
+      // An event is described by two records, an operation too: the later one adds to the first.
+      Object.assign(known, { ...link, t: Math.min(known.t, link.t), parent: link.parent || known.parent });
+      return;
+    }
+    this.links.set(link.id, link);
+    this.times.push(Math.max(link.t, this.times[this.times.length - 1] ?? 0));
+    this.order.push(link.id);
+    if (!link.parent) return;
+    if (!this.effects.has(link.parent)) this.effects.set(link.parent, []);
+    this.effects.get(link.parent).push(link.id);
+  }
+
+  endOperation(t, data) {
+    if (!data.id) return;
+    const { id, artifact, operation, agent, cause } = data;
+    if (!this.links.has(id)) this.link({ id, parent: cause, kind: "operation", what: operation, artifact, agent, t });
+    const link = this.links.get(id);
+    link.call = operation;
+    if (data.state !== "began") Object.assign(link, { outcome: data.state, reason: data.reason, ended: t });
+  }
+
+  addMessage(t, data) {
+    if (!data.id || this.links.has(data.id)) return;
+    this.link({ ...data, parent: data.cause ?? 0, kind: "message", what: `${data.performative} ${data.content}`, t });
+  }
+
+  addBelief(t, { agent, op, belief, cause }) {
+    const link = this.links.get(cause);
+    if (!link) return;
+    link.beliefs = [...(link.beliefs ?? []).slice(-7), { t, agent, op, belief }];
+  }
+
+  get(id) { return this.links.get(id); }
+
+  /** What led to a link, the link itself first, back to the first known cause. */
+  chain(id) {
+    const chain = [], seen = new Set();
+    for (let link = this.links.get(id); link && !seen.has(link.id) && chain.length < LONGEST; link = this.links.get(link.parent)) {
+      seen.add(link.id);
+      chain.push(link);
+    }
+    return chain;
+  }
+
+  /** What a link led to up to time `t`, and what that led to: link and depth (1: directly), in the order of a tree. */
+  forward(id, t = Infinity) {
+    const found = [], open = [...(this.effects.get(id) ?? [])].reverse().map((each) => [each, 1]), seen = new Set([id]);
+    while (open.length && found.length < MOST) {
+      const [next, depth] = open.pop(), link = this.links.get(next);
+      if (!link || seen.has(next) || link.t > t) continue;
+      seen.add(next);
+      found.push({ link, depth });
+      for (const each of [...(this.effects.get(next) ?? [])].reverse()) open.push([each, depth + 1]);
+    }
+    return found;
+  }
+
+  /** The last links up to time `t` that `fits` accepts, the newest first. */
+  last(t, count, fits) {
+    const found = [];
+    for (let i = indexAt(this.times, t); i >= 0 && found.length < count; i--) {
+      const link = this.links.get(this.order[i]);
+      if (fits(link)) found.push(link);
+    }
+    return found;
+  }
+}

@@ -1,0 +1,116 @@
+import { button, clock, element } from "./elements.js";
+import { momentButton, placeButton } from "./jumps.js";
+import { linkPlace, linkWords, planName, refusalWords } from "./link_words.js";
+import { keyed, moveByArrows, refill } from "./refill.js";
+import { WhyQuestion } from "./why_question.js";
+
+const LATELY = 40;  // links that are listed when none is selected
+const LEAVES = new Set(["command", "operation", "event", "act"]);
+
+/** Why: the causes of what is selected back to the sensor, its effects forward, and the decisions on the way. */
+export class CausesView {
+  constructor(root, context, { causes, minds, links, environment }) {
+    Object.assign(this, { root, context, causes, minds, links, environment });
+    this.question = new WhyQuestion(context);
+    this.picture = element("div", "why");
+    root.append(this.question.root, this.picture);
+    moveByArrows(this.picture, ".link");
+  }
+
+  get empty() { return this.causes.links.size === 0; }
+
+  show(t) {
+    this.question.show();
+    const selected = this.context.selection.current, link = this.causes.get(selected.cause);
+    // Of a live run the list grows all the time: it is drawn again at most twice a second.
+    const stamp = JSON.stringify([selected, link ? this.causes.links.size : Math.floor(t * 2), link ? Math.floor(t) : 0]);
+    if (stamp === this.stamp) return;
+    this.stamp = stamp;
+    refill(this.picture, link ? this.story(link, t) : this.lately(selected, t));
+  }
+
+  story(link, t) {
+    const chain = this.causes.chain(link.id), forward = this.causes.forward(link.id, t);
+    const back = button("plain back", () => this.context.selection.choose({ ...this.context.selection.current, cause: undefined }), "← What happened lately");
+    const nodes = [keyed("back", back), element("h3", "asked", linkWords(link, this.minds)), this.place(link, "asked")];
+    if (link.kind === "event") nodes.push(...this.decision(link));
+    nodes.push(element("h4", "", "Because of"));
+    if (chain.length > 1) nodes.push(element("ol", "chain", ...chain.slice(1).map((each) => this.item(each))));
+    else nodes.push(element("p", "empty", link.parent ? "The cause was not recorded." : "Nothing before it: the chain begins here."));
+    nodes.push(element("h4", "", "Led to"));
+    if (forward.length) nodes.push(element("ol", "effects", ...forward.map(({ link: each, depth }) => this.item(each, depth))));
+    else nodes.push(element("p", "empty", "Nothing up to this moment."));
+    nodes.push(...this.beliefs(link));
+    return nodes;
+  }
+
+  place(link, key) {
+    const place = linkPlace(link, this.minds), parts = ["at ", momentButton(this.context, link.t, key)];
+    if (place) parts.push(" · ", placeButton(this.context, place, key));
+    if (link.agent) parts.push(" · ", keyed(`${key} agent`, button("jump", () => this.openAgent(link), link.agent)));
+    return element("p", "where", ...parts);
+  }
+
+  openAgent(link) {
+    this.context.selection.choose({ agent: link.agent, intention: link.intention ?? undefined });
+    this.context.open("agents");
+  }
+
+  /** Why this plan, and why not the others. */
+  decision({ agent, chosen, options = [], untried = [] }) {
+    const plan = (id) => this.minds.plan(agent, id), lines = [];
+    for (const option of options) lines.push(this.candidate(plan(option.plan), "refused", refusalWords(option.why), option.plan));
+    if (chosen !== null && chosen !== undefined) {
+      const context = plan(chosen)?.context;
+      lines.push(this.candidate(plan(chosen), "chosen", context ? `its context holds: ${context}` : "it has no context: it is always applicable", chosen));
+    }
+    for (const id of untried) lines.push(this.candidate(plan(id), "untried", "not tried: a plan before it was applicable", id));
+    if (!lines.length) return [element("p", "empty", "No plan is relevant for this event.")];
+    return [element("h4", "", chosen === null ? "Why no plan" : "Why this plan"), element("ol", "candidates", ...lines)];
+  }
+
+  candidate(plan, kind, words, id) {
+    const sign = { chosen: "✓", refused: "✗", untried: "·" }[kind];
+    return element("li", kind, element("span", "sign", sign), element("span", "", element("code", "", planName(plan)), " ",
+      placeButton(this.context, plan, `candidate ${id}`), element("span", "words", words)));
+  }
+
+  beliefs({ beliefs = [] }) {
+    if (!beliefs.length) return [];
+    return [element("h4", "", "Beliefs that it changed"), element("ul", "changed", ...beliefs.map(({ op, belief, agent }) => element("li", "", `${agent}: `, element("code", "", `${op}${belief}`))))];
+  }
+
+  item(link, depth = 0) {
+    const selected = this.context.selection.has({ cause: link.id });
+    const row = button("link", () => this.choose(link), element("time", "", clock(link.t)), element("span", "words", linkWords(link, this.minds)));
+    row.dataset.kind = link.kind;
+    const place = linkPlace(link, this.minds);
+    const made = element("li", selected ? "selected" : "", keyed(`link ${link.id}`, row), ...(place ? [placeButton(this.context, place, `link ${link.id}`)] : []));
+    if (depth) made.style.setProperty("--depth", String(Math.min(depth - 1, 8)));
+    return made;
+  }
+
+  choose(link) {
+    const { agent, artifact, robot } = this.context.selection.current;
+    this.context.selection.choose({ agent: link.agent ?? agent, artifact, robot, cause: link.id });
+  }
+
+  /** The last links of what is selected, or of the run. */
+  lately(selected, t) {
+    const fits = this.filter(selected, t), found = this.causes.last(t, LATELY, fits);
+    const title = element("h3", "asked", selected.agent ? `What ${selected.agent} did lately` : selected.robot ? `What ${selected.robot} did lately` : "What happened lately");
+    if (!found.length) return [title, element("p", "empty", "Nothing up to this moment.")];
+    return [title, element("p", "empty", "Choose a line for its causes and effects."), element("ol", "effects", ...found.map((each) => this.item(each)))];
+  }
+
+  filter({ agent, intention, artifact, robot }, t) {
+    if (intention !== undefined) return (link) => link.agent === agent && link.intention === intention;
+    if (agent !== undefined) return (link) => link.agent === agent;
+    if (artifact !== undefined) return (link) => link.artifact === artifact;
+    if (robot !== undefined) {
+      const agents = this.links.agents(robot, t);
+      return (link) => LEAVES.has(link.kind) && (this.environment.artifacts.get(link.artifact)?.robot === robot || agents.includes(link.agent));
+    }
+    return (link) => LEAVES.has(link.kind);
+  }
+}
