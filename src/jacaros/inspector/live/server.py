@@ -229,7 +229,8 @@ class LiveServer:
     async def _within_patience(self, connection: ServerConnection, message: str) -> None:
         """Send a message; disconnect a page that takes nothing for `PATIENCE` seconds."""
         assert self._beat is not None
-        sending = asyncio.ensure_future(connection.send(message))
+        sending = asyncio.create_task(connection.send(message))
+        sending.add_done_callback(_retrieve)
         await asyncio.sleep(0)
         until = real_time() + PATIENCE
         try:
@@ -288,6 +289,12 @@ class _Connection(ServerConnection):
         """End."""
         self._pages_server.lost(self)
         super().connection_lost(exc)
+
+
+def _retrieve(task: asyncio.Task[None]) -> None:
+    """Take note of what a task raised, also when nothing waits for it any longer."""
+    if not task.cancelled():
+        task.exception()
 
 
 def address_of(listening: socket.socket, access: Access) -> str:
