@@ -62,7 +62,7 @@ class Watching:
         self._watch = watch_of(mas, watchers)
         self._watch.start()
         if pages is not None:
-            pages.begin()
+            pages.begin(self._watch)
 
     def print(self, agent: str, text: str) -> None:
         """Show a line of an agent's output; a view that draws on the terminal shows it itself."""

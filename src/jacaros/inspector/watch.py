@@ -70,9 +70,10 @@ class Watch:
 
     def _look(self) -> None:
         self._timer = self.clock.call_later(PERIOD, self._look)
-        self._frame()
+        self.look()
 
-    def _frame(self) -> None:
+    def look(self) -> None:
+        """Show the robots as they are now, also between two frames."""
         robots: list[RobotView] = []
         if self._scene is not None:
             drawing = self._scene.drawing()
@@ -103,7 +104,7 @@ class Watch:
         if self._timer is not None:
             self._timer.cancel()
             self._timer = None
-            self._frame()
+            self.look()
             if self._scene is not None:
                 self._scene.close()
         if self._stop_listening is not None and self._history is not None:

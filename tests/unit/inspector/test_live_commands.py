@@ -1,6 +1,7 @@
 """What pages can do to a run, over real sockets: each command, its refusals, and the record that it leaves."""
 
 from collections.abc import Awaitable, Callable
+from pathlib import Path
 
 import pytest
 from live_client import LivePage, live_page
@@ -316,3 +317,92 @@ def test_a_fault_begins_and_ends() -> None:
             assert "true or false" in await refused(page, "fault", name="stuck", on="yes")
 
     jacaros.run(main())
+
+
+@pytest.mark.parametrize("clock", ["real", "fast"])
+def test_a_run_is_paused_stepped_and_continued(clock: str) -> None:
+    """On the virtual clock the page has to reach a run that stands still."""
+
+    async def main() -> None:
+        running = Mas(seed=1, world=WORLD, on_print=lambda *_: None)
+        async with running as mas, view(mas) as address, live_page(address) as page:
+            mas.add_agent("bob", "!count(0). +!count(N) <- -+counted(N); .wait(10); !count(N + 1).")
+            await done(page, "pause")
+            await page.event("debug", state="paused", why="pause")
+            counted = await done(page, "console", agent="bob", text="?counted(N)")
+            await done(page, "move_robot", robot="turtlebot", x=2, y=1)
+            await page.until(
+                lambda: any(
+                    each["kind"] == "frame" and each["robots"][0][:2] == [2, 1] for each in page.records
+                )
+            )
+            await done(page, "belief", agent="bob", op="+", text="found(key)")
+            assert await done(page, "console", agent="bob", text="?counted(N)") == counted
+            await done(page, "step", what="step", agent="bob")
+            await page.event("debug", state="paused", why="step")
+            await done(page, "continue")
+            until = int(str(counted).partition("= ")[2] or 0) + 5
+            await mas.agent("bob").until(f"counted(N) & N >= {until}")
+            assert mas.agent("bob").believes("found(key)")
+
+    jacaros.run(main(), clock="real" if clock == "real" else "fast")
+
+
+def test_a_breakpoint_stops_the_run() -> None:
+    async def test(mas: Mas, page: LivePage) -> None:
+        at = {"event": "+!go(_)"}
+        assert await done(page, "breakpoint", op="add", at=at) == ["+!go(_)"]
+        await done(page, "goal", agent="bob", op="post", text="go(dock)")
+        assert (await page.event("debug", state="paused"))["why"] == "breakpoint +!go(_)"
+        assert not mas.agent("bob").believes("at(_)")
+        assert await done(page, "breakpoint", op="remove", at=at) == []
+        await done(page, "continue")
+        await mas.agent("bob").until("at(dock)", 5)
+        assert "not set" in await refused(page, "breakpoint", op="remove", at=at)
+        assert "`at` must describe" in await refused(page, "breakpoint", op="add", at="here")
+        assert "invalid breakpoint" in await refused(page, "breakpoint", op="add", at={"line": 3})
+        assert "must be one of" in await refused(page, "step", what="mile")
+
+    commanding(test)
+
+
+def test_the_speed_is_changed() -> None:
+    async def test(mas: Mas, page: LivePage) -> None:
+        await done(page, "speed", factor=4)
+        await page.event("debug", state="running", speed=4.0)
+        assert mas.system.debugger.speed == 4.0
+        assert "greater than 0" in await refused(page, "speed", factor=0)
+
+    commanding(test)
+
+
+def test_a_changed_program_is_reloaded(tmp_path: Path) -> None:
+    program = tmp_path / "bob.asl"
+    program.write_text("+!say <- +said(old).")
+
+    async def main() -> None:
+        async with (
+            Mas(program, on_print=lambda *_: None) as mas,
+            view(mas) as address,
+            live_page(address) as page,
+        ):
+            program.write_text("+!say <- +said(new).")
+            assert "bob" in str(await done(page, "reload"))
+            await done(page, "goal", agent="bob", op="post", text="say")
+            await mas.agent("bob").until("said(new)", 5)
+            program.write_text("+!say <- (")
+            assert await refused(page, "reload")
+            assert mas.agent("bob").believes("said(new)")
+
+    jacaros.run(main())
+
+
+def test_a_question_is_answered() -> None:
+    async def test(mas: Mas, page: LivePage) -> None:
+        await done(page, "goal", agent="bob", op="post", text="go(dock)")
+        await mas.agent("bob").until("at(dock)", 5)
+        assert "!go(dock) achieved" in str(await done(page, "why", question="!go(dock)"))
+        assert "`question` must be a text" in await refused(page, "why")
+        assert await refused(page, "why", question="gibberish of no kind at all")
+
+    commanding(test)

@@ -7,6 +7,7 @@ from typing import Any
 from jacaros.asl.loader import parse_literal
 from jacaros.asl.lowering import Names, lower_value
 from jacaros.body.values import Outputs, to_value
+from jacaros.clock import of_run
 from jacaros.env.environment import Environment
 from jacaros.env.ids import ArtifactId
 from jacaros.env.operation import OperationOutcome, OperationRequest
@@ -46,7 +47,8 @@ async def _operate(environment: Environment, artifact: str, written: str) -> str
         if not ended.done():
             ended.set_result(outcome)
 
-    environment.execute(OperationRequest(target, name, values, YOU, None, done, None))
+    with of_run():
+        environment.execute(OperationRequest(target, name, values, YOU, None, done, None))
     outcome = await ended
     if not outcome.ok:
         why = outcome.message or (value_text(outcome.reason) if outcome.reason is not None else "it failed")

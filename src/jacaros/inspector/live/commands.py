@@ -6,6 +6,7 @@ from collections.abc import Awaitable, Callable, Mapping
 from typing import Any
 
 from jacaros.asl.diagnostics import AslError
+from jacaros.clock import of_run
 from jacaros.env.errors import OperationFailed
 from jacaros.errors import JacarosError
 
@@ -68,7 +69,8 @@ class Commands:
 
 
 async def _result(command: Command, given: Given) -> Any:
-    result = command(given)
+    with of_run():  # what a command begins is paused with the run
+        result = command(given)
     return await result if inspect.isawaitable(result) else result
 
 

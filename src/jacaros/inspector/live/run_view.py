@@ -2,15 +2,19 @@
 
 import asyncio
 import contextlib
+from collections.abc import Callable
 from dataclasses import dataclass
 
+from jacaros.clock import outside_run
 from jacaros.inspector.live.access import LOOPBACK, Access
 from jacaros.inspector.live.artifact_commands import artifact_commands
 from jacaros.inspector.live.commands import Commands, Given, number_in, text_in
+from jacaros.inspector.live.debug_commands import debug_commands
 from jacaros.inspector.live.live_view import LiveView
 from jacaros.inspector.live.mind_commands import mind_commands
 from jacaros.inspector.live.server import GOODBYE, LiveServer, bound_socket
 from jacaros.inspector.live.world_commands import world_commands
+from jacaros.inspector.watch import Watch
 from jacaros.mas.system import System
 
 FIRST_VISIT = 5.0
@@ -57,21 +61,36 @@ class RunView:
         self._server = LiveServer(bound_socket(place.address, place.port), access, self.watcher)
         self.address = self._server.address
         self._serving: asyncio.Task[None] | None = None
+        self._end_debug: Callable[[], None] = lambda: None
 
-    def begin(self) -> None:
-        """Serve from now on, until the run ends or `close` is called."""
+    def begin(self, watch: Watch) -> None:
+        """Serve from now on, until the run ends or `close` is called.
+
+        Args:
+            watch: of the run; `watcher` is among its watchers.
+        """
         system, add = self._system, self.commands.add_changes
         add(mind_commands(system))
         add(artifact_commands(system))
         self.commands.add({"why": self._why})
         # The world may come into being later: pages that are opened then can change it.
-        system.ros.watch_world(lambda world: add(world_commands(system, world)))
-        self._serving = asyncio.create_task(self._serve())
+        system.ros.watch_world(lambda world: add(world_commands(system, world, watch.look)))
+        self._debug()
+        with outside_run():  # a run that is paused must be able to continue
+            self._serving = asyncio.create_task(self._serve())
         # A task that is cancelled before its first step executes no `finally`.
         self._serving.add_done_callback(lambda _: self._server.release())
 
+    def _debug(self) -> None:
+        """Let pages pause and step the run, and show them its state."""
+        debugger, history = self._system.debugger, self._system.history()
+        self.commands.add(debug_commands(debugger))
+        history.record("debug", debugger.state.data())
+        self._end_debug = debugger.listen(lambda state: history.record("debug", state.data()))
+
     async def close(self) -> None:
         """Send what waits, and disconnect the pages."""
+        self._end_debug()
         if self._serving is not None:
             self._serving.cancel()
             with contextlib.suppress(asyncio.CancelledError):

@@ -38,7 +38,7 @@ async def view(
     watch = watch_of(mas.system, [shown.watcher])
     watch.start()
     end_prints = mas.on_print(watch.text)
-    shown.begin()
+    shown.begin(watch)
     try:
         yield shown.address
     finally:

@@ -11,8 +11,8 @@ RADIUS = 0.2
 """Metres: the radius of an obstacle, unless it is given."""
 
 
-def world_commands(system: System, world: World) -> Mapping[str, Command]:
-    """Return the commands for the embedded world of a system."""
+def world_commands(system: System, world: World, show: Callable[[], None]) -> Mapping[str, Command]:
+    """Return the commands for the embedded world of a system; *show* shows it when it was changed."""
     commands = _WorldCommands(world, system.ros.catch_up)
     found: dict[str, Command] = {"obstacle": commands.obstacle, "person": commands.person}
     if world.robots:
@@ -21,7 +21,16 @@ def world_commands(system: System, world: World) -> Mapping[str, Command]:
         found["door"] = commands.door
     if world.faults.by_name:
         found["fault"] = commands.fault
-    return found
+    return {name: _shown(command, show) for name, command in found.items()}
+
+
+def _shown(command: Command, show: Callable[[], None]) -> Command:
+    def change(given: Given) -> object:
+        result = command(given)
+        show()  # also while the run is paused
+        return result
+
+    return change
 
 
 class _WorldCommands:
