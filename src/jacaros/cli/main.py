@@ -26,6 +26,7 @@ COMMANDS = {
     "compile": ("jacaros.cli.compile", "Show the Python code that is made of a program."),
     "view": ("jacaros.cli.view", "Show a recorded run on a page in the browser."),
     "why": ("jacaros.cli.why", "Explain why something happened in a recorded run, or did not."),
+    "replay": ("jacaros.cli.replay", "Give a recorded run to a changed program, and compare its decisions."),
     "test": ("jacaros.cli.test", "Run the tests of agent programs."),
     "sim": ("jacaros.cli.sim", "Run a robot world as a ROS node of its own."),
     "world": ("jacaros.cli.world", "Check, show, make and export world files."),

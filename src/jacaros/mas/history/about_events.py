@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 
 from jacaros.asl.slips import close_matches
+from jacaros.errors import UsageError
 from jacaros.mas.history.chains import chain, place_of, plan_name, plan_text, shown
 from jacaros.mas.history.explanation import Explanation, Fact, seconds
 from jacaros.mas.history.past import Data, Past, of_agent
@@ -39,18 +40,42 @@ def _headline(past: Past, t: float, deliberation: Data) -> str:
         return f"{agent} handled `{trigger}` at {seconds(t)} with {plan_name(plan)} ({file}:{line})"
     if deliberation.get("chosen") is not None:
         return f"{agent} handled `{trigger}` at {seconds(t)} with a plan that it no longer has"
-    if deliberation.get("options"):
-        return f"{agent} has no applicable plan for `{trigger}` at {seconds(t)}"
-    return f"{agent} has no relevant plan for `{trigger}` at {seconds(t)}"
+    relevant = "applicable" if deliberation.get("options") or unexamined(past, deliberation) else "relevant"
+    return f"{agent} has no {relevant} plan for `{trigger}` at {seconds(t)}"
+
+
+def unexamined(past: Past, deliberation: Data) -> list[Data]:
+    """The plans for an event that a busy agent left out of its record."""
+    agent, trigger = str(deliberation["agent"]), str(deliberation["trigger"])
+    if deliberation.get("chosen") is not None:
+        return []
+    named = {option.get("plan") for option in deliberation.get("options") or ()}
+    plans = (plan for _, plan in past.plans(agent) if plan.get("id") not in named)
+    return [plan for plan in plans if _is_for(str(plan.get("trigger", "")), trigger)]
+
+
+def _is_for(trigger: str, event: str) -> bool:
+    if name_of(trigger) != name_of(event):
+        return False
+    try:
+        return Pattern(trigger).fits(event)
+    except UsageError:
+        return False
 
 
 def candidates(past: Past, deliberation: Data) -> Iterator[Fact]:
     """The relevant plans of an event in their order, each with the reason why it was not taken."""
     agent = str(deliberation["agent"])
     options = list(deliberation.get("options") or ())
+    unknown = (
+        "did not apply"
+        if deliberation.get("chosen") is None
+        else "applicable too, but another plan was selected"
+    )
     for option in options[:MOST_PLANS]:
-        why = str(option.get("why") or "") or "applicable too, but another plan was selected"
-        yield _candidate(past.plan(agent, option.get("plan")), why)
+        yield _candidate(past.plan(agent, option.get("plan")), str(option.get("why") or "") or unknown)
+    for plan in unexamined(past, deliberation)[:MOST_PLANS]:
+        yield _candidate(plan, "did not apply; not examined, since the agent was busy")
     chosen = past.plan(agent, deliberation.get("chosen"))
     if chosen:
         yield _candidate(chosen, "chosen")

@@ -313,3 +313,14 @@ def test_unnamed_variables_and_annotations_of_percepts_are_not_shown() -> None:
 
 def test_a_lone_word_may_be_an_operation() -> None:
     assert ask("go").answer.startswith("go(kitchen) of /main/wheels began")
+
+
+def test_plans_that_a_busy_agent_did_not_examine_are_listed() -> None:
+    answer = explain([*RECORDS, event(13.0, 60, 0, "+alarm(fire)", None)], "+alarm(_)")
+    assert answer.answer == "guard has no applicable plan for `+alarm(fire)` at 13.000 s"
+    assert (
+        answer.facts[0].text
+        == "`+alarm(T) : zones(T)`: did not apply; not examined, since the agent was busy"
+    )
+    answer = explain([*RECORDS, event(13.0, 60, 0, "+alarm(a,b)", None)], "+alarm(_,_)")
+    assert answer.answer == "guard has no relevant plan for `+alarm(a,b)` at 13.000 s"

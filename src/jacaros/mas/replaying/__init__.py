@@ -1,0 +1,6 @@
+"""A recorded run given to a changed program, to see where it decides differently."""
+
+from jacaros.mas.replaying.differences import Comparison, Decision
+from jacaros.mas.replaying.rerun import replay_against
+
+__all__ = ["Comparison", "Decision", "replay_against"]
