@@ -5,7 +5,14 @@ from collections.abc import Iterator
 
 from jacaros.mas.history.chains import chain
 from jacaros.mas.history.explanation import Explanation, Fact, seconds
-from jacaros.mas.history.interruptions import AT_ONCE, Command, event_fact, events_before, interrupting_step
+from jacaros.mas.history.interruptions import (
+    AT_ONCE,
+    Command,
+    event_fact,
+    events_before,
+    goals_interrupted,
+    interrupting_step,
+)
 from jacaros.mas.history.past import Data, Past
 
 _NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e-?\d+)?\b")
@@ -28,15 +35,22 @@ def explain_stop(past: Past, question: str, agent: str = "", robot: str = "") ->
     if past.exit_code is not None and past.end - t <= AT_ONCE:
         ended = Fact("note", f"the run ended at {seconds(past.end)}; robots are stopped then", past.end)
         return Explanation(question, answer, t, (ended,), chain(past, link["id"]))
-    handled, goals = events_before(past, stop, agent), list(_goals_over(past, t, agent))
+    goals, own_goals = (
+        goals_interrupted(past, stop, agent),
+        goals_interrupted(past, stop, agent, only_own=True),
+    )
+    since = min((each.t for each in goals if each.t is not None), default=t)
+    handled = events_before(past, (since, link), agent)
     events = (event_fact(past, *each) for each in handled)
     facts = [*_ended_operation(past, link), *events, *goals, *_world(past, t, robot)]
     because = chain(past, link["id"])
-    if handled and goals and not any(fact.kind in ("operation", "act", "event") for fact in because):
-        # An operation that pauses publishes in the turn of the message that made its agent suspend it.
+    if handled and own_goals:
+        # An operation that is paused or cancelled publishes its last command for its own plan, or in the turn of the
+        # message that made its agent suspend or drop it; the reason is in the plan that did so.
+        own = (fact for fact in because[:2] if fact.kind in ("command", "operation"))
         because = (
-            because[0],
-            *goals,
+            *own,
+            *own_goals,
             *interrupting_step(past, handled[-1][1]),
             *chain(past, handled[-1][1]["id"]),
         )
@@ -118,23 +132,6 @@ def _ended_operation(past: Past, command: Data) -> Iterator[Fact]:
             what = f"{operation.data['operation']} {operation.outcome}{reason}"
             yield Fact("operation", f"{what} at {seconds(operation.ended)}", operation.ended)
             return
-
-
-def _goals_over(past: Past, t: float, agent: str) -> Iterator[Fact]:
-    """The goals that were suspended or ended at that time, one line for each intention."""
-    ended: dict[object, list[tuple[float, Data]]] = {}
-    for at, data in past.goals:
-        over = data.get("state") in ("dropped", "suspended", "failed") and agent in ("", data.get("agent"))
-        if over and abs(at - t) <= AT_ONCE:
-            ended.setdefault((data.get("agent"), data.get("intention"), data["state"]), []).append((at, data))
-    for goals in ended.values():
-        at, data = goals[0]
-        count = len(goals) - 1
-        more = f" with {count} goal{'s' if count > 1 else ''} above it" if count else ""
-        why = f": {data['why']}" if data.get("why") else ""
-        yield Fact(
-            "goal", f"{data['goal']}{more} {data['state']} at {seconds(at)}{why}", at, str(data["agent"])
-        )
 
 
 def _world(past: Past, t: float, robot: str) -> Iterator[Fact]:

@@ -10,10 +10,45 @@ from jacaros.mas.history.questions import literal_at
 
 AT_ONCE = 0.2
 """Seconds before a stop in which events and changes of goals are named with it."""
+LATEST = 0.7
+"""Seconds after which a stop is recorded at the latest: of the commands of one operation only two a second are."""
 _INTERRUPTS = re.compile(r"\.(?=(?:suspend|drop_\w+|fail_goal|succeed_goal)\b)")
 
 Command = tuple[float, Data]
 """When a message was published, and its link."""
+
+
+def goals_interrupted(past: Past, stop: Command, agent: str = "", only_own: bool = False) -> list[Fact]:
+    """The goals that were suspended or ended just before a stop, one line for each intention.
+
+    Args:
+        past: what happened.
+        stop: the command.
+        agent: the only one that counts; all agents if empty.
+        only_own: if an action led to the command, only the goals of its intention count.
+    """
+    t, link = stop
+    own = {
+        (each.get("agent"), each.get("intention"))
+        for _, each in past.chain(link["id"])
+        if each.get("kind") == "act"
+    }
+    ended: dict[object, list[tuple[float, Data]]] = {}
+    for at, data in past.goals:
+        intention = data.get("agent"), data.get("intention")
+        over = data.get("state") in ("dropped", "suspended", "failed") and agent in ("", data.get("agent"))
+        if over and t - LATEST <= at <= t + AT_ONCE and (intention in own or not (own and only_own)):
+            ended.setdefault((*intention, data["state"]), []).append((at, data))
+    return [_interrupted(goals) for goals in ended.values()]
+
+
+def _interrupted(goals: list[tuple[float, Data]]) -> Fact:
+    at, data = goals[0]
+    count = len(goals) - 1
+    more = f" with {count} goal{'s' if count > 1 else ''} above it" if count else ""
+    why = f": {data['why']}" if data.get("why") else ""
+    told = f"{shown(data['goal'])}{more} {data['state']} at {seconds(at)}{why}"
+    return Fact("goal", told, at, str(data["agent"]))
 
 
 def events_before(past: Past, stop: Command, agent: str = "") -> list[tuple[float, Data]]:

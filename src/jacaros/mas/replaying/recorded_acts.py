@@ -42,8 +42,8 @@ class RecordedAct:
 class RecordedActs:
     """Gives each action of a rerun the end that the same action had in the recording, each end once.
 
-    The same action has the same name and arguments; if none is left, one with the same name and number of arguments.  Actions
-    on workspaces and artifacts, such as ``makeArtifact`` and ``focus``, are not recorded: they succeed immediately.
+    The same action has the same name and arguments; if none is left, one with the same name and number of arguments.
+    Actions on workspaces and artifacts, such as ``makeArtifact`` and ``focus``, are not recorded: they succeed immediately.
     """
 
     def __init__(self, records: Iterable[Record], agent: str) -> None:

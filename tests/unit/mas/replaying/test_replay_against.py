@@ -1,4 +1,4 @@
-"""A recorded run given to a changed program: the same decisions for the same program, and each difference with its reason."""
+"""A recorded run given to a changed program: the same decisions, or each difference with its reason."""
 
 import json
 from pathlib import Path
