@@ -79,6 +79,8 @@ export class MapView {
     if (key === this.key) return;
     this.key = key;
     this.projection = new Projection(bounds, box.width, box.height, this.camera);
+    const aspect = (bounds[2] - bounds[0]) / Math.max(0.1, bounds[3] - bounds[1]);
+    this.root.style.setProperty("--aspect", String(Math.min(2, Math.max(0.8, aspect))));
     this.canvas.classList.toggle("enlarged", this.camera.zoom > 1);
     for (const canvas of [this.canvas, this.floor.canvas, this.trails.canvas]) {
       canvas.width = Math.max(1, Math.round(box.width * ratio));
@@ -103,7 +105,7 @@ export class MapView {
     if (this.layers.trail) this.trails.drawRest(pen, t, states);
     drawObstacles(pen, projection, world, t);
     drawObjects(pen, projection, world, t);
-    if (this.layers.laser) this.eachRobot(states, (robot, state, index) => drawLaser(pen, projection, world.scan(robot.name, t), state, index));
+    if (this.layers.laser) this.eachRobot(states, (_robot, _state, index) => drawLaser(pen, projection, world.scan(index, t), index));
     this.eachRobot(states, (robot, state, index) => drawPlan(pen, projection, world.path(robot.name, t), index));
     drawPeople(pen, projection, world, t);
     this.eachRobot(states, (robot, state, index) => drawBelieved(pen, projection, robot, world.belief(robot.name, t), state, index));

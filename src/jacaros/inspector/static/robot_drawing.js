@@ -36,9 +36,9 @@ export function drawBelieved(pen, projection, robot, believed, state, index) {
 }
 
 /** The echoes of a laser scan, as the area that it has seen and a dot for each echo. */
-export function drawLaser(pen, projection, scan, state, index) {
+export function drawLaser(pen, projection, scan, index) {
   if (!scan) return;
-  const x = projection.x(state.x), y = projection.y(state.y), colour = robotColor(index), echoes = [];
+  const { state } = scan, x = projection.x(state.x), y = projection.y(state.y), colour = robotColor(index), echoes = [];
   scan.ranges.forEach((range, beam) => {
     if (!range) return;
     const angle = state.yaw + scan.from + scan.step * beam, length = range / 100 * projection.scale;

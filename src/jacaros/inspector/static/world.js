@@ -91,7 +91,11 @@ export class World {
   /** Grams of dirt that are left at time `t`. */
   dirtLeft(room, dirt, t) { return this.dirt.get(`${room.name}/${dirt.kind}`)?.at(t) ?? dirt.grams; }
 
-  scan(robot, t) { return this.lasers.get(robot)?.at(t); }
+  /** The last scan of robot number `index`, with the state that the robot had then: it may have turned since. */
+  scan(index, t) {
+    const scans = this.lasers.get(this.robot(index).name), scan = scans?.at(t), state = scan && this.state(index, scans.since(t));
+    return state ? { ...scan, state } : null;
+  }
   path(robot, t) { return this.paths.get(robot)?.at(t) ?? []; }
   belief(robot, t) { return this.believed.get(robot)?.at(t); }
 
