@@ -121,7 +121,7 @@ export class FloorDrawing {
   }
 
   drawScale({ width, height }) {
-    const { pen, projection: p } = this, metres = [1, 2, 5, 10, 20, 50, 100].find((each) => each * p.scale >= 36) ?? 200;
+    const { pen, projection: p } = this, metres = [1, 2, 5, 10, 20, 50, 100].find((each) => each * p.scale >= 28) ?? 200;
     const end = width - 16, start = end - metres * p.scale, base = height - 17;
     pen.strokeStyle = pen.fillStyle = themeColor("muted"); pen.lineWidth = 1.5;
     pen.beginPath(); pen.moveTo(start, base - 4); pen.lineTo(start, base); pen.lineTo(end, base); pen.lineTo(end, base - 4); pen.stroke();
