@@ -19,7 +19,7 @@ from jacaros.bdi.rules.sel_ev import (
     handle_held_event,
     is_ready,
 )
-from jacaros.bdi.state.circumstance import INTERVAL, Circumstance
+from jacaros.bdi.state.circumstance import INTERVAL, Circumstance, HeldEvent
 from jacaros.bdi.state.intention import Intention
 from jacaros.errors import InternalError
 from jacaros.terms.arithmetic import RUNNING
@@ -97,11 +97,14 @@ def _continue_held(agent: Circumstance) -> bool:
     intention = take_held_intention(agent)
     if intention is not None:
         return _execute(agent, intention)
+    ends_cycle = isinstance(agent.held, HeldEvent) and agent.held.ends_cycle
     event = take_held_event(agent)
     if event is not None:
         handle_held_event(agent, event)
         if agent.held is not None:
             return False
+    if ends_cycle:
+        return True
     return _select_and_execute(agent)
 
 

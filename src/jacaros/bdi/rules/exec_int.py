@@ -8,6 +8,7 @@ from jacaros.bdi.rules.add_im import push
 from jacaros.bdi.rules.clr_int import pop_finished
 from jacaros.bdi.rules.failure import note_lack_of_memory
 from jacaros.bdi.rules.goal_failure import fail_intention
+from jacaros.bdi.rules.holding import is_held_before_event
 from jacaros.bdi.rules.sel_ev import is_ready
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.event import Posted
@@ -81,6 +82,10 @@ def _pursue(agent: Circumstance, intention: Intention, posted: Any) -> None:
     announce(agent, intention, goal, annotations)
     if agent.atomic is not intention:
         agent.queue((goal, intention, annotations, None))
+    elif agent.observers.step is not None and is_held_before_event(
+        agent, (goal, intention, annotations, None), ends_cycle=True
+    ):
+        return
     elif push(agent, intention, goal, annotations):
         agent.make_ready(intention)
 

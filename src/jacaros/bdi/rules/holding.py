@@ -1,7 +1,7 @@
 """An observer holds an agent in the middle of a reasoning cycle: before an event is handled, or before a step is made."""
 
 from jacaros.bdi.rules.plan_changes import look_at_plans
-from jacaros.bdi.state.circumstance import Circumstance, StepObserver
+from jacaros.bdi.state.circumstance import Circumstance, HeldEvent, StepObserver
 from jacaros.bdi.state.event import Event
 from jacaros.bdi.state.intention import Intention
 
@@ -14,12 +14,12 @@ def observe_steps(agent: Circumstance, observer: StepObserver | None) -> None:
     look_at_plans(agent)
 
 
-def is_held_before_event(agent: Circumstance, event: Event) -> bool:
+def is_held_before_event(agent: Circumstance, event: Event, ends_cycle: bool = False) -> bool:
     """Whether the observer holds the agent before an event, which then is the first of the queue again."""
     observer = agent.observers.step
     if observer is None or not observer.holds_event(agent, event):
         return False
-    agent.held = event
+    agent.held = HeldEvent(event, ends_cycle)
     agent.events.appendleft(event)
     return True
 
@@ -36,15 +36,15 @@ def is_held_before_step(agent: Circumstance, intention: Intention) -> bool:
 
 def take_held_event(agent: Circumstance) -> Event | None:
     """The event before which the agent was held, out of its queue; None when it was not, or the event is gone."""
-    event = agent.held
-    if event is None or isinstance(event, Intention):
+    held = agent.held
+    if not isinstance(held, HeldEvent):
         return None
     agent.held = None
-    place = next((place for place, queued in enumerate(agent.events) if queued is event), None)
+    place = next((place for place, queued in enumerate(agent.events) if queued is held.event), None)
     if place is None:
         return None
     del agent.events[place]
-    return event
+    return held.event
 
 
 def take_held_intention(agent: Circumstance) -> Intention | None:

@@ -112,6 +112,18 @@ class StepObserver(Protocol):
         """Whether *agent* is held before it makes the next step of *intention*."""
 
 
+class HeldEvent(NamedTuple):
+    """The event before which an agent is held.
+
+    Attributes:
+        event: the event.
+        ends_cycle: it is handled at the end of a cycle: an atomic intention has just posted it.
+    """
+
+    event: Event
+    ends_cycle: bool
+
+
 class Observers:
     """Who is told of the goals of an agent, and of its reasons.
 
@@ -315,7 +327,7 @@ class Circumstance:
         self.sleep: Sleep = "awake"
         self.outer_frame: Any = None
         self.context: Any = None
-        self.held: Event | Intention | None = None
+        self.held: HeldEvent | Intention | None = None
         self.running = False
         self.stopped = False
 

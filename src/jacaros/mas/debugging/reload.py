@@ -65,8 +65,9 @@ def _replace(mind: Mind, program: nodes.Program, population: Population) -> None
 def _report(mind: Mind, new: nodes.Program) -> list[str]:
     old, agent = mind.program, f"agent {mind.name}"
     before, after = {shape(plan) for plan in old.plans}, {shape(plan) for plan in new.plans}
+    gone = len(before - after)
     return [
-        f"{agent}: {len(before - after)} plans gone, {len(after - before)} new, {len(before & after)} unchanged",
+        f"{agent}: {gone} plan{'s' if gone != 1 else ''} gone, {len(after - before)} new, {len(before & after)} unchanged",
         *(
             f"{agent}: intention {number} continues with its old plan {_place(plan.node)}"
             for number, plan in outdated_plans(mind, new.plans)

@@ -6,6 +6,7 @@ from typing import Any
 
 import jacaros
 from jacaros import Mas
+from jacaros.mas.debugging import Debugger
 
 EXAMPLES = Path(__file__).parents[4] / "examples"
 
@@ -56,3 +57,33 @@ def observed(
 
     jacaros.run(main(), clock="fast")
     return found
+
+
+COUNTER = """\
+count(0).
+!go.
++!go : count(N) & N < 3
+   <- .print(at, N);
+      -+count(N + 1); .print(counted);
+      .wait(100);
+      !go.
+@last
++!go
+   <- .print(over).
+"""
+
+
+def debugged(
+    test: Callable[[Mas, Debugger, list[str]], Awaitable[None]], program: str = COUNTER, **options: Any
+) -> list[str]:
+    """Run *test* with an agent bob; what bob printed."""
+    lines: list[str] = []
+
+    async def main() -> None:
+        mas = Mas(seed=1, on_print=lambda agent, text: lines.append(text), on_log=lambda *line: None)
+        async with mas:
+            mas.add_agent("bob", program, options=options)
+            await test(mas, mas.debugger, lines)
+
+    jacaros.run(main(), clock="fast")
+    return lines
