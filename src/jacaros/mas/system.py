@@ -212,7 +212,13 @@ class System:
             from jacaros.mas.debugging.debugger import Debugger  # here: most runs are not debugged
 
             self._debugger = Debugger(self)
+            self._debugger.listen(lambda _: self._look())
         return self._debugger
+
+    def _look(self) -> None:
+        """Have the history, if there is one, record what agents are at."""
+        if self._history is not None:
+            self._history.look()
 
     def history(self) -> "History":
         """What happens in the run, for recordings, views and explanations; made when it is first asked for."""

@@ -2,7 +2,7 @@
 
 import asyncio
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any, Literal, Protocol, get_args
 
 from jacaros.bdi.mind import Mind
@@ -250,7 +250,9 @@ class Debugger:
         Raises:
             AslError: a program is wrong; nothing has been replaced.
         """
-        return reload_programs(self._system.directory, self._system.population)
+        lines = reload_programs(self._system.directory, self._system.population)
+        self._change(self._state)
+        return lines
 
     # ---- asked by minds, see `jacaros.bdi.state.circumstance.StepObserver`
 
@@ -305,10 +307,11 @@ class Debugger:
         system.scheduler.pause()
         command_standstill(system.ros, system.options)
         system.clock.pause()
-        self._change(state, not_paused(system.directory, system.ros, system.options, system.clock))
+        cannot = not_paused(system.directory, system.ros, system.options, system.clock)
+        self._change(replace(state, cannot=cannot))
 
-    def _change(self, state: DebugState, cannot: tuple[str, ...] = ()) -> None:
-        self._state = DebugState(**{**asdict(state), "speed": self.speed, "cannot": cannot})
+    def _change(self, state: DebugState) -> None:
+        self._state = replace(state, speed=self.speed)
         with outside_run():
             for listener in self._listeners:
                 listener(self._state)

@@ -58,8 +58,8 @@ def _replace_soon(mind: Mind, program: nodes.Program, population: Population) ->
 def _replace(mind: Mind, program: nodes.Program, population: Population) -> None:
     mind.register_functions(program.functions)
     replace_rules(mind, mind.program.beliefs, program.beliefs)
-    replace_plans(mind, population.plans_of(program))
     mind.program = program
+    replace_plans(mind, population.plans_of(program))
 
 
 def _report(mind: Mind, new: nodes.Program) -> list[str]:

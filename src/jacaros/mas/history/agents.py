@@ -65,6 +65,12 @@ class AgentRecords:
 
         return end
 
+    def look(self) -> None:
+        """Record programs and intentions that have changed."""
+        for mind in self._minds.values():
+            mind.had_turn()
+        self._looks.look()
+
     def run_ended(self) -> None:
         """Record what the agents were at, and that goals that are open are dropped."""
         self._looks.look()

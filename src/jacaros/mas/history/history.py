@@ -121,6 +121,11 @@ class History:
             while self._ends:
                 self._ends.pop()()
 
+    def look(self) -> None:
+        """Record what the agents are at now: while the run is paused, no timer does it."""
+        if self._starts and self._agents is not None:
+            self._agents.look()
+
     def run_ended(self, code: int) -> None:
         """Take note of the end of the run: goals that are open are dropped."""
         if self._starts and self._agents is not None:

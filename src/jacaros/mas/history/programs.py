@@ -37,7 +37,7 @@ class ProgramRecords:
     def record(self, mind: Mind, numbers: "PlanNumbers") -> None:
         """Record the plans and rules of an agent as they are now."""
         library = mind.library
-        if library.plans is library.program.plans:
+        if library.plans is library.program.plans and numbers.count_from_one(library.plans):
             plans = self._of_program(library.program)
         else:
             plans = [_plan(plan, numbers[plan]) for plan in _with_inner(library.plans)]
@@ -69,6 +69,10 @@ class PlanNumbers(dict[Plan, int]):
         super().__init__()
         for plan in _with_inner(plans):
             self[plan]  # numbered as it is asked for
+
+    def count_from_one(self, plans: Sequence[Plan]) -> bool:
+        """Whether these plans have the first numbers; those of a reloaded program follow those of the old one."""
+        return not plans or self[plans[0]] == 1
 
     def __missing__(self, plan: Plan) -> int:
         self[plan] = number = len(self) + 1

@@ -185,3 +185,17 @@ def test_an_atomic_plan_is_held_too() -> None:
 
     assert debugged(test, program) == ["a", "b", "c"]
     assert [each.state for each in states] == ["paused", "running"]
+
+
+def test_records_show_the_step_before_which_an_agent_is_held() -> None:
+    async def test(mas: Mas, debugger: Debugger, lines: list[str]) -> None:
+        history = mas.system.history()
+        history.start()
+        debugger.add_breakpoint({"line": {"file": "<bob>", "line": 6}})
+        await debugger.wait_until_paused()
+        newest = [each.data for each in history.events if each.event == "intention"][-1]
+        assert (newest["state"], newest["stack"][-1]["line"]) == ("runs", 6)
+        assert newest["stack"][-1]["step"] == ".wait(100)"
+        debugger.resume()
+
+    debugged(test)

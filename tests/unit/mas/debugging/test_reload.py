@@ -189,3 +189,25 @@ def test_a_breakpoint_in_a_reloaded_file_stops_at_its_new_line(tmp_path: Path) -
         mas.debugger.resume()
 
     reloaded(tmp_path, test)
+
+
+def test_records_name_the_plans_of_the_reloaded_program(tmp_path: Path) -> None:
+    async def test(mas: Mas, file: Path, lines: list[str]) -> None:
+        history = mas.system.history()
+        history.start()
+        await mas.sleep(0.5)
+        write(file, "// one more line\n" + OLD.replace("(old", "(new"))
+        mas.debugger.pause()
+        mas.reload()
+        sources = [each.data for each in history.events if each.event == "source"]
+        assert [source["text"].splitlines()[0] for source in sources] == ["size(3).", "// one more line"]
+        mas.debugger.resume()
+        await mas.sleep(1.0)
+        programs = [each.data for each in history.events if each.event == "program"]
+        newest = {each["agent"]: {plan["id"]: plan for plan in each["plans"]} for each in programs}
+        chosen = [each.data for each in history.events if each.event == "deliberation"][-1]
+        plan = newest[chosen["agent"]][chosen["chosen"]]
+        assert (plan["trigger"], plan["line"]) == ("+!go", 5)
+        assert min(newest["bob"]) > 2, "numbers of plans are given once"
+
+    reloaded(tmp_path, test)
