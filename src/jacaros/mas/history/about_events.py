@@ -75,7 +75,13 @@ def candidates(past: Past, deliberation: Data) -> Iterator[Fact]:
     for option in options[:MOST_PLANS]:
         yield _candidate(past.plan(agent, option.get("plan")), str(option.get("why") or "") or unknown)
     for plan in unexamined(past, deliberation)[:MOST_PLANS]:
-        yield _candidate(plan, "did not apply; not examined, since the agent was busy")
+        is_annotated = "[" in str(plan.get("trigger", ""))
+        why = (
+            "its annotations do not match"
+            if is_annotated
+            else "did not apply; not examined, since the agent was busy"
+        )
+        yield _candidate(plan, why)
     chosen = past.plan(agent, deliberation.get("chosen"))
     if chosen:
         yield _candidate(chosen, "chosen")

@@ -42,7 +42,7 @@ def explain_stop(past: Past, question: str, agent: str = "", robot: str = "") ->
     since = min((each.t for each in goals if each.t is not None), default=t)
     handled = events_before(past, (since, link), agent)
     events = (event_fact(past, *each) for each in handled)
-    facts = [*_ended_operation(past, link), *events, *goals, *_world(past, t, robot)]
+    facts = [*_ended_operation(past, t, link), *events, *goals, *_world(past, t, robot)]
     because = chain(past, link["id"])
     if handled and own_goals:
         # An operation that is paused or cancelled publishes its last command for its own plan, or in the turn of the
@@ -123,11 +123,11 @@ def _stands(link: Data) -> bool:
     return all(float(number) == 0.0 for number in _NUMBER.findall(what))
 
 
-def _ended_operation(past: Past, command: Data) -> Iterator[Fact]:
-    """How the operation that published a command ended."""
+def _ended_operation(past: Past, t: float, command: Data) -> Iterator[Fact]:
+    """How the operation that published a command at *t* ended, if it ended then."""
     for _, link in past.chain(command["id"]):
         operation = past.operations.get(link["id"])
-        if operation is not None and operation.ended is not None:
+        if operation is not None and operation.ended is not None and operation.ended <= t + AT_ONCE:
             reason = f": {operation.reason}" if operation.reason else ""
             what = f"{operation.data['operation']} {operation.outcome}{reason}"
             yield Fact("operation", f"{what} at {seconds(operation.ended)}", operation.ended)

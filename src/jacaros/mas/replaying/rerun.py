@@ -14,7 +14,7 @@ from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.embedding.mas import Mas
 from jacaros.mas.embedding.running_agent import RunningAgent
 from jacaros.mas.history.chains import shown
-from jacaros.mas.history.past import Past, Record
+from jacaros.mas.history.past import Data, Past, Record
 from jacaros.mas.replaying.differences import Comparison, compare
 from jacaros.mas.replaying.recorded_acts import RecordedActs, completion
 from jacaros.mas.replaying.recorded_inputs import Input, inputs_of
@@ -76,7 +76,7 @@ class _Rerun:
         async with Mas(seed=self._seed, on_print=_ignore, on_log=_ignore) as mas:
             self._clock = mas.system.clock
             history = mas.system.keep_history()
-            history.listen(lambda t, event, data: found.append((t, event, data)))
+            history.listen(lambda t, event, data: found.append((t, event, _with_short_names(event, data))))
             await mas.sleep(self._began)
             agent = self._begin(mas)
             for each in self._inputs:
@@ -139,6 +139,14 @@ class _Rerun:
         self._host.receive(
             SpeechAct(message["performative"], message["from"], self._name, content, number, answered)
         )
+
+
+def _with_short_names(event: str, data: Data) -> Data:
+    """A record of the rerun; the files of a program are named from the current folder."""
+    if event != "program":
+        return data
+    here = f"{Path.cwd()}/"
+    return {**data, "plans": [{**each, "file": each["file"].removeprefix(here)} for each in data["plans"]]}
 
 
 def _ignore(*_: str) -> None:

@@ -322,5 +322,12 @@ def test_plans_that_a_busy_agent_did_not_examine_are_listed() -> None:
         answer.facts[0].text
         == "`+alarm(T) : zones(T)`: did not apply; not examined, since the agent was busy"
     )
+    other = (
+        13.0,
+        "program",
+        {"agent": "guard", "plans": [plan(1, "p__1", "+a(X)[source(percept)]", "", 1)], "rules": []},
+    )
+    answer = explain([other, event(13.0, 60, 0, "+a(1)", None)], "+a(_)")
+    assert answer.facts[0].text == "`+a(X)[source(percept)]`: its annotations do not match"
     answer = explain([*RECORDS, event(13.0, 60, 0, "+alarm(a,b)", None)], "+alarm(_,_)")
     assert answer.answer == "guard has no relevant plan for `+alarm(a,b)` at 13.000 s"
