@@ -32,9 +32,9 @@ _ATOMIC = 4096
 
 
 class Stream(Protocol):
-    """What is needed of a text stream."""
+    """What is needed of a text stream; a file for bytes is one, too."""
 
-    def write(self, text: str, /) -> Any:
+    def write(self, text: Any, /) -> Any:
         """Write *text*."""
 
     def flush(self) -> Any:
@@ -86,11 +86,11 @@ class Output:
         """Whether the sink has not taken all of the text yet."""
         return self._waiting > 0
 
-    def write(self, text: str) -> None:
-        """Write whole lines."""
+    def write(self, text: str | bytes) -> None:
+        """Write whole lines; bytes only to a file that was opened for them (`io.FileIO`)."""
         with self._changed:
             if self._retry_at is not None and time.monotonic() < self._retry_at:
-                self._lost += text.count("\n")
+                self._lost += _line_ends(text)
                 return
             if self._closed and self._waiting:
                 return
@@ -100,7 +100,7 @@ class Output:
             if self._descriptor is None or self._closed:
                 self._write_to_stream(text)
                 return
-            data = self._descriptor.encode(text)
+            data = text if isinstance(text, bytes) else self._descriptor.encode(text)
             if not self._waiting and not self._delay:  # the common case
                 data = self._write_directly(data)
             elif not self._has_room(len(data)):
@@ -115,14 +115,14 @@ class Output:
         self._stream = stream
         self._descriptor = _descriptor_of(stream)
 
-    def _write_to_stream(self, text: str) -> None:
+    def _write_to_stream(self, text: str | bytes) -> None:
         try:
             if self._stream is None:
                 raise OSError(errno.EBADF, "it is closed")
             self._stream.write(text)
             self._stream.flush()
         except Exception as error:
-            self._lost += text.count("\n")
+            self._lost += _line_ends(text)
             self._fail(error)
         else:
             self._recover()
@@ -419,6 +419,8 @@ class _Descriptor:
 
 def _descriptor_of(stream: Stream | None) -> _Descriptor | None:
     """The descriptor of a stream of the process; None for one that somebody else has made, for instance a test."""
+    if os.name == "posix" and type(stream) is io.FileIO:
+        return _Descriptor(stream.fileno(), "utf-8", "backslashreplace")
     if os.name != "posix" or type(stream) is not io.TextIOWrapper:
         return None
     buffer = stream.buffer
@@ -428,6 +430,10 @@ def _descriptor_of(stream: Stream | None) -> _Descriptor | None:
         return _Descriptor(stream.fileno(), stream.encoding, stream.errors or "strict")
     except (OSError, ValueError):
         return None
+
+
+def _line_ends(text: str | bytes) -> int:
+    return text.count(b"\n") if isinstance(text, bytes) else text.count("\n")
 
 
 def _worth_telling(times: int) -> bool:

@@ -74,7 +74,15 @@ def file_text(path: Path | str, largest: int = LARGEST) -> str:
         UnusableFile: as `file_bytes`.
         UnicodeError: it is not UTF-8, or contains a NUL; the message names the line.
     """
-    data = file_bytes(path, largest)
+    return text_of(file_bytes(path, largest))
+
+
+def text_of(data: bytes) -> str:
+    """Return the content of a text file as `file_text` does.
+
+    Raises:
+        UnicodeError: it is not UTF-8, or contains a NUL; the message names the line.
+    """
     at = data.find(0)
     if at >= 0:
         raise UnicodeError(f"line {_line(data, at)} contains a NUL byte; this is not a text file")

@@ -1,7 +1,7 @@
 """Causes: why a thing happened, and the port through which a run is observed."""
 
 from contextvars import ContextVar
-from typing import NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol
 
 
 class Cause(NamedTuple):
@@ -30,8 +30,14 @@ class Tracer(Protocol):
             kind: stop of the journey, see `Cause`.
             what: short text.
             parent: what led to it, None at the beginning of a chain.
-            about: what the link is about, such as the message; it is read only if the link is recorded.
+            about: what the link is about; it is read only if the link is recorded.
         """
+
+    def received_message(self, topic: str, message: Any) -> Cause:
+        """Make the first link of a chain, of kind ``sample``: our node has received *message*."""
+
+    def sent_message(self, topic: str, message: Any, parent: Cause | None) -> None:
+        """Make the last link of a chain, of kind ``command``, if *parent* led to it: our node has sent *message*."""
 
 
 CURRENT: ContextVar[Cause | None] = ContextVar("CURRENT", default=None)

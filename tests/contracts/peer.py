@@ -37,6 +37,12 @@ class Causes:
     def link(self, kind: str, what: str, parent: Cause | None = None, about: object = None) -> Cause:
         return Cause(1, parent.id if parent is not None else 0, kind, what)
 
+    def received_message(self, topic: str, message: Any) -> Cause:
+        return Cause(1, 0, "sample", topic)
+
+    def sent_message(self, topic: str, message: Any, parent: Cause | None) -> None:
+        pass
+
 
 class Peer(ActionCommands, GraphCommands):
     """A node and what it has seen.  Every method without underscore is a command; all values are JSON."""

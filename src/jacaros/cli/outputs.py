@@ -13,7 +13,7 @@ RECORD_LIMIT = 500
 """Megabytes that a recording may have."""
 
 _BEGINNINGS = {
-    "recording": (b'{"kind": "',),
+    "recording": (b'{"kind": "', b"\x1f\x8b\x08", b"\x89mcap0"),
     "replay page": (b"<!doctype html>",),
     "ground truth": (b'{"kind": "',),
     "JUnit report": (b"<?xml", b"<testsuite"),

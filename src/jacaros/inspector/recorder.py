@@ -1,46 +1,24 @@
-"""Records a run as JSON lines: the world, frames of its robots, agents' prints, and events.
+"""Records a run: the world, frames of its robots, agents' prints, and events.
 
-One line, one record; ``t`` is in seconds since the run began::
-
-    {"kind": "world", "version": 1, "world": {...}}
-    {"kind": "frame", "t": 0.1, "robots": [[x, y, yaw, battery, charging, touching], ...]}
-    {"kind": "text", "t": 1.5, "agent": "patroller", "text": "low battery"}
-    {"kind": "event", "t": 1.5, "event": "goal", "data": {...}}
-
-Events that the replay knows how to show:
-
-========================  ==========================================================================
-``goal``                  ``agent``, ``goal``, ``state``: pursued, suspended, resumed, achieved,
-                          failed, recovered, dropped or replaced (by a tail call); ``id`` tells goals apart,
-                          ``intention`` the stacks they are on; of a failure ``why``, in lines: error and
-                          place, step, terms for plans
-``cause``                 what led to an act of an agent, and the act itself: ``id``, ``parent`` (the id of what led to
-                          it, 0: nothing), ``kind`` (sample: a message of ROS, operation, property, act), ``what``,
-                          and ``at``, when it arose; the page does not show them yet
-events of the world       ``robot`` and what `jacaros.sim.ground_truth.Event` says: docked, undocked,
-                          charging, charged, bump, collision, task, battery, ...
-========================  ==========================================================================
-
-Others are kept, and shown by their kind.
-
-On a real graph the world is what the graph tells, and may come late, or more than once: the last line that describes one
-counts, and robots that are found later are behind the others in the rows of frames.
+``docs/reference/recordings.md`` has the format.
 """
 
-import json
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
-from typing import Any, TextIO
+from typing import Any
 
-from jacaros.inspector.recording import Frame, Recording, older_part
+from jacaros.inspector.line_format import CompressedLines, Lines
+from jacaros.inspector.recording import VERSION, Frame, Recording
+from jacaros.inspector.recording_file import Format, RecordingFile
 from jacaros.inspector.scene import RobotView
-from jacaros.output import CLOSING, PATIENCE, Output
 
-VERSION = 1
 LIMIT = 500_000_000
 """Bytes that a recording may have."""
-FLUSH = 0.2
-"""Seconds after which a record is in the file: as much is lost when the process is killed."""
+
+
+def format_of(path: Path) -> Callable[[], Format]:
+    """Return what makes the format that the name of a file asks for."""
+    return CompressedLines if path.suffix == ".gz" else Lines
 
 
 class Recorder:
@@ -70,37 +48,44 @@ class Recorder:
         self.path = Path(path) if path is not None else None
         self.recording = Recording()
         self._keep = keep if keep is not None else path is None
-        self._warn, self._limit = warn, limit
-        self._drawing: dict[str, Any] = {}
-        self._part, self._size = 1, 0
-        self._file: TextIO | None = None
-        self._output: Output | None = None
+        self._file: RecordingFile | None = None
         if self.path is not None:
-            self._open(self.path)
-        self._last: Frame | None = None
-        self._held: Frame | None = None
+            self._file = RecordingFile(self.path, format_of(self.path), warn, limit)
+        self._seen: tuple[RobotView, ...] | None = None
+        self._last: tuple[tuple[Any, ...], ...] | None = None
+        self._rested: float | None = None
+        """When the robots were last seen to be where they are in `_last`."""
 
     def world(self, drawing: Mapping[str, Any]) -> None:
         """The world, as `jacaros.sim.WorldDescription.drawing` gives it, before everything else; the last one counts."""
-        self.recording.world = self._drawing = dict(drawing)
-        self._write(self._header())
+        self.recording.world = dict(drawing)
+        self._write({"kind": "world", "version": VERSION, "world": self.recording.world})
 
     def frame(self, t: float, robots: Iterable[RobotView]) -> None:
         """The robots at a moment, in the order of the world."""
-        frame = Frame(_short(t), tuple(_row(robot) for robot in robots))
-        if self._last is not None and frame.robots == self._last.robots:
-            self._held = frame
+        robots = tuple(robots)
+        if robots == self._seen:  # the common case of a robot that rests
+            self._rested = t
             return
-        if self._held is not None:
-            self._take(self._held)
-            self._held = None
-        self._take(frame)
+        self._seen = robots
+        rows = tuple(map(_row, robots))
+        if self._last is not None and rows == self._last:
+            self._rested = t
+            return
+        self._take_rest()
+        self._take(t, rows)
 
-    def _take(self, frame: Frame) -> None:
-        self._last = frame
+    def _take_rest(self) -> None:
+        if self._rested is not None and self._last is not None:
+            self._take(self._rested, self._last)
+        self._rested = None
+
+    def _take(self, t: float, rows: tuple[tuple[Any, ...], ...]) -> None:
+        self._last = rows
+        t = _short(t)
         if self._keep:
-            self.recording.frames.append(frame)
-        self._write({"kind": "frame", "t": frame.t, "robots": frame.robots})
+            self.recording.frames.append(Frame(t, rows))
+        self._write({"kind": "frame", "t": t, "robots": rows})
 
     def text(self, t: float, agent: str, text: str) -> None:
         """What an agent printed."""
@@ -109,59 +94,21 @@ class Recorder:
         self._write({"kind": "text", "t": _short(t), "agent": agent, "text": text})
 
     def event(self, t: float, kind: str, data: Mapping[str, Any]) -> None:
-        """Something that happened; *data* is plain JSON data."""
+        """Something that happened; *data* is plain JSON data, which nobody changes."""
         if self._keep:
             self.recording.events.append((t, kind, dict(data)))
-        self._write({"kind": "event", "t": _short(t), "event": kind, "data": dict(data)})
+        self._write({"kind": "event", "t": _short(t), "event": kind, "data": data})
 
     def close(self) -> None:
         """Write the last frame and close the file; closing twice does no harm."""
-        if self._held is not None:
-            self._take(self._held)
-            self._held = None
-        self._close_file(CLOSING)
-
-    def _header(self) -> dict[str, Any]:
-        part = {"part": self._part} if self._part > 1 else {}
-        return {"kind": "world", "version": VERSION, **part, "world": self._drawing}
+        self._take_rest()
+        if self._file is not None:
+            self._file.close()
+            self._file = None
 
     def _write(self, record: dict[str, Any]) -> None:
-        if self._output is None:
-            return
-        line = json.dumps(record, ensure_ascii=False, default=str) + "\n"
-        self._size += len(line)
-        if self._size > self._limit // 2 and self._size > len(line):
-            self._begin_part()
-            self._size += len(line)
-        if self._output is not None:
-            self._output.write(line)
-
-    def _begin_part(self) -> None:
-        """Make the file the older part, and begin a new one; a device or a pipe has no parts."""
-        assert self.path is not None
-        self._size = 0
-        if not self.path.is_file():
-            return
-        self._close_file(PATIENCE)
-        try:
-            self.path.replace(older_part(self.path))
-            self._part += 1
-            self._open(self.path)
-        except OSError as error:
-            if self._warn is not None:
-                self._warn(f"cannot continue the recording {self.path}: {error.strerror}")
-        else:
-            self._write(self._header())
-
-    def _open(self, path: Path) -> None:
-        self._file = path.open("w", encoding="utf-8")
-        self._output = Output(self._file, str(path), self._warn, delay=FLUSH)
-
-    def _close_file(self, patience: float) -> None:
-        if self._output is not None and self._file is not None:
-            self._output.close(patience)
-            self._file.close()
-            self._output = self._file = None
+        if self._file is not None:
+            self._file.write(record)
 
 
 def _short(value: float) -> float:

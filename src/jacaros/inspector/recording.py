@@ -7,12 +7,14 @@ from typing import Any, NamedTuple
 
 from jacaros.errors import JacarosError
 from jacaros.excerpts import printable
+from jacaros.inspector.line_format import MAGIC, unpacked
 from jacaros.sim import GroundTruth, Sample
-from jacaros.text_files import file_text
+from jacaros.text_files import file_bytes, text_of
 
+VERSION = 2
+"""Of the format that is written; all until this one are read, and of newer ones what is known."""
 LARGEST_RECORDING = 2**32
-"""Bytes of a recording that is read."""
-
+"""Bytes of a recording that is read, without compression."""
 
 _COLUMNS = 6
 _LARGEST = 1e15
@@ -56,12 +58,14 @@ class Recording:
         frames: the robots over time.
         texts: prints of agents as (t, agent, text).
         events: events as (t, kind, data).
+        warnings: lines about what could not be read; empty for a recording of this version.
     """
 
     world: dict[str, Any] = field(default_factory=dict)
     frames: list[Frame] = field(default_factory=list)
     texts: list[tuple[float, str, str]] = field(default_factory=list)
     events: list[tuple[float, str, dict[str, Any]]] = field(default_factory=list)
+    warnings: list[str] = field(default_factory=list, compare=False)
 
     @property
     def duration(self) -> float:
@@ -91,18 +95,26 @@ class Recording:
 
     @classmethod
     def read(cls, path: str | Path) -> "Recording":
-        """Read a recorder's file, and the older part of a long one; lines cut off by a crash or a full disk are left out.
+        """Read a recorder's file, plain or compressed, and the older part of a long one.
+
+        Lines cut off by a crash or a full disk are left out, and of a newer version what is not known; see `warnings`.
 
         Raises:
             OSError: the file cannot be read.
-            JacarosError: it is no recording.
+            JacarosError: it is not a recording.
         """
         recording, path = cls(), Path(path)
-        lines = _lines(path)
-        part = _part_of(lines[0]) if lines else 1
+        lines = _lines(path, recording.warnings)
+        first = _header_of(lines[0]) if lines else {}
+        if first.get("version", 1) > VERSION:
+            recording.warnings.append(
+                f"{path} is a recording of version {first['version']}, and this is a program for version {VERSION}: "
+                "what it does not know is left out"
+            )
+        part = first.get("part", 1)
         if part > 1 and older_part(path).is_file():
-            before = _lines(older_part(path))
-            if before and _part_of(before[0]) == part - 1:
+            before = _lines(older_part(path), recording.warnings)
+            if before and _header_of(before[0]).get("part", 1) == part - 1:
                 recording._take_all(before, older_part(path))
         recording._take_all(lines, path)
         return recording
@@ -116,19 +128,20 @@ class Recording:
                 described = described or record["kind"] == "world"
             except (ValueError, KeyError, TypeError, RecursionError, OverflowError) as error:
                 cut_off = number == len(lines) or line.startswith(_BEGINNING)
-                if cut_off and isinstance(error, json.JSONDecodeError):
+                if (cut_off and isinstance(error, json.JSONDecodeError)) or self.warnings:
                     continue
-                told = printable(f"{path}:{number}: this is no line of a recording ({error})")
-                raise JacarosError(told) from None
+                raise _not_a_recording(f"{path}:{number}", f"{type(error).__name__}: {error}") from None
         if not described:
-            raise JacarosError(f"{path} is no recording: no line of it describes a world")
+            raise _not_a_recording(str(path), "no line of it describes a world")
 
     def _take(self, record: dict[str, Any]) -> None:
         kind = record["kind"]
         if kind == "world":
             self.world = _world(record["world"])
         elif kind == "frame":
-            self.frames.append(Frame(_number(record["t"]), tuple(map(_row, record["robots"]))))
+            width = _COLUMNS if not self.warnings else None
+            rows = tuple(_row(row, width) for row in record["robots"])
+            self.frames.append(Frame(_number(record["t"]), rows))
         elif kind == "text":
             self.texts.append((_number(record["t"]), _text(record["agent"]), _text(record["text"])))
         elif kind == "event":
@@ -171,11 +184,12 @@ def _mapping(value: Any) -> dict[str, Any]:
     return value
 
 
-def _row(values: Any) -> tuple[Any, ...]:
+def _row(values: Any, width: int | None = _COLUMNS) -> tuple[Any, ...]:
+    """Return a robot's row of a frame; without *width* it may have more columns, which are left out."""
     row = tuple(map(_number, values))
-    if len(row) != _COLUMNS:
+    if len(row) < _COLUMNS or (width is not None and len(row) != width):
         raise TypeError(f"a robot has {_COLUMNS} numbers, not {len(row)}")
-    return row
+    return row[:_COLUMNS]
 
 
 def _world(drawing: Any) -> dict[str, Any]:
@@ -200,19 +214,35 @@ def older_part(path: Path) -> Path:
     return path.with_name(f"{path.name}.1")
 
 
-def _lines(path: Path) -> list[str]:
+def _lines(path: Path, warnings: list[str]) -> list[str]:
+    data = file_bytes(path, LARGEST_RECORDING)
+    if data.startswith(MAGIC):
+        data, broken = unpacked(data, LARGEST_RECORDING)
+        if broken:
+            warnings.append(f"{path} is damaged: what can be read of it is shown")
+    whole, end, cut_off = data.rpartition(b"\n")
     try:
-        lines = file_text(path, LARGEST_RECORDING).split("\n")
+        lines = text_of(whole).split("\n") if end else []
     except UnicodeError as error:
-        raise JacarosError(f"{path} is not a recording: {error}") from None
-    return lines if lines[-1] else lines[:-1]
+        raise _not_a_recording(str(path), str(error)) from None
+    # The last line may be cut off in the middle of a character.
+    return [*lines, cut_off.decode("utf-8", "replace")] if cut_off else lines
 
 
-def _part_of(line: str) -> int:
+def _header_of(line: str) -> dict[str, Any]:
+    """Return version and part of a file, by its first line; empty for a line that has no whole numbers there."""
     try:
-        return int(json.loads(line).get("part", 1))
+        header = json.loads(line)
+        return {key: header[key] for key in ("version", "part") if type(header.get(key)) is int}
     except (ValueError, TypeError, AttributeError, RecursionError, OverflowError):
-        return 1
+        return {}
+
+
+def _not_a_recording(place: str, why: str) -> JacarosError:
+    return JacarosError(
+        f"error: not a recording: {printable(why)}\n  --> {printable(place)}\n"
+        "  = help: `jacaros run FILE --record RUN.jsonl` makes one"
+    )
 
 
 def _row_of(sample: Sample) -> tuple[Any, ...]:

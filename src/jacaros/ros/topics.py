@@ -74,8 +74,8 @@ class TopicPublisher(_TopicEnd[N]):
             message = published_message(self._node.factory, self.topic, self.type_name, message)
         if not self._closed:
             self._node.lifetime.send(self._send, message)
-            if self._node.tracer is not None and (why := CURRENT.get()) is not None:
-                self._node.tracer.link("command", self.topic, why, message)
+            if self._node.tracer is not None:
+                self._node.tracer.sent_message(self.topic, message, CURRENT.get())
 
     def tell(self, text: str, key: object = None) -> None:
         """Log why what is published reaches nobody, once for each *key* (the text by default)."""
@@ -112,7 +112,7 @@ class TopicSubscription(_TopicEnd[N]):
     def deliver(self, message: Any) -> None:
         """Hand a message over, on the loop."""
         node = self._node
-        why = None if node.tracer is None else node.tracer.link("sample", self.topic, None, message)
+        why = None if node.tracer is None else node.tracer.received_message(self.topic, message)
         self._callback(Sample(message, self.topic, node.clock.now(), why))
 
     def tell(self, trouble: TopicTrouble, text: str, key: object = None) -> None:

@@ -77,6 +77,7 @@ class GroundTruth:
         self._paths: dict[str, list[Sample]] = {robot: [] for robot in robots}
         self._latest: dict[str, Sample] = {}
         self._listeners: list[Callable[[Record], None]] = []
+        self._event_listeners: list[Callable[[Record], None]] = []
         self.keep: int | None = None
 
     @property
@@ -129,14 +130,22 @@ class GroundTruth:
         self._listeners.append(listener)
         return lambda: self._listeners.remove(listener)
 
+    def listen_to_events(self, listener: Callable[[Record], None]) -> Callable[[], None]:
+        """Have *listener* called with the record of every event from now on; returns what takes it off again."""
+        self._event_listeners.append(listener)
+        return lambda: self._event_listeners.remove(listener)
+
     def record_event(self, event: Event) -> None:
         """Take note of an event."""
         self.events.append(event)
         if event.kind == "cleaned":
             self.dirt[event.data["room"], event.data["dirt"]] = event.data["grams"]
         self._forget(self.events)
-        if self._listeners:
-            self._tell(event_record(event))
+        if self._listeners or self._event_listeners:
+            record = event_record(event)
+            self._tell(record)
+            for listener in tuple(self._event_listeners):
+                listener(record)
 
     def record_sample(self, robot: str, sample: Sample) -> None:
         """Add a point to the path of *robot*."""

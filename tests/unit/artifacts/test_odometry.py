@@ -38,6 +38,12 @@ class Causes:
     def link(self, kind: str, what: str, parent: Cause | None = None, about: object = None) -> Cause:
         return Cause(1, 0, kind, what)
 
+    def received_message(self, topic: str, message: Any) -> Cause:
+        return Cause(1, 0, "sample", topic)
+
+    def sent_message(self, topic: str, message: Any, parent: Cause | None) -> None:
+        pass
+
 
 def test_properties_change_in_steps_of_the_artifact_with_the_cause_of_the_message() -> None:
     """Defect 4: the original changed properties outside of the lock, from the threads of ROS."""

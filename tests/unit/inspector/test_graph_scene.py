@@ -181,7 +181,7 @@ def test_a_world_that_is_known_late_is_recorded_all_the_same(tmp_path: Path) -> 
 
     looking("two_robots", body)
     lines = [json.loads(line) for line in path.read_text().splitlines()]
-    assert lines[0] == {"kind": "world", "version": 1, "world": {}}
+    assert lines[0] == {"kind": "world", "version": 2, "world": {}}
     recording = Recording.read(path)
     assert recording.robots == ["robot_0", "robot_1"]
     shown = frames(recording)

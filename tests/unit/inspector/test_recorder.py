@@ -1,12 +1,16 @@
 """Recording a run and reading it back."""
 
+import gzip
+import json
 import threading
 from pathlib import Path
+from random import Random
 
 import pytest
 
 from jacaros.clock import VirtualClock, run
 from jacaros.errors import JacarosError
+from jacaros.inspector.line_format import CompressedLines, Lines
 from jacaros.inspector.recorder import Recorder
 from jacaros.inspector.recording import Recording
 from jacaros.inspector.scene import EmbeddedScene, RobotView
@@ -207,3 +211,116 @@ def test_a_ground_truth_becomes_a_recording() -> None:
     assert recording.frames[-1].robots[0][:3] == world.ground_truth.pose()
     assert recording.robots == ["turtlebot"]
     assert [kind for _, kind, _ in recording.events] == [event.kind for event in world.log]
+
+
+def test_a_compressed_recording_reads_back_the_same(tmp_path: Path) -> None:
+    recorder = record(tmp_path / "run.jsonl.gz")
+    assert (tmp_path / "run.jsonl.gz").read_bytes().startswith(b"\x1f\x8b")
+    assert Recording.read(tmp_path / "run.jsonl.gz") == recorder.recording
+    with gzip.open(tmp_path / "run.jsonl.gz", "rt", encoding="utf-8") as lines:
+        assert len(lines.readlines()) == 8
+
+
+def test_a_compressed_recording_is_in_the_file_while_the_run_goes_on(tmp_path: Path) -> None:
+    path = tmp_path / "run.jsonl.gz"
+    recorder = Recorder(path)
+    recorder.world({"name": "nowhere"})
+    recorder.text(0.1, "ann", "hello")
+    while path.stat().st_size < 50:
+        threading.Event().wait(0.01)
+    assert Recording.read(path).texts == [(0.1, "ann", "hello")]
+    recorder.close()
+
+
+def packed_in_pieces(count: int) -> tuple[list[bytes], int]:
+    """The beginning of a compressed recording in pieces of one text each, and the size of the first piece."""
+    form = CompressedLines()
+    pieces = [form.pack([{"kind": "world", "version": 2, "world": {"name": "nowhere"}}])]
+    pieces += [
+        form.pack([{"kind": "text", "t": number, "agent": "ann", "text": "x" * 300_000 + str(number)}])
+        for number in range(count)
+    ]
+    return pieces, len(pieces[0])
+
+
+def test_a_compressed_recording_that_is_cut_off_is_read_up_to_there(tmp_path: Path) -> None:
+    path, whole = tmp_path / "run.jsonl.gz", record(tmp_path / "whole.jsonl.gz").recording
+    data = (tmp_path / "whole.jsonl.gz").read_bytes()
+    counts = set()
+    for length in range(len(data) - 20, len(data)):
+        path.write_bytes(data[:length])
+        recording = Recording.read(path)
+        assert recording.world == whole.world
+        counts.add(len(recording.frames))
+    assert max(counts) == len(whole.frames)
+
+
+def test_what_follows_a_hole_in_a_compressed_recording_is_read(tmp_path: Path) -> None:
+    """A full disk has not taken a piece: the members behind it can be read."""
+    pieces, _ = packed_in_pieces(12)
+    path = tmp_path / "run.jsonl.gz"
+    path.write_bytes(b"".join([*pieces[:2], *pieces[3:]]))
+    numbers = [int(text.lstrip("x")) for _, _, text in Recording.read(path).texts]
+    assert numbers[0] == 0
+    assert numbers[-1] == 11
+    assert 1 not in numbers
+    assert len(numbers) >= 8
+
+
+def test_a_long_compressed_recording_keeps_its_newest_half(tmp_path: Path) -> None:
+    path = tmp_path / "run.jsonl.gz"
+    recorder = Recorder(path, limit=40_000)
+    recorder.world({"name": "nowhere"})
+    generator = Random(1)
+    for number in range(3000):
+        recorder.text(number / 10, "ann", f"line {number} {generator.random()}")
+    recorder.close()
+    older = path.with_name("run.jsonl.gz.1")
+    assert path.stat().st_size + older.stat().st_size <= 40_000
+    texts = [text.split()[1] for _, _, text in Recording.read(path).texts]
+    assert len(texts) > 300
+    assert texts == [str(number) for number in range(3000 - len(texts), 3000)]
+
+
+def test_of_a_newer_version_what_is_known_is_read_with_a_warning(tmp_path: Path) -> None:
+    path = tmp_path / "run.jsonl"
+    path.write_text(
+        '{"kind": "world", "version": 9, "world": {"name": "nowhere", "new": 1}}\n'
+        '{"kind": "frame", "t": 1, "robots": [[1, 2, 3, 4, 5, 6, 7]]}\n'
+        '{"kind": "frame", "t": 2, "robots": "other"}\n'
+        '{"kind": "hologram", "t": 3}\n'
+        '{"kind": "text", "t": 4, "agent": "ann", "text": "hello", "colour": "red"}\n',
+        encoding="utf-8",
+    )
+    recording = Recording.read(path)
+    assert [frame.robots for frame in recording.frames] == [((1, 2, 3, 4, 5, 6),)]
+    assert recording.texts == [(4, "ann", "hello")]
+    [warning] = recording.warnings
+    assert "version 9" in warning
+
+
+def test_a_recording_of_version_1_is_read_without_a_warning(tmp_path: Path) -> None:
+    path = tmp_path / "run.jsonl"
+    path.write_text('{"kind": "world", "version": 1, "world": {"name": "nowhere"}}\n', encoding="utf-8")
+    assert Recording.read(path).warnings == []
+
+
+def test_what_is_wrong_with_a_file_is_reported_with_place_and_help(tmp_path: Path) -> None:
+    path = tmp_path / "run.jsonl"
+    path.write_text('{"kind": "world", "world": {"robots": [{}]}}\n\n', encoding="utf-8")
+    with pytest.raises(JacarosError) as refused:
+        Recording.read(path)
+    assert str(refused.value) == (
+        f"error: not a recording: KeyError: 'name'\n  --> {path}:1\n"
+        "  = help: `jacaros run FILE --record RUN.jsonl` makes one"
+    )
+
+
+def test_records_that_look_like_the_next_one_stay_one_record() -> None:
+    records = [
+        {"kind": "event", "data": [{"kind": "a"}, {"kind": "b"}]},
+        {"kind": "text", "text": '}, {"kind": "x'},
+        {"kind": "text", "text": "\ud800 and ü"},
+    ]
+    lines = Lines().pack(records).decode("utf-8").splitlines()
+    assert [json.loads(line) for line in lines] == records

@@ -1,14 +1,16 @@
 """Records of causes: those that led to something, of all that arise."""
 
 from collections.abc import Callable, Mapping
-from typing import Any, NamedTuple
+from typing import Any
 
 from jacaros.clock import Clock
 from jacaros.mas.history.values import call_text, limited, message_text, request_text
 from jacaros.trace import Cause, Tracer
 
-KEPT = 10_000
-"""Causes that are remembered at most until something needs them; most sensor messages lead to nothing."""
+_GENERATION = 4096
+"""Causes that are remembered at least until something needs them, and at most twice as many."""
+_SAMPLES = 512
+"""Messages that are remembered until they lead to something; most do not, and are expensive to keep."""
 COMMAND_PERIOD = 0.5
 """Seconds between two records of commands that one operation sends to one topic; the last one is recorded, too."""
 RECORDED = ("event", "message")
@@ -19,12 +21,31 @@ LARGE = 4096
 Tell = Callable[[str, Mapping[str, Any]], None]
 
 
-class Link(NamedTuple):
-    """A cause that arose at *at* (seconds of the clock), and what it is about."""
+Link = tuple[Cause, float, Any]
+"""A cause, when it arose (in seconds that the clock has run), and what it is about."""
 
-    cause: Cause
-    at: float
-    about: Any
+
+class Traffic:
+    """The messages of one topic that our node received or sent.
+
+    Attributes:
+        topic: absolute name.
+        count: how many there were; who reads it may set it back.
+        outgoing: whether we send them.
+        heard: takes each message, None when nobody wants them.
+        kept: whether messages are small enough to be remembered.
+        parent, at: of the command recorded last: the id of what led to it, and when.
+        held: the newest command that was not recorded: what led to it, when it was sent, and the message; None without one.
+    """
+
+    __slots__ = ("at", "count", "heard", "held", "kept", "outgoing", "parent", "topic")
+
+    def __init__(self, topic: str, outgoing: bool, message: Any) -> None:
+        self.topic, self.outgoing, self.count = topic, outgoing, 0
+        self.heard: Callable[[str, Any], None] | None = None
+        self.kept = _is_small(message)
+        self.parent, self.at = 0, 0.0
+        self.held: tuple[Cause, float, Any] | None = None
 
 
 class CauseRecords:
@@ -37,7 +58,11 @@ class CauseRecords:
         clock: of the run.
         beginning: seconds of the clock from which ``at`` counts.
         tell: takes the kind of a record and its data.
-        passed: takes each message of our node: ``in`` or ``out``, its topic, the message.
+        find_listener: gives what takes the messages of a topic that we receive, from one of them; None for nothing.
+
+    Attributes:
+        received, sent: the messages of our node by topic.
+        with_effect: takes messages that had an effect, when they are recorded: ``at``, topic and message.
     """
 
     def __init__(
@@ -45,18 +70,18 @@ class CauseRecords:
         clock: Clock,
         beginning: float,
         tell: Tell,
-        passed: Callable[[str, str, Any], None] = lambda direction, topic, message: None,
+        find_listener: Callable[[Any], Callable[[str, Any], None] | None] = lambda message: None,
     ) -> None:
-        self._clock, self._beginning, self._tell, self._passed = clock, beginning, tell, passed
+        self._clock, self._tell, self._find_listener = clock, tell, find_listener
+        self._offset = clock.now() - clock.elapsed - beginning
+        self.received: dict[str, Traffic] = {}
+        self.sent: dict[str, Traffic] = {}
         self.with_effect: Callable[[float, str, Any], None] | None = None
         self._last = 0
         # Two generations: the older one is dropped as a whole, which costs nothing for each cause.
         self._young: dict[int, Link] = {}
         self._old: dict[int, Link] = {}
-        self._commands: dict[str, tuple[int, float]] = {}
-        """By topic, the parent of the command recorded last, and when."""
-        self._held: dict[str, int] = {}
-        """By topic, the newest command that was not recorded."""
+        self._samples: list[Link | None] = [None] * _SAMPLES
 
     def listen_to(self, trace: Callable[[Tracer | None], None]) -> Callable[[], None]:
         """Be the tracer of a system, which *trace* sets; gives what ends it."""
@@ -68,72 +93,102 @@ class CauseRecords:
 
         return end
 
-    def link(self, kind: str, what: str, parent: Cause | None = None, about: object = None) -> Cause:
+    def link(self, kind: str, what: str, parent: Cause | None = None, about: Any = None) -> Cause:
         """Make the next link of a chain, see `jacaros.trace.Tracer`."""
-        self._last += 1
-        made = Cause(self._last, parent.id if parent is not None else 0, kind, what)
+        self._last = number = self._last + 1
+        made = Cause(number, 0 if parent is None else parent.id, kind, what)
         if kind in RECORDED:
             return made
-        if kind == "sample":
-            self._passed("in", what, about)
-            about = _small(about)
-        elif kind == "command":
-            self._passed("out", what, about)
-            if parent is None:
-                return made
-            about = _small(about)
-        self._young[made.id] = Link(made, self._clock.now(), about)
-        if len(self._young) > KEPT // 2:
+        if parent is not None and parent.kind == "sample":
+            self._keep_sample(parent)
+        self._young[number] = made, self._clock.elapsed, about
+        if len(self._young) > _GENERATION:
             self._old, self._young = self._young, {}
-        if kind == "act":
-            self.need(made.id)
-        elif kind == "command":
-            self._command(made)
+        if kind in ("act", "operation"):
+            self.need(number)
         return made
+
+    def received_message(self, topic: str, message: Any) -> Cause:
+        """Make the first link of a chain, see `jacaros.trace.Tracer`."""
+        # Called for each message of each sensor: most of what a recording costs would be here.
+        self._last = number = self._last + 1
+        made = Cause(number, 0, "sample", topic)
+        traffic = self.received.get(topic) or self._traffic(topic, message)
+        traffic.count += 1
+        if traffic.heard is not None:
+            traffic.heard(topic, message)
+        self._samples[number % _SAMPLES] = made, self._clock.elapsed, message if traffic.kept else None
+        return made
+
+    def _keep_sample(self, cause: Cause) -> None:
+        """Remember a message that has led to something; most are forgotten soon."""
+        link = self._samples[cause.id % _SAMPLES]
+        if link is not None and link[0] is cause:
+            self._samples[cause.id % _SAMPLES] = None
+            self._young[cause.id] = link
+
+    def sent_message(self, topic: str, message: Any, parent: Cause | None) -> None:
+        """Make the last link of a chain, see `jacaros.trace.Tracer`; of many of one operation, one now and then."""
+        traffic = self.sent.get(topic)
+        if traffic is None:
+            traffic = self.sent[topic] = Traffic(topic, True, message)
+        traffic.count += 1
+        if parent is None:
+            return
+        now = self._clock.elapsed
+        if traffic.parent == parent.id and now - traffic.at < COMMAND_PERIOD:
+            traffic.held = parent, now, message
+            return
+        if traffic.held is not None and traffic.parent != parent.id:
+            self._record_command(traffic, *traffic.held)  # the last one of the operation before
+        self._record_command(traffic, parent, now, message)
+
+    def _record_command(self, traffic: Traffic, parent: Cause, elapsed: float, message: Any) -> None:
+        traffic.parent, traffic.at, traffic.held = parent.id, self._clock.elapsed, None
+        self._keep_sample(parent)
+        self.need(parent.id)
+        self._last += 1
+        made = Cause(self._last, parent.id, "command", traffic.topic)
+        self._record((made, elapsed, message if traffic.kept else None))
 
     def need(self, number: int) -> None:
         """Record a cause and what led to it, as far as that is not recorded yet and still remembered."""
         chain: list[Link] = []
+        sample = self._samples[number % _SAMPLES]
+        if sample is not None and sample[0].id == number:
+            self._keep_sample(sample[0])
         while (link := self._young.pop(number, None) or self._old.pop(number, None)) is not None:
             chain.append(link)
-            number = link.cause.parent
+            number = link[0].parent
         for link in reversed(chain):
             self._record(link)
 
     def _record(self, link: Link) -> None:
-        cause, at = link.cause, round(link.at - self._beginning, 3)
-        more = _details(cause.kind, cause.what, link.about) if link.about is not None else {}
-        self._tell("cause", {**cause._asdict(), "at": at, **more})
-        if self.with_effect is not None and cause.kind in ("sample", "command") and link.about is not None:
-            self.with_effect(at, cause.what, link.about)
+        (number, parent, kind, what), elapsed, about = link
+        at = round(elapsed + self._offset, 3)
+        data = {"id": number, "parent": parent, "kind": kind, "what": what, "at": at}
+        if about is not None:
+            data.update(_details(kind, what, about))
+        self._tell("cause", data)
+        if self.with_effect is not None and kind in ("sample", "command") and about is not None:
+            self.with_effect(at, what, about)
 
-    def _command(self, made: Cause) -> None:
-        now = self._clock.elapsed
-        parent, before = self._commands.get(made.what, (0, 0.0))
-        if parent == made.parent and now - before < COMMAND_PERIOD:
-            self._held[made.what] = made.id
-            return
-        self._commands[made.what] = made.parent, now
-        held = self._held.pop(made.what, None)
-        if held is not None and parent != made.parent:
-            self.need(held)  # the last one of the operation before
-        self.need(made.id)
+    def _traffic(self, topic: str, message: Any) -> Traffic:
+        traffic = self.received[topic] = Traffic(topic, False, message)
+        traffic.heard = self._find_listener(message)
+        return traffic
 
     def flush(self, all_of_them: bool = False) -> None:
         """Record the last command of each topic that was held back long enough; to be called a few times a second."""
         now = self._clock.elapsed
-        for topic, number in list(self._held.items()):
-            parent, before = self._commands[topic]
-            if all_of_them or now - before >= COMMAND_PERIOD:
-                del self._held[topic]
-                self._commands[topic] = parent, now
-                self.need(number)
+        for traffic in self.sent.values():
+            if traffic.held is not None and (all_of_them or now - traffic.at >= COMMAND_PERIOD):
+                self._record_command(traffic, *traffic.held)
 
 
-def _small(message: Any) -> Any:
-    """Return a message that may be remembered, None for a large one."""
+def _is_small(message: Any) -> bool:
     data = getattr(message, "data", ())
-    return message if not hasattr(data, "__len__") or len(data) < LARGE else None
+    return not hasattr(data, "__len__") or len(data) < LARGE
 
 
 def _details(kind: str, what: str, about: Any) -> dict[str, Any]:

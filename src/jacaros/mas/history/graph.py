@@ -3,13 +3,14 @@
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from jacaros.mas.history.causes import CauseRecords
 from jacaros.ros.backend import Backend
 from jacaros.ros.errors import RosError
 from jacaros.ros.graph import GraphContents
 
 PERIOD = 3.0
-"""Seconds between two looks at the graph."""
-_CHANGED = 0.2
+"""Seconds between two looks at a graph that changes."""
+_CHANGED = 0.5
 """Share by which a rate must change to be recorded again."""
 _MOST_TOPICS = 300
 
@@ -17,21 +18,20 @@ Tell = Callable[[str, Mapping[str, Any]], None]
 
 
 class GraphRecords:
-    """Counts the messages of our node, and makes the record ``graph`` when something has changed.
+    """Makes the record ``graph`` when something has changed.
 
     Args:
         tell: takes the kind of a record and its data.
+        messages: counts the messages of our node.
+
+    Attributes:
+        pause: seconds until the next look; longer while nothing changes.
     """
 
-    def __init__(self, tell: Tell) -> None:
-        self._tell = tell
-        self._counts: dict[tuple[str, str], int] = {}
+    def __init__(self, tell: Tell, messages: CauseRecords) -> None:
+        self._tell, self._messages = tell, messages
         self._recorded: list[dict[str, Any]] | None = None
-
-    def count(self, topic: str, direction: str) -> None:
-        """Count a message that came in (``in``) or went out (``out``)."""
-        key = topic, direction
-        self._counts[key] = self._counts.get(key, 0) + 1
+        self.pause = PERIOD
 
     async def look(self, backend: Backend, seconds: float) -> None:
         """Look at the graph, *seconds* after the last look."""
@@ -39,11 +39,22 @@ class GraphRecords:
             contents = await backend.contents()
         except RosError:  # the graph may be gone for a while
             return
-        counts, self._counts = self._counts, {}
+        counts = self._counts()
         topics = self._topics(contents, counts, seconds, backend.node_name)
+        self.pause = min(4.0 * PERIOD, 2.0 * self.pause)
         if self._recorded is None or _differ(self._recorded, topics):
+            if self._recorded is None or len(self._recorded) != len(topics):
+                self.pause = PERIOD
             self._recorded = topics
             self._tell("graph", {"node": backend.node_name, "topics": topics})
+
+    def _counts(self) -> dict[tuple[str, str], int]:
+        """The messages since the last time, by topic and direction."""
+        counts = {}
+        for traffic in (*self._messages.received.values(), *self._messages.sent.values()):
+            counts[traffic.topic, "out" if traffic.outgoing else "in"] = traffic.count
+            traffic.count = 0
+        return counts
 
     def _topics(
         self, contents: GraphContents, counts: Mapping[tuple[str, str], int], seconds: float, node: str
@@ -74,6 +85,6 @@ def _differ(before: list[dict[str, Any]], now: list[dict[str, Any]]) -> bool:
     for old, new in zip(before, now, strict=True):
         if any(old[key] != new[key] for key in ("name", "type", "publishers", "subscribers", "ours")):
             return True
-        if abs(old["rate"] - new["rate"]) > max(0.5, _CHANGED * old["rate"]):
+        if abs(old["rate"] - new["rate"]) > max(1.0, _CHANGED * old["rate"]):
             return True
     return False

@@ -165,7 +165,7 @@ class History:
         ends: list[Callable[[], None]] = []
 
         def listen(world: "World") -> None:
-            ends.append(world.ground_truth.listen(self._hear_world))
+            ends.append(world.ground_truth.listen_to_events(self._hear_world))
 
         ends.append(self._system.ros.watch_world(listen))
 
@@ -176,5 +176,4 @@ class History:
         return end
 
     def _hear_world(self, record: "Record") -> None:
-        if record["kind"] == "event":
-            self.record(record["event"], {"robot": record["robot"], **record["data"]})
+        self.record(record["event"], {"robot": record["robot"], **record["data"]})

@@ -38,7 +38,7 @@ class RobotRecords:
         clock: of the run.
         tell: takes the kind of a record and its data.
         robot_at: finds a robot's name by what stands before its topics, such as ``/robot_0``.
-        robots: the robots of the embedded world, None without one.
+        find_robots: gives the robots of the embedded world, None without one.
         truths: their true poses.
     """
 
@@ -47,23 +47,25 @@ class RobotRecords:
         clock: Clock,
         tell: Tell,
         robot_at: Callable[[str], str],
-        robots: WatchedRobots | None = None,
+        find_robots: Callable[[], WatchedRobots | None] = lambda: None,
         truths: Truths = dict,
     ) -> None:
         self._clock, self._tell, self._robot_at = clock, tell, robot_at
-        self._robots, self._truths = robots, truths
+        self._find_robots, self._truths = find_robots, truths
         self._scanned: dict[str, float] = {}
         self._paths: dict[str, Sequence[tuple[float, float]]] = {}
         self._astray: set[str] = set()
 
-    def received(self, topic: str, message: Any) -> None:
-        """Record a message that our node received, if it is a scan or a path."""
+    def listener_of(self, message: Any) -> Callable[[str, Any], None] | None:
+        """Give what records messages such as this one, which our node received: scans and paths; None for others."""
         kind = type(message).__name__
         if kind.endswith(_SCAN):
-            self._scan(topic, message)
-        elif kind.endswith(_PATH) and hasattr(message, "poses"):
-            points = [(pose.pose.position.x, pose.pose.position.y) for pose in message.poses]
-            self._path(self._robot_at(topic.rpartition("/")[0]), points)
+            return self._scan
+        return self._planned if kind.endswith(_PATH) and hasattr(message, "poses") else None
+
+    def _planned(self, topic: str, path: Any) -> None:
+        points = [(pose.pose.position.x, pose.pose.position.y) for pose in path.poses]
+        self._path(self._robot_at(topic.rpartition("/")[0]), points)
 
     def _scan(self, topic: str, scan: Any) -> None:
         now = self._clock.elapsed
@@ -76,13 +78,14 @@ class RobotRecords:
 
     def look(self) -> None:
         """Record paths and beliefs that have changed; to be called a few times a second."""
-        if self._robots is None:
+        robots = self._find_robots()
+        if robots is None:
             return
-        for robot, path in self._robots.paths().items():
+        for robot, path in robots.paths().items():
             if path is not self._paths.get(robot, ()) and (path or self._paths.get(robot)):
                 self._path(robot, path)
         truths = self._truths()
-        for robot, (x, y, yaw) in self._robots.beliefs().items():
+        for robot, (x, y, yaw) in robots.beliefs().items():
             true_x, true_y, true_yaw = truths[robot]
             turned = math.remainder(yaw - true_yaw, math.tau)
             self._belief(

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any, Protocol
 from jacaros.clock import Clock, Timer
 from jacaros.mas.history.causes import CauseRecords
 from jacaros.mas.history.environment import EnvironmentRecords, robot_finder
-from jacaros.mas.history.graph import PERIOD as GRAPH_PERIOD
 from jacaros.mas.history.graph import GraphRecords
 from jacaros.mas.history.robots import RobotRecords
 from jacaros.mas.ros_graph import RosGraph
@@ -16,7 +15,7 @@ from jacaros.trace import Tracer
 if TYPE_CHECKING:
     from jacaros.env.environment import Environment
 
-PERIOD = 0.25
+PERIOD = 1.0
 """Seconds between two looks at what tells nobody of its changes."""
 
 Tell = Callable[[str, Mapping[str, Any]], None]
@@ -53,10 +52,10 @@ class Surroundings:
     def __init__(self, system: SurroundedSystem, beginning: float, tell: Tell) -> None:
         self._system, self._tell = system, tell
         self._clock = system.clock
-        self.causes = CauseRecords(system.clock, beginning, tell, self._passed)
+        self.causes = CauseRecords(system.clock, beginning, tell, self._listener_of)
         self._environment = EnvironmentRecords(system.clock, tell, robot_finder(self._robots))
-        self._graph = GraphRecords(tell)
-        self._moving = RobotRecords(system.clock, tell, self._robot_at, system.ros.node, self._truths)
+        self._graph = GraphRecords(tell, self.causes)
+        self._moving = RobotRecords(system.clock, tell, self._robot_at, lambda: system.ros.node, self._truths)
         self._timer: Timer | None = None
         self._looked = system.clock.elapsed
         self._looking: asyncio.Task[None] | None = None
@@ -89,14 +88,12 @@ class Surroundings:
         self._moving.look()
         backend, passed = self._system.ros.joined, self._clock.elapsed - self._looked
         is_looking = self._looking is not None and not self._looking.done()
-        if backend is not None and passed >= GRAPH_PERIOD and not is_looking:
+        if backend is not None and passed >= self._graph.pause and not is_looking:
             self._looked = self._clock.elapsed
             self._looking = asyncio.get_running_loop().create_task(self._graph.look(backend, passed))
 
-    def _passed(self, direction: str, topic: str, message: Any) -> None:
-        self._graph.count(topic, direction)
-        if direction == "in":
-            self._moving.received(topic, message)
+    def _listener_of(self, message: Any) -> Callable[[str, Any], None] | None:
+        return self._moving.listener_of(message)
 
     def _logged(self, text: str, level: str) -> None:
         if level != "debug":

@@ -191,7 +191,7 @@ def test_the_path_of_embedded_navigation_is_recorded_until_the_robot_is_there() 
         VirtualClock(),
         lambda event, data: told.append((event, dict(data))),
         str,
-        robots,
+        lambda: robots,
         lambda: {"rob": (0.0, 0.0, 0.0)},
     )
     records.look()

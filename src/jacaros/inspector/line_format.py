@@ -1,0 +1,142 @@
+"""Records as lines of JSON, plain or compressed."""
+
+import contextlib
+import json
+import zlib
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+_MEMBER = 1 << 20
+"""Bytes of lines in one part of a compressed file that is readable by itself."""
+_LEVEL = 1
+_PIECE = 1 << 16
+_GZIP = 31
+"""Window of zlib for the format of gzip."""
+_BETWEEN = '}, {"kind": "'
+_encode = json.JSONEncoder(ensure_ascii=False, check_circular=False, default=str).encode
+
+Data = Mapping[str, Any]
+
+
+def lines_of(records: Sequence[Data]) -> str:
+    """Return records as lines of JSON; each begins with its ``kind``."""
+    # Encoding a list costs half as much as encoding its elements one by one.
+    text = _encode(records)[1:-1]
+    if text.count(_BETWEEN) != len(records) - 1:  # something in a record looks like the next one
+        text = "\n".join(map(_encode, records))
+    else:
+        text = text.replace(_BETWEEN, '}\n{"kind": "')
+    return f"{text}\n"
+
+
+class Lines:
+    """A file of lines (see `jacaros.inspector.recording_file.Format`)."""
+
+    def begin(self, header: Data) -> bytes:
+        """Return the line of the header."""
+        return self.pack([header])
+
+    def pack(self, records: Sequence[Data]) -> bytes:
+        """Return lines."""
+        # A lone surrogate becomes an escape, as JSON has it, too.
+        return lines_of(records).encode("utf-8", "backslashreplace")
+
+    def end(self) -> bytes:
+        """Nothing is missing."""
+        return b""
+
+
+class CompressedLines(Lines):
+    """A file of lines in the format of gzip.
+
+    All that was packed can be read, wherever the file is cut off.  It consists of members of about 1 MB, which can be read
+    without those before them: a piece that a full disk has not taken costs one of them.
+    """
+
+    def __init__(self) -> None:
+        self._packer: Any = None
+        self._size = 0
+
+    def pack(self, records: Sequence[Data]) -> bytes:
+        """Return lines, compressed."""
+        data = super().pack(records)
+        if self._packer is None:
+            self._packer = zlib.compressobj(_LEVEL, zlib.DEFLATED, _GZIP)
+        packed: bytes = self._packer.compress(data)
+        self._size += len(data)
+        if self._size >= _MEMBER:
+            return packed + self.end()
+        return packed + self._packer.flush(zlib.Z_SYNC_FLUSH)  # type: ignore[no-any-return]
+
+    def end(self) -> bytes:
+        """Return the end of the member."""
+        packed: bytes = self._packer.flush() if self._packer is not None else b""
+        self._packer, self._size = None, 0
+        return packed
+
+
+MAGIC = b"\x1f\x8b\x08"
+"""With what a member of a compressed file begins."""
+
+
+def unpacked(data: bytes, largest: int) -> tuple[bytes, bool]:
+    """Return the content of a compressed file, as far as it can be read, and whether something in it is broken.
+
+    A file that is cut off is not broken.
+
+    Args:
+        data: the file.
+        largest: bytes of the content that are read; the rest is left out.
+    """
+    found: list[bytes] = []
+    broken = False
+    left, at = largest, data.find(MAGIC)
+    while at >= 0 and left > 0:
+        member = _Member(data, at, left)
+        found.append(member.content)
+        left -= len(member.content)
+        if member.end is None:
+            found.append(b"\n")  # what is missing begins in the middle of a line
+        broken = broken or member.broken
+        at = data.find(MAGIC, at + 1 if member.end is None else member.end)
+    return b"".join(found), broken
+
+
+class _Member:
+    """What can be read of a member of a compressed file.
+
+    Attributes:
+        content: of it.
+        end: where it ends in the file, None if it is cut off or broken.
+        broken: whether there is something in it that is not compressed data.
+    """
+
+    def __init__(self, data: bytes, start: int, largest: int) -> None:
+        self.end: int | None = None
+        self.broken = False
+        self._unpacker = zlib.decompressobj(_GZIP)
+        self._pieces: list[bytes] = []
+        self._left = largest
+        for at in range(start, len(data), _PIECE):
+            piece = data[at : at + _PIECE]
+            if not self._take(piece) or self._left <= 0:
+                break
+            if self._unpacker.eof:
+                self.end = at + len(piece) - len(self._unpacker.unused_data)
+                break
+        self.content = b"".join(self._pieces)
+
+    def _take(self, piece: bytes) -> bool:
+        before = self._unpacker.copy()
+        try:
+            self._add(self._unpacker.decompress(piece, self._left))
+        except zlib.error:
+            self.broken = True
+            with contextlib.suppress(zlib.error):  # up to the byte that is wrong
+                for at in range(len(piece)):
+                    self._add(before.decompress(piece[at : at + 1], self._left))
+        return not self.broken
+
+    def _add(self, content: bytes) -> None:
+        self._pieces.append(content)
+        self._left -= len(content)
