@@ -8,7 +8,7 @@ export class WorldTools {
     Object.assign(this, { root, commands, selection, time, world });
     this.placing = null;  // what the next click on the map places: "obstacle" or "person"
     this.key = "";
-    this.row = element("div", "row");
+    this.row = element("div", "offers");
     this.status = element("p", "status");
     this.status.setAttribute("role", "status");
     root.append(this.row, this.status);
