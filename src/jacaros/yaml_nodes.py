@@ -84,7 +84,7 @@ class Node:
         if self.value is None and not required:
             return {}
         if self.value is None:
-            self.wrong(f"{self.what} is empty", f"its keys stand below it, indented: {', '.join(known)}")
+            self.wrong(f"{self.what} is empty", f"write its keys below it, indented: {', '.join(known)}")
             return {}
         if not isinstance(self.value, CommentedMap):
             self.wrong(f"{self.what} must be a mapping of keys to values", f"keys: {', '.join(known)}")
@@ -306,8 +306,8 @@ def _twice(node: Any, seen_nodes: set[int]) -> Iterator[Problem]:
             line, column = key.start_mark.line + 1, key.start_mark.column + 1
             if isinstance(key.value, str) and key.value in seen and key.value != "<<":
                 first = seen[key.value]
-                cure = "give it another name, or leave one of them out"
-                yield Problem(line, column, f"'{key.value}' stands here twice: first in line {first}", cure)
+                cure = "rename one of them, or remove it"
+                yield Problem(line, column, f"duplicate key '{key.value}', first in line {first}", cure)
             else:
                 seen[str(key.value)] = line
     for part in _parts(node):

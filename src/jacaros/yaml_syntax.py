@@ -44,12 +44,16 @@ _EXPLAINED = (
     (r"could not find expected ':'", "a key without ':'", "write it as key: value"),
     (
         r"undefined alias '(.*)'",
-        "there is no anchor &{0}",
-        "write &{0} before the value that is meant, further up",
+        "unknown anchor &{0}",
+        "mark the value with &{0}, further up",
     ),
     (r"another document", "a second document begins here", "leave --- out, or make two files"),
-    (r"for merging", "<< takes over the keys of a mapping, and this is none", "write <<: *name of an anchor"),
-    (r"unacceptable character", "a character that no text has", "save the file as text in UTF-8"),
+    (
+        r"for merging",
+        "<< merges the keys of a mapping, and this is not a mapping",
+        "write <<: *name of an anchor",
+    ),
+    (r"unacceptable character", "invalid character", "save the file as text in UTF-8"),
 )
 """Patterns of the parser's messages, what they mean, and what to do."""
 
@@ -108,7 +112,7 @@ def read_text(path: Path) -> tuple[str, Problem | None]:
         text = data.decode("utf-8", "replace")
         wide = data.startswith((b"\xff\xfe", b"\xfe\xff"))
         if wide or b"\0" in data:
-            what = "the file is in UTF-16" if wide else "this is no text file"
+            what = "the file is in UTF-16" if wide else "the file is not text"
             return "", Problem(1, 1, what, "save it as UTF-8" if wide else "give a YAML file")
         before = data[: error.start].decode("utf-8", "replace")
         line, column = before.count("\n") + 1, len(before.rpartition("\n")[2]) + 1

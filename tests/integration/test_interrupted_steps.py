@@ -98,7 +98,9 @@ def interrupted(
         assert process.stdout.readline() == "[bob] begun\n"
         if in_the_step:
             assert process.stderr is not None
-            assert process.stderr.readline().startswith("warning: a step takes more than 2 seconds")
+            assert process.stderr.readline().startswith(
+                "warning: a step has been running for more than 2 seconds"
+            )
         process.send_signal(number)
         try:
             output, errors = process.communicate(timeout=120)
@@ -198,6 +200,6 @@ def test_people_are_told_of_a_step_that_holds_everybody_up(folder: Path) -> None
         told = process.stderr.readline()
         process.kill()
     assert told == (
-        "warning: a step takes more than 2 seconds, and everybody waits for it: "
+        "warning: a step has been running for more than 2 seconds and blocks all agents: "
         "agent bob, plan +!find(X) (bob.asl:2)\n"
     )

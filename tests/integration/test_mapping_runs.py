@@ -117,7 +117,7 @@ def test_a_check_of_a_project_covers_its_mapping_once(
 def test_a_mapping_that_is_not_there(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     code, lines, errors = output(capsys, "run", "drive.asl", "--mapping", "robto.yaml", "--clock", "fast")
     assert (code, lines) == (1, [])
-    assert errors == "error: there is no mapping file robto.yaml\n  = help: did you mean robot.yaml?\n"
+    assert errors == "error: mapping file not found: robto.yaml\n  = help: did you mean robot.yaml?\n"
 
 
 def test_a_wrong_mapping_is_told_before_anything_runs(

@@ -30,11 +30,11 @@ def problems(text: str) -> list[Problem]:
         ("a: {b: c d: e}\n", (1, 11), "within the bracket of line 1, column 4", "commas"),
         ("a: {b: c}}\n", (1, 10), "nothing is open", "leave it out"),
         ("a: b: c\n", (1, 5), "a second ':'", "quotes"),
-        ("a: *x\n", (1, 4), "no anchor &x", "write &x before"),
+        ("a: *x\n", (1, 4), "unknown anchor &x", "mark the value with &x"),
         ("a: 1\n---\nb: 2\n", (2, 1), "a second document", "leave --- out"),
         ("a: @x\n", (1, 4), "cannot start any token", "quotes"),
-        ("b: 1\na: \x07\n", (2, 4), "a character that no text has", "UTF-8"),
-        ("<<: 5\na: 1\n", (1, 5), "<< takes over the keys of a mapping", "anchor"),
+        ("b: 1\na: \x07\n", (2, 4), "invalid character", "UTF-8"),
+        ("<<: 5\na: 1\n", (1, 5), "<< merges the keys of a mapping", "anchor"),
         ("a: &a [*a]\n", (1, 4), "&a contains itself", "leave the alias out"),
         (LAUGHS, (6, 4), "more than 1000000 values", "fewer aliases"),
         ("a: " + "[" * 5000, (1, 1), "nested too deeply", "brackets"),
@@ -52,7 +52,7 @@ def test_mistakes_of_syntax(text: str, place: tuple[int, int], message: str, cur
     [
         (b"properties:\n  p\xe9: {topic: odom}\n", "m.yaml:2:4", "the byte 0xe9 is not UTF-8"),
         ("properties:\n".encode("utf-16"), "m.yaml:1:1", "the file is in UTF-16"),
-        (bytes(range(256)), "m.yaml:1:1", "this is no text file"),
+        (bytes(range(256)), "m.yaml:1:1", "the file is not text"),
     ],
 )
 def test_files_in_another_encoding(data: bytes, place: str, message: str, tmp_path: Path) -> None:

@@ -39,7 +39,7 @@ class Suppressions:
         codes = frozenset(_CODE.findall(order["codes"]))
         for code in sorted(codes - KINDS.keys()):
             span = Span(file, comment.line, comment.column, comment.line, comment.column + len(comment.text))
-            self.unknown.append(Diagnostic("warning", f"there is no code {code}", span, None, "unknown-code"))
+            self.unknown.append(Diagnostic("warning", f"unknown code {code}", span, None, "unknown-code"))
         if order["file"]:
             self._everywhere |= codes
         else:

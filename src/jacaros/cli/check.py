@@ -21,7 +21,7 @@ MOST_NAMES = 8
 _COLOURS: dict[Severity, str] = {"error": "red", "warning": "yellow", "note": "cyan"}
 
 
-@click.command("check", short_help="Tell what is wrong in programs, projects and mappings.")
+@click.command("check", short_help="Report problems in programs, projects and mappings.")
 @click.argument("files", metavar="FILE...", type=click.Path(path_type=Path), nargs=-1, required=True)
 @click.option(
     "--format",
@@ -29,14 +29,14 @@ _COLOURS: dict[Severity, str] = {"error": "red", "warning": "yellow", "note": "c
     type=click.Choice(["text", "json", "sarif"]),
     default="text",
     show_default=True,
-    help="For people, for programs, or SARIF 2.1.0 for editors and code hosts.",
+    help="Text for reading, JSON for programs, or SARIF 2.1.0 for editors and code hosts.",
 )
-@click.option("--strict", is_flag=True, help="Warnings, too, make the exit code 1.")
+@click.option("--strict", is_flag=True, help="Exit with status 1 on warnings, too.")
 @click.option(
     "--ignore",
     metavar="CODE",
     multiple=True,
-    help="Leave out warnings of this kind; may be given more often.",
+    help="Do not report warnings of this kind. Repeatable.",
 )
 @click.option(
     "--mapping",
@@ -59,7 +59,7 @@ def command(
     mappings: tuple[str, ...],
     imports: bool,
 ) -> int:
-    """Tell what is wrong in each FILE: an agent program (.asl, or .py for an agent in Python), a project (.mas2j, .jcm)
+    """Report problems in each FILE: an agent program (.asl, or .py for an agent in Python), a project (.mas2j, .jcm)
     with the programs of its agents, a mapping file or a world file (.yaml), or a folder with any of them.
 
     All problems are told at once. Each kind has a code; the reference page "Diagnostics" explains them. A comment
@@ -70,7 +70,7 @@ def command(
     """  # fmt: skip
     unknown = [code for code in ignore if code not in KINDS]
     if unknown:
-        raise UsageError(f"there is no code {unknown[0]}")
+        raise UsageError(f"unknown code {unknown[0]}")
     supported = _supported(files)
     findings = check_files([existing(file, _KINDS) for file in supported], mappings, imports)
     if not findings.files and not findings.diagnostics:

@@ -106,7 +106,7 @@ def _chosen(all_: Sequence[Piece], wanted: str) -> list[tuple[Piece, Plan | None
     found = [(piece, None) for piece in all_ if piece.plans and name in _names(piece)]
     if not found:
         events = sorted({_names(piece)[0] for piece in all_ if piece.plans})
-        raise UsageError(f"there is no plan {wanted}; there are plans for {', '.join(events) or 'nothing'}")
+        raise UsageError(f"unknown plan {wanted}; the program has plans for {', '.join(events) or 'nothing'}")
     return list(found)
 
 

@@ -21,7 +21,7 @@ from jacaros.text_files import is_file
 PROJECT_FILES = (".asl", ".mas2j", ".jcm")
 
 
-@click.command("describe", short_help="Tell what an artifact type, a mapping or a project offers.")
+@click.command("describe", short_help="Describe what an artifact type, a mapping or a project offers.")
 @click.argument("what")
 @click.option(
     "--project",
@@ -38,7 +38,7 @@ PROJECT_FILES = (".asl", ".mas2j", ".jcm")
     help="Run the Python files of the project to know all that they declare (default: only read them).",
 )
 def command(what: str, project: Path, as_json: bool, imports: bool) -> None:
-    """Tell what WHAT offers: an artifact type, a Python file or a mapping file of them, or a project file.
+    """Describe what WHAT offers: an artifact type, a Python file or a mapping file of them, or a project file.
 
     No Python code of the project is run, unless you give --import: what it declares is read from its source.
     """
@@ -72,7 +72,7 @@ def _mapped_types(name: str, folder: Path, unseen: set[Path] | None) -> list[typ
 
     path = find_mapping(name, (folder,))
     if path is None:
-        raise UsageError(f"there is no mapping file {name}")
+        raise UsageError(f"mapping file not found: {name}")
     return [_find(f"{path}#{each}", folder, unseen) for each in load_mapping(path).artifacts]
 
 
@@ -100,7 +100,7 @@ def _find(name: str, folder: Path, unseen: set[Path] | None) -> type[Artifact]:
 def _types_in(file: Path, unseen: set[Path] | None) -> list[type[Artifact]]:
     """The artifact types of a Python file, in their order."""
     if not is_file(file):
-        raise UsageError(f"there is no file {file}")
+        raise UsageError(f"file not found: {file}")
     modules = ProjectModules(file.parent, unseen=unseen)
     found = _own_types(modules, file.stem)
     if not found:

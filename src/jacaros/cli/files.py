@@ -12,7 +12,7 @@ _KINDS = (".asl", ".mas2j", ".jcm")
 
 def no_programs(named: Iterable[Path]) -> UsageError:
     """The error of folders in which nothing is found: to look at nothing and be content would hide a wrong path."""
-    return UsageError(f"there are no agent programs in {', '.join(map(str, named))}")
+    return UsageError(f"no agent programs in {', '.join(map(str, named))}")
 
 
 def existing(path: Path, kinds: tuple[str, ...] = _KINDS) -> Path:
@@ -27,9 +27,9 @@ def existing(path: Path, kinds: tuple[str, ...] = _KINDS) -> Path:
         beside = [each.name for each in path.parent.glob("*.*") if each.suffix in kinds]
         near = difflib.get_close_matches(path.name, beside, n=2)
         hint = f"; did you mean {' or '.join(str(path.parent / name) for name in near)}?" if near else ""
-        raise UsageError(f"there is no file {path}{hint}")
+        raise UsageError(f"file not found: {path}{hint}")
     if path.suffix not in kinds:
-        raise UsageError(f"{path} is no {', '.join(kinds)} file")
+        raise UsageError(f"unsupported file type: {path} (expected {', '.join(kinds)})")
     return path
 
 

@@ -131,7 +131,7 @@ def orphans_option(command: F) -> F:
         "--orphans",
         type=click.Choice(["cancel", "keep", "ask"]),
         default="cancel",
-        help="Action goals that an earlier run of this node left behind, for example because it was killed: cancel them "
+        help="Action goals of an earlier run of this node, for example of one that was killed: cancel them "
         "(default), keep them, or ask on the terminal.",
     )
     return _with(command, (option,))

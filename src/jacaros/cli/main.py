@@ -21,7 +21,7 @@ ENDED_BY_SIGNAL = (130, 143)
 
 COMMANDS = {
     "run": ("jacaros.cli.run", "Run an agent program or a project."),
-    "check": ("jacaros.cli.check", "Tell what is wrong in programs, projects and mappings."),
+    "check": ("jacaros.cli.check", "Report problems in programs, projects and mappings."),
     "fmt": ("jacaros.cli.fmt", "Lay programs out in one style."),
     "compile": ("jacaros.cli.compile", "Show the Python code that is made of a program."),
     "view": ("jacaros.cli.view", "Show a recorded run on a page in the browser."),
@@ -31,9 +31,9 @@ COMMANDS = {
     "sim": ("jacaros.cli.sim", "Run a robot world as a ROS node of its own."),
     "world": ("jacaros.cli.world", "Check, show, make and export world files."),
     "guard": ("jacaros.cli.guard", "Stop the robot when its agents no longer can."),
-    "ros": ("jacaros.cli.ros", "Look at a live ROS graph, and write mapping files for it."),
-    "describe": ("jacaros.cli.describe", "Tell what an artifact type, a mapping or a project offers."),
-    "version": ("jacaros.cli.version", "Tell the versions of jacaros and of what it uses."),
+    "ros": ("jacaros.cli.ros", "Inspect a live ROS graph, and write mapping files for it."),
+    "describe": ("jacaros.cli.describe", "Describe what an artifact type, a mapping or a project offers."),
+    "version": ("jacaros.cli.version", "Print the versions of jacaros and its dependencies."),
 }
 """Module and summary of each command."""
 
@@ -91,7 +91,7 @@ def _tell_version(ctx: click.Context, _: click.Parameter, wanted: bool) -> None:
     is_eager=True,
     expose_value=False,
     callback=_tell_version,
-    help="Tell the version and exit.",
+    help="Print the version and exit.",
 )
 def jacaros() -> None:
     """Program robots as rational agents: AgentSpeak minds, artifacts and ROS."""

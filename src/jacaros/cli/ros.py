@@ -63,7 +63,7 @@ def command() -> None:
 
 @command.command("list", short_help="List topics, actions, services and nodes.")
 @_asking
-@click.option("--rates", is_flag=True, help="Listen for two seconds and tell how often messages come.")
+@click.option("--rates", is_flag=True, help="Listen for two seconds and print the rate of each topic.")
 @click.option("--json", "as_json", is_flag=True, help="As JSON, for other programs.")
 def list_command(rates: bool, as_json: bool, **graph: Any) -> None:
     """List the topics, actions, services and nodes of the graph with their types.
@@ -172,7 +172,7 @@ def map_command(
     click.echo(f"{output} is written; see `jacaros describe {output}`")
 
 
-@command.command("check", short_help="Tell whether a mapping file suits the graph.")
+@command.command("check", short_help="Check a mapping file against the graph.")
 @click.argument("file", type=click.Path(path_type=Path))
 @_asking
 def check_command(file: Path, **graph: Any) -> int:

@@ -139,7 +139,7 @@ def _ros1_options(written: Iterable[str]) -> Iterator[str]:
             continue
         elif name.startswith("__"):
             raise UsageError(
-                f"{each} is not known here; addresses stand in the variables ROS_IP and ROS_HOSTNAME"
+                f"unsupported argument {each}; set the address with the variables ROS_IP and ROS_HOSTNAME"
             )
         elif name.startswith("_"):
             yield from ("--param", each[1:])
@@ -164,7 +164,7 @@ class _Ros2Arguments:
             else:
                 known = ", ".join([*_ROS2_VALUES, *_ROS2_FLAGS])
                 raise UsageError(
-                    f"--ros-args knows no {each}, only {known}; what is not ROS's stands before it or behind --"
+                    f"unknown argument {each} after --ros-args; expected {known}, or -- before other arguments"
                 )
 
     def _take(self, written: str, name: str, value: str | None) -> None:

@@ -128,7 +128,7 @@ def told(tell: Callable[[str], None]) -> Callable[[dict[str, Any]], None]:
     def listen(record: dict[str, Any]) -> None:
         if record.get("event") == "battery_empty":
             tell(
-                f"the battery of {record['robot']} is empty: it does not drive any more. Start the world again; with "
+                f"the battery of {record['robot']} is empty, so it cannot drive. Restart the world; with "
                 "--full-battery it stays full"
             )
         elif record.get("event") == "battery":

@@ -23,7 +23,10 @@ _COLOURS = {"passed": "green", "failed": "red", "place": "cyan"}
 @click.command("test", short_help="Run the tests of agent programs.")
 @click.argument("paths", nargs=-1, type=click.Path(path_type=Path), metavar="[FILE|FOLDER]...")
 @click.option(
-    "-k", "pattern", metavar="PATTERN", help="Only tests whose FILE::NAME has it; * stands for anything."
+    "-k",
+    "pattern",
+    metavar="PATTERN",
+    help="Run only tests whose FILE::NAME contains PATTERN; * matches anything.",
 )
 @click.option("-x", "first", is_flag=True, help="End after the first test that fails.")
 @click.option(
@@ -76,7 +79,9 @@ _COLOURS = {"passed": "green", "failed": "red", "place": "cyan"}
 @click.option(
     "--junit", type=click.Path(path_type=Path), metavar="FILE", help="Write the outcomes as JUnit XML."
 )
-@click.option("--slowest", "slow", type=int, default=3, metavar="N", help="How many slow tests are told (3).")
+@click.option(
+    "--slowest", "slow", type=int, default=3, metavar="N", help="Number of slow tests to list (default 3)."
+)
 @click.option(
     "--color",
     type=click.Choice(["auto", "always", "never"]),
@@ -202,7 +207,7 @@ def _chosen(found: "list[Suite]", paths: Sequence[Path], pattern: str | None) ->
     places = ", ".join(map(str, paths)) or "this folder"
     if not any(suite.tests or suite.error is not None for suite in found):
         raise UsageError(
-            f"there are no tests in {places}; a test is a plan for a goal whose label says so: "
+            f"no tests in {places}; a test is a plan for a goal with the label test: "
             "@name[test] +!goal <- ..."
         )
     chosen = [

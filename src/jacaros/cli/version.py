@@ -10,7 +10,7 @@ _LIBRARIES = ("rosbags", "ruamel.yaml", "click", "rich", "numpy")
 
 @click.command("version")
 def command() -> None:
-    """Tell the versions of jacaros and of what it uses."""
+    """Print the versions of jacaros and its dependencies."""
     click.echo(f"jacaros {version_of('jacaros')}")
     click.echo(f"Python {platform.python_version()} on {platform.platform()}")
     for library in _LIBRARIES:

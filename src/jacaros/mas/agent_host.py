@@ -369,8 +369,8 @@ def _no_turn(fuel: int) -> bool:
 def without_environment(act: Act) -> Completion:
     """How an action ends in a project that has no environment."""
     text = (
-        f"nobody can do {act.functor!r}: the project has no environment "
-        "(a line `environment: jacaros.Environment` in the project file gives it one)"
+        f"no artifact offers {act.functor!r}: the project has no environment "
+        "(add the line `environment: jacaros.Environment` to the project file)"
     )
     reason = (_REASON, atom("no_environment"))
     return Completion(False, (), ((_ERROR_MSG, String(text)), reason))

@@ -79,7 +79,7 @@ def check_files(paths: Sequence[Path], mappings: Sequence[str] = (), imports: bo
 def _not_imported(file: Path) -> Diagnostic:
     return Diagnostic(
         "note",
-        f"names from {file} were not checked: only running it tells them",
+        f"names from {file} were not checked: they are known only at run time",
         None,
         "--import runs the Python code of the project, and checks them",
         "not-imported",

@@ -140,7 +140,7 @@ class EmptyGraph:
             return  # who cannot ask cannot tell either
         if not any(who != self._backend.node_name for who in _everybody(contents)):
             self._log(
-                f"nobody else is in {self._graph}. Is the robot running? It must have the same ROS_DOMAIN_ID (here "
+                f"no other node is in {self._graph}. Is the robot running? It must have the same ROS_DOMAIN_ID (here "
                 "--domain-id, too) and ROS_AUTOMATIC_DISCOVERY_RANGE"
             )
 

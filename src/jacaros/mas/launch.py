@@ -223,7 +223,7 @@ class Interruption:
             elif (
                 self._ending
             ):  # else what was interrupted is an import, as at the start: nothing is left behind
-                self._tell("the run has ended; an operation that does not end is left behind")
+                self._tell("the run has ended; abandoning an operation that does not stop")
         # The exception may hit between the making of a coroutine and its first step; the process ends anyway.
         warnings.filterwarnings("ignore", "coroutine .* was never awaited", RuntimeWarning)
         raise Interrupted

@@ -21,7 +21,9 @@ def load_deployment(path: str | Path) -> Deployment:
     if path.suffix in (".asl", ".py"):
         return _lone_agent(path)
     if path.suffix not in _PROJECTS:
-        raise ProjectError([Diagnostic("error", f"{path} is no .mas2j, .jcm, .asl or .py file")])
+        raise ProjectError(
+            [Diagnostic("error", f"unsupported file type: {path} (expected .mas2j, .jcm, .asl or .py)")]
+        )
     from jacaros.mas.project.reading import read_project  # here: a lone program starts sooner without it
 
     deployment = read_project(path).deployment

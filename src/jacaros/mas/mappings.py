@@ -35,8 +35,8 @@ def read_mapping_file(
     if path is None:
         known = [each.name for folder in folders for each in folder.glob("*.y*ml")] + shipped_mappings()
         near = close_matches(name, known)
-        hint = f"did you mean {near[0]}?" if near else f"it is looked for in {folders[0]}"
-        return [], [Diagnostic("error", f"there is no mapping file {name}", span, hint)]
+        hint = f"did you mean {near[0]}?" if near else f"expected in {folders[0]}"
+        return [], [Diagnostic("error", f"mapping file not found: {name}", span, hint)]
     mapping, problems = read_with_problems(path)
     specs = [
         ArtifactSpec(each, f"{path.resolve()}#{each}", span=span, type_span=span)

@@ -137,7 +137,7 @@ class Population:
             host = self.add(spec, program)
         except FileNotFoundError:
             folders = ", ".join(str(folder) for folder in self.programs.folders)
-            log(f"error: agent {name}: there is no program {wanted} in {folders}", "error")
+            log(f"error: agent {name}: program not found: {wanted} in {folders}", "error")
             return None
         except JacarosError as wrong:
             log(str(wrong), "error")
@@ -150,7 +150,7 @@ class Population:
         host = self._directory.find(original)
         spec = self._specs.get(original)
         if host is None or spec is None or not isinstance(host.mind, Mind):
-            told = f"error: agent {name}: there is no agent {original} to be cloned"
+            told = f"error: agent {name}: cannot clone unknown agent {original}"
             self._run.console.log(told, "error")
             return None
         copy = self.add(replace(spec, name=self._directory.free_name(name)), host.mind.program)

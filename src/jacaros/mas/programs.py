@@ -180,7 +180,7 @@ class Programs:
         """
         root = base / folder
         if not root.is_dir():
-            raise NotADirectoryError(ENOTDIR, "it is no folder", str(root))
+            raise NotADirectoryError(ENOTDIR, "not a folder", str(root))
         return sorted(
             f"{Path(folder) / path.relative_to(root)}" for path in root.rglob("*") if path.is_file()
         )

@@ -98,8 +98,8 @@ class _Classes:
         except InternalError:
             raise
         except FAULTS as error:
-            hint = "; there are Python classes only" if name.startswith(("java.", "javax.")) else ""
-            raise ActionError(f"there is no class {name}: {_said(error)}{hint}") from error
+            hint = "; only Python classes are supported" if name.startswith(("java.", "javax.")) else ""
+            raise ActionError(f"unknown class {name}: {_said(error)}{hint}") from error
 
 
 def _installed(name: str) -> Any:

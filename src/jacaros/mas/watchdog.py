@@ -67,7 +67,7 @@ class Watchdog:
             self._told.add(work)
             seconds = self._interval * LOOKS
             self._tell(
-                f"warning: a step takes more than {seconds:g} seconds, and everybody waits for it: {work}"
+                f"warning: a step has been running for more than {seconds:g} seconds and blocks all agents: {work}"
             )
 
 

@@ -190,9 +190,9 @@ def _files(folder: Path) -> Iterator[Path]:
 
 def _of_file(path: Path) -> Iterator[Suite]:
     if path.suffix not in (".asl", *PROJECTS):
-        raise UsageError(f"{path} is no .asl, .mas2j or .jcm file, and no folder")
+        raise UsageError(f"unsupported file type: {path} (expected .asl, .mas2j, .jcm or a folder)")
     if not is_file(path):
-        raise UsageError(f"there is no file {path}")
+        raise UsageError(f"file not found: {path}")
     suite = suite_of(path)
     folders = list(_folders_of_the_manager(suite))
     if suite.tests or suite.error or not folders:

@@ -71,7 +71,7 @@ class Program:
             "[ros] found",
             "still listening",
             "later after its stamp",
-            "nobody else is in the ROS",
+            "no other node is in the ROS",
             "[ros] /clock is there",
             # DDS meets shared memory of a process that another test has killed, and takes the network instead.
             "RTPS_TRANSPORT_SHM",

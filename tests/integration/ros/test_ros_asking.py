@@ -72,7 +72,7 @@ def test_problems_of_a_mapping_are_told(
     told = "\n".join(checked.lines)
     assert checked.code == 1
     assert "robot.yaml:2:29: its type is nav_msgs/msg/Odometry, not nav_msgs/msg/Path" in told
-    assert "robot.yaml:3:17: nobody publishes /odmo" in told
+    assert "robot.yaml:3:17: no node publishes /odmo" in told
     assert "did you mean odom?" in told
     assert ("the subscription asks for reliable, the publisher offers best_effort" in told) == (
         kind == "ros2"
@@ -96,7 +96,7 @@ def test_a_graph_in_which_nobody_is_says_so(
 ) -> None:
     asked = ask("list", *empty_graph, "--timeout", "5")
     assert asked.code == 1, asked.lines
-    assert any("nobody else is in the" in line for line in asked.errors)
+    assert any("no other node is in the" in line for line in asked.errors)
 
 
 def test_a_run_in_a_graph_without_anybody_says_so(
@@ -107,7 +107,7 @@ def test_a_run_in_a_graph_without_anybody_says_so(
     program.write_text(f"!wait. +!wait <- .wait({1000 * seconds}); .stopMAS.", encoding="utf-8")
     agents = run_agents(program, *empty_graph)
     if kind == "ros2":
-        agents.until_error(f"nobody else is in the ROS 2 graph of domain {empty_graph[1]}")
+        agents.until_error(f"no other node is in the ROS 2 graph of domain {empty_graph[1]}")
         return
     assert agents.end() == 0
-    assert not any("nobody else is in" in line for line in agents.errors), "a wrong address is reported"
+    assert not any("no other node is in" in line for line in agents.errors), "a wrong address is reported"

@@ -340,7 +340,7 @@ def test_errors_cannot_be_switched_off():
 
 def test_codes_that_there_are_not_are_told():
     (found,) = Suppressions(SourceFile("x", "p. // jacaros: ignore singletons")).unknown
-    assert (found.code, found.message) == ("unknown-code", "there is no code singletons")
+    assert (found.code, found.message) == ("unknown-code", "unknown code singletons")
 
 
 @pytest.mark.parametrize(

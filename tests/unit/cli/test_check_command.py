@@ -127,8 +127,8 @@ def test_files_that_cannot_be_read_are_told(folder: Path, capsys: pytest.Capture
     ("arguments", "told"),
     [
         (["godo.asl"], "did you mean good.asl?"),
-        (["good.asl", "--ignore", "nonsense"], "there is no code nonsense"),
-        (["notes.txt"], "is no .asl, .mas2j, .jcm, .py, .yaml, .yml file"),
+        (["good.asl", "--ignore", "nonsense"], "unknown code nonsense"),
+        (["notes.txt"], "unsupported file type: notes.txt (expected .asl, .mas2j, .jcm, .py, .yaml, .yml)"),
         ([], "FILE"),
     ],
 )
@@ -268,7 +268,7 @@ def test_mistakes_in_such_a_mapping_are_told_once_and_stand_before_those_of_the_
     assert found(capsys, "good.asl", "--mapping", "wrong.yaml") == [("wrong.yaml", 1, "wrong-mapping")]
     code, output, _ = outcome(capsys, "good.asl", "--mapping", "nav3.yaml")
     assert code == 1
-    assert "there is no mapping file nav3.yaml" in output
+    assert "mapping file not found: nav3.yaml" in output
     assert "did you mean nav2.yaml?" in output
 
 

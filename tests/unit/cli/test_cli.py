@@ -60,7 +60,7 @@ def test_the_word_run_may_be_left_out(folder: Path, capsys: pytest.CaptureFixtur
         (["chek"], "did you mean `check`?"),
         (["run", "house.yaml"], "--mapping house.yaml"),
         (["run", "hello"], "did you mean hello.asl?"),
-        (["run", "hello.asl", "--ros-args", "-q"], "--ros-args knows no -q"),
+        (["run", "hello.asl", "--ros-args", "-q"], "unknown argument -q after --ros-args"),
         (["sim", "empty", "--ros", "ros2", "--clock", "fast"], "--ros memory"),
         (["sim", "empty", "--ros", "ros1", "--domain-id", "3"], "--ros ros2"),
         (["describe", "ArtOdometri"], "did you mean ArtOdometry"),
@@ -80,7 +80,7 @@ def test_wrong_usage_is_told_with_code_2(
     [
         ("wrong.asl", '!go.\n+!go <- .print("hi".', "wrong.asl:2:"),
         ("wrong.mas2j", "MAS wrong { agents: nobody; }", "wrong.mas2j:1:"),
-        ("wrong.txt", "", "no .mas2j, .jcm, .asl or .py file"),
+        ("wrong.txt", "", "unsupported file type: wrong.txt (expected .mas2j, .jcm, .asl or .py)"),
     ],
 )
 def test_a_wrong_project_is_told_with_code_1(

@@ -155,7 +155,7 @@ def test_programs_get_json(folder: Path, capsys: pytest.CaptureFixture[str]) -> 
     ("what", "told"),
     [
         ("Lump", "no artifact type is called Lump; did you mean Lamp?"),
-        ("nothing.py", "there is no file nothing.py"),
+        ("nothing.py", "file not found: nothing.py"),
         ("empty.py", "empty.py has no artifact type (a class derived from jacaros.env.Artifact)"),
     ],
 )

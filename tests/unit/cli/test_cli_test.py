@@ -85,7 +85,7 @@ def test_nothing_to_run_is_wrong_usage(folder: Path, capsys: pytest.CaptureFixtu
     code, output, errors = outcome(capsys, "none.asl")
     assert (code, output) == (2, "")
     assert errors == (
-        "jacaros: there are no tests in none.asl; a test is a plan for a goal whose label says so: "
+        "jacaros: no tests in none.asl; a test is a plan for a goal with the label test: "
         "@name[test] +!goal <- ...\n"
     )
     code, _, errors = outcome(capsys, "tests", "-k", "nothing")

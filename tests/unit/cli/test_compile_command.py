@@ -85,7 +85,7 @@ def test_plans_are_chosen_by_their_event(
 def test_a_plan_that_is_not_there_is_told(program: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert call(["compile", program, "--plan", "stop"]) == 2
     assert capsys.readouterr().err == (
-        "jacaros: there is no plan stop; there are plans for +!count/1, +left/1\n"
+        "jacaros: unknown plan stop; the program has plans for +!count/1, +left/1\n"
     )
 
 

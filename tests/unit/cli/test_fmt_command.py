@@ -82,7 +82,7 @@ def test_a_program_that_would_change_is_left_as_it_is(
     [
         (["b.asl"], "did you mean a.asl?"),
         (["-", "a.asl"], "'-' cannot stand beside files"),
-        (["p.jcm"], "p.jcm is no .asl file"),
+        (["p.jcm"], "unsupported file type: p.jcm (expected .asl)"),
         ([], "FILE"),
     ],
 )
@@ -106,7 +106,7 @@ def test_a_folder_without_programs_is_wrong_usage(
     command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert call([command, str(tmp_path)]) == 2
-    assert capsys.readouterr().err == f"jacaros: there are no agent programs in {tmp_path}\n"
+    assert capsys.readouterr().err == f"jacaros: no agent programs in {tmp_path}\n"
 
 
 def test_the_mode_of_a_file_stays_and_nothing_lies_beside_it(

@@ -37,12 +37,12 @@ def test_a_type_that_is_not_known_and_not_that_of_the_topic_is_told_once(
     [
         (
             "properties:\n  pose: {topic: odm}\n",
-            "robot.yaml:2:17: nobody publishes /odm",
+            "robot.yaml:2:17: no node publishes /odm",
             "did you mean odom?",
         ),
         (
             "properties:\n  pose: {topic: cmd_vel}\n",
-            "robot.yaml:2:17: nobody publishes /cmd_vel; there are only subscriptions, of /world",
+            "robot.yaml:2:17: no node publishes /cmd_vel; it has only subscriptions, of /world",
             "`publish`",
         ),
         (
@@ -62,12 +62,12 @@ def test_a_type_that_is_not_known_and_not_that_of_the_topic_is_told_once(
         ),
         (
             "operations:\n  go: {parameters: [x], publish: cmd_vl, type: geometry_msgs/Twist, fields: {linear.x: $x}}\n",
-            "nobody listens on /cmd_vl",
+            "no node subscribes to /cmd_vl",
             "did you mean cmd_vel?",
         ),
         (
             "operations:\n  go: {action: navigate_to_pos, type: nav2_msgs/action/NavigateToPose}\n",
-            "robot.yaml:2:16: nobody offers the action /navigate_to_pos",
+            "robot.yaml:2:16: no node offers the action /navigate_to_pos",
             "did you mean navigate_to_pose",
         ),
         (
@@ -77,22 +77,22 @@ def test_a_type_that_is_not_known_and_not_that_of_the_topic_is_told_once(
         ),
         (
             "operations:\n  ask: {service: nothing, type: std_srvs/srv/Trigger}\n",
-            "nobody offers the service /nothing",
-            "`jacaros ros list` shows what is there",
+            "no node offers the service /nothing",
+            "`jacaros ros list` shows all names",
         ),
         (
             "frames:\n  pose: {target: map, source: base_footprnt}\n",
-            "robot.yaml:2:3: there is no frame base_footprnt",
+            "robot.yaml:2:3: unknown frame base_footprnt",
             "did you mean base_footprint?",
         ),
         (
             "namespace: r1\nframes:\n  pose: {target: map, source: base_footprint}\n",
-            "there is no frame r1/base_footprint",
+            "unknown frame r1/base_footprint",
             'write tf_prefix: ""',
         ),
         (
             "parameters:\n  top: {node: wrld, parameter: speed}\n",
-            "robot.yaml:2:3: there is no node /wrld",
+            "robot.yaml:2:3: unknown node /wrld",
             "did you mean /world?",
         ),
         (
@@ -114,7 +114,7 @@ def test_a_robot_without_namespace_is_found_by_the_last_part_of_names(
     capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     told = checked(capsys, tmp_path, "namespace: r1\nproperties:\n  pose: {topic: odom}\n")
-    assert "nobody publishes /r1/odom" in told
+    assert "no node publishes /r1/odom" in told
     assert "did you mean /odom?" in told
 
 
@@ -136,7 +136,7 @@ def test_a_mapping_with_mistakes_of_its_own_is_told_as_such(
     assert "did you mean 'properties'?" in errors
     code, _, errors = outcome(capsys, "ros", "check", str(tmp_path / "absent.yaml"))
     assert code == 1
-    assert "there is no such mapping file" in errors
+    assert "mapping file not found" in errors
 
 
 PROGRAM = """
@@ -202,4 +202,4 @@ def test_frames_are_below_the_namespace_of_the_command_too(
     arguments = ["ros", "check", str(file), "--world", "two_robots", "--namespace"]
     assert call([*arguments, "robot_1"]) == 0
     assert call([*arguments, "robot_7"]) == 1
-    assert "there is no frame robot_7/odom" in capsys.readouterr().out
+    assert "unknown frame robot_7/odom" in capsys.readouterr().out

@@ -121,9 +121,9 @@ def test_a_service_a_node_and_a_type_are_shown(capsys: pytest.CaptureFixture[str
 @pytest.mark.parametrize(
     ("arguments", "code", "text"),
     [
-        (["show", "/odm"], 2, "nothing in the graph is called /odm; did you mean /odom?"),
+        (["show", "/odm"], 2, "unknown name /odm; did you mean /odom?"),
         (["show", "/robot_1/odom"], 2, "did you mean /odom?"),
-        (["show", "/nonsense"], 2, "`jacaros ros list` shows what is there"),
+        (["show", "/nonsense"], 2, "`jacaros ros list` shows all names"),
         (["show", "/o dom"], 2, "'/o dom' is no ROS name"),
         (["show", "nonsense_msgs/Thing"], 1, "nonsense_msgs"),
         (["list", "--domain-id", "3"], 2, "--domain-id goes with --ros ros2"),

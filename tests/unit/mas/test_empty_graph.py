@@ -40,7 +40,7 @@ OWN = TopicInfo("/cmd_vel", ("geometry_msgs/msg/Twist",), (Endpoint("/agents"),)
 
 def test_nobody_else_is_told_once() -> None:
     [line] = told(GraphContents({"/cmd_vel": OWN}, {}, {}, ("/agents",)))
-    assert line.startswith("nobody else is in the ROS 2 graph of domain 7. Is the robot running?")
+    assert line.startswith("no other node is in the ROS 2 graph of domain 7. Is the robot running?")
 
 
 @pytest.mark.parametrize(

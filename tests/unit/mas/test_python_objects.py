@@ -92,9 +92,9 @@ def test_an_agent_asks_where_it_is(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("body", "message"),
     [
-        ('cartago.new_obj("shapes.Cube", [], _)', "there is no class shapes.Cube: "),
-        ('cartago.new_obj("no.such.Thing", [], _)', "there is no class no.such.Thing: ModuleNotFoundError"),
-        ('cartago.new_obj("java.util.ArrayList", [], _)', "there is no class java.util.ArrayList: "),
+        ('cartago.new_obj("shapes.Cube", [], _)', "unknown class shapes.Cube: "),
+        ('cartago.new_obj("no.such.Thing", [], _)', "unknown class no.such.Thing: ModuleNotFoundError"),
+        ('cartago.new_obj("java.util.ArrayList", [], _)', "unknown class java.util.ArrayList: "),
         ("cartago.new_obj(3, [], _)", "the name of a class is wanted, not 3"),
         ('cartago.new_obj("shapes.Square", 3, _)', "a list of arguments is wanted, not 3"),
         ('cartago.new_obj("shapes.Square", [_], _)', "an argument is an unbound variable"),
@@ -106,7 +106,7 @@ def test_an_agent_asks_where_it_is(tmp_path: Path) -> None:
         ('cartago.invoke_obj("math", 3)', "a call such as append(3) is wanted, not 3"),
         ("cartago.array_to_list(x, _)", "an array is wanted, not x"),
         ("cartago.new_array(int, [], _)", 'a type such as "int[]" is wanted, not int'),
-        ('cartago.new_obj("broken.Thing", [], _)', "there is no class broken.Thing: ModuleUnreadable"),
+        ('cartago.new_obj("broken.Thing", [], _)', "unknown class broken.Thing: ModuleUnreadable"),
     ],
 )
 def test_what_cannot_be_done_fails_as_an_internal_action(tmp_path: Path, body: str, message: str) -> None:

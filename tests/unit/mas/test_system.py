@@ -119,7 +119,7 @@ def test_agents_are_made_and_killed_by_agents(project: Project) -> None:
     assert result.of("helper") == ["helper"]
     assert result.of("h") == ["h"]
     assert result.of("a")[-1] == "none"
-    assert any("there is no program nobody.asl" in line for line in result.errors)
+    assert any("program not found: nobody.asl" in line for line in result.errors)
 
 
 def test_a_wrong_program_is_refused_before_anything_runs(project: Project) -> None:

@@ -107,7 +107,7 @@ def test_all_mistakes_are_told_at_once_with_line_excerpt_and_cure() -> None:
     ("text", "message"),
     [
         ("name: [unclosed", "this bracket is never closed"),
-        ("a: 1\na: 2", "'a' stands here twice: first in line 1"),
+        ("a: 1\na: 2", "duplicate key 'a', first in line 1"),
         ("", "a world is empty"),
         ("name: a", "lacks the key 'robots'"),
         ("just a text", "must be a mapping"),

@@ -188,7 +188,7 @@ def test_times_are_compared_too(run: Run) -> None:
 
 def test_a_wrong_mapping_is_told(run: Run, files: Path) -> None:
     [outcome] = run("true", label='[test, mapping("robt.yaml")]')
-    assert "there is no mapping file robt.yaml" in told(outcome)
+    assert "mapping file not found: robt.yaml" in told(outcome)
     (files / "robot.yaml").write_text("properties: {a: {topik: b}}\n", encoding="utf-8")
     outcomes = run("true", "true")
     assert all("did you mean 'topic'?" in told(each) for each in outcomes)

@@ -104,9 +104,9 @@ def test_a_file_is_there_once(write: Write, tmp_path: Path) -> None:
 
 
 def test_what_is_not_there_is_wrong_usage(tmp_path: Path) -> None:
-    with pytest.raises(UsageError, match="there is no file"):
+    with pytest.raises(UsageError, match="file not found"):
         collect([tmp_path / "nothing.asl"])
-    with pytest.raises(UsageError, match=r"is no \.asl, \.mas2j or \.jcm file"):
+    with pytest.raises(UsageError, match=r"expected \.asl, \.mas2j, \.jcm or a folder"):
         collect([tmp_path / "nothing.txt"])
 
 

@@ -238,7 +238,7 @@ def find_mapped_type(name: str, folders: Sequence[Path]) -> type[MappedArtifact]
     path = find_mapping(file, folders)
     if path is None:
         beside = [each.name for folder in folders if folder.is_dir() for each in folder.glob("*.y*ml")]
-        text = f"there is no mapping file {file}"
+        text = f"mapping file not found: {file}"
         raise UnknownArtifactType(file, [*beside, *shipped_mappings()], text)
     path = path.resolve()
     key = (path, path.stat().st_mtime_ns, artifact)

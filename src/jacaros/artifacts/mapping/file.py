@@ -82,7 +82,7 @@ def read_with_problems(path: Path) -> tuple[MappingFile, list[Problem]]:
         text, wrong = read_text(path)
     except FileNotFoundError:
         cure = f"give the path of a mapping file, or one that comes with jacaros: {', '.join(shipped_mappings())}"
-        return MappingFile(name, ""), [Problem(1, 1, "there is no such mapping file", cure)]
+        return MappingFile(name, ""), [Problem(1, 1, "mapping file not found", cure)]
     except OSError as error:
         return MappingFile(name, ""), [Problem(1, 1, f"cannot read the file: {error}")]
     if wrong is not None:

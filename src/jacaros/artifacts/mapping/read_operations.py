@@ -111,7 +111,7 @@ def _parameters(node: Node) -> tuple[str, ...]:
         if not isinstance(name, str) or not _PARAMETER.fullmatch(name):
             item.wrong(f"{item.what} must be a name, not {name!r}", "write parameters: [x, y]")
         elif name in names:
-            item.wrong(f"the parameter '{name}' stands here twice", "give it another name")
+            item.wrong(f"duplicate parameter '{name}'", "rename one of them")
         else:
             names.append(str(name))
     return tuple(names)

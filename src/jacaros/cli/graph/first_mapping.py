@@ -120,9 +120,7 @@ def _home(joined: Joined, artifacts: list[_Artifact], thing: Thing) -> _Artifact
 
 def _add(joined: Joined, artifact: _Artifact, thing: Thing) -> None:
     if not thing.type_name:
-        raise NothingThere(
-            f"the type of {thing.kind} {thing.name} is not told here; write the mapping by hand"
-        )
+        raise NothingThere(f"the type of {thing.kind} {thing.name} is unknown; write the mapping by hand")
     types, name, written = joined.backend, artifact.free_name(thing.name), artifact.relative(thing.name)
     if thing.kind is Kind.SERVICE:
         artifact.add([calling(types, name, written, thing.type_name)])
@@ -240,7 +238,7 @@ def _namespace(artifact: _Artifact) -> Iterator[str]:
 def _connected(artifact: _Artifact) -> Iterator[str]:
     if any(entry.section == "properties" for entry in artifact.entries):
         odometry = f"/{artifact.namespace}/odom" if artifact.namespace else "/odom"
-        comment = f'connected("{odometry}") and so on, while somebody publishes it'
+        comment = f'connected("{odometry}") and so on, while it has a publisher'
         yield _with_comment("connected: true", comment)
 
 

@@ -85,7 +85,7 @@ async def _look(backend: Backend, clock: Clock, options: RunOptions, timeout: fl
         raise NothingThere(f"{error}. {kind.unreachable}".rstrip()) from error
     if not (seen.topics or seen.services or seen.actions or seen.nodes):
         cure = kind.deserted or kind.unreachable
-        raise NothingThere(f"nobody else is in the {_graph_name(options)}. {cure}".rstrip())
+        raise NothingThere(f"no other node is in the {_graph_name(options)}. {cure}".rstrip())
     return seen
 
 

@@ -58,7 +58,7 @@ def find(joined: Joined, written: str) -> list[Thing]:
     things = all_things(joined.contents)
     found = [thing for thing in things if thing.name == name]
     if not found:
-        raise UsageError(f"nothing in the graph is called {name}{hint(name, [t.name for t in things])}")
+        raise UsageError(f"unknown name {name}{hint(name, [t.name for t in things])}")
     return found
 
 
@@ -81,7 +81,7 @@ def hint(name: str, names: list[str]) -> str:
     near = near_names(name, names)
     if near:
         return f"; did you mean {' or '.join(near)}?"
-    return "; `jacaros ros list` shows what is there"
+    return "; `jacaros ros list` shows all names"
 
 
 def near_names(name: str, names: list[str]) -> list[str]:

@@ -15,8 +15,8 @@ def _odometry(name: str) -> Body:
             "  - {path: pose.pose.position.x, round: 2}",
             "  - {path: pose.pose.position.y, round: 2}",
             "  - {path: pose.pose.orientation, as: yaw, unit: degrees, round: 1}",
-            "rate: 5   # at most so many times a second",
-            "dead_band: [0.02, 0.02, 1]   # smaller changes are not told",
+            "rate: 5   # updates per second, at most",
+            "dead_band: [0.02, 0.02, 1]   # smaller changes are ignored",
         ],
     )
 

@@ -154,11 +154,11 @@ def as_text(data: dict[str, Any]) -> Iterator[str]:
     """What people read."""
     yield f"{data['kind']} {data['name']}"
     if len(data.get("types", ())) > 1:
-        yield f"  types: {', '.join(data['types'])}: somebody uses a wrong one"
+        yield f"  types: {', '.join(data['types'])}: conflicting types"
     elif "type" in data and data["kind"] != "type":
         yield f"  type: {data['type']}"
     elif data["kind"] not in ("node", "type"):
-        yield "  type: not told by this middleware"
+        yield "  type: unknown to this middleware"
     for key in ("publishers", "subscriptions"):
         if key in data:
             yield f"  {key}: {_endpoints(data[key])}"
@@ -195,11 +195,11 @@ def _of_node(data: dict[str, Any]) -> Iterator[str]:
 
 
 def _endpoints(endpoints: list[dict[str, Any]]) -> str:
-    return "; ".join(_endpoint_text(each) for each in endpoints) or "nobody"
+    return "; ".join(_endpoint_text(each) for each in endpoints) or "none"
 
 
 def _endpoint_text(endpoint: dict[str, Any]) -> str:
-    node = endpoint["node"] or "somebody"
+    node = endpoint["node"] or "unknown node"
     qos = endpoint.get("qos")
     if qos is None:
         return str(node)

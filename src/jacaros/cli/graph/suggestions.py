@@ -190,7 +190,7 @@ def _driving(name: str, topic: str, type_name: str) -> list[Entry]:
     stop = Entry(
         "operations",
         "stop" if name == "drive" else f"stop_{name}",
-        "stops at once",
+        "stops immediately",
         (f"publish: {topic}", f"type: {type_name}"),
     )
     return [Entry("operations", name, comment, drive), stop]

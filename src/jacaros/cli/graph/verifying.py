@@ -92,13 +92,13 @@ def _of_topic(names: Names, topic: TopicPart) -> Iterator[Problem]:
     name = names.resolve(written.text)
     info = names.joined.contents.topics.get(name)
     if info is None:
-        yield _absent(names, written, name, "nobody publishes", names.joined.contents.topics)
+        yield _absent(names, written, name, "no node publishes", names.joined.contents.topics)
         return
     if not info.publishers:
         who = _nodes(info.subscriptions)
         yield written.place.problem(
-            f"nobody publishes {name}; there are only subscriptions, of {who}",
-            "start the node that publishes it, or take it for an operation with `publish`",
+            f"no node publishes {name}; it has only subscriptions, of {who}",
+            "start the node that publishes it, or write an operation with `publish`",
         )
         return
     wrong = _of_type(topic.type_name, info.types, written.place)
@@ -141,8 +141,8 @@ def _of_type(written: Written | None, found: Iterable[str], place: Place) -> lis
     """The type that a file names, compared with those that are found; `place` is that of the name."""
     types = [each for each in found if each]
     if len(types) > 1:
-        text = f"there are several types: {', '.join(types)}"
-        return [place.problem(text, "one of its nodes is wrong: `jacaros ros show` tells who is there")]
+        text = f"conflicting types: {', '.join(types)}"
+        return [place.problem(text, "a node uses another type: `jacaros ros show` lists its nodes")]
     if written is None or not types or written.text == types[0]:
         return []
     return [written.place.problem(f"its type is {types[0]}, not {written.text}", f"write type: {types[0]}")]
@@ -160,7 +160,7 @@ def _of_operation(names: Names, operation: OperationPart) -> Iterator[Problem]:
             if name in things:
                 yield from _of_type(operation.type_name, [things[name]], written.place)
             else:
-                yield _absent(names, written, name, f"nobody {_VERBS[operation.kind]}", things)
+                yield _absent(names, written, name, f"no node {_VERBS[operation.kind]}", things)
 
 
 def _of_publishing(names: Names, operation: OperationPart) -> Iterator[Problem]:
@@ -169,7 +169,7 @@ def _of_publishing(names: Names, operation: OperationPart) -> Iterator[Problem]:
     info = names.joined.contents.topics.get(name)
     if info is None or not info.subscriptions:
         listened = [each for each, about in names.joined.contents.topics.items() if about.subscriptions]
-        yield _absent(names, written, name, "nobody listens on", listened)
+        yield _absent(names, written, name, "no node subscribes to", listened)
         return
     yield from _of_type(operation.type_name, info.types, written.place)
     for subscription in info.subscriptions:
@@ -179,7 +179,7 @@ def _of_publishing(names: Names, operation: OperationPart) -> Iterator[Problem]:
         if why is not None:
             cure = "qos: latched" if subscription.qos.durability == "transient_local" else "qos: default"
             node = subscription.node or "a subscription"
-            yield written.place.problem(f"{node} would hear nothing on {name}: {why}", f"write {cure}")
+            yield written.place.problem(f"{node} would receive nothing on {name}: {why}", f"write {cure}")
 
 
 def _absent(names: Names, written: Written, name: str, what: str, things: Iterable[str]) -> Problem:
@@ -188,7 +188,7 @@ def _absent(names: Names, written: Written, name: str, what: str, things: Iterab
     if near:
         cure = f"did you mean {' or '.join(_as_written(names, each) for each in near)}?"
     else:
-        cure = "start its node; `jacaros ros list` shows what is there"
+        cure = "start its node; `jacaros ros list` shows all names"
     return written.place.problem(f"{what} {name}", cure)
 
 
@@ -201,18 +201,16 @@ def _as_written(names: Names, name: str) -> str:
 def _of_frame(names: Names, part: FramePart, frames: dict[str, str]) -> Iterator[Problem]:
     target, source = names.frame(part.target), names.frame(part.source)
     if not frames:
-        yield part.place.problem(
-            "no frames were heard on /tf and /tf_static", "start the node that publishes them"
-        )
+        yield part.place.problem("no frames on /tf and /tf_static", "start the node that publishes them")
         return
     unknown = [frame for frame in dict.fromkeys((target, source)) if frame not in frames]
     for frame in unknown:
         near = near_names(frame, list(frames))
-        told = f"did you mean {' or '.join(near)}?" if near else f"there are {', '.join(sorted(frames))}"
+        told = f"did you mean {' or '.join(near)}?" if near else f"frames: {', '.join(sorted(frames))}"
         prefix = names.tf_prefix
         if prefix and frame.startswith(f"{prefix}/") and frame.removeprefix(f"{prefix}/") in frames:
             told = 'frames have no prefix here: write tf_prefix: ""'
-        yield part.place.problem(f"there is no frame {frame}", told)
+        yield part.place.problem(f"unknown frame {frame}", told)
     if not unknown and root(frames, target) != root(frames, source):
         yield part.place.problem(
             f"the frames {target} and {source} are not connected: the first hangs on {root(frames, target)}, the "
@@ -224,21 +222,21 @@ def _of_frame(names: Names, part: FramePart, frames: dict[str, str]) -> Iterator
 async def _of_parameter(names: Names, node: str, parameter: str, place: Place) -> list[Problem]:
     joined = names.joined
     if PARAMETERS not in joined.backend.capabilities:
-        return [place.problem("there are no parameters in this graph", "leave it out here")]
+        return [place.problem("this graph has no parameters", "remove it")]
     name = names.resolve(node)
     known = joined.contents.nodes
     if name not in known:
         near = near_names(name, list(known))
         return [
             place.problem(
-                f"there is no node {name}",
+                f"unknown node {name}",
                 f"did you mean {' or '.join(near)}?" if near else "`jacaros ros list` shows all nodes",
             )
         ]
     try:
         there = await joined.backend.parameters(name).names(joined.timeout)
     except RosError as error:
-        return [place.problem(f"node {name} does not tell its parameters: {error}", "is it still running?")]
+        return [place.problem(f"node {name} does not report its parameters: {error}", "is it still running?")]
     if parameter in there:
         return []
     near = near_names(parameter, there)
@@ -247,4 +245,4 @@ async def _of_parameter(names: Names, node: str, parameter: str, place: Place) -
 
 
 def _nodes(endpoints: Iterable[Endpoint]) -> str:
-    return ", ".join(sorted({each.node or "somebody" for each in endpoints}))
+    return ", ".join(sorted({each.node or "an unknown node" for each in endpoints}))

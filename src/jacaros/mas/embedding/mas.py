@@ -173,7 +173,7 @@ class Mas(EmbeddedRun):
             return self._open.population.programs.find(wanted)
         except FileNotFoundError:
             folders = ", ".join(map(str, self._open.population.programs.folders))
-            raise UsageError(f"there is no program {wanted} in {folders}") from None
+            raise UsageError(f"program not found: {wanted} in {folders}") from None
 
     def agent(self, name: str) -> RunningAgent:
         """The agent of that name.

@@ -233,7 +233,7 @@ def run(main: Coroutine[Any, Any, T], *, clock: Literal["real", "fast"] = "real"
     chosen: Clock
     try:
         if clock not in ("real", "fast"):
-            raise UsageError(f"there is no clock {clock!r}; there are real and fast")
+            raise UsageError(f"unknown clock {clock!r}; expected 'real' or 'fast'")
         if _is_running():
             raise UsageError(
                 "an event loop runs here already (a notebook?): await the coroutine, without jacaros.run"

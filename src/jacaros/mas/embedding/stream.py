@@ -131,7 +131,7 @@ class PrintedConsole:
                 told(agent, text)
             except Exception as error:
                 self.log(
-                    f"error: a callback for what is printed failed: {said(error)}{place_of_fault(error)}",
+                    f"error: an output callback failed: {said(error)}{place_of_fault(error)}",
                     "error",
                 )
 

@@ -91,7 +91,7 @@ class Waits:
     def stuck(self) -> bool:
         """Nothing more will happen: who waits for something waits in vain.  Whether anybody did."""
         for future, (_, missing) in tuple(self._open.items()):
-            _fail(future, TimeoutError(f"{missing()}, and nothing more will happen: everybody waits"))
+            _fail(future, TimeoutError(f"{missing()}, and nothing more will happen: all agents wait"))
         return bool(self._open)
 
     def run_ended(self, how: str) -> None:

@@ -62,8 +62,8 @@ class _JcmReader(JcmValues):
                     return
         if cursor.token.kind != "end":
             cursor.report(
-                f"{cursor.token} stands behind the end of the system",
-                hint="there may be a '}' too many before it",
+                f"{cursor.token} after the end of the system",
+                hint="there may be an extra '}' before it",
             )
 
     def _section(self) -> None:
@@ -94,7 +94,7 @@ class _JcmReader(JcmValues):
         sections = (*SECTIONS[:4], *_KEYS)
         close = close_matches(token.text, sections)
         self.cursor.fail(
-            f"{token} is no section of a .jcm file",
+            f"unknown section {token} of a .jcm file",
             hint=f"did you mean '{close[0]}'?" if close else f"the sections are {', '.join(sections)}",
         )
 

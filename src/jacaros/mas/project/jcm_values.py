@@ -141,7 +141,7 @@ class JcmValues:
         known = list(known)
         close = close_matches(key.text, known)
         hint = f"did you mean '{close[0]}'?" if close else f"{what} has {', '.join(known)}"
-        self.cursor.report(f"'{key.text}' is no key of {what}", self.cursor.span_of(key), hint)
+        self.cursor.report(f"unknown key '{key.text}' of {what}", self.cursor.span_of(key), hint)
         self.pieces()
 
     # values
@@ -255,7 +255,7 @@ class JcmValues:
                 "a value is expected", hint=f"the '{opener.kind}' of line {opener.line} is not closed"
             )
         if token.kind == "word" and not (token.text[0].isalpha() or token.text[0] in "_$"):
-            cursor.fail(f"'{token.text}' is no value", hint="write a number, or a text in quotes")
+            cursor.fail(f"'{token.text}' is not a value", hint="write a number, or a text in quotes")
         cursor.advance()
         if token.kind == "string":
             return text_of(token)

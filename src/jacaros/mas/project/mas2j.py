@@ -56,8 +56,8 @@ class _Mas2jReader:
                     return  # nothing of the file's own '}' is known: the error may have swallowed it
         if cursor.token.kind != "end":
             cursor.report(
-                f"{cursor.token} stands behind the end of the system",
-                hint="there may be a '}' too many before it",
+                f"{cursor.token} after the end of the system",
+                hint="there may be an extra '}' before it",
             )
 
     def section(self) -> None:
@@ -111,7 +111,7 @@ class _Mas2jReader:
         token = self.cursor.token
         close = close_matches(token.text, _SECTIONS)
         hint = f"did you mean '{close[0]}'?" if close else f"the sections are {', '.join(_SECTIONS)}"
-        self.cursor.fail(f"{token} is no section of a .mas2j file", hint=hint)
+        self.cursor.fail(f"unknown section {token} of a .mas2j file", hint=hint)
 
     def to_next_section(self, start: int) -> None:
         """After an error in the section that began at *start*: to the next one or the end."""

@@ -113,7 +113,7 @@ class ProjectPlaces:
     def _check_agent(self, name: str, span: Span, known: set[str], is_error: bool = True) -> None:
         if name != "*" and name not in known:
             tell = self._remarks.error if is_error else self._remarks.warn
-            tell(f"there is no agent '{name}' in the project", span, meant(name, known))
+            tell(f"unknown agent '{name}'", span, meant(name, known))
 
     # what names lead to
 

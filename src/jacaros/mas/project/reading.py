@@ -84,7 +84,7 @@ class _Files:
         for file, span in reversed(part.uses):
             used = path.parent / (file if file.endswith(_JCM) else file + _JCM)
             if not is_file(used):
-                cursor.report(f"the project '{file}' is not found", span, f"it is looked for at {used}")
+                cursor.report(f"project '{file}' not found", span, f"expected at {used}")
             elif used.resolve() in (*using, path.resolve()):
                 cursor.report(f"the project '{file}' uses itself", span)
             elif used.resolve() not in self._read:

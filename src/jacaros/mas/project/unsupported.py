@@ -37,10 +37,10 @@ PACKAGES: Final = Topic(
 PATHS: Final = Topic(
     "paths",
     "no Java classes and no organisations are read",
-    "artifacts in Python stand beside the project file, or in src/env",
+    "put artifacts in Python beside the project file, or into src/env",
 )
 PLATFORMS: Final = Topic("platforms", "a run is one process, and agents reach each other in it")
-INSPECTORS: Final = Topic("inspectors", "there are no windows", "see a run with --view or --record")
+INSPECTORS: Final = Topic("inspectors", "JaCaROS has no windows", "watch a run with --view or --record")
 JAVA: Final = Topic("sections", "that is about Java code")
 INFRASTRUCTURES: Final = Topic("infrastructures", "a run is one process, and agents reach each other in it")
 JAVA_ENVIRONMENT: Final = Topic(

@@ -123,7 +123,7 @@ class PythonAgentHost(AgentHost):
         """Run a coroutine of the agent; its exception ends the agent."""
         if self._leaving:
             work.close()
-            raise JacarosError(f"agent {self.name} is ending, and starts nothing any more")
+            raise JacarosError(f"agent {self.name} is shutting down and cannot start tasks")
         task = asyncio.get_running_loop().create_task(without_exit(work), name=f"agent {self.name}")
         self._tasks[task] = None
         self.attendance.add(task)

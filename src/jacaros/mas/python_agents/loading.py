@@ -78,7 +78,9 @@ def _module(modules: ProjectModules, spec: AgentSpec) -> ModuleType:
                     return modules.load(name)[0]
                 except ModuleUnreadable as wrong:
                     raise _wrong(spec, str(wrong)) from wrong
-    raise _wrong(spec, f"{spec.source_path} cannot be imported: the names of its folders are no Python names")
+    raise _wrong(
+        spec, f"{spec.source_path} cannot be imported: the names of its folders are not Python names"
+    )
 
 
 def _classes(module: ModuleType) -> dict[str, type[PythonAgent]]:

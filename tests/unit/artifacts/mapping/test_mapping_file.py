@@ -80,7 +80,7 @@ WRONG = {
     "no topic": ("properties: {a: {rate: 1}}", "1:17: 'a' lacks the key 'topic' | add 'topic: ...'"),
     "twice": (
         "properties:\n  a: t\n  a: u",
-        "3:3: 'a' stands here twice: first in line 2 | give it another name, or leave one of them out",
+        "3:3: duplicate key 'a', first in line 2 | rename one of them, or remove it",
     ),
     "one name": (
         "properties: {a: t}\nsignals: {a: u}",
@@ -303,7 +303,7 @@ WRONG = {
     ),
     "parameter twice": (
         "operations: {go: {parameters: [v, v], publish: t}}",
-        "1:35: the parameter 'v' stands here twice | give it another name",
+        "1:35: duplicate parameter 'v' | rename one of them",
     ),
     "rate alone": (
         "operations: {go: {publish: t, rate: 3}}",
@@ -467,7 +467,7 @@ def test_a_mistake_is_shown_with_its_line() -> None:
 
 def test_a_file_that_is_not_there(tmp_path: Path) -> None:
     assert find_mapping("no.yaml", (tmp_path,)) is None
-    with pytest.raises(MappingError, match="there is no such mapping file"):
+    with pytest.raises(MappingError, match="mapping file not found"):
         load_mapping(tmp_path / "no.yaml")
 
 

@@ -151,7 +151,7 @@ def test_waiting_for_ever_on_the_virtual_clock_raises() -> None:
         bob.achieve("later(5000)")
         assert await bob.until("later") == {}
         for waiting in (bob.achieve("long").wait(), bob.until("p"), mas.mailbox("me").get()):
-            with pytest.raises(TimeoutError, match="and nothing more will happen: everybody waits"):
+            with pytest.raises(TimeoutError, match="and nothing more will happen: all agents wait"):
                 await waiting
         assert await asyncio.to_thread(lambda: 7) == 7
 

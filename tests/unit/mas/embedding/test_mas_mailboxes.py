@@ -38,7 +38,7 @@ def test_python_code_has_mailboxes() -> None:
         question = await me.get()
         me.send(question.sender, "tell", "weather(fine)", reply_to=question)
         await asking
-        with pytest.raises(UnknownAgent, match="there is no agent bobb; did you mean bob"):
+        with pytest.raises(UnknownAgent, match="unknown agent bobb; did you mean bob"):
             me.send("bobb", "tell", "x")
         with pytest.raises(TimeoutError, match="no message came for me within 1 s"):
             await me.get(timeout=1)

@@ -64,5 +64,5 @@ def test_options_of_the_graph_are_checked_when_they_are_given(options: dict[str,
 
 
 def test_a_missing_mapping_is_told_when_it_is_given() -> None:
-    with pytest.raises(ProjectError, match=r"there is no mapping file nowhere\.yaml"):
+    with pytest.raises(ProjectError, match=r"mapping file not found: nowhere\.yaml"):
         Mas(mappings=["nowhere.yaml"])

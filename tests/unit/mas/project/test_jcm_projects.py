@@ -77,8 +77,8 @@ def test_an_asl_path_takes_the_place_of_the_usual_ones(folder: Path) -> None:
     (folder / "own" / "dora.asl").write_text("", encoding="utf-8")
     text = 'mas m {\n agent dora\n agent bob\n asl-path: own, "more"\n "$jacamoJar/test/jacamo/inc"\n}'
     (found,) = diagnostics(folder, text)
-    assert found.message == "the program of agent 'bob' is not found: bob.asl"
-    assert found.hint == f"it is looked for in {folder / 'own'}, {folder / 'more'}, {folder}"
+    assert found.message == "program of agent 'bob' not found: bob.asl"
+    assert found.hint == f"expected in {folder / 'own'}, {folder / 'more'}, {folder}"
 
 
 def test_programs_are_not_read_over_the_network(folder: Path) -> None:
@@ -109,7 +109,7 @@ def test_projects_that_use_each_other_are_refused(folder: Path) -> None:
     write(folder, "two.jcm", "mas two uses one {\n agent alice\n}")
     found = errors(folder, "mas m\n uses one, three {\n}")
     assert found == [
-        (2, "the project 'three' is not found"),
+        (2, "project 'three' not found"),
         (1, "the project 'one' uses itself"),
     ]
 
@@ -185,7 +185,10 @@ def test_agents_may_have_names_of_sections_and_keys(folder: Path) -> None:
     ("text", "told"),
     [
         ("agent bob { beliefs: !start }", "'!start' is a goal"),
-        ("agent bob { beliefs: p(X) :- q(X) }", "'p(X) :- q(X)' is no belief: the end is expected, not ':-'"),
+        (
+            "agent bob { beliefs: p(X) :- q(X) }",
+            "'p(X) :- q(X)' is not a belief: the end is expected, not ':-'",
+        ),
         ("agent bob { instances: 0 }", "'instances' is a number or the names of agents"),
         ("agent bob { ag-class: a.B c.D }", "an agent has one 'ag-class'"),
         ("agent bob { ag-class: }", "the class for 'ag-class' is expected, not '}'"),
@@ -193,8 +196,8 @@ def test_agents_may_have_names_of_sections_and_keys(folder: Path) -> None:
         ("agent bob { focus: ns:: }", "the name of an artifact is expected, not '}'"),
         ("agent bob { join: w\n focus w.a\n }", "a ':' is missing behind 'focus'"),
         ("agent bob : bob.asl x", "'x' does not belong to agent 'bob'"),
-        ("workspace w { artifact a : A(3f) }", "'3f' is no value"),
-        ("workspace w { artifact a : A { focused: bob } }", "'focused' is no key of an artifact"),
+        ("workspace w { artifact a : A(3f) }", "'3f' is not a value"),
+        ("workspace w { artifact a : A { focused: bob } }", "unknown key 'focused' of an artifact"),
         ("workspace w { artifact console : A }", "every workspace has an artifact 'console' already"),
         ("workspace w { artifact a : A artifact a : B }", "two artifacts have the name 'a'"),
         ("workspace w { parent: v }", "the workspace 'v' is not declared in the project"),
@@ -211,7 +214,7 @@ def test_agents_may_have_names_of_sections_and_keys(folder: Path) -> None:
         ("node n @", "the address of the node is expected, not '}'"),
         ("platform:", "a platform is expected behind 'platform:', not '}'"),
         ("asl-path:", "a value is expected behind 'asl-path:', not '}'"),
-        ("agent bob { goals: start } }", "'}' stands behind the end of the system"),
+        ("agent bob { goals: start } }", "'}' after the end of the system"),
     ],
 )
 def test_mistakes_are_told(folder: Path, text: str, told: str) -> None:
@@ -360,5 +363,5 @@ def test_words_that_are_nearly_keys_are_told(folder: Path) -> None:
     assert [(each.severity, each.message, each.hint) for each in found] == [
         ("warning", "'goal' is kept as a parameter of your own", "did you mean 'goals'?"),
         ("warning", "'verbose' is given twice; the last one counts", None),
-        ("error", "'asl-pth' is no section of a .jcm file", "did you mean 'asl-path'?"),
+        ("error", "unknown section 'asl-pth' of a .jcm file", "did you mean 'asl-path'?"),
     ]

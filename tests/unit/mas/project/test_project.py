@@ -166,10 +166,10 @@ def test_errors_of_a_mas2j_file_are_reported_together(folder: Path):
     assert located(report(folder, "p.mas2j", text)) == [
         ("3:13", "a ';' is missing behind the agent 'bob'"),
         ("4:13", "the name of an agent begins with a lower-case letter"),
-        ("4:13", "the program of agent 'Carl' is not found: Carl.asl"),
-        ("5:13", "the program of agent 'dora' is not found: dora.asl"),
+        ("4:13", "program of agent 'Carl' not found: Carl.asl"),
+        ("5:13", "program of agent 'dora' not found: dora.asl"),
         ("6:40", "'=' is expected, not '2'"),
-        ("7:5", "'agentz' is no section of a .mas2j file"),
+        ("7:5", "unknown section 'agentz' of a .mas2j file"),
     ]
 
 
@@ -384,7 +384,7 @@ def test_what_is_not_supported_is_read_over_with_a_warning(folder: Path):
     assert [warning.message for warning in deployment.ignored] == [
         f"{roles} have no effect: roles in organisations are not supported (lines 3, 7)",
         "'host' of workspace 'w' and the node 'n1' have no effect: a run is one process (lines 4, 12)",
-        "'debug' of workspace 'w' has no effect: there are no windows",
+        "'debug' of workspace 'w' has no effect: JaCaROS has no windows",
         "the institution 'i' has no effect: institutions are not supported",
         "the organisation 'o' has no effect: organisations are not supported",
         "the package 'lib' has no effect: Java packages are not used",
@@ -404,7 +404,7 @@ def test_slips_in_names_are_told_with_what_may_be_meant(folder: Path):
     assert located(found) == [
         ("2:35", "the workspace 'lap' is not declared in the project"),
         ("2:47", "the artifact 'clok' is not declared in the project"),
-        ("3:56", "there is no agent 'bop' in the project"),
+        ("3:56", "unknown agent 'bop'"),
     ]
     hints = [line for line in found.splitlines() if line.startswith("  = help")]
     assert hints == [
@@ -432,13 +432,13 @@ def test_errors_of_a_jcm_file_are_reported_together(folder: Path):
         }
         """
     assert located(report(folder, "p.jcm", text)) == [
-        ("2:9", "the program of agent 'dora' is not found: dora.asl"),
-        ("3:24", "'p(' is no belief: the file ends where a term is expected"),
+        ("2:9", "program of agent 'dora' not found: dora.asl"),
+        ("3:24", "'p(' is not a belief: the file ends where a term is expected"),
         ("4:17", "a ':' is missing behind 'goals'"),
         ("7:5", "',' is expected, not 'artifact'"),
         ("8:3", "':' is expected, not '}'"),
         ("9:13", "the name of a workspace begins with a lower-case letter"),
-        ("10:3", "'agnt' is no section of a .jcm file"),
+        ("10:3", "unknown section 'agnt' of a .jcm file"),
         ("12:9", "two agents have the name 'carl'"),
     ]
 
@@ -447,7 +447,7 @@ def test_wrong_beliefs_are_reported_at_their_line(folder: Path):
     found = report(folder, "p.jcm", "mas m {\n agent bob {\n beliefs: p(1), q(2]\n }\n}")
     assert "p.jcm:3:" in found
     found = report(folder, "p.mas2j", 'MAS m {\n agents:\n bob [goals="go(else)"];\n}')
-    assert found.startswith("p.mas2j:3:13: error: 'go(else)' is no goal: 'else' is a reserved word")
+    assert found.startswith("p.mas2j:3:13: error: 'go(else)' is not a goal: 'else' is a reserved word")
 
 
 @pytest.mark.parametrize("name", ["p.jcm", "p.mas2j"])

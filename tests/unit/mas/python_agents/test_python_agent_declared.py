@@ -64,7 +64,7 @@ def test_the_class_of_several_is_that_with_the_agents_name_or_the_one_that_is_na
         ("class A(PythonAgent):\n    def __init__(self): 1/0", "a a.py", "a.py:3, in __init__)"),
         ("class A(PythonAgent:", "a a.py", "a.py:2: "),
         ("import nowhere", "a a.py", "a.py:2: ModuleNotFoundError: No module named 'nowhere'"),
-        (TWO, "a b.py", "the program of agent 'a' is not found: b.py"),
+        (TWO, "a b.py", "program of agent 'a' not found: b.py"),
         (TWO, "df a.py [class=Other]", "the directory facilitator 'df' cannot be"),
     ],
 )

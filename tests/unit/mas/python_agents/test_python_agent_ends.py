@@ -65,7 +65,7 @@ def compute(self, x):
             "self.value('count')",
             "UnknownProperty: no observable property count is known: no artifact is focused",
         ),
-        ("self.send('x', 'tell', 'p')", "UnknownAgent: there is no agent x; there are a"),
+        ("self.send('x', 'tell', 'p')", "UnknownAgent: unknown agent x; agents: a"),
         ("await self.act('x')", "OperationFailed: no artifact of workspace /main has an operation x/0"),
         (
             "A.on_message = print; self.messages()",

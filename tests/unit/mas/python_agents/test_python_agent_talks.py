@@ -146,7 +146,7 @@ async def run(self):
         self.print(type(error).__name__)
 """
     assert alone(tmp_path, body).of("a") == [
-        "there is no agent nobody; there are a",
+        "unknown agent nobody; agents: a",
         "self",
         "no message within 1.5 s",
         "AslError",
