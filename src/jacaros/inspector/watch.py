@@ -1,4 +1,4 @@
-"""Looks at a running world ten times a second of the run's clock, for a recorder and a view."""
+"""Looks at a running world many times a second of the run's clock, for a recorder and views."""
 
 from collections.abc import Callable, Mapping
 from typing import Any, Protocol
@@ -7,7 +7,8 @@ from jacaros.clock import Clock, Timer
 from jacaros.inspector.scene import RobotView, Scene
 from jacaros.mas.history import History
 
-PERIOD = 0.1
+PERIOD, LIVE_PERIOD = 0.1, 0.05
+"""Seconds between two frames of a recording, and of a run in real time that is seen on a live page alone."""
 
 
 class Watcher(Protocol):
@@ -36,6 +37,7 @@ class Watch:
         watchers: who is told.
         scene: the world that is looked at, None when there is none; it is closed at the end.
         history: whose records are passed on while the watch is on, None for none.
+        period: seconds between two frames.
     """
 
     def __init__(
@@ -44,10 +46,11 @@ class Watch:
         watchers: list[Watcher],
         scene: Scene | None = None,
         history: History | None = None,
+        period: float = PERIOD,
     ) -> None:
         self.clock, self.watchers = clock, watchers
         self.beginning = history.beginning if history is not None else clock.now()
-        self._scene = scene
+        self._scene, self._period = scene, period
         self._drawing: Mapping[str, Any] | None = None
         self._timer: Timer | None = None
         self._history = history
@@ -69,7 +72,7 @@ class Watch:
             watcher.world(drawing)
 
     def _look(self) -> None:
-        self._timer = self.clock.call_later(PERIOD, self._look)
+        self._timer = self.clock.call_later(self._period, self._look)
         self.look()
 
     def look(self) -> None:

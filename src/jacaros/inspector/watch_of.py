@@ -1,13 +1,20 @@
 """The watch of a run: over the embedded world, or over what a real graph tells."""
 
 from jacaros.inspector.scene import EmbeddedScene, Scene
-from jacaros.inspector.watch import Watch, Watcher
+from jacaros.inspector.watch import LIVE_PERIOD, PERIOD, Watch, Watcher
 from jacaros.mas.system import System
 
 
-def watch_of(mas: System, watchers: list[Watcher]) -> Watch:
-    """Make the watch of a system that has been started; its embedded world may come into being later."""
-    return Watch(mas.clock, watchers, _scene_of(mas), mas.history())
+def watch_of(mas: System, watchers: list[Watcher], live: bool = False) -> Watch:
+    """Make the watch of a system that has been started; its embedded world may come into being later.
+
+    Args:
+        mas: the system.
+        watchers: who is told.
+        live: whether the watchers are live pages alone.
+    """
+    period = LIVE_PERIOD if live and not mas.clock.virtual else PERIOD
+    return Watch(mas.clock, watchers, _scene_of(mas), mas.history(), period)
 
 
 def _scene_of(mas: System) -> Scene:

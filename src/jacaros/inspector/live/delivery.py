@@ -4,21 +4,22 @@ import asyncio
 from collections import deque
 from typing import Protocol
 
+from jacaros.clock import real_time
 from jacaros.inspector.live.records import LiveRecord, json_text
 
 QUEUED = 10_000
 """Records that may wait for one page."""
-PIECE = 400
+PIECE = 200
 """Records in one message: a few milliseconds to make text of."""
-AGAIN = 1_000
-"""Records that a page receives again, beside the state, after it was too slow."""
+AGAIN = 2.0
+"""Seconds of real time between two beginnings for a page that is too slow."""
 
 
 class Past(Protocol):
     """What happened before a page came (`jacaros.inspector.live.past.Past`)."""
 
-    def records(self, last: int | None = None) -> list[LiveRecord]:
-        """Return the records of all that is known, or of a state and the *last* records after it."""
+    def records(self) -> list[LiveRecord]:
+        """Return the records that a page needs."""
 
 
 class Delivery:
@@ -41,6 +42,7 @@ class Delivery:
         self._notes: deque[str] = deque([json_text(hello)])
         self._first: deque[LiveRecord] = deque(past.records())
         self._missed = 0
+        self._again_at = 0.0
         self.arrived = asyncio.Event()
         self.arrived.set()
 
@@ -60,7 +62,7 @@ class Delivery:
 
     def take(self) -> str | None:
         """Return the next message, None when there is nothing to send."""
-        if self._missed:
+        if self._missed and real_time() >= self._again_at:
             self._begin_again()
         if self._notes:
             return self._notes.popleft()
@@ -82,9 +84,10 @@ class Delivery:
     def _begin_again(self) -> None:
         self._notes.append(json_text({"kind": "missed", "records": self._missed}))
         self._notes.append(json_text(self._hello))
-        self._first = deque(self._past.records(AGAIN))
+        self._first = deque(self._past.records())
         self._missed = 0
         self._newest.clear()
+        self._again_at = real_time() + AGAIN
 
 
 def _piece(waiting: deque[LiveRecord]) -> list[LiveRecord]:

@@ -6,7 +6,7 @@ from typing import Any
 from jacaros.inspector.live.commands import Commands
 from jacaros.inspector.live.delivery import Delivery
 from jacaros.inspector.live.past import Past
-from jacaros.inspector.live.records import LiveRecord
+from jacaros.inspector.live.records import FrameRecord, LiveRecord
 from jacaros.inspector.scene import RobotView
 
 VERSION = 2
@@ -29,7 +29,7 @@ class LiveView:
         self._past = Past()
         self._deliveries: list[Delivery] = []
         self._number = 0
-        self._rows: list[Any] | None = None
+        self._last: FrameRecord | None = None
         self._held: LiveRecord | None = None
         """The last frame, if nothing moved since the one before."""
 
@@ -41,15 +41,15 @@ class LiveView:
 
     def frame(self, t: float, robots: Iterable[RobotView]) -> None:
         """Show the robots at a moment."""
-        rows = [_row(robot) for robot in robots]
-        frame = self._record({"kind": "frame", "t": round(t, 3), "robots": rows}, "frame")
-        if self._rows == rows:
+        self._number += 1
+        frame = FrameRecord(self._number, t, list(robots))
+        if self._last is not None and self._last.robots == frame.robots:
             self._held = frame  # pages see that time passes, but it is not kept
         else:
             if self._held is not None:
                 self._past.take(self._held)
             self._past.take(frame)
-            self._rows, self._held = rows, None
+            self._last, self._held = frame, None
         self._offer(frame)
 
     def text(self, t: float, agent: str, text: str) -> None:
@@ -99,8 +99,3 @@ class LiveView:
     async def answer(self, command: Mapping[str, Any]) -> Mapping[str, Any]:
         """Execute a command of a page."""
         return await self._commands.answer(command)
-
-
-def _row(robot: RobotView) -> list[Any]:
-    _, x, y, yaw, battery, charging, touching = robot
-    return [round(x, 4), round(y, 4), round(yaw, 4), round(battery, 2), int(charging), int(touching)]

@@ -78,12 +78,6 @@ class State:
         if records:
             self._last[key] = records
 
-    def copy(self) -> "State":
-        """Return another state, which later records do not change."""
-        copied = State()
-        copied._last = dict(self._last)
-        return copied
-
     def records(self) -> list[LiveRecord]:
         """Return the records of the state in the order of time."""
         return sorted(
@@ -124,13 +118,7 @@ class Past:
         if len(kept) > limit:
             self._before.take(kept.popleft())
 
-    def records(self, last: int | None = None) -> list[LiveRecord]:
-        """Return all records that are kept, in the order of time, or a state and the *last* ones."""
-        state = self._before
-        kept = list(merge(self._events, self._frames, key=_number))
-        if last is not None and len(kept) > last:
-            state = state.copy()
-            for each in kept[:-last]:
-                state.take(each)
-            kept = kept[-last:]
-        return [*state.records(), *merge(kept, sorted(self._newest.values(), key=_number), key=_number)]
+    def records(self) -> list[LiveRecord]:
+        """Return the state, then all records that are kept, in the order of time."""
+        newest = sorted(self._newest.values(), key=_number)
+        return [*self._before.records(), *merge(self._events, self._frames, newest, key=_number)]

@@ -34,9 +34,8 @@ class RecordedView:
             "can": self._commands.names,
         }
 
-    def records(self, last: int | None = None) -> list[LiveRecord]:
-        """Return all records, however many are asked for: nothing comes after them."""
-        del last
+    def records(self) -> list[LiveRecord]:
+        """Return all records."""
         return self._records
 
     def begin(self) -> Delivery:

@@ -2,8 +2,10 @@
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
+
+from jacaros.inspector.scene import RobotView
 
 LONGEST = 200_000
 """Characters of a record; the texts of a longer one are cut to `_CUT` characters."""
@@ -31,6 +33,35 @@ class LiveRecord:
         if self._text is None:
             self._text = json_text(self.data)
         return self._text
+
+
+class FrameRecord(LiveRecord):
+    """A frame: the robots at a moment. Most are replaced by a newer one before a page needs their data.
+
+    Args:
+        number: of the record.
+        t: seconds since the run began.
+        robots: the robots.
+    """
+
+    __slots__ = ("robots", "t")
+
+    def __init__(self, number: int, t: float, robots: Sequence[RobotView]) -> None:
+        super().__init__(number, {"kind": "frame"}, "frame")
+        self.t, self.robots = t, robots
+
+    @property
+    def text(self) -> str:
+        """The record as JSON."""
+        if self._text is None:
+            rows = [_row(robot) for robot in self.robots]
+            self._text = json_text({"kind": "frame", "t": round(self.t, 3), "robots": rows})
+        return self._text
+
+
+def _row(robot: RobotView) -> list[Any]:
+    _, x, y, yaw, battery, charging, touching = robot
+    return [round(x, 4), round(y, 4), round(yaw, 4), round(battery, 2), int(charging), int(touching)]
 
 
 def json_text(data: Any) -> str:

@@ -34,7 +34,7 @@ LARGEST = 64 * 1024
 """Bytes of a command."""
 BURST = 20
 """Commands of one page between two beats."""
-PIECES = 4
+PIECES = 6
 """Messages to one page between two beats, while it receives what happened before it came."""
 PATIENCE = 20.0
 """Seconds in which a page must take a message."""

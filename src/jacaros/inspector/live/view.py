@@ -35,7 +35,7 @@ async def view(
     from jacaros.inspector.live.run_view import Place, RunView  # here: the server is for those who want one
 
     shown = RunView(mas.system, Place(address, port, token))
-    watch = watch_of(mas.system, [shown.watcher])
+    watch = watch_of(mas.system, [shown.watcher], live=True)
     watch.start()
     end_prints = mas.on_print(watch.text)
     shown.begin(watch)
