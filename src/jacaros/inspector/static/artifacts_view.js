@@ -5,6 +5,7 @@ import { Picker } from "./picker.js";
 import { keyed, moveByArrows } from "./refill.js";
 import { Section, age } from "./section.js";
 
+const STANDARD = new Set(["Blackboard", "Console", "ManualRepository", "SystemArtifact", "WorkspaceArtifact"]);  // of every workspace
 const LAST = 8;  // operations and signals that are shown
 
 /** The artifacts: a list of all of them, and properties, operations and observers of the selected one. */
@@ -37,7 +38,8 @@ export class ArtifactsView {
     const { artifacts, version } = this.environment, { artifact, robot } = this.context.selection.current;
     if (this.listed !== version) {
       this.listed = version;
-      this.items = [...artifacts.values()].map((each) => ({ name: each.path, path: each.path, artifact: each }));
+      const rank = ({ artifact: each }) => (STANDARD.has(each.type) ? 1 : 0);
+      this.items = [...artifacts.values()].map((each) => ({ name: each.path, path: each.path, artifact: each })).sort((a, b) => rank(a) - rank(b));
     }
     const wanted = artifact ?? (robot && this.items.find((each) => each.artifact.robot === robot)?.path);
     if (artifacts.has(wanted)) this.chosen = wanted;

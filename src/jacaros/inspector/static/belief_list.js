@@ -16,6 +16,7 @@ export class BeliefList {
     this.filter.setAttribute("aria-label", "Filter beliefs");
     this.filter.addEventListener("input", () => context.time.notify());
     this.head = [this.filter];
+    this.hideEmpty = true;
   }
 
   count(mind, t) { return mind.beliefs.at(t).size; }
@@ -28,11 +29,12 @@ export class BeliefList {
   nodes(mind, t) {
     const wanted = this.filter.value.trim().toLowerCase(), fits = ({ belief }) => belief.toLowerCase().includes(wanted);
     const held = mind.beliefsAt(t).filter(fits), gone = mind.beliefsGone(t).filter(fits);
+    const before = replaced(held, gone, mind, t);
     const rank = (belief) => (mind.isRecent(belief, t) ? 0 : 1);
     held.sort((a, b) => rank(a) - rank(b));
     const rows = [
-      ...gone.map((belief) => this.row(mind, { ...belief, since: belief.t }, "gone")),
-      ...held.slice(0, MOST).map((belief) => this.row(mind, belief, rank(belief) ? "" : "recent")),
+      ...gone.filter((each) => !before.has(functor(each))).map((belief) => this.row(mind, { ...belief, since: belief.t }, "gone")),
+      ...held.slice(0, MOST).map((belief) => this.row(mind, belief, rank(belief) ? "" : "recent", before.get(functor(belief)))),
     ];
     this.filter.hidden = mind.beliefs.at(t).size < 6 && !wanted;
     if (!rows.length) return [element("p", "empty", wanted ? `No belief contains “${wanted}”.` : "No beliefs.")];
@@ -41,10 +43,11 @@ export class BeliefList {
     return held.length > MOST ? [list, element("p", "empty", `${held.length - MOST} more: use the filter.`)] : [list];
   }
 
-  row(mind, belief, kind) {
+  row(mind, belief, kind, before) {
     const { belief: text, since } = belief, key = `belief ${kind === "gone" ? "-" : ""}${text}`;
     const main = text.replace(ANNOTATION, ""), sign = { recent: "+", gone: "−" }[kind] ?? "";
-    const name = element("code", "", main);
+    const name = element("span", "", element("code", "", main));
+    if (before && kind === "recent") name.append(element("s", "was", before.belief.replace(ANNOTATION, "")));
     const row = button("belief", () => this.choose(mind, belief), element("span", "sign", sign), name, element("span", "by", ...this.by(belief, text)), age(since));
     row.title = `${kind === "gone" ? "removed: " : ""}${text}`;
     const item = element("li", kind, keyed(key, row));
@@ -57,7 +60,7 @@ export class BeliefList {
 
   by({ cause, file, line, since }, text) {
     if (file) return [placeName({ file, line })];
-    const source = /source\(([^)]*)\)/.exec(text)?.[1];
+    const artifact = /artifact_name\(([^)]*)\)/.exec(text)?.[1], source = artifact ?? /source\(([^)]*)\)/.exec(text)?.[1];
     if (source && source !== "self") return [`from ${source === "percept" ? "perception" : source}`];
     return [cause ? "" : since === 0 ? "initial" : ""];
   }
@@ -70,3 +73,13 @@ export class BeliefList {
     } else this.context.selection.choose({ agent: mind.name });
   }
 }
+
+/** By functor: the belief that went when the only recent one came, which so is its new value. */
+function replaced(held, gone, mind, t) {
+  const came = new Map(), before = new Map();
+  for (const each of held) if (mind.isRecent(each, t)) came.set(functor(each), (came.get(functor(each)) ?? 0) + 1);
+  for (const each of gone) if (came.get(functor(each)) === 1) before.set(functor(each), each);
+  return before;
+}
+
+function functor({ belief }) { return belief.replace(ANNOTATION, "").split("(")[0]; }

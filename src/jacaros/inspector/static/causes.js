@@ -2,6 +2,7 @@ import { indexAt } from "./track.js";
 
 const LONGEST = 60;  // links of a chain that are shown
 const MOST = 120;  // effects that are shown
+const LIMIT = 100000;  // links that are kept: a live page may be open for days
 
 /** The links between what happened: by id, back to what led to one, and forward to what it led to. */
 export class Causes {
@@ -30,9 +31,20 @@ export class Causes {
     this.links.set(link.id, link);
     this.times.push(Math.max(link.t, this.times[this.times.length - 1] ?? 0));
     this.order.push(link.id);
-    if (!link.parent) return;
-    if (!this.effects.has(link.parent)) this.effects.set(link.parent, []);
-    this.effects.get(link.parent).push(link.id);
+    if (link.parent) {
+      if (!this.effects.has(link.parent)) this.effects.set(link.parent, []);
+      this.effects.get(link.parent).push(link.id);
+    }
+    if (this.order.length > LIMIT) this.drop(LIMIT >> 2);
+  }
+
+  /** Drop the oldest links. */
+  drop(count) {
+    this.times.splice(0, count);
+    for (const id of this.order.splice(0, count)) {
+      this.links.delete(id);
+      this.effects.delete(id);
+    }
   }
 
   endOperation(t, data) {

@@ -32,13 +32,13 @@ export class CausesView {
   story(link, t) {
     const chain = this.causes.chain(link.id), forward = this.causes.forward(link.id, t);
     const back = button("plain back", () => this.context.selection.choose({ ...this.context.selection.current, cause: undefined }), "← What happened lately");
-    const nodes = [keyed("back", back), element("h3", "asked", linkWords(link, this.minds)), this.place(link, "asked")];
+    const nodes = [keyed("back", back), element("h3", "asked", linkWords(link, this.minds, t)), this.place(link, "asked")];
     if (link.kind === "event") nodes.push(...this.decision(link));
     nodes.push(element("h4", "", "Because of"));
-    if (chain.length > 1) nodes.push(element("ol", "chain", ...chain.slice(1).map((each) => this.item(each))));
+    if (chain.length > 1) nodes.push(element("ol", "chain", ...chain.slice(1).map((each) => this.item(each, t))));
     else nodes.push(element("p", "empty", link.parent ? "The cause was not recorded." : "Nothing before it: the chain begins here."));
     nodes.push(element("h4", "", "Led to"));
-    if (forward.length) nodes.push(element("ol", "effects", ...forward.map(({ link: each, depth }) => this.item(each, depth))));
+    if (forward.length) nodes.push(element("ol", "effects", ...commandsJoined(forward).map((each) => this.item(each.link, t, each))));
     else nodes.push(element("p", "empty", "Nothing up to this moment."));
     nodes.push(...this.beliefs(link));
     return nodes;
@@ -80,9 +80,9 @@ export class CausesView {
     return [element("h4", "", "Beliefs that it changed"), element("ul", "changed", ...beliefs.map(({ op, belief, agent }) => element("li", "", `${agent}: `, element("code", "", `${op}${belief}`))))];
   }
 
-  item(link, depth = 0) {
+  item(link, t, { depth = 0, more = 0, until = 0 } = {}) {
     const selected = this.context.selection.has({ cause: link.id });
-    const row = button("link", () => this.choose(link), element("time", "", clock(link.t)), element("span", "words", linkWords(link, this.minds)));
+    const row = button("link", () => this.choose(link), element("time", "", clock(link.t)), element("span", "words", `${linkWords(link, this.minds, t)}${more ? `, and ${more} more until ${clock(until)}` : ""}`));
     row.dataset.kind = link.kind;
     const place = linkPlace(link, this.minds);
     const made = element("li", selected ? "selected" : "", keyed(`link ${link.id}`, row), ...(place ? [placeButton(this.context, place, `link ${link.id}`)] : []));
@@ -97,10 +97,10 @@ export class CausesView {
 
   /** The last links of what is selected, or of the run. */
   lately(selected, t) {
-    const fits = this.filter(selected, t), found = this.causes.last(t, LATELY, fits);
+    const fits = this.filter(selected, t), found = this.causes.last(t, LATELY, onceForEach(fits));
     const title = element("h3", "asked", selected.agent ? `What ${selected.agent} did lately` : selected.robot ? `What ${selected.robot} did lately` : "What happened lately");
     if (!found.length) return [title, element("p", "empty", "Nothing up to this moment.")];
-    return [title, element("p", "empty", "Choose a line for its causes and effects."), element("ol", "effects", ...found.map((each) => this.item(each)))];
+    return [title, element("p", "empty", "Choose a line for its causes and effects."), element("ol", "effects", ...found.map((each) => this.item(each, t)))];
   }
 
   filter({ agent, intention, artifact, robot }, t) {
@@ -113,4 +113,28 @@ export class CausesView {
     }
     return (link) => LEAVES.has(link.kind);
   }
+}
+
+/** Effects with the commands of one operation joined: the first one knows how many `more` there were, `until` when. */
+function commandsJoined(effects) {
+  const joined = [], commands = new Map();
+  for (const effect of effects) {
+    const { link } = effect, first = link.kind === "command" ? commands.get(`${link.parent} ${link.topic}`) : undefined;
+    if (first) Object.assign(first, { more: (first.more ?? 0) + 1, until: link.t });
+    else joined.push(effect);
+    if (link.kind === "command" && !first) commands.set(`${link.parent} ${link.topic}`, effect);
+  }
+  return joined;
+}
+
+/** Accept what `fits` accepts, but of the commands of one operation only the first that is asked for. */
+function onceForEach(fits) {
+  const known = new Set();
+  return (link) => {
+    if (!fits(link)) return false;
+    const key = link.kind === "command" ? `${link.parent} ${link.topic}` : null;
+    if (known.has(key)) return false;
+    if (key) known.add(key);
+    return true;
+  };
 }

@@ -11,7 +11,7 @@ export class ControlsView {
   constructor(root, context, { debugging, minds }) {
     Object.assign(this, { root, context, debugging });
     const { actions, commands } = context;
-    this.pause = actions.button("", "", () => commands.send(this.isPaused ? "continue" : "pause"), "plain pause");
+    this.pause = actions.button("", "", () => commands.send(this.isPaused ? "continue" : "pause"), "plain pause-run");
     this.what = element("select", "", ...Object.entries(STEPS).map(([what, title]) => new Option(title, what)));
     this.what.setAttribute("aria-label", "What a step is");
     this.step = actions.button("Step", "Continue for one step", () => commands.send("step", this.stepArgs()), "plain");
@@ -64,8 +64,9 @@ export class ControlsView {
     this.stamp = stamp;
     this.state.hidden = state.state !== "paused";
     if (this.state.hidden) return;
-    const words = [element("b", "", "❚❚ Paused"), state.why && state.why !== "pause" ? ` at ${state.why}` : ""];
-    if (state.agent) words.push(`, before ${state.file ? "a step" : "an event"} of ${state.agent} `);
+    const why = state.why && state.why !== "pause" ? ` (${state.why.replace(/\S*\/(?=\S+:\d)/, "")})` : "";
+    const words = [element("b", "", "❚❚ Paused"), why];
+    if (state.agent) words.push(` before ${state.file ? "a step" : "an event"} of ${state.agent} `);
     if (state.file) words.push(placeButton(this.context, state, "held"));
     const parts = [element("p", "", ...words)];
     if (state.cannot?.length) parts.push(element("p", "", "Not paused:"), element("ul", "", ...state.cannot.map((each) => element("li", "", each))));

@@ -2,22 +2,20 @@ import { Fold } from "./fold.js";
 import { Track, indexAt } from "./track.js";
 
 const RECENT = 2;  // seconds during which a new value is a recent one
+const LIMIT = 5000;  // operations of one artifact that are kept
 
 /** The artifacts of a run, by path, and the ROS graph around its node. */
 export class Environment {
   constructor() {
     this.artifacts = new Map();
     this.graphs = new Track();
-    this.operations = new Map();  // by the id of the link
     this.version = 0;  // grows with each artifact
   }
 
   add(t, event, data) {
     if (event === "graph") this.graphs.add(t, data);
     else if (OF_ARTIFACTS.has(event) && data.artifact) {
-      const artifact = this.artifact(data.artifact);
-      artifact.add(t, event, data);
-      if (event === "operation") this.operations.set(data.id, artifact.operation(data.id));
+      this.artifact(data.artifact).add(t, event, data);
     }
   }
 
@@ -53,8 +51,6 @@ export class Artifact {
 
   /** Whether the artifact is there at time `t`. */
   isThere(t) { return (this.states.at(t) ?? this.states.values[0] ?? "made") === "made"; }
-
-  operation(id) { return this.operations.get(id); }
 
   /** The properties at time `t`: name, values, since, cause. */
   propertiesAt(t) { return [...this.properties.at(t).values()]; }
@@ -101,6 +97,10 @@ const TAKE = {
       artifact.operations.set(data.id, made);
       artifact.began.push(made);
       artifact.beganTimes.push(t);
+    }
+    if (artifact.began.length > LIMIT) {
+      artifact.beganTimes.splice(0, LIMIT >> 2);
+      for (const { id } of artifact.began.splice(0, LIMIT >> 2)) artifact.operations.delete(id);
     }
     const known = artifact.operations.get(data.id);
     if (known && data.state !== "began") Object.assign(known, { ended: t, outcome: data.state, reason: data.reason });

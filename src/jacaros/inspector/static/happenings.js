@@ -14,7 +14,7 @@ const WORDS = {
   fell: () => "fell down a cliff",
   battery_empty: () => "battery empty", command_timeout: () => "no commands for a while: stopped",
   log: (d) => d.text, intervention: (d) => d.what,
-  debug: (d) => (d.state === "paused" ? `paused${d.why ? `: ${d.why}` : ""}` : "continues"),
+  debug: (d) => (d.state === "paused" ? `paused${d.why && d.why !== "pause" ? `: ${d.why}` : ""}` : "continues"),
   ended: (d) => `the run ended with code ${d.code}`,
 };
 

@@ -2,9 +2,9 @@ import { button, clock, element } from "./elements.js";
 import { placeName } from "./link_words.js";
 import { keyed } from "./refill.js";
 
-/** A button that shows a line of a program. */
+/** A button that shows a line of a program; nothing for an unknown place. */
 export function placeButton(context, place, key) {
-  if (!place?.file || !place.line) return element("span");
+  if (!place?.file || !place.line) return "";
   const made = button("jump place", () => {
     context.selection.choose({ ...context.selection.current, file: place.file, line: place.line });
     context.open("program");
@@ -21,7 +21,7 @@ export function showWhy(context, what) {
 
 /** A button that shows why something happened. */
 export function whyButton(context, what, key, text = "Why?") {
-  return keyed(`${key} why`, button("jump why", () => showWhy(context, what), text));
+  return keyed(`${key} why`, button("jump ask", () => showWhy(context, what), text));
 }
 
 /** A moment that can be clicked to go there. */

@@ -8,13 +8,13 @@ const WORDS = {
   signal: (link) => `signal ${within(link)}${of(link.artifact)}`,
   event: (link, minds) => `event ${link.what}${handled(link, minds)}`,
   act: (link, minds) => `plan step ${stepText(link, minds)}`,
-  operation: (link) => `operation ${link.call ?? within(link)}${of(link.artifact)}${outcome(link)}`,
+  operation: (link, minds, t) => `operation ${link.call ?? within(link)}${of(link.artifact)}${outcome(link, t)}`,
   command: commandText,
   message: (link) => (link.performative ? `message from ${link.from} to ${link.to}: ${link.performative} ${link.content}` : link.what),
 };
 
-/** A link in words; `minds` knows the programs. */
-export function linkWords(link, minds) { return (WORDS[link.kind] ?? ((each) => `${each.kind} ${each.what}`))(link, minds); }
+/** A link in words, as it was at time `t`; `minds` knows the programs. */
+export function linkWords(link, minds, t) { return (WORDS[link.kind] ?? ((each) => `${each.kind} ${each.what}`))(link, minds, t); }
 
 /** Where in a program a link arose: file and line; null when it did elsewhere. */
 export function linkPlace(link, minds) {
@@ -62,9 +62,11 @@ function stepText(link, minds) {
   return `${single ? written : what}${plan ? ` of ${planName(plan)}` : ""}`;
 }
 
-function outcome({ outcome: end, reason, ended, t }) {
+function outcome({ outcome: end, reason, ended, t: began }, t) {
+  if (!end) return "";
+  if (ended > t) return ", still running";
   if (end === "failed") return `, failed${reason ? `: ${reason}` : ""}`;
-  return end === "done" && ended - t >= 0.05 ? `, done after ${(ended - t).toFixed(1)} s` : "";
+  return ended - began >= 0.05 ? `, done after ${(ended - began).toFixed(1)} s` : "";
 }
 
 function commandText(link) {
@@ -73,6 +75,8 @@ function commandText(link) {
   if (!speeds.length && !/cmd_vel/.test(topic)) return `message published on ${topic}${text}`;
   const forward = Number(speeds.find((each) => each[1] !== undefined)?.[1] ?? 0);
   const turning = Number(speeds.find((each) => each[2] !== undefined)?.[2] ?? 0);
-  const turn = turning ? `, turning ${turning > 0 ? "left" : "right"} at ${Math.abs(turning).toFixed(2)} rad/s` : "";
-  return forward || turning ? `wheel command ${forward.toFixed(2)} m/s${turn}` : "wheel command: stand still";
+  const motions = [];
+  if (Math.abs(forward) >= 0.005) motions.push(`${forward.toFixed(2)} m/s`);
+  if (Math.abs(turning) >= 0.05) motions.push(`turn ${turning > 0 ? "left" : "right"} at ${Math.abs(turning).toFixed(2)} rad/s`);
+  return `wheel command${motions.length ? ` ${motions.join(", ")}` : ": stand still"}`;
 }

@@ -17,6 +17,8 @@ export class Log {
     if (event === "world") for (const robot of data.robots ?? []) this.robots.add(robot.name);
     const several = this.robots.size > 1;
     if (event === "text") this.enter({ t, who: data.agent, text: data.text, sort: "" });
+    // A run begins with a record that it is not paused.
+    if (event === "debug" && !this.entries.length && data.state !== "paused") return;
     const words = inWords(event, data, several), sort = sortOf(event, data);
     if (words) this.enter({ t, who: "", text: words, sort: sort ?? "world", robot: data.robot });
     if (sort) this.marks.push({ t, sort, text: markText(event, data, several), leads: leads(data) });

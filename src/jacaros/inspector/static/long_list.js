@@ -26,7 +26,7 @@ export class LongList {
     this.root.addEventListener("scroll", () => this.show());
     this.root.addEventListener("keydown", (event) => this.press(event));
     this.sheet.addEventListener("click", (event) => {
-      const row = event.target.closest(".row");
+      const row = event.target.closest(".item");
       if (row) this.choose(this.items[Number(row.dataset.index)]);
     });
   }
@@ -53,7 +53,7 @@ export class LongList {
   }
 
   addRow() {
-    const row = element("div", "row");
+    const row = element("div", "item");
     row.setAttribute("role", "option");
     this.rows.push(row);
     this.sheet.append(row);

@@ -1,5 +1,7 @@
 import { indexAt } from "./track.js";
 
+const LIMIT = 20000;  // messages that are kept: a live page may be open for days
+
 /** Messages between agents, in the order in which they were sent. */
 export class Messages {
   constructor() {
@@ -19,6 +21,9 @@ export class Messages {
     this.all.push(made);
     this.times.push(t);
     this.byId.set(data.id, made);
+    if (this.all.length <= LIMIT) return;
+    this.times.splice(0, LIMIT >> 2);
+    for (const { id } of this.all.splice(0, LIMIT >> 2)) this.byId.delete(id);
   }
 
   countAt(t) { return indexAt(this.times, t) + 1; }

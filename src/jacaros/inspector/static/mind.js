@@ -3,6 +3,7 @@ import { PlanUse } from "./plan_use.js";
 import { Track, indexAt } from "./track.js";
 
 const RECENT = 2;  // seconds during which a change of a belief is a recent one
+const DECISIONS = 20000;  // moments of deliberations that are kept
 const OPEN = new Set(["pursued", "suspended"]);
 
 /** One agent over time: intentions, goals, beliefs, rules, mailbox, plans, and the lines that ran. */
@@ -18,9 +19,7 @@ export class Mind {
     this.goals = new Fold(changeGoal);
     this.mailbox = new Fold(changeMailbox);
     this.use = new PlanUse();
-    this.events = [];  // deliberations, the oldest first
-    this.eventTimes = [];
-    this.byIntention = new Map();  // deliberations by intention
+    this.decided = [];  // the moments of deliberations
     this.ran = new Map();  // by file: the moments at which lines ran first
   }
 
@@ -83,17 +82,8 @@ export class Mind {
   /** Messages that wait to be read at time `t`, the oldest first. */
   mailboxAt(t) { return [...this.mailbox.at(t).values()]; }
 
-  /** The deliberations of an intention up to time `t`, the oldest first. */
-  deliberations(intention, t) {
-    const all = this.byIntention.get(intention) ?? [];
-    return all.filter((each) => each.t <= t);
-  }
-
-  /** The last `count` deliberations up to time `t`, the newest first. */
-  lastEvents(t, count) {
-    const end = indexAt(this.eventTimes, t) + 1;
-    return this.events.slice(Math.max(0, end - count), end).reverse();
-  }
+  /** Number of deliberations up to time `t`. */
+  decisionsAt(t) { return indexAt(this.decided, t) + 1; }
 
   /** When a line ran first; undefined when it never did. */
   firstRun(file, line) { return this.ran.get(file)?.get(line); }
@@ -126,15 +116,11 @@ const TAKE = {
   },
   message(mind, t, data) { mind.mailbox.add(t, { ...data, t }); },
   deliberation(mind, t, data) {
-    const made = { ...data, t };
-    mind.events.push(made);
-    mind.eventTimes.push(t);
-    mind.use.add(t, made);
+    mind.decided.push(t);
+    if (mind.decided.length > DECISIONS) mind.decided.splice(0, DECISIONS >> 2);
+    mind.use.add(t, data);
     const plan = mind.plan(data.chosen);
     if (plan) mind.runLine(t, plan.file, plan.line);
-    if (data.intention === null || data.intention === undefined) return;
-    if (!mind.byIntention.has(data.intention)) mind.byIntention.set(data.intention, []);
-    mind.byIntention.get(data.intention).push(made);
   },
   cause(mind, t, data) { if (data.kind === "act") mind.runLine(t, data.file, data.line); },
 };

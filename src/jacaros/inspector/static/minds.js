@@ -38,8 +38,11 @@ export class Minds {
   /** Lines of a file, as it was read last; undefined when it is unknown. */
   lines(file) { return this.sources.get(file)?.at(-1); }
 
-  /** The text of line `line` of `file`, without blanks around it; "" when it is unknown. */
-  lineText(file, line) { return this.lines(file)?.[line - 1]?.trim().replace(/[;.]$/, "") ?? ""; }
+  /** The text of line `line` of `file`, without blanks around it and comments; "" when it is unknown. */
+  lineText(file, line) {
+    const written = this.lines(file)?.[line - 1] ?? "";
+    return written.replace(/\/\/.*$/, "").trim().replace(/[;.]$/, "");
+  }
 
   /** A plan of an agent: id, label, trigger, context, file, line, end; undefined when it is unknown. */
   plan(agent, id) { return this.agents.get(agent)?.plan(id); }

@@ -5,16 +5,24 @@ import { keyed } from "./refill.js";
 
 /** The plans of an agent: how often each was chosen and refused, and why. */
 export class PlanList {
-  constructor(context) { this.context = context; }
+  constructor(context) {
+    this.context = context;
+    this.hideEmpty = true;
+  }
 
   count(mind, t) { return mind.program(t).plans.length; }
 
-  stamp(mind, t) { return `${mind.programs.since(t) ?? 0} ${mind.use.countAt(t)} ${this.context.selection.current.plan ?? ""}`; }
+  stamp(mind, t) { return `${mind.programs.since(t) ?? 0} ${mind.decisionsAt(t)} ${this.context.selection.current.plan ?? ""}`; }
 
   nodes(mind, t) {
     const { plans } = mind.program(t);
-    if (!plans.length) return [element("p", "empty", "No plans were recorded.")];
-    return plans.map((plan) => this.plan(mind, plan, t));
+    // What a program includes comes below what it says itself.
+    const own = plans.filter(({ file }) => !isIncluded(file)), included = plans.filter(({ file }) => isIncluded(file));
+    const nodes = own.map((plan) => this.plan(mind, plan, t));
+    if (!included.length) return nodes;
+    const rest = element("details", "included", element("summary", "", `${included.length} included plans`), ...included.map((plan) => this.plan(mind, plan, t)));
+    rest.open = !own.length || included.some(({ id }) => this.context.selection.has({ agent: mind.name, plan: id }));
+    return [...nodes, keyed("included", rest)];
   }
 
   plan(mind, plan, t) {
@@ -60,3 +68,5 @@ function counts(chosen, refused) {
   made.title = `chosen ${chosen} times, refused ${refused} times`;
   return made;
 }
+
+function isIncluded(file) { return String(file ?? "").startsWith("$"); }

@@ -1,52 +1,64 @@
 import { indexAt } from "./track.js";
 
+const LIMIT = 5000;  // choices and refusals of one plan that are kept; earlier ones are counted only
+
 /** How often the plans of an agent were chosen and refused, up to any moment. */
 export class PlanUse {
   constructor() {
-    this.plans = new Map();  // by plan: chosen and refused, in the order of time
-    this.times = [];
+    this.plans = new Map();  // by plan: chosen and refused
+    this.count = 0;  // of deliberations
   }
-
-  /** Number of deliberations up to time `t`. */
-  countAt(t) { return indexAt(this.times, t) + 1; }
 
   /** Count a deliberation. */
   add(t, { id, trigger, chosen, options = [] }) {
-    this.times.push(t);
-    if (chosen !== null && chosen !== undefined) {
-      const plan = this.of(chosen);
-      plan.chosenTimes.push(t);
-      plan.chosen.push({ t, id, trigger });
-    }
-    for (const option of options) {
-      const plan = this.of(option.plan);
-      plan.refusedTimes.push(t);
-      plan.refused.push({ t, id, trigger, why: option.why });
-    }
+    this.count += 1;
+    if (chosen !== null && chosen !== undefined) this.of(chosen).chosen.add(t, { t, id, trigger });
+    for (const option of options) this.of(option.plan).refused.add(t, { t, id, trigger, why: option.why });
   }
 
   of(plan) {
-    if (!this.plans.has(plan)) this.plans.set(plan, { chosenTimes: [], chosen: [], refusedTimes: [], refused: [] });
+    if (!this.plans.has(plan)) this.plans.set(plan, { chosen: new Counted(), refused: new Counted() });
     return this.plans.get(plan);
   }
 
   /** How often a plan was chosen up to time `t`. */
-  chosen(plan, t) { return indexAt(this.plans.get(plan)?.chosenTimes ?? [], t) + 1; }
+  chosen(plan, t) { return this.plans.get(plan)?.chosen.countAt(t) ?? 0; }
 
   /** How often a plan was refused up to time `t`. */
-  refused(plan, t) { return indexAt(this.plans.get(plan)?.refusedTimes ?? [], t) + 1; }
+  refused(plan, t) { return this.plans.get(plan)?.refused.countAt(t) ?? 0; }
 
   /** The last choice of a plan up to time `t`: t, id, trigger. */
-  lastChoice(plan, t) { return this.plans.get(plan)?.chosen[this.chosen(plan, t) - 1]; }
+  lastChoice(plan, t) { return this.plans.get(plan)?.chosen.upTo(t).at(-1); }
 
   /** The reasons for which a plan was refused up to time `t`, the newest first, with how often: why, count, last. */
   reasons(plan, t, most = 6) {
-    const reasons = new Map(), all = this.plans.get(plan)?.refused ?? [];
-    for (let i = this.refused(plan, t) - 1; i >= 0; i--) {
-      const known = reasons.get(all[i].why);
+    const reasons = new Map(), all = this.plans.get(plan)?.refused.upTo(t) ?? [];
+    for (const each of all.reverse()) {
+      const known = reasons.get(each.why);
       if (known) known.count += 1;
-      else if (reasons.size < most) reasons.set(all[i].why, { why: all[i].why, count: 1, last: all[i] });
+      else if (reasons.size < most) reasons.set(each.why, { why: each.why, count: 1, last: each });
     }
     return [...reasons.values()];
   }
+}
+
+/** Things in the order of time: the newest are kept, all are counted. */
+class Counted {
+  constructor() {
+    this.times = [];
+    this.all = [];
+    this.dropped = 0;
+  }
+
+  add(t, each) {
+    this.times.push(t);
+    this.all.push(each);
+    if (this.all.length <= LIMIT) return;
+    this.dropped += LIMIT >> 2;
+    this.times.splice(0, LIMIT >> 2);
+    this.all.splice(0, LIMIT >> 2);
+  }
+
+  countAt(t) { return this.dropped + indexAt(this.times, t) + 1; }
+  upTo(t) { return this.all.slice(0, indexAt(this.times, t) + 1); }
 }

@@ -11,12 +11,21 @@ export class ProgramView {
     Object.assign(this, { root, context, minds });
     this.files = element("select");
     this.files.setAttribute("aria-label", "File");
-    this.files.addEventListener("change", () => context.selection.choose({ ...this.agentOnly(), file: this.files.value }));
+    this.files.addEventListener("change", () => {
+      this.follow.checked = false;
+      context.selection.choose({ ...this.agentOnly(), file: this.files.value });
+    });
+    this.follow = element("input");
+    Object.assign(this.follow, { type: "checkbox", checked: true });
+    this.follow.addEventListener("change", () => {
+      this.seen = undefined;
+      if (this.follow.checked) context.selection.choose(this.agentOnly());
+    });
     this.whose = element("span", "whose");
     this.text = element("div", "listing");
     this.text.setAttribute("role", "list");
     this.legend = legend();
-    root.append(element("div", "program-head", this.files, this.whose), this.text, this.legend);
+    root.append(element("div", "program-head", this.files, this.whose, element("label", "only", this.follow, " follow the current step")), this.text, this.legend);
     moveByArrows(this.text, ".number");
     this.lines = [];
     context.commands.onChange(() => { this.drawn = undefined; });
@@ -50,7 +59,7 @@ export class ProgramView {
     if (this.minds.sources.has(file)) return file;
     const [first] = agents, plans = first?.program(t).plans ?? [];
     const own = first?.intentionsAt(t)[0]?.stack?.at(-1)?.file ?? plans.find((plan) => this.minds.sources.has(plan.file))?.file;
-    if (this.minds.sources.has(this.shown) && agents.length > 1) return this.shown;
+    if (this.minds.sources.has(this.shown) && (agents.length > 1 || !this.follow.checked)) return this.shown;
     return this.minds.sources.has(own) ? own : this.minds.sources.keys().next().value;
   }
 
@@ -94,7 +103,7 @@ export class ProgramView {
 
   mark(file, agents, t) {
     const { selection, breakpoints } = this.context, { line } = selection.current;
-    const stamp = `${file} ${breakpoints.version} ${line} ${agents.map((mind) => `${mind.name} ${mind.stamp(t)} ${mind.use.countAt(t)}`).join()}`;
+    const stamp = `${file} ${breakpoints.version} ${line} ${agents.map((mind) => `${mind.name} ${mind.stamp(t)} ${mind.decisionsAt(t)}`).join()}`;
     if (stamp === this.marked) return;
     this.marked = stamp;
     const marks = marksOf(file, agents, t), chosen = selection.current.file === file ? line : undefined;
@@ -103,13 +112,13 @@ export class ProgramView {
     setText(this.whose, runners.length === 1 ? `as ${runners[0].name} runs it` : runners.length ? `as ${runners.length} agents run it` : "");
   }
 
-  markLine(line, { current, below, ran, plan }, { number, isChosen, isHeld }) {
-    const name = `code-line ${plan ?? ""} ${ran ? "ran" : ""} ${current ? "current" : below ? "below" : ""} ${isChosen ? "chosen" : ""} ${isHeld ? "held" : ""}`;
+  markLine(line, { current, under, ran, plan }, { number, isChosen, isHeld }) {
+    const name = `code-line ${plan ?? ""} ${ran ? "ran" : ""} ${current ? "current" : under ? "under" : ""} ${isChosen ? "chosen" : ""} ${isHeld ? "held" : ""}`;
     if (line.className === name) return;
     line.className = name;
     const sign = line.children[1];
-    setText(sign, current ? "▶" : below ? "▷" : "");
-    sign.title = current ? `current step of ${[...current].join(", ")}` : below ? `waits for a goal above it: ${[...below].join(", ")}` : "";
+    setText(sign, current ? "▶" : under ? "▷" : "");
+    sign.title = current ? `current step of ${[...current].join(", ")}` : under ? `waits for a goal above it: ${[...under].join(", ")}` : "";
     if (line.firstElementChild.tagName === "BUTTON") {
       line.firstElementChild.setAttribute("aria-pressed", String(isHeld));
       line.firstElementChild.setAttribute("aria-label", `Breakpoint on line ${number}${current ? ", current line" : ""}`);
@@ -117,12 +126,25 @@ export class ProgramView {
     if (current) line.setAttribute("aria-current", "step"); else line.removeAttribute("aria-current");
   }
 
-  /** Scroll to the selected line, once. */
+  /** Scroll to the selected line once, and to the current line whenever it is another one. */
   reveal(file) {
-    const { line, file: wanted } = this.context.selection.current, key = `${wanted}:${line}`;
-    if (key === this.revealed) return;
+    const { line, file: wanted } = this.context.selection.current, key = `${wanted}:${line}`, isNew = key !== this.revealed;
     this.revealed = key;
-    if (wanted === file && line) this.lines[line - 1]?.scrollIntoView({ block: "center" });
+    if (wanted === file && line) {
+      if (isNew) this.scrollTo(this.lines[line - 1]);
+      return;
+    }
+    const current = this.follow.checked ? this.lines.findIndex((each) => each.classList.contains("current")) : -1;
+    if (current < 0 || this.seen === `${file}:${current}`) return;
+    this.seen = `${file}:${current}`;
+    this.scrollTo(this.lines[current]);
+  }
+
+  /** Scroll the panel, but not the page, so that a line is in the middle. */
+  scrollTo(line) {
+    if (!line) return;
+    const box = line.getBoundingClientRect(), outer = this.root.getBoundingClientRect();
+    this.root.scrollTop += box.top - outer.top - (outer.height - box.height) / 2;
   }
 }
 
@@ -138,7 +160,7 @@ function marksOf(file, agents, t) {
     }
     for (const [line, first] of mind.ran.get(file) ?? []) if (first <= t) at(line).ran = true;
     for (const { stack = [] } of mind.intentionsAt(t)) {
-      stack.forEach((level, n) => { if (level.file === file) markStep(at(level.line), n === stack.length - 1 ? "current" : "below", mind.name); });
+      stack.forEach((level, n) => { if (level.file === file) markStep(at(level.line), n === stack.length - 1 ? "current" : "under", mind.name); });
     }
   }
   return marks;

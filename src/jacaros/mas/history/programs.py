@@ -11,6 +11,7 @@ from jacaros.bdi.mind import Mind
 from jacaros.bdi.state.plan import Plan
 from jacaros.bdi.state.plan_library import ProgramPlans
 from jacaros.bdi.state.rule import Rule
+from jacaros.mas.history.words import named
 from jacaros.terms.text import text
 
 Tell = Callable[[str, Mapping[str, Any]], None]
@@ -90,7 +91,7 @@ def _plan(plan: Plan, number: int) -> dict[str, Any]:
     return {
         "id": number,
         "label": text(plan.label),
-        "trigger": format_term(node.trigger),
+        "trigger": named(format_term(node.trigger)),
         "context": "" if node.context is None else _written(node.context),
         "file": plan.file,
         "line": 0 if span is None else span.line,
