@@ -7,17 +7,33 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
+from jacaros.errors import UsageError
 from jacaros.inspector.line_format import CompressedLines, Lines
 from jacaros.inspector.recording import VERSION, Frame, Recording
 from jacaros.inspector.recording_file import Format, RecordingFile
 from jacaros.inspector.scene import RobotView
+from jacaros.ros.message import type_of
 
+MCAP = ".mcap"
 LIMIT = 500_000_000
 """Bytes that a recording may have."""
 
 
 def format_of(path: Path) -> Callable[[], Format]:
-    """Return what makes the format that the name of a file asks for."""
+    """Return what makes the format that the name of a file asks for.
+
+    Raises:
+        UsageError: the library for it is not installed.
+    """
+    if path.suffix == MCAP:
+        try:
+            from jacaros.inspector.mcap_format import McapFile
+        except ModuleNotFoundError as missing:
+            raise UsageError(
+                "error: mcap, which writes recordings of this kind, is not installed\n"
+                "  = help: pip install 'jacaros[mcap]', or --record RUN.jsonl"
+            ) from missing
+        return McapFile
     return CompressedLines if path.suffix == ".gz" else Lines
 
 
@@ -34,8 +50,12 @@ class Recorder:
         limit: bytes that the file and its older part may have together.  A file that has half of that becomes ``FILE.1``,
             in place of an older part, and a new one begins, with ``"part": 2``; `Recording.read` reads both.
 
+    Attributes:
+        takes_messages: whether messages of ROS are written, too, by `message`: to a file of MCAP.
+
     Raises:
         OSError: the file cannot be written.
+        UsageError: the library for its format is not installed.
     """
 
     def __init__(
@@ -46,6 +66,7 @@ class Recorder:
         limit: int = LIMIT,
     ) -> None:
         self.path = Path(path) if path is not None else None
+        self.takes_messages = self.path is not None and self.path.suffix == MCAP
         self.recording = Recording()
         self._keep = keep if keep is not None else path is None
         self._file: RecordingFile | None = None
@@ -98,6 +119,12 @@ class Recorder:
         if self._keep:
             self.recording.events.append((t, kind, dict(data)))
         self._write({"kind": "event", "t": _short(t), "event": kind, "data": data})
+
+    def message(self, t: float, topic: str, message: Any) -> None:
+        """A message of ROS that had an effect."""
+        if self.takes_messages:
+            kind = type_of(message)
+            self._write({"kind": "message", "t": _short(t), "topic": topic, "type": kind, "message": message})
 
     def close(self) -> None:
         """Write the last frame and close the file; closing twice does no harm."""

@@ -1,7 +1,7 @@
 """Looks at a running world many times a second of the run's clock, for a recorder and views."""
 
 from collections.abc import Callable, Mapping
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 from jacaros.clock import Clock, Timer
 from jacaros.inspector.scene import RobotView, Scene
@@ -25,6 +25,16 @@ class Watcher(Protocol):
 
     def event(self, t: float, kind: str, data: Mapping[str, Any]) -> None:
         """Something that happened."""
+
+
+@runtime_checkable
+class MessageWatcher(Protocol):
+    """A watcher that takes messages of ROS, too, while `takes_messages` is true."""
+
+    takes_messages: bool
+
+    def message(self, t: float, topic: str, message: Any) -> None:
+        """A message that had an effect."""
 
 
 class Watch:
@@ -65,6 +75,9 @@ class Watch:
             for happening in self._history.all():
                 self.event(*happening)
             self._stop_listening = self._history.listen(self.event)
+            for watcher in self.watchers:
+                if isinstance(watcher, MessageWatcher) and watcher.takes_messages:
+                    self._history.listen_to_messages(watcher.message)
             self._history.start()
 
     def _show_world(self, drawing: Mapping[str, Any]) -> None:

@@ -236,6 +236,19 @@ def constant(message: Any, name: str) -> Any:
         raise NameInvalid(f"{owner.__name__} has no constant {name}") from None
 
 
+def type_of(message: Any) -> str:
+    """Return the type of a message of any backend in full form, such as ``nav_msgs/msg/Odometry``."""
+    kind = type(message)
+    name: str | None = getattr(kind, "_type", None)
+    if isinstance(name, str):  # genpy: nav_msgs/Odometry
+        package, _, short = name.partition("/")
+        return f"{package}/msg/{short}"
+    name = getattr(kind, "__msgtype__", None) or kind.__name__.replace("__", "/")
+    if "/" in name:  # rosbags
+        return name
+    return f"{kind.__module__.partition('.')[0]}/msg/{name}"  # rclpy: nav_msgs.msg._odometry.Odometry
+
+
 def plain(value: Any) -> Any:
     """Turn a message of any backend into dictionaries, lists, numbers and texts, for records and people.
 

@@ -91,6 +91,7 @@ class History:
         self.events: deque[Happening] = deque(maxlen=kept)
         self._lasting: dict[tuple[object, ...], Happening] = {}
         self._listeners: tuple[Listener, ...] = ()
+        self._message_listeners: tuple[Callable[[float, str, Any], None], ...] = ()
         self._ends: list[Callable[[], None]] = []
         self._starts = 0
         self._agents: AgentRecords | None = None
@@ -104,6 +105,20 @@ class History:
 
         return end
 
+    def listen_to_messages(self, listener: Callable[[float, str, Any], None]) -> Callable[[], None]:
+        """Have *listener* called with time, topic and message of ROS of each message that has an effect, such as a belief
+        change that a plan handles, or an effect of an operation: a command; gives what ends that."""
+        self._message_listeners = (*self._message_listeners, listener)
+
+        def end() -> None:
+            self._message_listeners = tuple(each for each in self._message_listeners if each is not listener)
+
+        return end
+
+    def _hear_message(self, t: float, topic: str, message: Any) -> None:
+        for listener in self._message_listeners:
+            listener(t, topic, message)
+
     def start(self) -> None:
         """Begin to observe; each `start` needs a `stop`, and the last `stop` ends the observation."""
         self._starts += 1
@@ -111,6 +126,7 @@ class History:
             return
         self.record("run", run_data(self._system))
         self.surroundings = Surroundings(self._system, self.beginning, self.record)
+        self.surroundings.causes.with_effect = self._hear_message
         self._agents = AgentRecords(self._system, self.surroundings.causes, self.t, self.record)
         self._ends += [self.surroundings.start(), self._agents.start(), self._observe_world()]
 

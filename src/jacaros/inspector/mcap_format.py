@@ -1,0 +1,131 @@
+"""Records and messages of ROS in a file of MCAP, which Foxglove and ROS's tools open (the extra ``mcap``)."""
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from mcap.writer import CompressionType, Writer
+
+from jacaros.inspector.foxglove import LOG, SCENE, TRANSFORMS, log_line, scene, transforms
+from jacaros.ros.message import plain
+from jacaros.version import VERSION as JACAROS
+
+_CHUNK = 1 << 16
+"""Bytes after which what was written can be read, whatever becomes of the process."""
+_encode = json.JSONEncoder(ensure_ascii=False, check_circular=False, default=str).encode
+
+Data = Mapping[str, Any]
+Packed = tuple[str, str, Any]
+"""Topic, schema and content of a message of the file."""
+
+
+class McapFile:
+    """A file of MCAP (see `jacaros.inspector.recording_file.Format`).
+
+    Each kind of record has a channel ``/jacaros/KIND``, with JSON and a schema for it.  Robots are transforms, the world is
+    a scene and what agents print is a log, as Foxglove shows them.  Messages of ROS keep their topics and types, as JSON.
+    Times are those of records, from 0 on.
+    """
+
+    def __init__(self) -> None:
+        self._stream = _Taken()
+        self._writer = Writer(self._stream, chunk_size=_CHUNK, compression=CompressionType.ZSTD)  # type: ignore[arg-type]  # as much of a file as it needs
+        self._writer.start(profile="", library=f"jacaros {JACAROS}")
+        self._channels: dict[tuple[str, str], int] = {}
+        self._robots: list[str] = []
+        self._t = 0.0
+
+    def begin(self, header: Data) -> bytes:
+        """Return the beginning of a file, with the world."""
+        return self.pack([header])
+
+    def pack(self, records: Sequence[Data]) -> bytes:
+        """Return what the writer has made of the records; the last ones may wait for a chunk to be full."""
+        for record in records:
+            self._t = float(record.get("t", self._t))
+            moment = max(0, round(self._t * 1e9))
+            for topic, schema, content in self._packed(record):
+                channel = self._channel(topic, schema, content)
+                data = _encode(content).encode("utf-8", "backslashreplace")
+                self._writer.add_message(channel, moment, data, moment)
+        return self._stream.take()
+
+    def end(self) -> bytes:
+        """Return the index of the file."""
+        self._writer.finish()  # type: ignore[no-untyped-call]
+        return self._stream.take()
+
+    def _packed(self, record: Data) -> Iterator[Packed]:
+        kind = record["kind"]
+        if kind == "message":
+            yield record["topic"], record["type"], plain(record["message"])
+        elif kind == "event":
+            yield _topic(record["event"]), f"jacaros.{record['event']}", {"t": record["t"], **record["data"]}
+        else:
+            yield (
+                _topic(kind),
+                f"jacaros.{kind}",
+                {key: each for key, each in record.items() if key != "kind"},
+            )
+        if kind == "world":
+            self._robots = [str(robot["name"]) for robot in record["world"].get("robots", ())]
+            yield "/jacaros/scene", SCENE, scene(record["world"], self._t)
+        elif kind == "frame":
+            yield "/jacaros/transforms", TRANSFORMS, transforms(self._robots, record["robots"], self._t)
+        elif kind == "text":
+            yield "/jacaros/output", LOG, log_line(record["agent"], record["text"], self._t)
+
+    def _channel(self, topic: str, schema: str, content: Any) -> int:
+        known = self._channels.get((topic, schema))
+        if known is None:
+            shape = _encode({"title": schema, **_schema_of(content)}).encode("utf-8", "backslashreplace")
+            number = self._writer.register_schema(schema, "jsonschema", shape)
+            known = self._channels[topic, schema] = self._writer.register_channel(topic, "json", number)
+        return known
+
+
+def _topic(kind: str) -> str:
+    return f"/jacaros/{kind}"
+
+
+_TIMES = ("timestamp", "lifetime")
+_NAMES = {bool: "boolean", int: "number", float: "number", str: "string"}
+
+
+def _schema_of(content: Any, name: str = "") -> dict[str, Any]:
+    """Return a JSON schema that content like this one fits; fields that are null may be anything."""
+    if isinstance(content, Mapping):
+        title = {"title": "time" if name == "timestamp" else "duration"} if name in _TIMES else {}
+        fields = {str(key): _schema_of(each, str(key)) for key, each in content.items()}
+        return {"type": "object", **title, "properties": fields}
+    if isinstance(content, list | tuple):
+        kinds = [_schema_of(each) for each in content[:8]]
+        same = kinds and all(kind == kinds[0] for kind in kinds)
+        return {"type": "array", "items": kinds[0]} if same else {"type": "array"}
+    return {"type": _NAMES[type(content)]} if type(content) in _NAMES else {}
+
+
+class _Taken:
+    """A stream that passes on what is written to it."""
+
+    def __init__(self) -> None:
+        self._pieces: list[bytes] = []
+        self._size = 0
+
+    def write(self, data: bytes) -> int:
+        """Keep *data* until `take`."""
+        self._pieces.append(bytes(data))
+        self._size += len(data)
+        return len(data)
+
+    def tell(self) -> int:
+        """Return the number of bytes so far."""
+        return self._size
+
+    def flush(self) -> None:
+        """Nothing waits."""
+
+    def take(self) -> bytes:
+        """Return what was written since the last time."""
+        pieces, self._pieces = self._pieces, []
+        return b"".join(pieces)
