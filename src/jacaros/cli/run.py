@@ -96,7 +96,10 @@ SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
     help="Publish the state of agents and connection on /diagnostics (on real graphs it is).",
 )
 @click.option(
-    "--record", type=click.Path(path_type=Path), metavar="FILE", help="Record the run as JSON lines."
+    "--record",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="Record the run as JSON lines; FILE.gz is compressed, and FILE.mcap is for Foxglove (extra mcap).",
 )
 @click.option(
     "--record-limit",
