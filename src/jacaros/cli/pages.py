@@ -21,7 +21,7 @@ def serve_pages(mas: System, outputs: Outputs, console: Console) -> RunView:
     place = Place(outputs.view_address, outputs.view_port, outputs.view_token)
     view = RunView(mas, place)
     tell_address(view.address, place.address, console.log)
-    view.awaited = open_page(view.address)
+    view.awaited = open_page(view.address) is not None
     return view
 
 
@@ -36,12 +36,13 @@ def tell_address(page: str, address: str, log: Callable[[str, str], object]) -> 
         )
 
 
-def open_page(page: str) -> bool:
-    """Open a page in the user's browser, without waiting for it; return False on a machine without a display."""
+def open_page(page: str) -> threading.Thread | None:
+    """Open a page in the user's browser without waiting for it; return the thread, None on a machine without a display."""
     if not has_display():
-        return False
-    threading.Thread(target=webbrowser.open, args=(page,), name="jacaros browser", daemon=True).start()
-    return True
+        return None
+    opening = threading.Thread(target=webbrowser.open, args=(page,), name="jacaros browser", daemon=True)
+    opening.start()
+    return opening
 
 
 def has_display() -> bool:

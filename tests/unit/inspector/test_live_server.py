@@ -237,7 +237,9 @@ def test_a_huge_message_is_refused() -> None:
     serving(test)
 
 
-def test_many_connections_that_say_nothing_hold_up_nobody() -> None:
+def test_many_connections_that_say_nothing_hold_up_nobody(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(server, "ADMITTED", 10_000)
+
     async def test(mas: Mas, address: str) -> None:
         host, port = address.split("/")[2].split(":")
         idle = [await asyncio.open_connection(host, int(port)) for _ in range(300)]
@@ -246,6 +248,32 @@ def test_many_connections_that_say_nothing_hold_up_nobody() -> None:
             assert page.hello["title"]
         for _, writer in idle:
             writer.transport.abort()
+
+    serving(test)
+
+
+def test_a_flood_of_connections_is_turned_away(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(server, "ADMITTED", 20)
+
+    async def test(mas: Mas, address: str) -> None:
+        host, port = address.split("/")[2].split(":")
+
+        async def turned_away() -> bool:
+            reader, writer = await asyncio.open_connection(host, int(port))
+            writer.write(b"GET / HTTP/1.1\r\nHost: localhost\r\n\r\n")
+            try:
+                return not await asyncio.wait_for(reader.read(), PATIENCE)
+            except ConnectionError:
+                return True
+            finally:
+                writer.transport.abort()
+
+        away = await asyncio.gather(*(turned_away() for _ in range(60)))
+        assert 20 <= away.count(True) < 60
+        await counts_on(mas)
+        async with asyncio.timeout(PATIENCE):
+            while await turned_away():  # a second later there is room again
+                await counts_on(mas, 1)
 
     serving(test)
 

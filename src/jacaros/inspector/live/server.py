@@ -30,6 +30,8 @@ LIVE = "live"
 """Path of the WebSocket below the token."""
 CONNECTIONS, PAGES = 64, 16
 """Connections at a time, and those of them that are pages."""
+ADMITTED = 200
+"""Connections in a second: a page loads all of its modules with fewer, and a flood of them leaves the run its turns."""
 LARGEST = 64 * 1024
 """Bytes of a command."""
 BURST = 20
@@ -99,6 +101,9 @@ class LiveServer:
         self._connections: dict[ServerConnection, None] = {}
         self._deliveries: dict[ServerConnection, Delivery] = {}
         self.visitors = 0
+        self._second = 0.0
+        """The real time at which the counting of `_admitted` connections began."""
+        self._admitted = 0
 
     @property
     def address(self) -> str:
@@ -156,6 +161,14 @@ class LiveServer:
 
     def _connection(self, *arguments: Any, **options: Any) -> ServerConnection:
         return _Connection(self, *arguments, **options)
+
+    def admits(self) -> bool:
+        """Return whether one more connection may be opened now."""
+        now = real_time()
+        if now - self._second >= 1.0:
+            self._second, self._admitted = now, 0
+        self._admitted += 1
+        return self._admitted <= ADMITTED
 
     def opened(self, connection: "_Connection") -> None:
         """Take note of a connection; one too many displaces the oldest that is not a page."""
@@ -279,16 +292,27 @@ class _Connection(ServerConnection):
     def __init__(self, pages: LiveServer, *arguments: Any, **options: Any) -> None:
         super().__init__(*arguments, **options)
         self._pages_server = pages
+        self._is_admitted = False
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        """Begin."""
+        """Begin, or end immediately if there are too many."""
+        self._is_admitted = self._pages_server.admits()
+        if not self._is_admitted:
+            cast(asyncio.Transport, transport).abort()
+            return
         super().connection_made(transport)
         self._pages_server.opened(self)
 
+    def data_received(self, data: bytes) -> None:
+        """Take data."""
+        if self._is_admitted:
+            super().data_received(data)
+
     def connection_lost(self, exc: Exception | None) -> None:
         """End."""
-        self._pages_server.lost(self)
-        super().connection_lost(exc)
+        if self._is_admitted:
+            self._pages_server.lost(self)
+            super().connection_lost(exc)
 
 
 def _retrieve(task: asyncio.Task[None]) -> None:
