@@ -374,7 +374,7 @@ class Mind(Circumstance):
         if (
             completion is not None
             and completion.success
-            and not self.features.meta
+            and not self.features.meta_plans
             and (not completion.outputs or self._take_outputs(completion) is None)
         ):
             # It would be made ready in the next cycle before all others: it may as well be ready now.

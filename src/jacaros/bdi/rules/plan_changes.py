@@ -43,7 +43,8 @@ def same_plan(left: nodes.Plan, right: nodes.Plan) -> bool:
 
 def look_at_plans(agent: Circumstance) -> None:
     """What the mind needs to know of its plans as a whole, those included that have been removed: they may still run."""
-    agent.features.meta = agent.observers.goal is not None or agent.library.has_meta_plans()
+    agent.features.meta_plans = agent.library.has_meta_plans()
+    agent.features.meta = agent.observers.goal is not None or agent.features.meta_plans
     agent.features.subplans = agent.features.subplans or agent.library.has_subplans()
     agent.features.goal_conditions = agent.features.goal_conditions or agent.library.has_goal_conditions()
     agent.features.special = (

@@ -205,18 +205,19 @@ class Features:
 
     Attributes:
         meta: plans or an observer want to hear of changes of goal states.
+        meta_plans: plans want to.
         goal_conditions: plans have goal conditions, which are tested in every cycle.
         subplans: plans have plans of their own.
-        special: one of these three, or an observer hears of its reasons or may hold the agent.
+        special: meta, goal_conditions or subplans, or an observer hears of its reasons or may hold the agent.
         edges: there may be plans for falling asleep and awaking.
         usual_events: external events without a plan are passed over, events of belief changes in plans belong to the
             intentions that made them, and no agent class is asked about these changes.
     """
 
-    __slots__ = ("edges", "goal_conditions", "meta", "special", "subplans", "usual_events")
+    __slots__ = ("edges", "goal_conditions", "meta", "meta_plans", "special", "subplans", "usual_events")
 
     def __init__(self, options: Options) -> None:
-        self.meta = self.goal_conditions = self.subplans = self.special = self.edges = False
+        self.meta = self.meta_plans = self.goal_conditions = self.subplans = self.special = self.edges = False
         self.usual_events = options.events == "discard" and not options.new_focus
 
 
