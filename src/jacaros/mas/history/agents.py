@@ -7,9 +7,9 @@ from jacaros.bdi.mind import Mind
 from jacaros.clock import Clock
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.directory import Directory, Mailboxes
-from jacaros.mas.history.deliberations import Links
+from jacaros.mas.history.deliberations import IN_ALL, Allowance, Links
 from jacaros.mas.history.goals import GoalRecords
-from jacaros.mas.history.intentions import Looks
+from jacaros.mas.history.intentions import Looks, Moments
 from jacaros.mas.history.messages import MessageRecords
 from jacaros.mas.history.minds import MindRecords, Records
 from jacaros.mas.history.programs import ProgramRecords
@@ -33,18 +33,17 @@ class AgentRecords:
     Args:
         system: the run.
         links: makes the links of chains.
-        t: seconds of the run's clock since the beginning, of a moment of the clock or (None) of now.
+        t: tells when something was.
         tell: takes the kind of a record and its data.
     """
 
-    def __init__(
-        self, system: PopulatedSystem, links: Links, t: Callable[[float | None], float], tell: Tell
-    ) -> None:
+    def __init__(self, system: PopulatedSystem, links: Links, t: Moments, tell: Tell) -> None:
         self._system, self._tell = system, tell
         self._looks = Looks(system.clock)
         self._goals = GoalRecords(lambda goal: tell("goal", goal))
         messages = MessageRecords(links, self._cause, tell)
-        self._records = Records(tell, t, links, ProgramRecords(tell), messages, self._looks)
+        examinations = Allowance(t, IN_ALL)
+        self._records = Records(tell, t, links, examinations, ProgramRecords(tell), messages, self._looks)
         self._minds: dict[str, MindRecords] = {}
         self._ends: dict[str, Callable[[], None]] = {}
 
@@ -74,7 +73,7 @@ class AgentRecords:
     def run_ended(self) -> None:
         """Record what the agents were at, and that goals that are open are dropped."""
         self._looks.look()
-        self._goals.drop_all()
+        self._goals.drop()
 
     def _changed(self, name: str, present: bool) -> None:
         host = self._system.directory.find(name)
@@ -103,6 +102,7 @@ class AgentRecords:
         end = self._ends.pop(name, None)
         if end is not None:
             end()
+        self._goals.drop(name)
         self._tell("agent", {"agent": name, "what": "", "state": "ended"})
 
     def _cause(self, sender: str) -> Cause | None:

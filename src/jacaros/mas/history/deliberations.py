@@ -15,6 +15,8 @@ from jacaros.trace import Cause, Tracer
 
 PER_SECOND = 10
 """Contexts of one agent that are examined in a second of the run's clock; each costs some 50 microseconds."""
+IN_ALL = 100
+"""The same for all agents of a run."""
 MOST_OPTIONS = 12
 """Plans of one deliberation that are examined."""
 
@@ -46,6 +48,27 @@ class _Reason(NamedTuple):
         return any(each is self.frame for each in frames[max(0, self.depth - 1) : self.depth + 1])
 
 
+class Allowance:
+    """Allows something so often in a second of the run's clock.
+
+    Args:
+        t: seconds of the run's clock.
+        most: how often.
+    """
+
+    def __init__(self, t: Callable[[], float], most: int) -> None:
+        self._t, self._most = t, most
+        self._second, self._taken = -1, 0
+
+    def take(self) -> bool:
+        """Whether it is allowed once more."""
+        second = int(self._t())
+        if second != self._second:
+            self._second, self._taken = second, 0
+        self._taken += 1
+        return self._taken <= self._most
+
+
 class DeliberationRecords:
     """Records the deliberations of one agent, and keeps what led to the plans on its stacks.
 
@@ -54,17 +77,25 @@ class DeliberationRecords:
         numbers: of its plans.
         links: makes the links.
         t: seconds of the run's clock.
+        in_all: allows contexts of all agents to be examined.
         tell: takes the kind of a record and its data.
     """
 
     def __init__(
-        self, mind: Mind, numbers: PlanNumbers, links: Links, t: Callable[[], float], tell: Tell
+        self,
+        mind: Mind,
+        numbers: PlanNumbers,
+        links: Links,
+        t: Callable[[], float],
+        in_all: Allowance,
+        tell: Tell,
     ) -> None:
-        self._mind, self._numbers, self._links, self._t, self._tell = mind, numbers, links, t, tell
+        self._mind, self._numbers, self._links, self._tell = mind, numbers, links, tell
+        self._in_all = in_all
         self._reasons: dict[int, list[_Reason]] = {}
         """By intention, what led to the plans on its stack, the lowest first."""
         self._candidates: dict[Trigger, list[Plan]] = {}
-        self._second, self._examined = -1, 0
+        self._allowance = Allowance(t, PER_SECOND)
 
     def plans_changed(self) -> None:
         """Look for candidates anew."""
@@ -124,19 +155,11 @@ class DeliberationRecords:
         contexts = FailingContexts(self._mind, goal, annotations)
         options: list[dict[str, object]] = []
         for plan in plans[:MOST_OPTIONS]:
-            if not self._may_examine():
+            if not (self._allowance.take() and self._in_all.take()):
                 break
             if contexts.fits(plan):
                 options.append({"plan": self._numbers[plan], "why": contexts.stop(plan)})
         return options
-
-    def _may_examine(self) -> bool:
-        """Whether there is time to examine one more context in this second."""
-        second = int(self._t())
-        if second != self._second:
-            self._second, self._examined = second, 0
-        self._examined += 1
-        return self._examined <= PER_SECOND
 
     def forget(self) -> None:
         """Forget the stacks of intentions that are over."""

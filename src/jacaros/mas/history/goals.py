@@ -93,10 +93,11 @@ class GoalRecords:
         if state in _OVER:
             del self._goals[agent, which]
 
-    def drop_all(self) -> None:
-        """Record that all goals are dropped that are still open."""
-        for (agent, which), goal in list(self._goals.items()):
-            self.take(agent, "finished", goal.text, which, goal.intention)
+    def drop(self, agent: str | None = None) -> None:
+        """Record that the goals of an agent are dropped that are still open; those of all agents if none is named."""
+        for (pursuer, which), goal in list(self._goals.items()):
+            if agent in (None, pursuer):
+                self.take(pursuer, "finished", goal.text, which, goal.intention)
 
 
 class _Work:

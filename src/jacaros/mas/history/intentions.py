@@ -18,8 +18,17 @@ PERIOD = 0.1
 """Seconds of the run's clock between two looks at an agent."""
 MOST = 100
 """Intentions of one agent that are looked at."""
+MOST_AGENTS = 50
+"""Agents that are looked at in one period; of thousands that are busy, each has its turn later."""
 
 Tell = Callable[[str, Mapping[str, Any]], None]
+
+
+class Moments(Protocol):
+    """Tells when something was."""
+
+    def __call__(self, moment: float | None = None) -> float:
+        """Seconds from the beginning of the run to a moment of its clock, or to now, to the millisecond."""
 
 
 class Looking(Protocol):
@@ -50,7 +59,9 @@ class Looks:
     def look(self) -> None:
         """Look now at the agents that are due."""
         self.stop()
-        due, self._due = self._due, []
+        due, self._due = self._due[:MOST_AGENTS], self._due[MOST_AGENTS:]
+        if self._due:
+            self._timer = self._clock.call_later(PERIOD, self.look)
         for agent in due:
             agent.look()
 
@@ -89,7 +100,7 @@ class IntentionRecords:
         mind: of the agent.
         numbers: of its plans.
         cause: what led to the step that an intention is at.
-        now: seconds of the run's clock, to the millisecond.
+        t: tells when something was.
         tell: takes the kind of a record and its data.
         looks: looks at the agent when it had a turn.
     """
@@ -99,7 +110,7 @@ class IntentionRecords:
         mind: Mind,
         numbers: PlanNumbers,
         cause: Callable[[Intention], Cause | None],
-        t: Callable[[float | None], float],
+        t: Moments,
         tell: Tell,
         looks: Looks,
     ) -> None:

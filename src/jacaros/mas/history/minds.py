@@ -11,8 +11,8 @@ from jacaros.bdi.state.literals import EventAnnotations
 from jacaros.bdi.state.rule import OpenFact, Rule
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.bdi.state.triggers import Goal
-from jacaros.mas.history.deliberations import DeliberationRecords, Links
-from jacaros.mas.history.intentions import IntentionRecords, Looks
+from jacaros.mas.history.deliberations import Allowance, DeliberationRecords, Links
+from jacaros.mas.history.intentions import IntentionRecords, Looks, Moments
 from jacaros.mas.history.messages import MessageRecords
 from jacaros.mas.history.programs import ProgramRecords
 from jacaros.mas.history.steps import place_of
@@ -32,14 +32,16 @@ class Records(NamedTuple):
 
     Attributes:
         tell: takes the kind of a record and its data.
-        t: seconds of the run's clock since the beginning, of a moment of the clock or (None) of now.
+        t: tells when something was.
         links: makes the links of chains.
+        examinations: allows contexts of plans to be examined.
         programs, messages, looks: record programs and messages, look at intentions.
     """
 
     tell: Callable[[str, Mapping[str, Any]], None]
-    t: Callable[[float | None], float]
+    t: Moments
     links: Links
+    examinations: Allowance
     programs: ProgramRecords
     messages: MessageRecords
     looks: Looks
@@ -57,7 +59,7 @@ class MindRecords:
         self._mind, self._records = mind, records
         self._numbers = records.programs.begin(mind)
         self._deliberations = DeliberationRecords(
-            mind, self._numbers, records.links, lambda: records.t(None), records.tell
+            mind, self._numbers, records.links, records.t, records.examinations, records.tell
         )
         cause_of = self._deliberations.cause_of
         self.intentions = IntentionRecords(

@@ -1,5 +1,8 @@
 """What minds do and why, as records: one test for each kind."""
 
+from collections import Counter
+from pathlib import Path
+
 from observed_runs import of, records_of
 
 from jacaros.mas.embedding.mas import Mas
@@ -182,6 +185,20 @@ def test_intentions_are_looked_at_ten_times_a_second():
     program = "!go. +!go <- for (.range(I, 1, 300)) { .wait(10) }."
     found = of(records_of({"ann": program}, seconds=4.0), "intention")
     assert 20 <= len(found) <= 32
+
+
+def test_of_many_agents_some_are_looked_at_in_each_period():
+    programs: dict[str, str | Path] = {f"a{number}": "!go. +!go <- .wait(9000)." for number in range(120)}
+    found = Counter(t for t, event, _ in records_of(programs, seconds=4.0) if event == "intention")
+    assert found == {0.1: 50, 0.2: 50, 0.3: 20}
+
+
+def test_an_agent_that_ends_drops_its_goals():
+    records = records_of({"ann": "!go. +!go <- .wait(9000)."}, during=lambda mas: mas.system.end_agent("ann"))
+    assert [(t, data["state"]) for t, event, data in records if event == "goal"] == [
+        (0.0, "pursued"),
+        (5.0, "dropped"),
+    ]
 
 
 def test_messages_link_what_two_agents_do():
