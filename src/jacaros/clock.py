@@ -126,6 +126,7 @@ class WallClock:
         self._loop: asyncio.AbstractEventLoop | None = None
         self._alarm: asyncio.TimerHandle | None = None
         self._alarm_at = 0.0
+        self._ringing = False
         if speed != 1.0:
             self.speed = speed
 
@@ -145,6 +146,7 @@ class WallClock:
     def speed(self, speed: float) -> None:
         if not 0.0 < speed < float("inf"):
             raise ValueError(f"expected a speed greater than 0, found {speed}")
+        self._note_day()
         self._note_moment()
         self._speed = speed
         self._set_alarm()
@@ -156,6 +158,12 @@ class WallClock:
 
     def pause(self) -> None:
         """Let time stand still and no timer ring until `resume`; no effect on a paused clock."""
+        if not self._paused:
+            self._note_day()
+            self.pause_timers()
+
+    def pause_timers(self) -> None:
+        """Let no timer ring until `resume`; `now` continues: messages of real robots carry the time of day."""
         if not self._paused:
             self._note_moment()
             self._paused = True
@@ -179,7 +187,7 @@ class WallClock:
             self._move_to_loop(loop)
         when = self.elapsed + max(0.0, delay)
         timer = self._timers.add(when, callback)
-        if self._alarm is None or when < self._alarm_at:
+        if (self._alarm is None or when < self._alarm_at) and not self._ringing:
             self._set_alarm()
         return timer
 
@@ -190,11 +198,13 @@ class WallClock:
     def busy(self, cycles: int) -> None:
         """Nothing: the wall clock moves by itself."""
 
-    def _note_moment(self) -> None:
-        elapsed = self.elapsed
+    def _note_day(self) -> None:
+        """From now on, `now` follows this clock and not the time of day."""
         if self._ahead is None:
-            self._ahead = time.time() - elapsed
-        self._reached, self._began = elapsed, time.monotonic()
+            self._ahead = time.time() - self.elapsed
+
+    def _note_moment(self) -> None:
+        self._reached, self._began = self.elapsed, time.monotonic()
 
     def _move_to_loop(self, loop: asyncio.AbstractEventLoop) -> None:
         """Serve another loop; timers of one that has ended are over."""
@@ -218,10 +228,12 @@ class WallClock:
         self._alarm = None
         moment = max(self._alarm_at, self.elapsed)  # the loop may be a billionth of a second early
         due = deque(iter(lambda: self._timers.next_due(moment), None))
+        self._ringing = True
         try:
             while due and not self._paused:
                 due.popleft().ring()
         finally:
+            self._ringing = False
             for timer in due:
                 self._timers.put_back(timer)
             self._set_alarm()

@@ -46,6 +46,20 @@ def test_a_wall_clock_is_the_time_of_day_until_it_is_paused(monkeypatch: pytest.
     in_fake_time(monkeypatch, main)
 
 
+def test_timers_can_be_paused_while_the_time_of_day_continues(monkeypatch: pytest.MonkeyPatch) -> None:
+    async def main(loop: FakeTimeLoop) -> None:
+        clock = WallClock()
+        rung = rings(clock, {"a": 2.0})
+        clock.pause_timers()
+        await asyncio.sleep(5.0)
+        assert (clock.now(), rung) == (time.time(), [])
+        clock.resume()
+        await asyncio.sleep(2.5)
+        assert (clock.now(), rung) == (time.time(), [("a", 2.0)])
+
+    in_fake_time(monkeypatch, main)
+
+
 def test_no_timer_of_a_paused_wall_clock_rings_and_all_ring_after_the_rest_of_their_time(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

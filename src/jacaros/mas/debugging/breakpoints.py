@@ -3,8 +3,10 @@
 from collections.abc import Mapping
 from typing import Any, Protocol
 
+from jacaros.asl import nodes
 from jacaros.asl.loader import parse_trigger
 from jacaros.asl.lowering import Names, lower_value
+from jacaros.asl.walk import nodes_in
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.event import EVENT_ANNOTATIONS, EVENT_GOAL, Event
 from jacaros.bdi.state.intention import PLAN, STEP, Frame, Intention
@@ -53,11 +55,12 @@ class LineBreakpoint:
         del agent
         frame: Frame = intention.frames[-1]
         plan: Plan = frame[PLAN]
-        return self._is_in(plan.file) and (
+        return self.is_in(plan.file) and (
             first_line(frame) == self.line or (is_at_first_step(frame) and self.line in head_lines(plan))
         )
 
-    def _is_in(self, file: str) -> bool:
+    def is_in(self, file: str) -> bool:
+        """Whether a file is meant."""
         return file == self.file or file.endswith(f"/{self.file}")
 
 
@@ -186,12 +189,13 @@ def first_line(frame: Frame) -> int:
     if not line:
         return 0
     steps: dict[str, StepInfo] = getattr(step, "steps", frame[PLAN].steps)
-    on_line = [
-        each.node.span for each in steps.values() if step_line(each) == line and each.node.span is not None
-    ]
-    assert info is not None
-    assert info.node.span is not None
-    return line if info.node.span.column <= min(span.column for span in on_line) else 0
+    # A loop has one step for its beginning and one for its rounds; both have its place.
+    first = min((each for each in steps.values() if step_line(each) == line), key=_column)
+    return line if first is info else 0
+
+
+def _column(info: StepInfo) -> int:
+    return 0 if info.node.span is None else info.node.span.column
 
 
 def head_lines(plan: Plan) -> range:
@@ -202,6 +206,16 @@ def head_lines(plan: Plan) -> range:
     steps = getattr(body, "steps", ())
     first = steps[0].span.line if steps and steps[0].span is not None else span.end_line + 1
     return range(span.line, first)
+
+
+def lines_that_stop(plan: Plan) -> set[int]:
+    """The lines of a plan, and of the plans inside it, where a `LineBreakpoint` can stop a run."""
+    found = set(head_lines(plan))
+    for body in nodes_in(nodes.Body, plan.node.body):
+        found.update(step.span.line for step in body.steps if step.span is not None)
+    for inner in plan.subplans:
+        found |= lines_that_stop(inner)
+    return found
 
 
 def breakpoint_at(at: Mapping[str, Any]) -> Breakpoint:

@@ -13,7 +13,14 @@ from jacaros.bdi.state.intention import PLAN, STEP, Intention
 from jacaros.clock import Clock, WallClock, outside_run
 from jacaros.errors import UsageError
 from jacaros.mas.agent_host import AgentHost
-from jacaros.mas.debugging.breakpoints import Breakpoint, ConditionBreakpoint, breakpoint_at, step_line
+from jacaros.mas.debugging.breakpoints import (
+    Breakpoint,
+    ConditionBreakpoint,
+    LineBreakpoint,
+    breakpoint_at,
+    lines_that_stop,
+    step_line,
+)
 from jacaros.mas.debugging.reload import reload_programs
 from jacaros.mas.debugging.unpaused import command_standstill, not_paused
 from jacaros.mas.directory import Directory
@@ -215,9 +222,11 @@ class Debugger:
 
         Raises:
             AslError: a trigger or condition is wrong.
-            UsageError: the data describes no breakpoint.
+            UsageError: the data describes no breakpoint, or a line without a step.
         """
         made = breakpoint_at(at) if isinstance(at, Mapping) else at
+        if isinstance(made, LineBreakpoint):
+            self._refuse_useless(made)
         known = self._breakpoints.setdefault(made.text, made)
         self._hook()
         if isinstance(known, ConditionBreakpoint):
@@ -225,6 +234,15 @@ class Debugger:
             if host is not None and isinstance(host.mind, Mind):
                 known.becomes_true(host.mind)
         return known
+
+    def _refuse_useless(self, made: LineBreakpoint) -> None:
+        """Refuse a line where no plan has a step; a file that no agent runs may come later."""
+        plans = [plan for _, mind in self._minds() for plan in mind.library.plans if made.is_in(plan.file)]
+        lines = {line for plan in plans for line in lines_that_stop(plan)}
+        if lines and made.line not in lines:
+            after = min((line for line in lines if line > made.line), default=None)
+            text = f"no step on line {made.line} of {made.file}"
+            raise UsageError(text if after is None else f"{text}; the next one is on line {after}")
 
     def remove_breakpoint(self, at: Breakpoint | Mapping[str, Any]) -> bool:
         """Remove a breakpoint; False when it was not set.
@@ -306,7 +324,10 @@ class Debugger:
         self._stepping = None
         system.scheduler.pause()
         command_standstill(system.ros, system.options)
-        system.clock.pause()
+        if isinstance(system.clock, WallClock) and system.options.ros != "memory":
+            system.clock.pause_timers()
+        else:
+            system.clock.pause()
         cannot = not_paused(system.directory, system.ros, system.options, system.clock)
         self._change(replace(state, cannot=cannot))
 

@@ -51,6 +51,34 @@ def test_the_line_of_a_trigger_stops_the_run_before_the_first_step_of_the_plan()
     assert stops({"line": {"file": "ob>", "line": 4}}) == [], "another file"
 
 
+def test_a_line_without_a_step_is_refused_and_the_next_one_named() -> None:
+    async def test(mas: Mas, debugger: Debugger, lines: list[str]) -> None:
+        with pytest.raises(UsageError, match="no step on line 2 of <bob>; the next one is on line 3"):
+            debugger.add_breakpoint({"line": {"file": "<bob>", "line": 2}})
+        with pytest.raises(UsageError, match=r"no step on line 99 of <bob>$"):
+            debugger.add_breakpoint({"line": {"file": "<bob>", "line": 99}})
+
+    debugged(test)
+
+
+def test_lines_inside_loops_and_branches_stop_the_run() -> None:
+    program = """\
+!go.
++!go
+   <- for (.member(X, [1, 2])) {
+         if (X > 1) {
+            .print(big, X)
+         } else {
+            .print(small, X)
+         }
+      };
+      .print(end).
+"""
+    found = {line: stops({"line": {"file": "<bob>", "line": line}}, program) for line in (3, 4, 5, 7, 10)}
+    assert {line: len(each) for line, each in found.items()} == {3: 1, 4: 2, 5: 1, 7: 1, 10: 1}
+    assert found[5][0][2] == ["small1"]
+
+
 def test_a_line_of_the_interpreter_stops_too(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("JACAROS_PLAIN", "1")
     assert [line for _, line, _ in stops({"line": {"file": "<bob>", "line": 5}})] == [5, 5, 5]
