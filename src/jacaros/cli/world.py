@@ -13,23 +13,23 @@ _IMAGES = (".pgm", ".png")
 _WIDTH = 640
 """Pixels of a picture."""
 _RESOLUTION = 0.05
-"""Metres a pixel of an image that comes without a map file."""
+"""Metres per pixel of an image without a map file."""
 _ROWS = 48
-"""Lines that a picture in text may have where there is no terminal."""
+"""Height of a text picture without a terminal, in lines."""
 
 
 @click.group("world", short_help="Check, show, make and export world files.")
 def command() -> None:
     """Check, show, make and export world files.
 
-    WORLD is the path of a world file, of a map of ROS's map_server, or the name of a world that comes with jacaros.
+    WORLD is the path of a world file, of a map of ROS's map_server, or the name of a shipped world.
     """  # fmt: skip
 
 
 @command.command("check", short_help="Report all mistakes of world files.")
 @click.argument("worlds", metavar="WORLD...", nargs=-1, required=True)
 def check_command(worlds: tuple[str, ...]) -> int:
-    """Report all mistakes of each WORLD, or what it consists of. The exit code is 1 if there is a mistake."""
+    """Report all mistakes of each WORLD, or a summary. The exit code is 1 if there is a mistake."""
     from jacaros.sim.files.world import load_world  # here: YAML takes its time to load
 
     code = 0
@@ -98,16 +98,16 @@ def _png(svg: str) -> bytes:
     "map_file",
     type=click.Path(path_type=Path),
     metavar="MAP",
-    help="Build the world upon a map: a file of ROS's map_server (.yaml) or its image (.pgm, .png).",
+    help="Build the world on a map: a file of ROS's map_server (.yaml) or its image (.pgm, .png).",
 )
 @click.option(
     "--resolution",
     type=click.FloatRange(0.001, 10.0),
     metavar="M",
-    help="Metres a pixel, with an image (default: 0.05).",
+    help="Metres per pixel, with an image (default: 0.05).",
 )
 def new_command(file: Path, map_file: Path | None, resolution: float | None) -> None:
-    """Write FILE, a world file with comments to begin with: two rooms, or the walls of a map.
+    """Write FILE, a commented world file to start from: two rooms, or the walls of a map.
 
     For an image alone, FILE_map.yaml is written too; its lower left corner is the origin. No file is overwritten.
     """  # fmt: skip

@@ -1,4 +1,4 @@
-"""Robots that clean: which tool of each is at work, and the dirt that it removes."""
+"""Robots that clean: the running tool of each, and the dirt that it removes."""
 
 from collections.abc import Callable
 from typing import Any

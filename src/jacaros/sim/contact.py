@@ -1,6 +1,6 @@
 """Contact of robots with walls and with each other: push-out along the normal, nothing else.
 
-It is not physics: nothing is pushed away but robots, nothing slips, and a robot must move less than its
+Simplified physics: only robots are pushed away, nothing slips, and a robot must move less than its
 radius in a step (at 50 Hz and 0.65 m/s it moves 13 mm).
 """
 

@@ -196,7 +196,7 @@ class RobotLimits:
 
 @dataclass(frozen=True, slots=True)
 class NavigationSettings:
-    """Whether the robot offers navigation and docking, and how fast it drives by itself (m/s)."""
+    """Whether the robot offers navigation and docking, and its speed then (m/s)."""
 
     enabled: bool = True
     speed: float = 0.4
@@ -251,7 +251,7 @@ class RobotDescription:
 
 @dataclass(frozen=True, slots=True)
 class PersonDescription:
-    """A person who walks from point to point of a path, in metres, and pauses for some seconds at each.
+    """A person walking from point to point of a path (metres), with a pause (seconds) at each.
 
     ``loop`` leads from the last point back to the first; without it the person stays at the last.  A ``careless`` person
     does not stop before robots.  ``color`` is ``#rrggbb``, "" for any.

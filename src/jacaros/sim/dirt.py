@@ -15,7 +15,7 @@ class DirtField:
     Attributes:
         room: name of the room.
         kind: of the dirt.
-        grams: what is left of it.
+        grams: its remaining amount.
     """
 
     def __init__(self, room: Room, dirt: Dirt, boxes: Sequence[Rectangle] = ()) -> None:
@@ -74,7 +74,7 @@ class DirtField:
         return self._cells[cell] <= 0.0
 
     def _spread(self) -> None:
-        """Make the cells: only when a tool comes near, so a field that nobody cleans costs nothing."""
+        """Make the cells when a tool comes near: fields without cleaning cost nothing."""
         centres = [
             (self._area.x_min + (column + 0.5) * self._width, self._area.y_min + (row + 0.5) * self._height)
             for row in range(self._rows)

@@ -1,4 +1,4 @@
-"""A world's fingerprint: a hash of a run that needs nobody, equal on every machine."""
+"""A world's fingerprint: a hash of a run without agents, equal on every machine."""
 
 import hashlib
 import random

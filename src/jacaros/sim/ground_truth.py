@@ -1,4 +1,4 @@
-"""What truly happened in a world: events with the true pose, and the path of every robot.
+"""The ground truth of a world: events with the true pose, and the path of every robot.
 
 Checkers of scenarios judge from this alone, never from what an agent or its odometry believes.  The same
 object is filled by a running `jacaros.sim.world.World` or read back from the file that
@@ -62,8 +62,8 @@ class GroundTruth:
         events: all events, oldest first.
         world: the drawing of the world (see `jacaros.sim.description.WorldDescription.drawing`).
         dirt: grams of dirt that are left, by room and kind: ``dirt["kitchen", "stains"]``.
-        keep: how many points of each path and how many events are kept at least, None for all.  Whoever lets a world
-            run for days sets it; listeners are told of everything all the same.
+        keep: how many points of each path and how many events are kept at least, None for all.  Set it for
+            worlds that run for days; listeners still receive every event.
     """
 
     def __init__(self, robots: Iterable[str] = (), world: Record | None = None) -> None:
@@ -161,7 +161,7 @@ class GroundTruth:
         self._latest[robot] = sample
 
     def _forget(self, items: list[Any]) -> None:
-        """Drop what is too old, now and then: seldom enough to cost nothing."""
+        """Drop old records, rarely enough to cost nothing."""
         if self.keep is not None and len(items) >= 2 * self.keep:
             del items[: -self.keep]
 

@@ -16,7 +16,7 @@ _SERVICE = "nav_msgs/srv/GetMap"
 
 
 class MapServer:
-    """Publishes the map once somebody wants it.
+    """Publishes the map when it gets its first subscription.
 
     Topics ``/map`` and, for robots with a namespace, ``/robot_1/map`` (``nav_msgs/msg/OccupancyGrid``, latched); service
     ``/map_server/map`` (on ROS 1 ``/static_map``, ``nav_msgs/srv/GetMap``).
@@ -24,7 +24,7 @@ class MapServer:
     Args:
         backend: the graph; it is started already.
         prefixes: of the robots' names.
-        grid: makes the grid, when it is first wanted.
+        grid: returns the grid; called on first use.
         now: the stamp for the map, in seconds.
     """
 
@@ -46,7 +46,7 @@ class MapServer:
             return None
 
     def publish(self) -> None:
-        """Publish on the topics that somebody listens to for the first time."""
+        """Publish on topics with a first subscription."""
         for publisher in tuple(self._unpublished):
             if publisher.subscription_count:
                 self._unpublished.remove(publisher)

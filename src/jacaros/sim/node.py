@@ -20,10 +20,10 @@ from jacaros.sim.world_time import WorldTime
 
 
 class SimNode:
-    """Runs a world on a clock and a ROS graph; agents reach it over topics only.
+    """Runs a world on a clock and a ROS graph; agents access it over topics only.
 
     Args:
-        world: the world; its time goes on from where it is.
+        world: the world; its time continues.
         backend: the graph; it must be started before `start`, and is not closed by `close`.
         clock: the clock that the world follows.
     """
@@ -82,7 +82,7 @@ class SimNode:
         return {each.name: each.path for each in self.navigation}
 
     def grid(self) -> Grid:
-        """The map of the world, made when it is first wanted."""
+        """The map of the world, made on first use."""
         if self._grid is None:
             self._grid = Grid(self.world.description)
         return self._grid
@@ -110,14 +110,14 @@ class SimNode:
             self._map.publish()
 
     def stop(self) -> None:
-        """Stop the world where it is; its topics stay."""
+        """Stop the world; its topics stay."""
         if self._timer is not None:
             self._timer.cancel()
             self._timer = None
             self.time.catch_up()
 
     def close(self) -> None:
-        """Stop the world where it is and leave its topics."""
+        """Stop the world and leave its topics."""
         self.stop()
         for navigation in self.navigation:
             navigation.close()

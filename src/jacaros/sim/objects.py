@@ -1,6 +1,6 @@
-"""Things that robots carry: where each of them is, and who has it.
+"""Objects that robots carry: the place of each, and the robot that holds it.
 
-They stand in nobody's way: they are lower than a laser, and robots do not touch them but with a gripper.
+They block neither robots nor lasers: only grippers touch them.
 """
 
 from collections.abc import Callable, Iterable

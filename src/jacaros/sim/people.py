@@ -1,6 +1,6 @@
-"""People who walk through a world, from point to point of their path.
+"""People walking through a world, from point to point of their paths.
 
-A person stops before a closed door, and before a robot: a careful one 0.3 m off, a careless one at the touch.  People pass
+A person stops in front of a closed door, and of a robot: 0.3 m away, or on contact if careless.  People pass
 through each other.  A robot that drives into a person is held like by a wall.
 """
 
@@ -83,12 +83,12 @@ class People:
     """The people of a world.
 
     Args:
-        descriptions: those who are there at first.
+        descriptions: the people at the start.
         tell: takes the events of a person: ``person_walks`` (vx, vy), ``person_stands`` (waits_for),
             ``person_comes`` (radius, color, path, loop) and ``person_goes``.
 
     Attributes:
-        by_name: the people who are there.
+        by_name: the present people.
     """
 
     def __init__(
@@ -115,7 +115,7 @@ class People:
         """Let a person go.
 
         Raises:
-            UsageError: there is no such person.
+            UsageError: the person is unknown.
         """
         if name not in self.by_name:
             raise UsageError(f"unknown person '{name}'; people: {', '.join(self.by_name) or 'none'}")
@@ -142,7 +142,7 @@ class People:
 
 
 def _robot_before(person: Person, robots: Sequence[Robot]) -> str:
-    """The name of the robot in front that is too near, "" for none; robots behind are nobody's concern."""
+    """Return the name of the robot ahead that is too near, "" for none; robots behind do not count."""
     across, up = person.direction
     distance, elbow = (TOUCHING, 0.0) if person.description.careless else (DISTANCE, _ELBOW)
     for robot in robots:
@@ -170,7 +170,7 @@ def _door_before(person: Person, doors: Sequence[Door]) -> str:
 
 
 def _hold_off(robot: Robot, person: Person, walls: WallIndex, dt: float) -> None:
-    """Push a robot out of a person, who is the heavier one."""
+    """Push a robot out of a person; the person does not move."""
     reach = robot.description.radius + person.description.radius
     push = push_apart(robot.x, robot.y, person.x, person.y, reach)
     if push is not None:

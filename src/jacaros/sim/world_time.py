@@ -1,4 +1,4 @@
-"""Joins a world to a clock: whenever somebody looks, the world makes all steps that are due."""
+"""Joins a world to a clock: on each access, the world makes all steps that are due."""
 
 import math
 

@@ -74,6 +74,6 @@ def test_types_that_are_not_known_are_left_out_and_told(monkeypatch: pytest.Monk
     run(main, clock)
     assert told[0] == (
         "warn",
-        "action /dock is not offered: irobot_create_msgs/action/Dock is not known here",
+        "action /dock is not offered: unknown type irobot_create_msgs/action/Dock",
     )
     assert len(told) == 4

@@ -36,7 +36,7 @@ def around(cells: Collection[Cell], free: Collection[Cell], reach: int) -> set[C
 
 
 def nearest(start: Cell, enterable: Collection[Cell], wanted: Collection[Cell]) -> Cell | None:
-    """Return the first wanted cell that a walk over enterable cells reaches, None if there is none."""
+    """Return the nearest wanted cell that is reachable over enterable cells, None if there is none."""
     return next((cell for cell in _spread({start}, enterable, len(enterable), _NEXT) if cell in wanted), None)
 
 

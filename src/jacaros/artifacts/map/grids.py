@@ -42,7 +42,7 @@ class Grid:
     def labels(self, size: float) -> dict[Cell, str]:
         """Return free cells and obstacles as cells of another *size*, in metres, that is not smaller.
 
-        A cell is an obstacle if some of it is, and free if no more than that is known.
+        A cell is an obstacle if a part of it is, and free if its known parts are free.
         """
         found: dict[Cell, str] = {}
         corner, step = self.origin, self.resolution / size

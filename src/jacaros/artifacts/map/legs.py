@@ -26,7 +26,7 @@ def next_leg(way: Sequence[Cell], free: Collection[Cell], pose: Pose, leg: Leg) 
     Args:
         way: cells from start to goal.
         free: cells that may be entered.
-        pose: where the robot is, in metres; it may have left the way a little.
+        pose: of the robot, in metres; it can be slightly off the route.
         leg: the size of cells, and the longest leg.
     """
     size = leg.size

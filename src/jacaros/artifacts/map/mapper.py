@@ -18,7 +18,7 @@ TURNED = math.radians(6.0)
 """Radians after which it is."""
 
 STOOD = 2.0
-"""Seconds after which it is, though the robot stands: something else may have moved."""
+"""Seconds after which it is also added without motion: something else may have moved."""
 
 MATCHED = 120
 """Points of a scan that are matched, about."""

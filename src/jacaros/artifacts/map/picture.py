@@ -14,7 +14,7 @@ def picture(cells: LabelledCells, things: Mapping[Cell, str], here: Cell) -> lis
     """Draw a map, the highest y first.
 
     Args:
-        cells: what is drawn.
+        cells: those to draw.
         things: names of what else is in cells.
         here: the agent's cell, drawn as ``@``.
 

@@ -11,7 +11,7 @@ ORIGIN = Pose(0.0, 0.0, 0.0)
 
 
 def followed_by(first: Pose, second: Pose) -> Pose:
-    """Return the pose *second*, given in the frame that stands at *first*, in the frame of *first*."""
+    """Return the pose *second*, given in the frame at *first*, in the frame of *first*."""
     x, y = transformed(first, second.x, second.y)
     return Pose(x, y, math.remainder(first.heading + second.heading, math.tau))
 
@@ -23,7 +23,7 @@ def inverse(pose: Pose) -> Pose:
 
 
 def transformed(frame: Pose, x: float, y: float) -> tuple[float, float]:
-    """Return a point given in the frame that stands at *frame*."""
+    """Return a point given in the frame at *frame*."""
     sine, cosine = math.sin(frame.heading), math.cos(frame.heading)
     return frame.x + cosine * x - sine * y, frame.y + sine * x + cosine * y
 

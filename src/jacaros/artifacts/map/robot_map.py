@@ -254,7 +254,7 @@ class ArtMap(ArtSlamData):
 
 
 def point_ahead(pose: Pose, ahead: float, left: float) -> tuple[float, float]:
-    """The point that a robot at *pose* has so many metres ahead and to its left."""
+    """Return the point *ahead* and *left* metres from a robot at *pose*."""
     cosine, sine = math.cos(pose.heading), math.sin(pose.heading)
     return pose.x + ahead * cosine - left * sine, pose.y + ahead * sine + left * cosine
 

@@ -21,7 +21,7 @@ def route(free: Collection[Cell], start: Cell, goal: Cell) -> list[Cell] | None:
         goal: last cell of the way.
 
     Returns:
-        All cells from start to goal, both included; None when there is no way.
+        All cells from start to goal, both included; None without a route.
     """
     open_cells: list[tuple[float, float, Cell]] = [(_octile(start, goal), 0.0, start)]
     costs = {start: 0.0}

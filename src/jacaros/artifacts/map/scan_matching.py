@@ -66,7 +66,7 @@ class Surfaces:
                 sums[key] = (count + 1, sum_x + x, sum_y + y)
 
     def line_near(self, x: float, y: float) -> Line | None:
-        """Return the line through what was seen near a point, None if there is none or it is not straight."""
+        """Return the line through the points seen near a point, None if there is none or they are not on a line."""
         key = (math.floor(x / BUCKET), math.floor(y / BUCKET))
         if key not in self._lines:
             self._lines[key] = self._fit(key)

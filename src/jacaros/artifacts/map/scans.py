@@ -87,7 +87,7 @@ def _beside(reading: float, before: float, sine: float, cosine: float, near: flo
 
 
 def moved(scan: Scan, pose: Pose) -> Scan:
-    """Return a scan as it is on the map, where the robot is at *pose*."""
+    """Return a scan in map coordinates, for a robot at *pose*."""
     sine, cosine = math.sin(pose.heading), math.cos(pose.heading)
     x, y = pose.x, pose.y
 

@@ -213,7 +213,7 @@ class ArtSlamData(RosArtifact):
         self.show_objects()
 
     def show_objects(self) -> None:
-        """Show what is where as ``pos2d(Object, X, Y)``."""
+        """Show the positions of objects as ``pos2d(Object, X, Y)``."""
         objects: list[tuple[object, ...]] = [(ME, *self.here)]
         objects += [(Atom(label), *cell) for cell, label in self.cells.places().items()]
         objects += [(Atom(name), *cell) for name, cell in self._things.items()]

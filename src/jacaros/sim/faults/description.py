@@ -1,4 +1,4 @@
-"""What a fault is, as plain data; a fault file (`jacaros.sim.faults.file`) is read into these."""
+"""Faults as plain data, read from fault files (`jacaros.sim.faults.file`)."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -11,7 +11,7 @@ WHEELS: Final = ("wheel_slip", "blocked_wheel")
 MESSAGES: Final = ("dead", "frozen", "nan", "lost", "delayed", "duplicated")
 """Kinds that concern the messages of a topic."""
 AT_ONCE: Final = ("kidnapped_robot", "battery_drop")
-"""Kinds that happen in one moment, and have no end."""
+"""Kinds without duration."""
 
 KEYS: Final[Mapping[str, tuple[str, ...]]] = {
     "wheel_slip": ("share",),
@@ -28,7 +28,7 @@ KEYS: Final[Mapping[str, tuple[str, ...]]] = {
     "delayed": ("topic", "seconds", "jitter"),
     "duplicated": ("topic", "copies"),
 }
-"""What each kind of fault is told; ``at`` and ``for`` belong to all, ``robot`` to those of wheels and at once."""
+"""Further keys by kind of fault; all kinds have ``at`` and ``for``, and those of wheels and of one moment ``robot``."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,20 +36,20 @@ class Fault:
     """One fault.
 
     Attributes:
-        name: how it is called, in the ground truth and by its service.
+        name: its name in the ground truth and in its service.
         kind: one of `KEYS`.
-        at: seconds of the world at which it begins; None: only when it is asked for.
-        lasts: seconds until it ends; None: until it is ended.
-        robot: name of the robot that it happens to, "" for none.
+        at: seconds of the world at which it begins; None: only on request.
+        lasts: duration in seconds; None: until `Faults.end`.
+        robot: name of the affected robot, "" for none.
         topic: absolute name.
-        share: of the way that slipping wheels lose on average, or of the messages that are lost.
+        share: mean loss of slipping wheels, or of messages; 0 to 1.
         wheel: ``left``, ``right`` or ``both``.
-        pose: where a kidnapped robot is put.
-        level: percent that are left in the battery.
+        pose: new pose of a kidnapped robot.
+        level: remaining charge of the battery, in percent.
         place: name of the door or the dock.
-        person: who comes.
-        seconds, jitter: by which messages are late, and by up to so many more at random.
-        copies: how often each message comes.
+        person: the person that appears.
+        seconds, jitter: delay of messages, and the maximum of its random part.
+        copies: deliveries of each message.
     """
 
     name: str

@@ -1,10 +1,10 @@
-"""Fault files: YAML text to `Fault` objects, checked against the world in which they are to happen.
+"""Fault files: YAML text to `Fault` objects, checked against their world.
 
-Times are seconds of the world, lengths metres, angles degrees; ``robot`` may be left out where there is one::
+Times are seconds of the world, lengths metres, angles degrees; ``robot`` is optional if the world has one robot::
 
     faults:
       slippery: {kind: wheel_slip, share: 0.3, at: 5, for: 10}
-      stuck: {kind: blocked_wheel, wheel: left}          # left, right or both; without 'at': only when it is asked for
+      stuck: {kind: blocked_wheel, wheel: left}          # left, right or both; without 'at': only on request
       moved: {kind: kidnapped_robot, robot: turtlebot, to: {x: 1, y: 2, yaw_degrees: 90}, at: 30}
       tired: {kind: battery_drop, to: 15, at: 40}        # percent
       cold: {kind: dead_dock, dock: dock}
@@ -36,7 +36,7 @@ def load_faults(path: str | Path, world: WorldDescription) -> tuple[Fault, ...]:
     """Read a fault file.
 
     Raises:
-        WorldError: the file is missing or wrong, or does not suit the *world*; with all mistakes at once.
+        WorldError: the file is missing, wrong, or does not fit the *world*; its text has all mistakes.
     """
     text, problems, faults = _read(Path(path), world)
     if problems:
@@ -45,10 +45,10 @@ def load_faults(path: str | Path, world: WorldDescription) -> tuple[Fault, ...]:
 
 
 def read_faults(text: str, world: WorldDescription, name: str = "faults") -> tuple[Fault, ...]:
-    """Read the text of a fault file; *name* is what errors call it.
+    """Read the text of a fault file; errors call it *name*.
 
     Raises:
-        WorldError: with all mistakes at once.
+        WorldError: the text is wrong; the error has all mistakes.
     """
     problems, faults = _faults(text, world)
     if problems:
@@ -57,13 +57,13 @@ def read_faults(text: str, world: WorldDescription, name: str = "faults") -> tup
 
 
 def is_fault_file(path: Path) -> bool:
-    """Whether a YAML file is a fault file: it says ``faults``, and nothing of a world."""
+    """Return whether a YAML file is a fault file: it has the key ``faults``, and none of a world."""
     keys = top_keys(path)
     return "faults" in keys and "robots" not in keys and "artifacts" not in keys
 
 
 def fault_file_problems(path: Path) -> tuple[str, list[Problem]]:
-    """The text of a fault file, and all that is wrong with it, whatever the world."""
+    """Return the text of a fault file and all mistakes that do not depend on a world."""
     text, problems, _ = _read(path, None)
     return text, problems
 
@@ -120,7 +120,7 @@ def _fault(key: Node, node: Node, world: WorldDescription | None) -> Fault:
 
 
 def _placed(fault: Fault, node: Node, entries: dict[str, Node], world: WorldDescription | None) -> Fault:
-    """The fault with the robot, topic or place that it happens to."""
+    """Complete a fault with its robot, topic or place."""
     if fault.kind in (*WHEELS, *AT_ONCE, *MESSAGES):
         fault = replace(fault, robot=_robot(node, entries.get("robot"), fault.kind, world))
     elif "robot" in entries:
@@ -185,7 +185,7 @@ def _robot(node: Node, given: Node | None, kind: str, world: WorldDescription | 
 
 
 def _topic(node: Node, given: Node | None, robot: str, world: WorldDescription | None) -> str:
-    """An absolute name; a relative one is the robot's."""
+    """Return the absolute name of a topic; relative ones are in the robot's namespace."""
     if given is None:
         node.wrong(f"{node.what} lacks the key 'topic'", "add a topic of the world, such as 'topic: /scan'")
         return ""

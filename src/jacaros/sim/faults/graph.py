@@ -1,6 +1,6 @@
-"""The graph of a world with faults: messages that it sends and hears may be lost, late or wrong.
+"""The ROS graph of a world with faults: messages from and to the world can be lost, late or wrong.
 
-They suffer where the world meets the graph, so that agents and all other nodes suffer alike.
+Faults act where the world joins the graph, so they affect agents and all other nodes alike.
 """
 
 import difflib
@@ -16,12 +16,12 @@ from jacaros.sim.faults.schedule import Faults
 
 
 class FaultyGraph:
-    """A graph whose topics have faults; all else is as it is.
+    """A graph whose topics have faults; the rest is unchanged.
 
     Args:
         backend: the graph.
         faults: of the world.
-        clock: of late messages.
+        clock: for delayed messages.
     """
 
     def __init__(self, backend: Backend, faults: Faults, clock: Clock) -> None:
@@ -53,10 +53,10 @@ class FaultyGraph:
         return self._backend.subscription(topic, type_name, hear, *arguments, **keywords)
 
     def check(self) -> None:
-        """Refuse faults of topics that the world neither publishes nor hears, when it has joined them all.
+        """Check, after the world has joined all its topics, that the faults concern no others.
 
         Raises:
-            UsageError: for the first one.
+            UsageError: a fault has an unknown topic.
         """
         for fault in self._faults.by_name.values():
             if fault.topic and fault.topic not in self._made:
@@ -80,7 +80,7 @@ class FaultyGraph:
 
 
 class _FaultyPublisher:
-    """A publisher whose messages pass through faults."""
+    """A publisher whose messages are subject to faults."""
 
     def __init__(
         self, publisher: Publisher, topic: str, pass_on: Callable[[str, Any, Callable[[Any], None]], None]
@@ -91,5 +91,5 @@ class _FaultyPublisher:
         return getattr(self._publisher, name)
 
     def publish(self, message: Any) -> None:
-        """Send what the faults leave of a message."""
+        """Publish a message as the faults change it, if they do not drop it."""
         self._pass_on(self._topic, message, self._publisher.publish)

@@ -1,4 +1,4 @@
-"""What faults do to messages: a sensor that is dead, frozen or tells nonsense, and a line that loses, delays or repeats."""
+"""Effects of faults on messages: dead, frozen or NaN sensors, and lost, delayed or duplicated messages."""
 
 import copy
 import math
@@ -10,16 +10,16 @@ from typing import Any
 from jacaros.sim.faults.description import Fault
 
 Way = Callable[[Any], Sequence[tuple[float, Any]]]
-"""Takes a message; gives what arrives in its place, each after so many seconds: nothing when it is lost."""
+"""Takes a message, and returns the messages that arrive instead, each with its delay in seconds; empty if it is lost."""
 
 _KEPT = frozenset(
     {"header", "angle_min", "angle_max", "angle_increment", "range_min", "range_max", "scan_time"}
 )
-"""What describes a sensor, and is no measurement."""
+"""Fields that describe a sensor and are not measurements."""
 
 
 def way_of(fault: Fault, seed: int) -> Way:
-    """What a fault does to each message of its topic from now on."""
+    """Return the effect of a fault on the messages of its topic."""
     chance = random.Random(f"{seed}/{fault.name}/messages")
     if fault.kind == "dead":
         return lambda message: ()
@@ -35,7 +35,7 @@ def way_of(fault: Fault, seed: int) -> Way:
 
 
 class _Frozen:
-    """Repeats the first message, with the stamps of those that it replaces."""
+    """Repeats the first message, with the stamps of the replaced messages."""
 
     def __init__(self) -> None:
         self._first: Any = None
@@ -50,7 +50,7 @@ class _Frozen:
 
 
 def _without_numbers(message: Any) -> Any:
-    """Write NaN into every floating-point field that is a measurement."""
+    """Set every floating-point measurement to NaN."""
     for name in _fields(message):
         value = getattr(message, name)
         if name in _KEPT or "covariance" in name:
@@ -68,7 +68,7 @@ def _without_numbers(message: Any) -> Any:
 
 
 def _fields(value: Any) -> list[str]:
-    """The fields of a message of any middleware; none for what is no message."""
+    """Return the field names of a message of any middleware; an empty list for other values."""
     if is_dataclass(value):
         return [field.name for field in fields(value)]
     return [

@@ -1,4 +1,4 @@
-"""The faults of a running world: when they begin and end, and what they do to it."""
+"""The faults of a running world: their schedule and their effects."""
 
 import math
 import random
@@ -16,7 +16,7 @@ Undo = Callable[[], object]
 
 
 class Stricken(Protocol):
-    """A world, as a fault sees it (`jacaros.sim.world.World`)."""
+    """The part of `jacaros.sim.world.World` that faults use."""
 
     description: WorldDescription
     time: float
@@ -31,7 +31,7 @@ class Stricken(Protocol):
 
 
 class Refused(Exception):
-    """A fault cannot happen now."""
+    """Raised when a fault cannot happen now."""
 
 
 class Faults:
@@ -41,13 +41,13 @@ class Faults:
     ``begins``, ``ends`` or ``refused``, then with ``why``.
 
     Args:
-        world: in which they happen.
-        faults: those that may happen.
+        world: the affected world.
+        faults: its faults.
 
     Attributes:
         by_name: the faults.
-        next: the world's time at which something is to be done; infinite when nothing is.
-        topics: those with faults, at work or not.
+        next: time of the next beginning or end, in seconds of the world; infinite if there is none.
+        topics: all topics with faults, active or not.
     """
 
     def __init__(self, world: Stricken, faults: Iterable[Fault] = ()) -> None:
@@ -62,15 +62,15 @@ class Faults:
 
     @property
     def at_work(self) -> list[str]:
-        """Names of the faults that have begun and not ended, the oldest first."""
+        """Names of the active faults, the oldest first."""
         return list(self._undo)
 
     def ways(self, topic: str) -> Iterable[Way]:
-        """What the faults at work do to messages of a topic, the oldest first."""
+        """Return the effects of active faults on messages of a topic, the oldest first."""
         return self._ways.get(topic, {}).values()
 
     def step(self, time: float) -> None:
-        """Do what is due at *time* (seconds of the world): ends first."""
+        """End and begin the faults that are due at *time* (seconds of the world), ends first."""
         for name in [name for name, end in self._ends.items() if end <= time]:
             self.end(name)
         for name in [name for name, begin in self._begins.items() if begin <= time]:
@@ -82,10 +82,10 @@ class Faults:
         self.next = min((*self._begins.values(), *self._ends.values()), default=math.inf)
 
     def begin(self, name: str) -> str | None:
-        """Let a fault happen now; one that is at work goes on.
+        """Begin a fault; an active fault continues.
 
         Returns:
-            Why it cannot happen, or None.
+            The reason why it cannot begin, or None.
 
         Raises:
             UsageError: the fault is unknown.
@@ -107,7 +107,7 @@ class Faults:
         return None
 
     def end(self, name: str) -> None:
-        """End a fault; one that is not at work stays so.
+        """End a fault, if it is active.
 
         Raises:
             UsageError: the fault is unknown.
@@ -140,10 +140,10 @@ class Faults:
         self._world.note_fault(fault.robot, {"fault": fault.name, "kind": fault.kind, "state": state, **more})
 
     def _effect(self, fault: Fault) -> Undo | None:
-        """Do what a fault does; gives what ends it, None for what happened at once.
+        """Apply a fault, and return the function that ends it; None for faults without duration.
 
         Raises:
-            Refused, UsageError: it cannot happen now.
+            Refused, UsageError: the fault cannot happen now.
         """
         if fault.kind in MESSAGES:
             ways = self._ways.setdefault(fault.topic, {})

@@ -2,7 +2,7 @@
 
 Their keys are those of `jacaros.map_header`; the origin must not be rotated.
 
-A laser sees through unknown cells and a robot can drive there; its map shows no wall.
+Unknown cells are not walls: lasers see through them, and robots can drive there.
 """
 
 import difflib
@@ -19,9 +19,9 @@ from jacaros.yaml_syntax import read_text, top_keys
 
 FREE, OCCUPIED, UNKNOWN = 0, 1, 2
 _ROOM_FOR_ROBOT = 0.4
-"""Metres from a robot, for which a place is looked for, to anything that may be a wall."""
+"""Metres of free floor around a robot that is placed automatically."""
 _LATTICE = 0.25
-"""Metres between places that are tried for a robot."""
+"""Metres between the places tried for it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +80,7 @@ class OccupancyMap:
         return found
 
     def known_part(self) -> Rectangle:
-        """The smallest rectangle with all cells that are not unknown; the whole map if there are none."""
+        """The smallest rectangle with all known cells; the whole map if there are none."""
         known = self.cells.translate(_KNOWN)
         rows = [row for row in range(self.height) if 1 in known[row * self.width : (row + 1) * self.width]]
         columns = [column for column in range(self.width) if 1 in known[column :: self.width]]
@@ -144,13 +144,13 @@ def _changes(one: bytes, other: bytes) -> list[tuple[int, int]]:
 
 
 def is_map(path: Path) -> bool:
-    """Whether a YAML file is one of a map_server, wrong as it may be."""
+    """Return whether a YAML file looks like a map of map_server, with mistakes or without."""
     keys = top_keys(path)
     return "image" in keys and len(keys & set(KEYS)) > 1
 
 
 def read_map(path: Path) -> tuple[str, list[Problem], OccupancyMap | None]:
-    """The text of a map file, all that is wrong with it and its image, and the map if nothing is."""
+    """Return the text of a map file, all mistakes in it and its image, and the map if there are none."""
     try:
         text, wrong = read_text(path)
     except OSError as error:
@@ -189,7 +189,7 @@ _CELLS = {100: OCCUPIED, 0: FREE, -1: UNKNOWN}
 
 
 def free_place(found: OccupancyMap | None, problems: list[Problem]) -> tuple[float, float] | None:
-    """Where a robot can stand on a map; None after a mistake, which is added to *problems*."""
+    """Return a free place for a robot; None if there is none, which is added to *problems*."""
     place = found.free_place(_ROOM_FOR_ROBOT) if found is not None else None
     if found is not None and place is None:
         problems.append(
@@ -213,7 +213,7 @@ def _image(node: Node, path: Path) -> GreyImage | None:
 
 
 def near_file(path: Path, pattern: str) -> str:
-    """Ask whether a file beside *path* was meant that is called almost so; empty if there is none."""
+    """Return a "did you mean" for a file of a similar name beside *path*; empty if there is none."""
     try:
         near = difflib.get_close_matches(path.name, [each.name for each in path.parent.glob(pattern)], 1)
     except (OSError, ValueError):
@@ -222,7 +222,7 @@ def near_file(path: Path, pattern: str) -> str:
 
 
 def map_of_world(world: WorldDescription, image: str) -> tuple[str, bytes]:
-    """The map of a world as robots have it, with open doors: the text of its YAML file, and the image, called *image*."""
+    """Return a world's map with open doors: the text of its YAML file, and the bytes of the image called *image*."""
     grid = Grid(world)
     width, height = grid.width - 2, grid.height - 2
     shades = bytes(0 if value else 254 for value in grid.occupancy())

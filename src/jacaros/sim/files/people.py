@@ -1,8 +1,8 @@
-"""The ``people`` of a world file, who walk from point to point::
+"""The ``people`` of a world file::
 
 people:
   - name: ann
-    path: [[0, 0], [2, 0], [2, 2]]    # points; she stands at the first one at the beginning
+    path: [[0, 0], [2, 0], [2, 2]]    # points; ann starts at the first
     speed: 1                          # m/s
     pause: 0                          # seconds at each point
     loop: true                        # from the last point to the first, and so on; false: ends at the last
@@ -53,9 +53,9 @@ def read_path(node: Node) -> tuple[tuple[float, float], ...]:
 
 
 def check_people(items: list[Node], world: WorldDescription, walled: bool) -> None:
-    """Note people with the name of another person or of a robot, and those whose path touches a wall or a robot's place.
+    """Report duplicate names of people and robots, and paths that touch a wall or a robot's place.
 
-    Closed doors are allowed: people wait before them.
+    Closed doors are allowed: people wait in front of them.
     """
     names = {robot.name for robot in world.robots}
     for item, person in zip(items, world.people, strict=True):

@@ -1,6 +1,6 @@
 """The ``robots`` part of a world file: one mapping to a `RobotDescription`.
 
-Every key may be left out; these are the defaults, but for the errors of odometry and laser, which are 0::
+Every key is optional; these are the defaults, except for the noise of odometry and laser (0)::
 
     - name: turtlebot
       kind: turtlebot               # or turtlebot2, turtlebot3, turtlebot4: other defaults, see `jacaros.sim.robot.kinds`
@@ -44,7 +44,7 @@ _REACH = 0.35
 
 
 def read_robot(node: Node) -> RobotDescription:
-    """Read one robot; what is not said is that of its kind, at the origin."""
+    """Read one robot; missing values are those of its kind, at the origin."""
     entries = node.mapping(
         "name",
         "kind",

@@ -1,4 +1,4 @@
-"""New world files: text with comments that a person goes on with."""
+"""Templates of world files, with comments for their author."""
 
 import os
 from pathlib import Path
@@ -54,7 +54,7 @@ def new_world(name: str) -> str:
 
 
 def world_of_map(path: Path, map_file: Path) -> str:
-    """The text of a world file that is to be written to *path*, with the walls of a map and a robot where it is free.
+    """Return a world file for *path*, with the walls of a map and a robot at a free place.
 
     Raises:
         WorldError: the map has mistakes, or no free place.
@@ -78,7 +78,7 @@ def world_of_map(path: Path, map_file: Path) -> str:
 
 
 def described_map(image: Path, path: Path, resolution: float) -> str:
-    """The text of a map file that is to be written to *path* for an image; its lower left corner is the origin."""
+    """Return a map file for *path* and an image; the origin is its lower left corner."""
     return f"image: {_quoted(_relative(image, path))}\nresolution: {resolution:g}\norigin: [0, 0, 0]\n"
 
 

@@ -1,7 +1,7 @@
 """World files: YAML text to a `WorldDescription`.
 
-Lengths are metres, times seconds, levels percent and angles degrees (the keys say so); inside, angles are
-radians.  Every key but ``robots`` may be left out; what a robot may say is in `jacaros.sim.files.robot`::
+Lengths are metres, times seconds, levels percent and angles degrees; internally, angles are
+radians.  Every key except ``robots`` is optional; for those of robots see `jacaros.sim.files.robot`::
 
     name: patrol
     map: office.yaml                  # of map_server, see `jacaros.sim.files.map`; its walls and bounds
@@ -99,7 +99,7 @@ def find_world(name: str) -> Path:
 
 
 def _meant(name: str) -> str:
-    """Say which world was probably meant, or which there are."""
+    """Return a "did you mean", or the names of the shipped worlds."""
     try:
         beside = [str(path) for path in Path(name).parent.glob("*.y*ml")]
     except (OSError, ValueError):
@@ -114,7 +114,7 @@ def load_world(name: str) -> WorldDescription:
     """Read the world file of a path or of a shipped world's name.
 
     Raises:
-        WorldError: the file is missing, or wrong; with all mistakes at once.
+        WorldError: the file is missing or wrong; the error has all mistakes.
     """
     path = find_world(name)
     text, problems, description = _read(path)
@@ -130,16 +130,16 @@ def is_world(path: Path) -> bool:
 
 
 def world_problems(path: Path) -> tuple[str, list[Problem]]:
-    """The text of a world file, and all that is wrong with it."""
+    """Return the text of a world file and all its mistakes."""
     text, problems, _ = _read(path)
     return text, problems
 
 
 def read_world(text: str, name: str = "world") -> WorldDescription:
-    """Read the text of a world file; *name* is what errors call it.  Paths in it count from the current folder.
+    """Read the text of a world file; errors call it *name*.  Paths in it are relative to the current folder.
 
     Raises:
-        WorldError: with all mistakes at once.
+        WorldError: the text is wrong; the error has all mistakes.
     """
     problems, description = _described(text, Path())
     if description is None:
@@ -282,7 +282,7 @@ def _wall(node: Node, segments: list[Segment], boxes: list[Furniture]) -> None:
 
 
 def _straight(shape: Node, segments: list[Segment], several: bool = False, closed: bool = False) -> None:
-    """Read the points of a segment, or of *several* in a row, and add what is between them."""
+    """Read the points of a segment, or of *several* connected ones, and add the segments."""
     mistakes = len(shape.problems)
     points = [point.pair() for point in shape.sequence()]
     if len(shape.problems) > mistakes:

@@ -1,1 +1,1 @@
-"""What a robot of the world does by itself: plan a way, drive it, dock, and offer that as actions."""
+"""Navigation of a simulated robot: plan paths, follow them, dock, and offer this as actions."""

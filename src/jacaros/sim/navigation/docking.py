@@ -113,7 +113,7 @@ class Docking:
         """Leave the dock, backwards if there is room, else forwards, in at most *limit* seconds.
 
         Raises:
-            NavigationFailure: there is no room.
+            NavigationFailure: something is in the way.
             Overtaken: another goal has the wheels.
         """
         dock = self.navigator.robot.dock
@@ -145,13 +145,13 @@ class Docking:
             raise NavigationFailure(code, failure.text) from None
 
     def _staging_pose(self, dock: Dock) -> Placement | None:
-        """Before the dock, looking at it; None where there is no room for that."""
+        """Return the staging pose in front of the dock, facing it; None if it is not free."""
         berth = Placement.at(*dock.pose)
         place = Placement(*berth.point(-STAGING, 0.0), berth.cosine, berth.sine)
         return place if self._room(place) else None
 
     def _berth(self, dock: Dock) -> Placement:
-        """Where to stand in the dock: as near to its middle as walls allow."""
+        """Return the docked position: as near to the dock's middle as walls allow."""
         berth = Placement.at(*dock.pose)
         for step in range(math.floor(0.8 * dock.radius / 0.02) + 1):
             place = Placement(*berth.point(-0.02 * step, 0.0), berth.cosine, berth.sine)

@@ -64,7 +64,7 @@ class Route:
         return best
 
     def point(self, at: float) -> Point:
-        """The point *at* so many metres from the beginning; the end for more than there are."""
+        """Return the point *at* metres along the path, at most its end."""
         if at >= self.length:
             return self.points[-1]
         index = max(0, bisect_right(self._at, at) - 1)
@@ -97,7 +97,7 @@ _SKIN = 0.012
 
 
 class Command(NamedTuple):
-    """What to tell the wheels: m/s and rad/s."""
+    """Return the command for the wheels: m/s and rad/s."""
 
     speed: float
     turn_rate: float
@@ -108,7 +108,7 @@ STOP = Command(0.0, 0.0)
 
 @dataclass(frozen=True, slots=True)
 class Pace:
-    """How fast a robot drives by itself: m/s, rad/s, m/s2."""
+    """Limits of navigation: m/s, rad/s, m/s2."""
 
     speed: float
     turn_rate: float

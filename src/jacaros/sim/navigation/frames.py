@@ -72,12 +72,12 @@ def pose_of(pose: Any) -> Placement:
 
 
 def fault_of(stamped: Any) -> str | None:
-    """What is wrong with a ``geometry_msgs/msg/PoseStamped`` as a goal, or None."""
+    """Return why a ``geometry_msgs/msg/PoseStamped`` is not a valid goal, or None."""
     return pose_fault(stamped.pose)
 
 
 def pose_fault(pose: Any) -> str | None:
-    """What is wrong with a ``geometry_msgs/msg/Pose``, or None."""
+    """Return why a ``geometry_msgs/msg/Pose`` is invalid, or None."""
     place, rotation = pose.position, pose.orientation
     turn = (rotation.x, rotation.y, rotation.z, rotation.w)
     if not all(math.isfinite(value) for value in (place.x, place.y, *turn)):

@@ -97,7 +97,7 @@ class Grid:
         return math.floor((y - self.y_min) / self.resolution) + 1
 
     def cell(self, x: float, y: float) -> int | None:
-        """The cell that a point lies in; None outside of the map."""
+        """Return the cell of a point; None outside the map."""
         column, row = self._column(x), self._row(y)
         if 0 < column < self.width - 1 and 0 < row < self.height - 1:
             return row * self.width + column
@@ -138,12 +138,12 @@ def cheapest_path(weights: Sequence[float], width: int, start: int, goal: int) -
     """Find the cheapest path.
 
     Args:
-        weights: what a metre costs in each cell: 1 or more, or 0 where nobody may go; the outermost cells must be 0.
+        weights: cost per metre in each cell: 1 or more, or 0 for blocked cells; the outermost cells must be 0.
         width: columns of the grid.
-        start, goal: cells; the start may be one where nobody may go.
+        start, goal: cells; the start can be a blocked cell.
 
     Returns:
-        The cells from start to goal, both included; None when there is no way.  A step costs its length (in cells)
+        The cells from start to goal, both included; None without a path.  A step costs its length (in cells)
         times the weight of the cell it leads to.  Of ways that cost the same, always the same one is found.
     """
     if not weights[goal]:

@@ -20,12 +20,12 @@ class Localisation:
 
     Twice a second it takes away all errors that odometry has piled up; between two corrections the robot
     trusts its wheels.  (Matching scans with the map is not what this world is for, so the correction is taken from the
-    true pose.)  Somebody who tells it a wrong pose makes it lost, as he would AMCL: it then trusts its wheels alone.
+    true pose.)  A wrong pose makes it lost, as AMCL: it then uses odometry alone.
 
     Attributes:
         map_to_odom: where the odometry frame stands on the map.
-        variances: how well the place is known; `FOUND`, or as somebody told it.
-        lost: whether the last pose that it was told was so far off that scans do not put it right.
+        variances: of the estimate; `FOUND`, or those of the received pose.
+        lost: whether the last received pose was too far off to be corrected by scans.
     """
 
     def __init__(self, robot: Robot) -> None:
@@ -52,7 +52,7 @@ class Localisation:
             self.map_to_odom = found
 
     def believe(self, place: Placement, radius: float, turn: float, time: float) -> None:
-        """Be told where the robot is, give or take *radius* metres and *turn* radians, at *time* (see `update`).
+        """Set the robot's pose, within *radius* metres and *turn* radians, at *time* (see `update`).
 
         With the truth within that, and within `SURE` at the least, the next correction finds it.
         """
@@ -70,7 +70,7 @@ class Localisation:
         return self.map_to_odom.then(self._odometry())
 
     def belief(self, time: float) -> Placement:
-        """The pose that it would give at *time* (seconds of the world); for those who watch: nothing is corrected."""
+        """Return the estimate at *time* (seconds of the world) without updating it, for observers."""
         due = time >= self._next and not self.lost and self._robot.put_downs == self._put_downs
         return self._truth() if due else self.pose()
 

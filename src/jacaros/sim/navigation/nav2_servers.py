@@ -189,7 +189,7 @@ class NavigationServers:
         }
 
     def _simple_goal(self, sample: Sample) -> None:
-        """A goal without an action: nobody is told how it goes."""
+        """A goal without an action: it has no feedback or result."""
         if fault_of(sample.message) is not None:
             self._backend.rosout("error", f"goal on {sample.topic}: {fault_of(sample.message)}")
             return

@@ -1,4 +1,4 @@
-"""A robot that drives by itself: where it believes to be, what it sees, and its simplest motions."""
+"""A navigating robot: its estimated pose, its perception and its simplest motions."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -20,7 +20,7 @@ _GIVE_UP = 2.0
 
 
 class Navigator:
-    """What one robot needs for driving by itself.
+    """The parts that one robot needs for navigation.
 
     Args:
         time: the world, on a clock.

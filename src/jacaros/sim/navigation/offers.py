@@ -1,4 +1,4 @@
-"""Offering actions and services of a robot: those whose types are known here.
+"""The action and service servers of a robot, as far as their types are installed.
 
 Results fit whatever release is installed.
 """
@@ -20,7 +20,7 @@ class Goal:
 
     Attributes:
         request: the goal message.
-        feedback: tells the client how far it is, by fields.
+        feedback: sends fields of a feedback message to the client.
     """
 
     def __init__(self, backend: Backend, type_name: str, served: ServerGoal) -> None:
@@ -81,21 +81,21 @@ class Offers:
         self._servers.append(server)
 
     def service(self, name: str, type_name: str, handler: Handler) -> None:
-        """Offer a service; where its type is unknown, say so and go on."""
+        """Offer a service; where its type is unknown, log a warning."""
         try:
             self._servers.append(self.backend.service(self.prefix + name, type_name, handler))
         except UnknownInterface:
             self.left_out(f"service {self.prefix}{name}", type_name)
 
     def left_out(self, what: str, type_name: str) -> None:
-        """Write one line about something that cannot be offered here."""
+        """Log a warning about a server that cannot be offered."""
         try:
-            self.backend.rosout("warn", f"{what} is not offered: {type_name} is not known here")
+            self.backend.rosout("warn", f"{what} is not offered: unknown type {type_name}")
         except RosError:
             return
 
     def close(self) -> None:
-        """Offer nothing any more; goals under way are aborted."""
+        """Withdraw all servers; active goals are aborted."""
         for server in self._servers:
             server.close()
         self._servers.clear()

@@ -13,7 +13,7 @@ Point = tuple[float, float]
 
 
 class Placement(NamedTuple):
-    """Where a frame stands in another one: metres, and the cosine and sine of its heading."""
+    """The pose of a frame in another one: metres, and the cosine and sine of its heading."""
 
     x: float
     y: float

@@ -1,4 +1,4 @@
-"""Planning: from a pose to a goal around walls, and around what else stands there now."""
+"""Path planning from a pose to a goal, around walls and current obstacles."""
 
 import itertools
 import math
@@ -53,7 +53,7 @@ class Planner:
         """Find a way as few straight pieces, from *start* to *goal*, both included.
 
         Raises:
-            NavigationFailure: there is none.
+            NavigationFailure: there is no path.
         """
         weights = self._around(obstacles)
         start_cell = self._start(start, weights)

@@ -66,7 +66,7 @@ class RobotNavigation:
         return self._navigator.path
 
     def close(self) -> None:
-        """Offer nothing any more; a robot that is being driven is stopped."""
+        """Withdraw all servers, and stop the robot."""
         self._offers.close()
         self._servers.close()
         self._wheels.close()

@@ -1,4 +1,4 @@
-"""What a robot sees with its laser: other robots, people, and doors."""
+"""Laser perception: other robots, people and doors in view."""
 
 import math
 from collections.abc import Iterable
@@ -22,7 +22,7 @@ class Sight:
 
     Args:
         world: the world.
-        robot: who looks.
+        robot: the robot with the laser.
     """
 
     def __init__(self, world: World, robot: Robot) -> None:
@@ -59,7 +59,7 @@ class Sight:
         }
 
     def covers(self, place: Point, believed: Placement) -> bool:
-        """Whether the robot sees a place on its map, or who stands there."""
+        """Return whether the robot sees a place on its map, or what occupies it."""
         return self._sees(*self._true().point(*believed.local(*place)), self._world.segments)
 
     def forget(self) -> None:

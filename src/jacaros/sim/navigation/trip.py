@@ -23,7 +23,7 @@ YAW_TOLERANCE = 0.05
 PATIENCE = 3.0
 """Seconds without getting anywhere before something else is tried; a little more for each further robot."""
 MOST_RECOVERIES = 3
-"""After so many tries in a row the goal is given up."""
+"""Number of failed attempts in a row after which the goal is aborted."""
 _MOVED = 0.25
 _TURNED = 0.8
 _AWAY = 0.6
@@ -54,13 +54,13 @@ Tell = Callable[[Progress], None]
 
 
 async def go(navigator: Navigator, goals: Sequence[Placement], tell: Tell, limit: float = math.inf) -> None:
-    """Drive through all of *goals* and come to stand at the last one, with its heading.
+    """Drive through all *goals* and stop at the last one, with its heading.
 
     Args:
         navigator: the robot.
         goals: poses on the map.
-        tell: told of progress a few times a second.
-        limit: seconds after which the goal is given up; it is anyhow after a time that goes with the way's length.
+        tell: receives progress, a few times per second.
+        limit: seconds after which the goal is aborted; there is also a limit by the length of the path.
 
     Raises:
         NavigationFailure: it cannot be done.
@@ -79,7 +79,7 @@ class Trip:
     Args:
         navigator: the robot.
         goals: the poses, on the map.
-        tell: told of progress a few times a second.
+        tell: receives progress, a few times per second.
         limit: seconds it may take.
     """
 
@@ -148,7 +148,7 @@ class Trip:
             raise NavigationFailure(TIMEOUT, f"not there after {self._allowance:g} s")
 
     def _follow(self) -> None:
-        """Note where on the way the robot is, and plan anew when the way is not good any more."""
+        """Update the robot's position on the path, and replan when the path is no longer good."""
         here = (self._pose.x, self._pose.y)
         beside = self._route.advance(here)
         while self._vias and self._route.done >= self._vias[0] - TOLERANCE:
@@ -197,7 +197,7 @@ class Trip:
         return way
 
     def _plan_again(self) -> None:
-        """Find a way round whoever stands there; without one the old way stays."""
+        """Plan around the obstacles; without a path keep the old one."""
         self._planned = self._clock.now()
         # To find that there is none takes longest; it need not be found again while the same things stand there.
         if self._hopeless is not None and _stand_still(self._hopeless, self._others):
@@ -217,7 +217,7 @@ class Trip:
             self._avoided = self._others
 
     def _reconsider(self) -> None:
-        """Leave a detour for the straight way when those who stood there have gone on, as far as the robot sees."""
+        """Return from a detour to the direct path when the robot sees that the obstacles are gone."""
         self._planned = self._clock.now()
         if not all(self.navigator.sight.covers((x, y), self._pose) for x, y, _ in self._avoided):
             return
@@ -299,7 +299,7 @@ class Trip:
 
 
 def _stand_still(before: Sequence[Circle], now: Sequence[Circle]) -> bool:
-    """Whether the same things stand where they stood, as far as a robot can tell."""
+    """Return whether the obstacles are unchanged, as far as a robot can perceive."""
     return len(before) == len(now) and all(
         distance((ax, ay), (bx, by)) < _STILL for (ax, ay, _), (bx, by, _) in zip(before, now, strict=True)
     )

@@ -1,4 +1,4 @@
-"""The wheels of a robot that drives by itself: commands on ``/cmd_vel``, one driver at a time."""
+"""The wheels of a navigating robot: commands on ``/cmd_vel``, one driver at a time."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -13,11 +13,11 @@ OVERTAKEN = "a newer goal took the robot over"
 
 
 class Overtaken(Exception):
-    """Somebody else drives the robot now."""
+    """Raised when another goal drives the robot now."""
 
 
 class Hold:
-    """The right to drive, until somebody takes it."""
+    """A claim of the wheels, until another goal takes them."""
 
     def __init__(self, wheels: "Wheels") -> None:
         self._wheels = wheels
@@ -53,7 +53,7 @@ class Wheels:
 
     @contextmanager
     def held(self) -> Iterator[Hold]:
-        """Take the wheels from whoever has them; in the end the robot is stopped, unless somebody took them."""
+        """Take the wheels from the current driver; stop the robot afterwards, unless another driver took them."""
         self.holder = hold = Hold(self)
         try:
             yield hold

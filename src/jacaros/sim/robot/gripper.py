@@ -20,7 +20,7 @@ _PERIOD = 0.1
 
 
 class Gripper:
-    """Moves the fingers of one robot, takes what is between them and puts it down; nothing for a robot without one."""
+    """Moves the fingers of one robot, and picks up and puts down objects; does nothing for a robot without a gripper."""
 
     def __init__(self, at: RobotOnGraph) -> None:
         self._at, self._objects = at, at.time.world.objects
@@ -45,7 +45,7 @@ class Gripper:
         return {"position": self._opening, "stalled": stalled, "reached_goal": self._opening == wanted}
 
     def _step(self, wanted: float) -> bool:
-        """Move the fingers towards *wanted* for one period; True when something stops them."""
+        """Move the fingers towards *wanted* for one period; return whether something stops them."""
         robot = self._at.robot
         held = self._objects.held_by(robot)
         opening = approach(self._opening, wanted, _SPEED * _PERIOD)
@@ -70,7 +70,7 @@ class Gripper:
         return found if found is not None and opening <= found.width <= self._opening else None
 
     def close(self) -> None:
-        """Offer nothing any more."""
+        """Withdraw the action."""
         self._offers.close()
 
 

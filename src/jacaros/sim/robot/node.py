@@ -54,7 +54,7 @@ SENSORS: Final[Sequence[Callable[[RobotOnGraph], Sensor]]] = (
     CameraSensor,
     ObjectRecognition,
 )
-"""What every robot tells the graph, in the order of publishing."""
+"""The sensors of every robot, in the order of publishing."""
 
 ACTUATORS: Final[Sequence[Callable[[RobotOnGraph], Actuator]]] = (LightsAndSound, Gripper)
 """What every robot does for the graph, besides driving and cleaning."""
@@ -70,7 +70,7 @@ class RobotNode:
         time: the world, on a clock.
         robot: which of its robots.
         backend: the graph; it is started already.
-        sensors: what it tells.
+        sensors: its sensors.
     """
 
     def __init__(
@@ -116,7 +116,7 @@ class RobotNode:
         self.time.world.use_tool(self.robot.name, str(sample.message.data))
 
     def _told_pose(self, sample: Sample) -> None:
-        """Somebody says where the robot is, as rviz does; AMCL, too, hears of poses on the map only."""
+        """Receive the robot's pose, for example from rviz; as AMCL does, accept poses in the map's frame only."""
         header, told = sample.message.header, sample.message.pose
         covariance = [float(value) for value in told.covariance]
         fault = pose_fault(told.pose)
@@ -133,7 +133,7 @@ class RobotNode:
         self.localisation.believe(pose_of(told.pose), radius, turn, self.time.world.time)
 
     def publish(self) -> None:
-        """Publish what is due at this tick of 20 Hz; the world has caught up."""
+        """Publish the sensors that are due at this tick of 20 Hz, after the world has caught up."""
         for sensor in self._sensors:
             sensor.publish(self._ticks)
         self._ticks += 1

@@ -27,7 +27,7 @@ class RobotOnGraph:
         time: the world, on a clock.
         robot: which of its robots.
         backend: the graph; it is started already.
-        localisation: where the robot believes to be.
+        localisation: its estimated pose.
     """
 
     time: WorldTime
@@ -37,22 +37,22 @@ class RobotOnGraph:
 
     @property
     def prefix(self) -> str:
-        """What stands before the names of the robot's topics."""
+        """The prefix of the robot's topics."""
         namespace = self.robot.description.namespace
         return f"/{namespace}" if namespace else ""
 
     @property
     def frame_prefix(self) -> str:
-        """What stands before the names of its frames."""
+        """The prefix of its frames."""
         namespace = self.robot.description.namespace
         return f"{namespace}/" if namespace else ""
 
     def publisher(self, topic: str, type_name: str, qos: QoS = DEFAULT_QOS) -> Publisher:
-        """Make a publisher below the robot's namespace; reliable: it serves subscriptions that ask for that, and others."""
+        """Make a publisher in the robot's namespace, reliable by default."""
         return self.backend.publisher(self.prefix + topic, type_name, qos)
 
     def publisher_if_known(self, topic: str, type_name: str) -> Publisher | None:
-        """The same; None where the type is not installed, for robots of that kind are not used there."""
+        """Make a publisher; return None where the type is not installed."""
         try:
             return self.publisher(topic, type_name)
         except UnknownInterface:
@@ -61,30 +61,30 @@ class RobotOnGraph:
     def subscription_if_known(
         self, topic: str, type_name: str, callback: Callable[[Sample], None]
     ) -> Subscription | None:
-        """Hear a topic below the robot's namespace; None where the type is not installed."""
+        """Subscribe in the robot's namespace; return None where the type is not installed."""
         try:
             return self.backend.subscription(self.prefix + topic, type_name, callback)
         except UnknownInterface:
             return None
 
     def fill_header(self, header: Any, frame: str) -> None:
-        """Give a header the time of the world, and one of the robot's frames."""
+        """Fill a header with the time of the world and a frame of the robot."""
         stamp(header.stamp, self.time.now())
         header.frame_id = self.frame_prefix + frame
 
 
 class Sensor(Protocol):
-    """Something that a robot tells the graph."""
+    """A publisher of a robot's state or measurements."""
 
     def publish(self, ticks: int) -> None:
-        """Publish what is due at this tick of 20 Hz; the world has caught up."""
+        """Publish if due at this tick of 20 Hz, after the world has caught up."""
 
     def close(self) -> None:
         """Leave the topics."""
 
 
 class Actuator(Protocol):
-    """Something that a robot does when the graph asks for it."""
+    """A device of a robot that the graph commands."""
 
     def close(self) -> None:
         """Leave the graph."""

@@ -34,7 +34,7 @@ class Robot:
         grip: gives how much of what the wheels roll moves the robot, from 0 to 1, for each step; None: all of it.
         blocked_wheel: ``left``, ``right`` or ``both``; "" for none.
         dead_docks: names of docks that give no current.
-        put_downs: how often somebody has put it down elsewhere.
+        put_downs: number of times it was put elsewhere.
         touching: names of what it touches: ``wall`` or other robots.  contacts: on which side, by those names.
     """
 
@@ -72,7 +72,7 @@ class Robot:
 
     @property
     def moving(self) -> bool:
-        """True while the base moves or is told to."""
+        """True while the base moves or has a command to."""
         return self.speed != 0.0 or self.turn_rate != 0.0 or self._told_to_move()
 
     def sample(self, time: float) -> Sample:
@@ -154,7 +154,7 @@ class Robot:
         self.put_downs += 1
 
     def _watch_commands(self, dt: float) -> None:
-        """Brake at once, without a ramp, when commands stay away or the battery is empty."""
+        """Brake immediately, without a ramp, when commands cease or the battery is empty."""
         late = self._silence + 1e-9 > self.description.limits.command_timeout
         self._silence += dt
         if late and self._told_to_move():
@@ -205,7 +205,7 @@ class Robot:
         return "left" if left > 0.0 else "right"
 
     def settle_contacts(self) -> None:
-        """End of a step: tell of every contact that was not there before."""
+        """End a step: record every new contact."""
         if not self._touched and not self.touching:
             return
         for other, side in self._touched.items():
@@ -276,12 +276,12 @@ class Battery:
         self.feed(docked)
 
     def feed(self, docked: bool) -> None:
-        """Charge, or not any more."""
+        """Start or stop charging."""
         self.charging = docked and self.level < 100.0
 
     @property
     def empty(self) -> bool:
-        """True when the motors get no current any more."""
+        """True when the motors have no current."""
         return self.level <= 0.0
 
     @property

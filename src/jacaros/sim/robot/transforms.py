@@ -1,6 +1,6 @@
-"""Where one robot is, as ROS tells it: its tf tree (map, odometry, base and laser), and ``amcl_pose``.
+"""The transforms of one robot (map, odometry, base and laser), and its ``amcl_pose``.
 
-A robot that localises itself tells where it believes to be, latched, when it has moved.  The semantics are those of
+The estimated pose is published after moving, latched.  The semantics are those of
 ``nav2_amcl`` and of ROS 1's ``amcl``; the distances are the defaults of Nav2's.
 """
 
@@ -22,7 +22,7 @@ _HERE = Placement(0.0, 0.0)
 
 
 class RobotTransforms:
-    """Publishes one robot's frames when somebody listens.
+    """Publishes one robot's frames, with subscribers only.
 
     ``map`` to ``odom`` and ``odom`` to ``base_footprint`` go to ``/tf``, twenty times a second.  ``base_footprint`` to
     ``base_link`` to ``base_scan``, all at the same place, ``base_link`` to ``camera_optical_frame``, and the robot's own
@@ -110,7 +110,7 @@ _LATCHED = QoS(durability="transient_local", depth=1)
 
 
 class AmclPose:
-    """Publishes the pose of one robot on the map; nothing is worked out until somebody has listened."""
+    """Publishes the estimated pose of one robot on the map; computes nothing before the first subscription."""
 
     def __init__(self, at: RobotOnGraph) -> None:
         self._time, self._robot, self._localisation = at.time, at.robot, at.localisation

@@ -15,7 +15,7 @@ class BatterySensor:
         self._charging: tuple[bool, bool] | None = None
 
     def publish(self, ticks: int) -> None:
-        """Publish what is due."""
+        """Publish if due."""
         charging = (self._robot.battery.charging, self._robot.fed)
         if ticks % _TICKS_PER_BATTERY == 0 or charging != self._charging:
             self._charging = charging

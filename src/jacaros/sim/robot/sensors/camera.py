@@ -1,4 +1,4 @@
-"""What a robot sees: a small colour and depth camera that looks ahead.
+"""A small colour and depth camera that looks ahead.
 
 ======================================= ================================= ==========================
 topic (below the namespace)             type                              rate
@@ -8,7 +8,7 @@ topic (below the namespace)             type                              rate
 ``/camera/camera_info``                 ``sensor_msgs/msg/CameraInfo``    with each image
 ======================================= ================================= ==========================
 
-Nothing is rendered unless somebody listens.
+Nothing is rendered without subscribers.
 """
 
 from collections.abc import Iterator
@@ -44,7 +44,7 @@ class CameraSensor:
         self._walls: list[tuple[Segment, Look]] = []
 
     def publish(self, ticks: int) -> None:
-        """Publish what is due."""
+        """Publish if due."""
         if ticks % _TICKS_PER_IMAGE:
             return
         wants_colours, wants_depths = self._image.subscription_count, self._depth.subscription_count

@@ -1,4 +1,4 @@
-"""What a robot tells of the floor: cliffs before its rim, and wheels without a floor, as a Kobuki (TurtleBot 2) does.
+"""The cliff and wheel-drop sensors of a Kobuki (TurtleBot 2).
 
 ======================================= ================================= ==========
 topic (below the namespace)             type

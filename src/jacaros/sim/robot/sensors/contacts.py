@@ -1,4 +1,4 @@
-"""What a robot tells of its bumpers, cliffs and its dock, in the messages of the robots that have them.
+"""Bumpers, cliffs and the dock, in the messages of the robots that have these sensors.
 
 =================================== ================================================= ===================
 topic (below the namespace)         type                                              like a
@@ -10,7 +10,7 @@ topic (below the namespace)         type                                        
 ``/mobile_base/sensors/core``       ``kobuki_msgs/msg/SensorState``                   TurtleBot 2, 2 Hz
 =================================== ================================================= ===================
 
-Nothing is computed unless somebody listens.
+Nothing is computed without subscribers.
 """
 
 import math
@@ -58,7 +58,7 @@ class RobotContacts:
         self._docked: bool | None = None
 
     def publish(self, ticks: int) -> None:
-        """Publish what is due at this tick of 20 Hz."""
+        """Publish if due at this tick of 20 Hz."""
         pressed = frozenset(self._robot.contacts.values()) - {""}
         if _wanted(self._hazards) and (ticks % _TICKS_PER_HAZARD == 0 or pressed != self._pressed):
             self._publish_hazards(self._hazards, pressed)

@@ -1,4 +1,4 @@
-"""What a robot feels of its motion: an inertial measurement unit (IMU) at its centre."""
+"""The inertial measurement unit (IMU) at a robot's centre."""
 
 from jacaros.sim.robot.on_graph import RobotOnGraph
 from jacaros.sim.trigonometry import sine_cosine
@@ -6,11 +6,11 @@ from jacaros.sim.trigonometry import sine_cosine
 GRAVITY = 9.80665
 """What an accelerometer measures upwards at rest, in m/s²."""
 _LONGEST_STEP = 0.2
-"""Seconds between two messages beyond which no acceleration is worked out: nobody listened in between."""
+"""Longest gap between two messages, in seconds, over which an acceleration is computed."""
 
 
 class ImuSensor:
-    """``/imu``: heading, turn rate and acceleration, 20 Hz when somebody listens.
+    """``/imu``: heading, turn rate and acceleration, 20 Hz with subscribers.
 
     The heading is the true one, as of an ideal compass, whatever odometry believes.  The acceleration has that of
     gravity, and is the mean since the message before.
@@ -23,7 +23,7 @@ class ImuSensor:
         self._time = -_LONGEST_STEP
 
     def publish(self, ticks: int) -> None:
-        """Publish, if somebody listens."""
+        """Publish, if there are subscribers."""
         del ticks
         if not self._publisher.subscription_count:
             return

@@ -1,4 +1,4 @@
-"""What a robot senses of the walls and of other robots: the laser scan, by the faster of two equal ways."""
+"""The laser range finder: plain Python or numpy, whichever is faster for the world; their ranges are equal."""
 
 import random
 from collections.abc import Iterable, Sequence
@@ -8,10 +8,10 @@ from jacaros.sim.description import LaserSettings, Segment
 from jacaros.sim.robot.sensors.laser_plain import Beams, Circle, sweep_circles, sweep_walls
 
 FEW_WALLS = 4
-"""Up to so many walls plain Python is as fast as numpy, and saves its import."""
+"""Number of walls up to which plain Python is as fast as numpy, and saves its import."""
 
 FEW_CIRCLES = 2
-"""The same for robots and people within reach."""
+"""The same for the number of robots and people within reach."""
 
 
 class Laser:
@@ -65,6 +65,6 @@ class Laser:
 
 
 def _near(circle: Circle, x: float, y: float, reach: float) -> bool:
-    """Whether a beam of so many metres can meet a circle."""
+    """Return whether a beam of *reach* metres can meet a circle."""
     ex, ey, far = circle[0] - x, circle[1] - y, reach + circle[2]
     return ex * ex + ey * ey < far * far

@@ -7,7 +7,7 @@ _TICKS_PER_SCAN = 4
 
 
 class LaserSensor:
-    """``/scan``: 5 Hz when somebody listens, or always if the world file says so; nothing for a robot without a laser."""
+    """``/scan``: 5 Hz with subscribers, or always with ``publish: always``; not for robots without a laser."""
 
     def __init__(self, at: RobotOnGraph) -> None:
         self._at = at
@@ -17,7 +17,7 @@ class LaserSensor:
         )
 
     def publish(self, ticks: int) -> None:
-        """Publish what is due."""
+        """Publish if due."""
         publisher = self._publisher
         if publisher is None or ticks % _TICKS_PER_SCAN:
             return

@@ -15,7 +15,7 @@ class OdometrySensor:
         self._publisher = at.publisher("/odom", "nav_msgs/msg/Odometry")
 
     def publish(self, ticks: int) -> None:
-        """Publish, if somebody listens."""
+        """Publish, if there are subscribers."""
         del ticks
         if not self._publisher.subscription_count:
             return

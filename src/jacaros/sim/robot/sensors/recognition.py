@@ -1,5 +1,6 @@
-"""What a robot recognises in its camera's view: ``/jason/perception`` (``perception_msgs/msg/perception``), as the original
-JaCaROS has it from a program that looks at images.
+"""The objects that a robot recognises in its camera's view: ``/jason/perception`` (``perception_msgs/msg/perception``).
+
+The original JaCaROS receives this topic from a vision program.
 """
 
 from collections.abc import Iterator
@@ -15,14 +16,14 @@ _TICKS_PER_MESSAGE = 10
 
 
 class ObjectRecognition:
-    """Tells the objects in view, 2 Hz when somebody listens: ``cup,0.30,-0.10,0.00`` is name, metres ahead, left and up."""
+    """Publishes the objects in view, 2 Hz with subscribers: ``cup,0.30,-0.10,0.00`` is name, metres ahead, left and up."""
 
     def __init__(self, at: RobotOnGraph) -> None:
         self._world, self._robot = at.time.world, at.robot
         self._publisher = at.publisher_if_known("/jason/perception", "perception_msgs/msg/perception")
 
     def publish(self, ticks: int) -> None:
-        """Publish what is due."""
+        """Publish if due."""
         publisher = self._publisher
         if publisher is None or ticks % _TICKS_PER_MESSAGE or not publisher.subscription_count:
             return

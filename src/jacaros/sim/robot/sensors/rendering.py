@@ -1,4 +1,4 @@
-"""What a camera sees of a flat world whose things have heights and colours: one ray a column, no textures, no shadows.
+"""Rendering of camera images of a flat world with heights and colours: one ray per column, no textures, no shadows.
 
 The camera is a pinhole, level and looking ahead.  Columns are counted from the left, rows from the top.  A ray goes on
 behind what it meets, for a low thing hides only the lower part of a high one.

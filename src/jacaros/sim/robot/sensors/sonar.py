@@ -1,4 +1,4 @@
-"""What a robot hears of the walls ahead: a sonar, whose echo comes from the nearest point in its cone."""
+"""The sonar of a robot: its echo comes from the nearest point in its cone."""
 
 import math
 from collections.abc import Iterable
@@ -65,14 +65,14 @@ def _of_circle(cx: float, cy: float, radius: float) -> float:
 
 
 class SonarSensor:
-    """``/sonar``: metres to the nearest thing in a cone of 30 degrees ahead, 10 Hz when somebody listens."""
+    """``/sonar``: metres to the nearest thing in a cone of 30 degrees ahead, 10 Hz with subscribers."""
 
     def __init__(self, at: RobotOnGraph) -> None:
         self._at = at
         self._publisher = at.publisher("/sonar", "sensor_msgs/msg/Range")
 
     def publish(self, ticks: int) -> None:
-        """Publish what is due."""
+        """Publish if due."""
         if ticks % _TICKS_PER_ECHO or not self._publisher.subscription_count:
             return
         world, robot = self._at.time.world, self._at.robot
