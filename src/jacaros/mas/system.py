@@ -2,7 +2,7 @@
 
 import asyncio
 import mmap
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Awaitable, Callable, Mapping, Sequence
 from contextlib import AsyncExitStack
 from functools import partial
 from random import Random
@@ -92,6 +92,7 @@ class System:
         self._run_environment: RunEnvironment | None = None
         self._tracer: Tracer | None = None
         self._situated: Callable[[Environment], None] | None = None
+        self._closers: list[Callable[[], Awaitable[None]]] = []
         self._history: History | None = None
         self._keeps_history = False
         self._debugger: Debugger | None = None
@@ -433,6 +434,10 @@ class System:
             self._error = error
         self.end(1)
 
+    def close_last(self, closer: Callable[[], Awaitable[None]]) -> None:
+        """Await *closer* at the end of `close`, when the robots stand still."""
+        self._closers.append(closer)
+
     async def close(self) -> None:
         """Give everything back: operations are cancelled, robots stand still.
 
@@ -441,6 +446,8 @@ class System:
         self.end(1)
         hosts = list(self.directory)
         async with AsyncExitStack() as steps:  # the last one that is written goes first
+            for closer in self._closers:
+                steps.push_async_callback(closer)
             if self._code_folder is not None:
                 steps.callback(self._code_folder.close)
             steps.push_async_callback(self.ros.close)

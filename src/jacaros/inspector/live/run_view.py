@@ -20,6 +20,9 @@ from jacaros.mas.system import System
 FIRST_VISIT = 5.0
 """Seconds that the end of a run waits for a browser that was opened and has not shown the run yet."""
 
+SIGNALS = 128
+"""Exit codes from here on say that a signal has ended the run: nobody wants to wait then."""
+
 
 @dataclass(frozen=True, slots=True)
 class Place:
@@ -78,6 +81,7 @@ class RunView:
         self._debug()
         with outside_run():  # a run that is paused must be able to continue
             self._serving = asyncio.create_task(self._serve())
+        system.close_last(self.close)  # pages see the end of the run
         # A task that is cancelled before its first step executes no `finally`.
         self._serving.add_done_callback(lambda _: self._server.release())
 
@@ -102,7 +106,8 @@ class RunView:
             await asyncio.get_running_loop().create_future()
         finally:
             # The run has ended, or is interrupted.
-            wait = self.awaited and self._server.visitors == 0 and self._system.exit_code in (0, 1)
+            code = self._system.exit_code
+            wait = self.awaited and self._server.visitors == 0 and code is not None and code < SIGNALS
             await self._server.close(FIRST_VISIT if wait else GOODBYE)
 
     def _why(self, given: Given) -> str:
