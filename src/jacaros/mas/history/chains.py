@@ -6,8 +6,8 @@ from typing import Any
 
 from jacaros.mas.history.explanation import Fact
 from jacaros.mas.history.past import Data, Past
+from jacaros.mas.history.words import named
 
-_UNNAMED = re.compile(r"\b_\d+\b")
 _OF_PERCEPTS = re.compile(r"\[artifact_id\([^\]]*source\(percept\)[^\]]*\]")
 
 LONGEST_CHAIN = 40
@@ -109,7 +109,7 @@ def plan_text(plan: Data) -> str:
 
 def shown(text: Any) -> str:
     """A recorded text with `_` for unnamed variables and without the annotations that every percept has."""
-    return _OF_PERCEPTS.sub("[source(percept)]", _UNNAMED.sub("_", str(text)))
+    return _OF_PERCEPTS.sub("[source(percept)]", named(str(text)))
 
 
 def place_of(plan: Data) -> tuple[str, int]:

@@ -11,7 +11,7 @@ from jacaros.env.observation import Observation
 from jacaros.env.operation import OperationOutcome
 from jacaros.env.property import ObservableProperty
 from jacaros.env.workspace import Workspace
-from jacaros.mas.history.values import call_text, json_values, limited, request_text
+from jacaros.mas.history.values import call_text, json_values, limited, output_texts, request_text
 
 PERIOD = 0.5
 """Seconds between two records of one property that changes all the time; the newest value is recorded in the end."""
@@ -130,10 +130,14 @@ class EnvironmentRecords:
         if data is None:
             return
         if outcome is not None and outcome.ok:
-            self._tell("operation", {**data, "state": "done"})
+            outputs = output_texts(execution.request)
+            self._tell("operation", {**data, "state": "done", **({"outputs": outputs} if outputs else {})})
             return
         reason = "cancelled" if outcome is None else limited(outcome.message or str(outcome.reason or ""))
-        self._tell("operation", {**data, "state": "failed", "reason": reason})
+        term = None if outcome is None or outcome.reason is None else limited(str(outcome.reason))
+        self._tell(
+            "operation", {**data, "state": "failed", "reason": reason, **({"term": term} if term else {})}
+        )
 
     # ---- properties
 

@@ -20,6 +20,7 @@ class Operation:
         began, ended: seconds; *ended* is None while it runs.
         outcome: ``done``, ``failed``, or empty while it runs.
         reason: of a failure.
+        last: the data of its end; empty while it runs.
     """
 
     data: Data
@@ -27,6 +28,7 @@ class Operation:
     ended: float | None = None
     outcome: str = ""
     reason: str = ""
+    last: Data = field(default_factory=dict)
 
 
 @dataclass
@@ -42,6 +44,7 @@ class Past:
         intentions: the newest record of each, by agent and id.
         operations: by id.
         agents: their newest state by name.
+        began: when each agent began, in seconds.
         artifacts: the newest record of each by path.
         sources: texts of the programs by file.
         world: events of robots and the world, as (t, event, data), the oldest first.
@@ -62,6 +65,7 @@ class Past:
     intentions: dict[tuple[str, Any], tuple[float, Data]] = field(default_factory=dict)
     operations: dict[Any, Operation] = field(default_factory=dict)
     agents: dict[str, tuple[float, str]] = field(default_factory=dict)
+    began: dict[str, float] = field(default_factory=dict)
     artifacts: dict[str, Data] = field(default_factory=dict)
     sources: dict[str, list[str]] = field(default_factory=dict)
     world: list[Record] = field(default_factory=list)
@@ -134,7 +138,8 @@ def _take_operation(past: Past, t: float, data: Data) -> None:
             past.links[number] = t, {**data, "parent": parent, "kind": "operation", "what": data["operation"]}
         return
     known = past.operations.get(number, Operation(data, t))
-    past.operations[number] = Operation(known.data, known.began, t, str(state), str(data.get("reason") or ""))
+    reason = str(data.get("reason") or "")
+    past.operations[number] = Operation(known.data, known.began, t, str(state), reason, data)
 
 
 def _take_program(past: Past, _: float, data: Data) -> None:
@@ -152,6 +157,7 @@ def _take_intention(past: Past, t: float, data: Data) -> None:
 
 def _take_agent(past: Past, t: float, data: Data) -> None:
     past.agents[data["agent"]] = t, data["state"]
+    past.began.setdefault(data["agent"], t)
     if data["state"] == "ended":
         for key in [key for key in past.intentions if key[0] == data["agent"]]:
             del past.intentions[key]

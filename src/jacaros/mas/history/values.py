@@ -47,6 +47,12 @@ def request_text(request: OperationRequest) -> str:
     return call_text(request.operation, request.arguments)
 
 
+def output_texts(request: OperationRequest) -> list[str | None]:
+    """Return the values of the output parameters of an operation as agents write them; None for those without one."""
+    outputs = (each for each in request.arguments if isinstance(each, Out))
+    return [limited(_text(each.value, quoted=True)) if each.is_set else None for each in outputs]
+
+
 def _text(value: object, quoted: bool = False) -> str:
     try:
         return text(value, quoted)

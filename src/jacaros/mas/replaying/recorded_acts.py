@@ -1,7 +1,7 @@
 """The external actions of a recorded run: how long each took, and how it ended."""
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
 from typing import Final
 
 from jacaros.asl.diagnostics import AslError
@@ -10,9 +10,9 @@ from jacaros.asl.lowering import lower_value
 from jacaros.bdi.state.act import Act, Completion
 from jacaros.body.actions import keys
 from jacaros.mas.history.chains import shown
-from jacaros.mas.history.past import Past, Record
+from jacaros.mas.history.past import Data, Past, Record
 from jacaros.terms.text import text
-from jacaros.terms.values import String, Term, functor
+from jacaros.terms.values import String, Term, Var, deref, functor
 
 _ERROR_MSG = functor("error_msg", 1)
 _REASON = functor("env_failure_reason", 1)
@@ -28,15 +28,15 @@ class RecordedAct:
         key: name and number of arguments, such as ``driveTo/2``.
         written: with its arguments; empty if they were not recorded.
         began: seconds since the run began.
-        duration: seconds; None if its end is unknown.
-        reason: of a failure; None if it succeeded.
+        ended: seconds since the run began; None if its end is unknown.
+        end: the record of its end; empty for an action that succeeded without one.
     """
 
     key: str
     written: str
     began: float
-    duration: float | None
-    reason: str | None
+    ended: float | None
+    end: Data = field(default_factory=dict)
 
 
 class RecordedActs:
@@ -54,21 +54,25 @@ class RecordedActs:
                 _key(str(each.data["operation"])),
                 shown(each.data["operation"]),
                 each.began,
-                None if each.ended is None or each.reason == CANCELLED else each.ended - each.began,
-                each.reason if each.outcome == "failed" else None,
+                None if each.reason == CANCELLED else each.ended,
+                each.last,
             )
             for each in operations
         ]
         known = {each.data.get("cause") for each in operations}
         self._left += [
-            RecordedAct(str(link.get("what", "")).rpartition(" ")[2], "", t, 0.0, None)
+            RecordedAct(str(link.get("what", "")).rpartition(" ")[2], "", t, t)
             for number, (t, link) in past.links.items()
             if link.get("kind") == "act" and link.get("agent") == agent and number not in known
         ]
         self._left.sort(key=lambda each: each.began)
 
-    def take(self, act: Act) -> RecordedAct | None:
-        """The recorded action for an action of the rerun; None if there is none left."""
+    def ends(self) -> list[RecordedAct]:
+        """Those whose end is known."""
+        return [each for each in self._left if each.end and each.ended is not None]
+
+    def take(self, act: Act, now: float) -> RecordedAct | None:
+        """The recorded action for an action that begins *now*; None if there is none left."""
         key = f"{act.functor.name}/{act.functor.arity}"
         written = shown(text((act.functor, *act.arguments) if act.arguments else act.functor))
         same = [each for each in self._left if each.key == key]
@@ -76,19 +80,36 @@ class RecordedActs:
         if found is not None:
             self._left.remove(found)
         elif key in keys():
-            return RecordedAct(key, written, 0.0, 0.0, None)
+            return RecordedAct(key, written, now, now)
         return found
 
 
-def completion(act: RecordedAct) -> Completion:
+def completion(recorded: RecordedAct, act: Act) -> Completion:
     """How an action ended, as its agent learns it."""
-    if act.reason is None:
-        return Completion(True)
-    message: Term = (_ERROR_MSG, String(act.reason))
+    if recorded.end.get("state") != "failed":
+        return Completion(True, tuple(_outputs(recorded, act)))
+    message: Term = (_ERROR_MSG, String(str(recorded.end.get("reason") or "")))
+    term = _term(recorded.end.get("term"))
+    return Completion(False, (), (message,) if term is None else (message, (_REASON, term)))
+
+
+def _outputs(recorded: RecordedAct, act: Act) -> Iterator[tuple[Term, Term]]:
+    """The output variables of an action with the values that were recorded."""
+    variables = [each for each in act.arguments if deref(each).__class__ is Var]
+    for variable, written in zip(variables, recorded.end.get("outputs") or (), strict=False):
+        value = _term(written)
+        if value is not None:
+            yield variable, value
+
+
+def _term(written: str | None) -> Term | None:
+    """A recorded text as a term; None without one, or if it was cut off."""
+    if written is None:
+        return None
     try:
-        return Completion(False, (), (message, (_REASON, lower_value(parse_term(act.reason)))))
+        return lower_value(parse_term(written))
     except AslError:
-        return Completion(False, (), (message,))
+        return None
 
 
 def _key(operation: str) -> str:

@@ -1,6 +1,10 @@
 """A rerun: a changed program is given what an agent was given in a recorded run, on the virtual clock."""
 
+import asyncio
+from bisect import bisect
 from collections.abc import Sequence
+from functools import partial
+from itertools import groupby
 from pathlib import Path
 
 from jacaros.asl.diagnostics import AslError
@@ -16,9 +20,14 @@ from jacaros.mas.embedding.running_agent import RunningAgent
 from jacaros.mas.history.chains import shown
 from jacaros.mas.history.past import Data, Past, Record
 from jacaros.mas.replaying.differences import Comparison, compare
-from jacaros.mas.replaying.recorded_acts import RecordedActs, completion
+from jacaros.mas.replaying.recorded_acts import RecordedAct, RecordedActs, completion
 from jacaros.mas.replaying.recorded_inputs import Input, inputs_of
 from jacaros.terms.text import text
+
+AT_ONCE = 1e-3
+"""Seconds by which an action of the rerun may begin earlier or later than the recorded one and still end with it."""
+TURNS = 5
+"""Turns of the loop between two things that happened at one moment."""
 
 
 def replay_against(records: Sequence[Record], program: Path, agent: str = "") -> Comparison:
@@ -61,9 +70,19 @@ class _Rerun:
     """
 
     def __init__(self, records: Sequence[Record], past: Past, program: Path, name: str) -> None:
-        self._inputs, self._acts = inputs_of(records, name), RecordedActs(records, name)
+        self._records = records
+        given = inputs_of(records, name)
+        first = min((each.t for each in given), default=0.0)
+        self._initial = [
+            each for each in given if each.t == first and each.kind in ("add_belief", "post_goal")
+        ]
+        self._inputs = [each for each in given if each not in self._initial]
+        self._acts = RecordedActs(records, name)
+        self._over: set[int] = set()
+        self._begun: dict[int, Act] = {}
         self._end, self._program, self._name = past.end, program, name
-        self._began = past.agents.get(name, (0.0, ""))[0]
+        self._began = past.began.get(name, 0.0)
+        self._others = [each for each in past.began if each != name]
         self._seed = next((data.get("seed") for _, event, data in records if event == "run"), None)
         self.unanswered: list[str] = []
         self.unreadable = 0
@@ -75,18 +94,30 @@ class _Rerun:
         found: list[Record] = []
         async with Mas(seed=self._seed, on_print=_ignore, on_log=_ignore) as mas:
             self._clock = mas.system.clock
-            history = mas.system.keep_history()
+            self._history = history = mas.system.keep_history()
             history.listen(lambda t, event, data: found.append((t, event, _with_short_names(event, data))))
+            for (
+                other
+            ) in self._others:  # they are silent: programs ask for names, and messages are in the recording
+                mas.add_agent(other, "")
             await mas.sleep(self._began)
             agent = self._begin(mas)
-            for each in self._inputs:
-                await mas.sleep(max(0.0, each.t - history.t()))
-                self._give(agent, each)
+            active = self._activity()
+            for t, moment in groupby(self._moments(), lambda each: each[0]):
+                await mas.sleep(max(0.0, t - history.t()))
+                for _, group in groupby(moment, lambda each: bisect(active, each[1])):
+                    for _, _, each in group:
+                        self._happen(agent, each)
+                    await _turns()
             await mas.sleep(max(0.0, self._end - history.t()))
         return found
 
     def _begin(self, mas: Mas) -> RunningAgent:
-        agent = mas.add_agent(self._name, self._program)
+        beliefs, goals = (
+            ", ".join(each.text for each in self._initial if each.kind == kind)
+            for kind in ("add_belief", "post_goal")
+        )
+        agent = mas.add_agent(self._name, self._program, beliefs=beliefs, goals=goals)
         host = mas.system.directory.find(self._name)
         assert host is not None, "it has just been added"
         self._host: AgentHost = host
@@ -95,15 +126,50 @@ class _Rerun:
         self._host.send = self._send
         return agent
 
+    def _moments(self) -> list[tuple[float, int, Input | RecordedAct]]:
+        """All that happens to the agent, in the order of the recording."""
+        inputs: list[tuple[float, int, Input | RecordedAct]] = [
+            (each.t, each.order, each) for each in self._inputs
+        ]
+        ends = {
+            id(data): order for order, (_, event, data) in enumerate(self._records) if event == "operation"
+        }
+        for act in self._acts.ends():
+            assert act.ended is not None, "its end is known"
+            inputs.append((act.ended, ends[id(act.end)], act))
+        return sorted(inputs, key=lambda each: each[:2])
+
+    def _activity(self) -> list[int]:
+        """The numbers of the records of what the agent did: between two of them it had no turn."""
+        return [
+            order
+            for order, (_, event, data) in enumerate(self._records)
+            if event in ("deliberation", "goal") and data.get("agent") == self._name
+        ]
+
+    def _happen(self, agent: RunningAgent, each: Input | RecordedAct) -> None:
+        if isinstance(each, Input):
+            self._give(agent, each)
+            return
+        self._over.add(id(each))
+        act = self._begun.pop(id(each), None)
+        if act is not None:
+            self._finish(act, each)
+
+    def _finish(self, act: Act, recorded: RecordedAct) -> None:
+        self._host.mind.complete(act.id, completion(recorded, act))
+
     def _act(self, act: Act) -> bool:
-        recorded = self._acts.take(act)
-        if recorded is None or recorded.duration is None:
+        now = self._history.t()
+        recorded = self._acts.take(act, now)
+        if recorded is None or recorded.ended is None:
             self.unanswered.append(
                 shown(text((act.functor, *act.arguments) if act.arguments else act.functor))
             )
+        elif recorded.end and id(recorded) not in self._over and abs(now - recorded.began) < AT_ONCE:
+            self._begun[id(recorded)] = act  # it ends at its place among the other records
         else:
-            end = completion(recorded)
-            self._clock.call_later(recorded.duration, lambda: self._host.mind.complete(act.id, end))
+            self._clock.call_later(recorded.ended - recorded.began, partial(self._finish, act, recorded))
         return True
 
     def _send(self, message: SpeechAct) -> bool:
@@ -113,7 +179,8 @@ class _Rerun:
         self._sent.append(message)
         for each in [each for each in self._early if _answers(each, message)]:
             self._early.remove(each)
-            self._receive(each, message)
+            # Later: the agent does not wait for the answer before its question is sent.
+            asyncio.get_running_loop().call_soon(self._receive, each, message)
         return True
 
     def _give(self, agent: RunningAgent, each: Input) -> None:
@@ -139,6 +206,12 @@ class _Rerun:
         self._host.receive(
             SpeechAct(message["performative"], message["from"], self._name, content, number, answered)
         )
+
+
+async def _turns() -> None:
+    """Let the agent handle what it was given before the next thing of the same moment comes."""
+    for _ in range(TURNS):
+        await asyncio.sleep(0)
 
 
 def _with_short_names(event: str, data: Data) -> Data:

@@ -9,8 +9,9 @@ import pytest
 import jacaros
 from jacaros import Mas
 from jacaros.cli.main import call
-from jacaros.env import Artifact, operation
+from jacaros.env import Artifact, Out, operation
 from jacaros.errors import UsageError
+from jacaros.inspector import Recording
 from jacaros.mas.replaying import Comparison, replay_against
 
 PROGRAM = """
@@ -32,6 +33,12 @@ class Robot(Artifact):
 
     def init(self) -> None:
         self.define_property("battery", 50)
+
+    @operation
+    def where(self, x: Out[float], y: Out[float]) -> None:
+        """Tell where it is."""
+        x.set(3.0)
+        y.set(4.0)
 
     @operation
     async def drive(self, room: str) -> None:
@@ -96,6 +103,30 @@ def test_goals_of_one_program_only_are_listed(tmp_path: Path) -> None:
     found = against(PROGRAM.replace("+at(Room); !look.", "+at(Room)."), tmp_path)
     assert [each.partition(" at ")[0] for each in found.only_then] == ["+!look"]
     assert found.decisions == ()
+
+
+def test_results_of_actions_are_those_that_were_recorded(tmp_path: Path) -> None:
+    program = (
+        PROGRAM.replace("drive(Room); +at(Room)", "where(X, Y); +at(X, Y)") + "+at(X, Y) : X > 2 <- +east."
+    )
+    found = against(program, tmp_path, program)
+    assert (found.decisions, found.only_then, found.only_now) == ((), (), ())
+    found = against(program.replace("X > 2", "X > 3"), tmp_path, program)
+    (decision,) = found.decisions
+    assert decision.reasons[0].text == "`+at(X,Y) : X > 3`: stops at `X > 3` with X=3"
+
+
+def test_beliefs_and_goals_of_the_project_file_are_given(tmp_path: Path) -> None:
+    (tmp_path / "a.asl").write_text(
+        "+!go : speed(S) & S > 2 <- .print(fast). +!go <- .print(slow).", encoding="utf-8"
+    )
+    (tmp_path / "p.jcm").write_text("mas p { agent a { beliefs: speed(3) goals: go } }", encoding="utf-8")
+    run = tmp_path / "run.jsonl"
+    assert (
+        call(["run", str(tmp_path / "p.jcm"), "--clock", "fast", "--until-idle", "--record", str(run)]) == 0
+    )
+    found = replay_against(list(Recording.read(run).events), tmp_path / "a.asl")
+    assert (found.same, found.decisions, found.only_then, found.only_now) == (1, (), (), ())
 
 
 def test_an_action_that_was_not_recorded_waits(tmp_path: Path) -> None:
