@@ -28,6 +28,12 @@ export class Links {
     return [...new Set(used.filter(Boolean))];
   }
 
+  /** What is selected with a robot: the agent, too, when only one uses it. */
+  selectionOf(robot, t) {
+    const agents = this.agents(robot, t);
+    return agents.length === 1 ? { robot, agent: agents[0] } : { robot };
+  }
+
   /** Names of the agents that use `robot` at time `t`. */
   agents(robot, t) { return [...this.pairs.keys()].filter((agent) => this.robots(agent, t).includes(robot)); }
 }

@@ -117,7 +117,9 @@ class Page {
     document.getElementById("stage").hidden = world.empty;
     document.body.classList.toggle("no-world", world.empty);
     this.attempt(() => this.tabs.show(t));
-    document.getElementById("nothing").hidden = this.tabs.available.length > 0;
+    const bare = this.tabs.available.length === 0;
+    document.getElementById("nothing").hidden = !bare;
+    document.body.classList.toggle("no-panels", bare && !world.empty);
     for (const [root, view] of this.beside) {
       root.hidden = view.empty === true;
       if (!root.hidden) this.attempt(() => view.show(t));

@@ -162,7 +162,8 @@ export class MapView {
   click(x, y) {
     if (this.tools.place(...this.projection.point(x, y))) return;
     const found = this.find(x, y);
-    if (found) this.selection.choose(found); else this.selection.clear();
+    if (found?.robot) this.selection.choose(this.links.selectionOf(found.robot, this.t));
+    else if (found) this.selection.choose(found); else this.selection.clear();
   }
 
   /** What is at a point of the canvas, as a selection; null for nothing. */

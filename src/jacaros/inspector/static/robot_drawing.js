@@ -16,7 +16,7 @@ export function drawRobot(pen, projection, robot, state, { index, named, selecte
   pen.fillStyle = themeColor("surface"); pen.strokeStyle = colour; pen.lineWidth = 2.5;
   outline(pen, robot, size);
   pen.fill(); pen.stroke();
-  drawHeading(pen, size, colour);
+  drawHeading(pen, robot.footprint ? Math.min(...robot.footprint) * size / robot.radius / 2 : size, colour);
   pen.restore();
   if (named || selected) drawName(pen, robot.name, x, y - size - 9);
 }
@@ -100,8 +100,8 @@ function drawTouch(pen, size) {
 }
 
 /** A name over something, readable on anything. */
-export function drawName(pen, name, x, y) {
-  pen.font = "600 12px system-ui, sans-serif"; pen.textAlign = "center"; pen.textBaseline = "bottom";
+export function drawName(pen, name, x, y, size = "600 12px") {
+  pen.font = `${size} system-ui, sans-serif`; pen.textAlign = "center"; pen.textBaseline = "bottom";
   pen.strokeStyle = themeColor("floor"); pen.lineWidth = 3; pen.strokeText(name, x, y);
   pen.fillStyle = themeColor("ink"); pen.fillText(name, x, y);
 }

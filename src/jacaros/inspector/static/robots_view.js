@@ -16,6 +16,7 @@ export class RobotsView {
   get empty() { return this.world.robotCount === 0; }
 
   show(t) {
+    this.t = t;
     for (let index = this.cards.length; index < this.world.robotCount; index++) this.cards.push(this.makeCard(index));
     this.root.classList.toggle("many", this.cards.length > FEW);
     this.cards.forEach((card, index) => this.showCard(card, index, t));
@@ -33,7 +34,7 @@ export class RobotsView {
     card.gauge.setAttribute("aria-valuemin", "0");
     card.gauge.setAttribute("aria-valuemax", "100");
     const title = element("span", "name", card.dot, name);
-    card.root = button("robot card", () => this.selection.choose({ robot: name }), title, card.level, card.gauge,
+    card.root = button("robot card", () => this.selection.choose(this.links.selectionOf(name, this.t)), title, card.level, card.gauge,
       card.where, card.state, card.agents);
     this.root.append(card.root);
     return card;

@@ -3,6 +3,8 @@ import { drawName } from "./robot_drawing.js";
 
 const SWUNG = Math.PI * 0.44;  // radians that an open door is turned out of its wall
 
+const NAMED = 12;  // objects that have their names on the map
+
 /** Doors: a leaf across the gap when closed, swung out of it when open, so that the gap is free. */
 export function drawDoors(pen, projection, world, t) {
   pen.strokeStyle = themeColor("warn"); pen.lineCap = "butt";
@@ -47,9 +49,12 @@ export function drawObstacles(pen, projection, world, t) {
 
 /** The objects that lie on the floor; a robot has the others. */
 export function drawObjects(pen, projection, world, t) {
-  for (const { radius, color, place: [x, y] } of world.objectsAt(t)) {
-    pen.fillStyle = color || themeColor("object");
-    pen.beginPath(); pen.arc(projection.x(x), projection.y(y), Math.max(3, radius * projection.scale), 0, 7); pen.fill();
+  const objects = world.objectsAt(t), isNamed = objects.length <= NAMED;
+  for (const { name, radius, color, place } of objects) {
+    const x = projection.x(place[0]), y = projection.y(place[1]), size = Math.max(4, radius * projection.scale);
+    pen.fillStyle = color || themeColor("object"); pen.strokeStyle = themeColor("ink"); pen.lineWidth = 1;
+    pen.beginPath(); pen.arc(x, y, size, 0, 7); pen.fill(); pen.stroke();
+    if (isNamed) drawName(pen, name, x, y - size - 3, "11px");
   }
 }
 
@@ -58,7 +63,7 @@ export function drawDirt(pen, projection, world, t) {
   pen.fillStyle = themeColor("dirt");
   for (const room of world.drawing(t).rooms) {
     for (const dirt of room.dirt ?? []) {
-      pen.globalAlpha = dirt.grams ? 0.3 * world.dirtLeft(room, dirt, t) / dirt.grams : 0;
+      pen.globalAlpha = dirt.grams ? 0.24 * world.dirtLeft(room, dirt, t) / dirt.grams : 0;
       pen.beginPath(); projection.rectangle(pen, dirt.area); pen.fill();
     }
   }

@@ -1,5 +1,6 @@
 import { button, element, setText } from "./elements.js";
 
+const CHANGES = ["move_robot", "battery", "door", "obstacle", "person", "fault"];
 const DOORS = 6;  // doors with buttons of their own; of more, those that are selected have them
 
 /** What you can change in the embedded world: robots, doors, obstacles, people, batteries. Hidden where nothing can be. */
@@ -18,7 +19,7 @@ export class WorldTools {
 
   /** Only what is now can be changed, not the past. */
   get empty() {
-    return !this.time.live || !["move_robot", "battery", "door", "obstacle", "person"].some((each) => this.can(each));
+    return !this.time.live || !CHANGES.some((each) => this.can(each));
   }
 
   canMove() { return !this.empty && this.can("move_robot"); }
@@ -52,7 +53,7 @@ export class WorldTools {
     this.key = key;
     const focused = document.activeElement?.dataset?.tool;
     this.row.replaceChildren(...this.placers(), ...doors.map((door) => this.doorButton(door)), ...this.forRobot(robot, t),
-      ...this.remover("person", person), ...this.remover("obstacle", obstacle));
+      ...this.remover("person", person), ...this.remover("obstacle", obstacle), ...this.faultForm());
     if (focused) this.row.querySelector(`[data-tool="${CSS.escape(focused)}"]`)?.focus();
   }
 
@@ -110,6 +111,20 @@ export class WorldTools {
       this.send(what, { remove: name });
       this.selection.clear();
     }, `Remove ${name.replaceAll("_", " ")}`)];
+  }
+
+  /** A fault of the fault file, to begin or to end. */
+  faultForm() {
+    if (!this.can("fault")) return [];
+    const name = element("input");
+    Object.assign(name, { name: "fault", required: true, autocomplete: "off" });
+    const begin = element("button", "plain tool", "Begin"), end = element("button", "plain tool", "End");
+    const made = element("form", "numbers", element("label", "", "fault ", name), begin, end);
+    made.addEventListener("submit", (event) => {
+      event.preventDefault();
+      this.send("fault", { name: name.value, on: event.submitter !== end });
+    });
+    return [made];
   }
 
   /** A line of fields for numbers, with a button. */
