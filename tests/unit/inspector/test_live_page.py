@@ -130,3 +130,59 @@ def test_the_past_stays_when_the_run_has_ended() -> None:
             assert "hello" in await page.text("#log")
 
     jacaros.run(main())
+
+
+@needs_chromium
+def test_a_page_that_is_open_for_days_forgets_what_is_old() -> None:
+    async def test(mas: Mas, world: World, page: Page) -> None:
+        kept = await page.evaluate(
+            """Promise.all(["run", "world", "log"].map((name) => import(`./${name}.js`))).then(([r, w, l]) => {
+                const world = new w.World(), log = new l.Log(), run = new r.Run([world, log]);
+                const row = [0, 0, 0, 50, 0, 0], robots = Array(100).fill(row);
+                run.add({ kind: "world", world: { bounds: [-1, -1, 1, 1] } });
+                for (let n = 0; n < 30000; n++) run.take({ kind: "frame", t: n / 10, robots });
+                for (let n = 0; n < 150000; n++) run.take({ kind: "text", t: n, agent: "a", text: "x" });
+                const state = world.state(99, 2999.9);
+                return [world.times.length, world.columns[0].x.length, log.entries.length, log.times.length, state.battery];
+            })"""
+        )
+        frames, rows, lines, times, battery = kept
+        assert frames == rows <= 20_000
+        assert lines == times <= 100_000
+        assert battery == 50
+
+    browsing(test)
+
+
+@needs_chromium
+def test_the_page_remembers_tab_and_theme() -> None:
+    async def test(mas: Mas, world: World, page: Page) -> None:
+        await page.click("#theme")
+        await page.click("#tab-program")
+        theme = await page.evaluate("document.documentElement.dataset.theme")
+        await page.open(await page.evaluate("location.href"))
+        await page.wait_for("document.querySelector('#program').checkVisibility()")
+        assert await page.evaluate("document.documentElement.dataset.theme") == theme
+
+    browsing(test)
+
+
+@needs_chromium
+def test_a_world_of_any_size_is_drawn() -> None:
+    async def test(mas: Mas, world: World, page: Page) -> None:
+        for size in (0.01, 1e4, 1e12):
+            await page.evaluate(
+                f"""import("./world.js").then(async (w) => {{
+                    const {{ FloorDrawing }} = await import("./floor_drawing.js");
+                    const {{ Projection }} = await import("./projection.js");
+                    const world = new w.World();
+                    world.add(0, "world", {{ bounds: [-{size}, -{size}, {size}, {size}] }});
+                    world.add(0, "obstacle_placed", {{ obstacle: "rock", x: 0, y: 0, radius: {size} }});
+                    const drawing = new FloorDrawing(), projection = new Projection(world.bounds, 800, 600);
+                    drawing.draw(world.drawing(0), projection, 1, {{ width: 800, height: 600 }}, world);
+                    const {{ drawObstacles }} = await import("./thing_drawing.js");
+                    drawObstacles(drawing.pen, projection, world, 0);
+                }})"""
+            )
+
+    browsing(test)

@@ -36,10 +36,10 @@ export class FloorDrawing {
     });
   }
 
-  /** A line for each metre; in a large world for each 5 or 25. */
+  /** A line for each metre; in a large world for each 5 or 25, or so. */
   drawGrid() {
     const { pen, projection: p } = this, [left, bottom, right, top] = this.drawing.bounds;
-    const step = [1, 5, 25, 125].find((metres) => metres * p.scale >= 12) ?? 625;
+    const step = 5 ** Math.max(0, Math.ceil(Math.log(CELL / p.scale) / Math.log(5)));
     pen.strokeStyle = themeColor("grid"); pen.lineWidth = 1; pen.beginPath();
     for (let x = Math.ceil(left / step) * step; x <= right; x += step) { pen.moveTo(p.x(x), p.y(bottom)); pen.lineTo(p.x(x), p.y(top)); }
     for (let y = Math.ceil(bottom / step) * step; y <= top; y += step) { pen.moveTo(p.x(left), p.y(y)); pen.lineTo(p.x(right), p.y(y)); }
@@ -121,7 +121,7 @@ export class FloorDrawing {
   }
 
   drawScale({ width, height }) {
-    const { pen, projection: p } = this, metres = [1, 2, 5, 10, 20, 50, 100].find((each) => each * p.scale >= 28) ?? 200;
+    const { pen, projection: p } = this, metres = roundLength(BAR / p.scale);
     const end = width - 16, start = end - metres * p.scale, base = height - 17;
     pen.strokeStyle = pen.fillStyle = themeColor("muted"); pen.lineWidth = 1.5;
     pen.beginPath(); pen.moveTo(start, base - 4); pen.lineTo(start, base); pen.lineTo(end, base); pen.lineTo(end, base - 4); pen.stroke();
@@ -130,4 +130,11 @@ export class FloorDrawing {
   }
 }
 
+/** The next larger length of 1, 2 or 5 metres, or a power of ten times that. */
+function roundLength(metres) {
+  const power = 10 ** Math.floor(Math.log10(metres));
+  return power * ([1, 2, 5].find((each) => each * power >= metres) ?? 10);
+}
+
+const CELL = 12, BAR = 28;  // pixels: the least width of a cell of the grid, and of the scale
 const BOLT = [[0.1, -0.42], [-0.24, 0.08], [-0.02, 0.08], [-0.1, 0.42], [0.24, -0.08], [0.02, -0.08]];

@@ -9,7 +9,7 @@ export function listenToKeys(time) {
       " ": () => time.toggle(), ArrowLeft: () => time.go(time.now - step), ArrowRight: () => time.go(time.now + step),
       Home: () => time.go(0), End: () => time.go(time.run.end),
     }[event.key];
-    // The space key presses the button that has the focus; Home and End scroll a list that has it.
+    // The space key presses the button that has the focus.
     if (!act || (event.key === " " && event.target.matches("button, summary"))) return;
     event.preventDefault();
     act();

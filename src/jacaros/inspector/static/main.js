@@ -14,6 +14,7 @@ import { Links } from "./links.js";
 import { Log } from "./log.js";
 import { LogView } from "./log_view.js";
 import { MapView } from "./map_view.js";
+import { recall, remember } from "./memory.js";
 import { Messages } from "./messages.js";
 import { MessagesView } from "./messages_view.js";
 import { Minds } from "./minds.js";
@@ -71,8 +72,11 @@ export function startPage({ live, commands }) {
 
   const page = new Page({ run, selection, time, commands, world, map, tabs, beside });
   listenToKeys(time);
-  page.chooseTheme(fragment().get("theme") ?? (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light"));
-  at("theme").addEventListener("click", () => page.chooseTheme(isDark() ? "light" : "dark"));
+  page.chooseTheme(fragment().get("theme") ?? recall("theme") ?? (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light"));
+  at("theme").addEventListener("click", () => {
+    page.chooseTheme(isDark() ? "light" : "dark");
+    remember("theme", document.documentElement.dataset.theme);
+  });
   page.begin();
   return page;
 }

@@ -23,7 +23,7 @@ export class Projection {
     const fitting = Math.min((width - 2 * MARGIN) / (right - left), (height - MARGIN - FOOT) / (top - bottom));
     this.width = width;
     this.height = height;
-    this.scale = Math.max(0.5, fitting) * zoom;
+    this.scale = (fitting > 0 ? fitting : 1) * zoom;
     this.originX = width / 2 + dx - (left + right) / 2 * this.scale;
     this.originY = (height - FOOT + MARGIN) / 2 + dy + (bottom + top) / 2 * this.scale;
   }

@@ -1,4 +1,5 @@
 import { button } from "./elements.js";
+import { recall, remember } from "./memory.js";
 
 /**
  * The panels beside the map, one at a time: a list of tabs as the ARIA practices describe it (arrow keys move).
@@ -11,7 +12,7 @@ export class Tabs {
     this.list = list;
     this.time = context.time;
     this.panels = panels.map(([panel, view]) => ({ panel, view, tab: this.makeTab(panel) }));
-    this.chosen = null;
+    this.chosen = recall("tab");
     list.addEventListener("keydown", (event) => this.press(event));
   }
 
@@ -31,6 +32,7 @@ export class Tabs {
   /** Open a panel by its id, for example from a view: `context.open("causes")`. */
   open(id) {
     this.chosen = id;
+    remember("tab", id);
     this.arrange();
     this.time.notify();
   }

@@ -3,6 +3,7 @@ import { drawName } from "./robot_drawing.js";
 
 const SWUNG = Math.PI * 0.44;  // radians that an open door is turned out of its wall
 
+const LARGEST = 5000;  // pixels
 const NAMED = 12;  // objects that have their names on the map
 
 /** Doors: a leaf across the gap when closed, swung out of it when open, so that the gap is free. */
@@ -34,7 +35,7 @@ export function drawPeople(pen, projection, world, t) {
 /** Obstacles that were put on the floor: hatched, so that they are not taken for furniture. */
 export function drawObstacles(pen, projection, world, t) {
   for (const obstacle of world.obstaclesAt(t)) {
-    const x = projection.x(obstacle.x), y = projection.y(obstacle.y), size = Math.max(4, obstacle.radius * projection.scale);
+    const x = projection.x(obstacle.x), y = projection.y(obstacle.y), size = Math.min(LARGEST, Math.max(4, obstacle.radius * projection.scale));
     pen.save();
     pen.beginPath(); pen.arc(x, y, size, 0, 7);
     pen.fillStyle = themeColor("box"); pen.fill();
