@@ -186,3 +186,19 @@ def test_a_world_of_any_size_is_drawn() -> None:
             )
 
     browsing(test)
+
+
+@needs_chromium
+def test_a_world_that_comes_late_can_be_changed() -> None:
+    async def main() -> None:
+        async with Mas(seed=1, on_print=lambda *_: None) as mas, view(mas) as address, chromium() as page:
+            mas.add_agent("bob", "!live. +!live <- .wait(nothing).")
+            await page.open(address)
+            await page.wait_for("document.querySelector('#agents').innerText.includes('!live')")
+            assert not await page.evaluate("document.querySelector('#stage').checkVisibility()")
+            assert mas.world is not None  # it comes into being when it is first asked for
+            await page.wait_for("document.querySelector('[data-tool=obstacle]')?.checkVisibility()")
+            assert await page.texts(".robot .name") == ["turtlebot"]
+            assert page.errors == []
+
+    jacaros.run(main())

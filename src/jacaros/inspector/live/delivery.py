@@ -46,6 +46,12 @@ class Delivery:
         self.arrived = asyncio.Event()
         self.arrived.set()
 
+    def allow(self, commands: list[str]) -> None:
+        """Let the page know which commands work from now on."""
+        self._hello["can"] = commands
+        self._notes.append(json_text({"kind": "can", "can": commands}))
+        self.arrived.set()
+
     def offer(self, record: LiveRecord) -> None:
         """Take a record that is new; never waits."""
         if record.newest is not None:

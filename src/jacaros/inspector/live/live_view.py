@@ -61,6 +61,11 @@ class LiveView:
         newest = f"{kind} {data.get('robot')}" if kind in _NEWEST else None
         self._take({"kind": "event", "t": round(t, 3), "event": kind, "data": data}, newest)
 
+    def commands_changed(self) -> None:
+        """Let the pages know which commands work from now on."""
+        for delivery in self._deliveries:
+            delivery.allow(self._commands.names)
+
     def close(self) -> None:
         """Nothing is held."""
 

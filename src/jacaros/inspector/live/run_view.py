@@ -16,6 +16,7 @@ from jacaros.inspector.live.server import GOODBYE, LiveServer, bound_socket
 from jacaros.inspector.live.world_commands import world_commands
 from jacaros.inspector.watch import Watch
 from jacaros.mas.system import System
+from jacaros.sim import World
 
 FIRST_VISIT = 5.0
 """Seconds that the end of a run waits for a browser that was opened and has not shown the run yet."""
@@ -76,14 +77,18 @@ class RunView:
         add(mind_commands(system))
         add(artifact_commands(system))
         self.commands.add({"why": self._why})
-        # The world may come into being later: pages that are opened then can change it.
-        system.ros.watch_world(lambda world: add(world_commands(system, world, watch.look)))
+        # The world may come into being later, when an agent first needs a robot.
+        system.ros.watch_world(lambda world: self._let_change(world, watch.look))
         self._debug()
         with outside_run():  # a run that is paused must be able to continue
             self._serving = asyncio.create_task(self._serve())
         system.close_last(self.close)  # pages see the end of the run
         # A task that is cancelled before its first step executes no `finally`.
         self._serving.add_done_callback(lambda _: self._server.release())
+
+    def _let_change(self, world: World, look: Callable[[], None]) -> None:
+        self.commands.add_changes(world_commands(self._system, world, look))
+        self.watcher.commands_changed()
 
     def _debug(self) -> None:
         """Let pages pause and step the run, and show them its state."""

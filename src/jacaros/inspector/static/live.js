@@ -80,6 +80,7 @@ class Connection {
   receive(message) {
     if (Array.isArray(message)) this.page.run.addAll(message);
     else if (message.kind === "hello") this.greet(message);
+    else if (message.kind === "can") this.commands.allow(message.can);
     else if (message.kind === "reply") this.commands.reply(message);
   }
 
