@@ -66,6 +66,20 @@ def test_a_page_receives_the_whole_recording_in_the_order_of_time(recorded: Path
     asyncio.run(main())
 
 
+def test_a_server_that_is_closed_waits_for_a_browser_that_was_opened(recorded: Path) -> None:
+    async def main() -> None:
+        server = LiveServer(bound_socket(), Access(), RecordedView(Recording.read(recorded)))
+        await server.start()
+        closing = asyncio.create_task(server.close(PATIENCE, visited=True))
+        await asyncio.sleep(0)
+        assert (await get(server.address))[0] == 200
+        async with live_page(server.address) as page:
+            await page.event("ended", code=0)
+            await asyncio.wait_for(closing, PATIENCE)
+
+    asyncio.run(main())
+
+
 @pytest.mark.slow
 def test_the_command_prints_the_address_serves_and_ends_with_ctrl_c(recorded: Path) -> None:
     process = subprocess.Popen(

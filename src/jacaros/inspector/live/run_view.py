@@ -12,7 +12,7 @@ from jacaros.inspector.live.commands import Commands, Given, number_in, text_in
 from jacaros.inspector.live.debug_commands import debug_commands
 from jacaros.inspector.live.live_view import LiveView
 from jacaros.inspector.live.mind_commands import mind_commands
-from jacaros.inspector.live.server import GOODBYE, LiveServer, bound_socket
+from jacaros.inspector.live.server import LiveServer, bound_socket
 from jacaros.inspector.live.world_commands import world_commands
 from jacaros.inspector.watch import Watch
 from jacaros.mas.system import System
@@ -112,8 +112,10 @@ class RunView:
         finally:
             # The run has ended, or is interrupted.
             code = self._system.exit_code
-            wait = self.awaited and self._server.visitors == 0 and code is not None and code < SIGNALS
-            await self._server.close(FIRST_VISIT if wait else GOODBYE)
+            if self.awaited and code is not None and code < SIGNALS:
+                await self._server.close(FIRST_VISIT, visited=True)
+            else:
+                await self._server.close()
 
     def _why(self, given: Given) -> str:
         """Answer a question about the run so far, in lines."""

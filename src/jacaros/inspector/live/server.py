@@ -135,16 +135,22 @@ class LiveServer:
             logger=quiet,
         )
 
-    async def close(self, patience: float = GOODBYE) -> None:
-        """Send what waits for at most *patience* seconds of real time, then disconnect all."""
+    async def close(self, patience: float = GOODBYE, visited: bool = False) -> None:
+        """Send what waits, then disconnect all.
+
+        Args:
+            patience: seconds of real time that sending may take.
+            visited: whether to wait that long for the first page, too.
+        """
         server, beat = self._server, self._beat
         if server is None or beat is None:
             self._socket.close()
             return
         self._server = None
         until = real_time() + patience
-        while not self.complete and real_time() < until:
+        while real_time() < until and not (self.complete and (self.visitors or not visited)):
             await beat.next()
+        until = real_time() + GOODBYE
         server.close()
         while self._connections and real_time() < until:
             await beat.next()
