@@ -86,16 +86,30 @@ class AgentRecords:
         what = "python" if isinstance(host, PythonAgentHost) else "asl"
         self._tell("agent", {"agent": host.name, "what": what, "state": "began"})
         self._goals.listen(host)
-        if isinstance(host.mind, Mind):
-            mind = self._minds[host.name] = MindRecords(host.mind, self._records)
-            mind.had_turn()
-            end_turns = observe_turns(host, mind.had_turn)
+        if isinstance(host, PythonAgentHost):
+            self._ends[host.name] = self._observe_inbox(host)
+        elif isinstance(host.mind, Mind):
+            self._ends[host.name] = self._observe_mind(host, host.mind)
 
-            def end() -> None:
-                end_turns()
-                mind.end()
+    def _observe_inbox(self, host: PythonAgentHost) -> Callable[[], None]:
+        inbox = host.mail.inbox
+        inbox.when_read = self._records.messages.read
 
-            self._ends[host.name] = end
+        def end() -> None:
+            inbox.when_read = None
+
+        return end
+
+    def _observe_mind(self, host: AgentHost, mind: Mind) -> Callable[[], None]:
+        records = self._minds[host.name] = MindRecords(mind, self._records)
+        records.had_turn()
+        end_turns = observe_turns(host, records.had_turn)
+
+        def end() -> None:
+            end_turns()
+            records.end()
+
+        return end
 
     def _ended(self, name: str) -> None:
         self._minds.pop(name, None)

@@ -127,9 +127,14 @@ def _fail(future: "asyncio.Future[Any]", error: Exception) -> None:
 
 
 class Inbox:
-    """Messages that wait to be read, and questions that wait for their answers."""
+    """Messages that wait to be read, and questions that wait for their answers.
+
+    Attributes:
+        when_read: called with each message that the agent reads, or None.
+    """
 
     def __init__(self) -> None:
+        self.when_read: Callable[[SpeechAct], object] | None = None
         self._messages: deque[SpeechAct] = deque()
         self._readers: deque[asyncio.Future[None]] = deque()
         self._asked: dict[str, asyncio.Future[SpeechAct]] = {}
@@ -142,6 +147,7 @@ class Inbox:
         if question is not None and question in self._asked:
             asked = self._asked.pop(question)
             if not asked.done():
+                self._note_read(message)
                 asked.set_result(message)
         elif question is not None and question in self._abandoned:
             self._abandoned.remove(question)
@@ -153,7 +159,15 @@ class Inbox:
 
     def take(self) -> SpeechAct | None:
         """The next message, None while there is none."""
-        return self._messages.popleft() if self._messages else None
+        if not self._messages:
+            return None
+        message = self._messages.popleft()
+        self._note_read(message)
+        return message
+
+    def _note_read(self, message: SpeechAct) -> None:
+        if self.when_read is not None:
+            self.when_read(message)
 
     def arrival(self) -> "asyncio.Future[None]":
         """What ends when there may be a message; several readers are served in the order of their asking."""

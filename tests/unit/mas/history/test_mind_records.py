@@ -5,6 +5,7 @@ from pathlib import Path
 
 from observed_runs import of, records_of
 
+from jacaros import PythonAgent
 from jacaros.mas.embedding.mas import Mas
 
 
@@ -221,6 +222,26 @@ def test_messages_link_what_two_agents_do():
         ask["id"],
         answer["id"],
     ]
+
+
+class Reader(PythonAgent):
+    """Reads a message, and asks a question."""
+
+    async def run(self) -> None:
+        await self.receive()
+        await self.ask("ann", "name(X)")
+
+
+def test_agents_in_python_read_messages():
+    records = records_of(
+        {"ann": "name(ann). !go. +!go <- .send(pia, tell, p(1)).", "pia": Reader},
+    )
+    assert [(each["what"], each["state"]) for each in of(records, "agent")[:2]] == [
+        ("asl", "began"),
+        ("python", "began"),
+    ]
+    told, asked, answer = [each["id"] for each in of(records, "message") if each["state"] == "sent"]
+    assert [each["id"] for each in of(records, "message") if each["state"] == "read"] == [told, asked, answer]
 
 
 def test_when_nobody_looks_nothing_is_observed():
