@@ -43,13 +43,13 @@ _COLOURS: dict[Severity, str] = {"error": "red", "warning": "yellow", "note": "c
     "mappings",
     metavar="FILE",
     multiple=True,
-    help="A mapping file that programs (.asl) are run with: do they ask for what it offers? May be given more often.",
+    help="Also check that programs use only what this mapping file provides. Repeatable.",
 )
 @click.option(
     "--import",
     "imports",
     is_flag=True,
-    help="Run the Python files of the project to know all that they declare (default: only read them).",
+    help="Run the Python files of the project to find all their declarations (default: read them only).",
 )
 def command(
     files: tuple[Path, ...],

@@ -23,22 +23,20 @@ from jacaros.project_modules import ProjectModules
 from jacaros.terms.text import text
 
 
-@click.command("compile", short_help="Show the Python code that is made of a program.")
+@click.command("compile", short_help="Show the Python code generated for a program.")
 @click.argument("file", type=click.Path(path_type=Path))
-@click.option(
-    "--show", is_flag=True, help="Print the code, below the lines of the program that it comes from."
-)
+@click.option("--show", is_flag=True, help="Print the code, below its lines of the program.")
 @click.option(
     "--plan",
     "wanted",
     metavar="LABEL|TRIGGER",
-    help="Only what belongs to the plan of that label, or to the plans for that event, such as `+!go` or `+!go/2`.",
+    help="Show only the plan with this label, or the plans for this event, such as `+!go` or `+!go/2`.",
 )
 @click.option(
     "--import",
     "imports",
     is_flag=True,
-    help="Run the Python files of the project to know all that they declare (default: only read them).",
+    help="Run the Python files of the project to find all their declarations (default: read them only).",
 )
 def command(file: Path, show: bool, wanted: str | None, imports: bool) -> int:
     """Compile all plans and rules of FILE, an agent program (.asl), and tell how much code they become.

@@ -28,14 +28,14 @@ PROJECT_FILES = (".asl", ".mas2j", ".jcm")
     type=click.Path(path_type=Path),
     default=Path(),
     metavar="FOLDER",
-    help="Folder of the project whose own artifacts count (default: this one).",
+    help="Folder of the project with artifacts of its own (default: the current folder).",
 )
-@click.option("--json", "as_json", is_flag=True, help="As JSON, for other programs.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @click.option(
     "--import",
     "imports",
     is_flag=True,
-    help="Run the Python files of the project to know all that they declare (default: only read them).",
+    help="Run the Python files of the project to find all their declarations (default: read them only).",
 )
 def command(what: str, project: Path, as_json: bool, imports: bool) -> None:
     """Describe what WHAT offers: an artifact type, a Python file or a mapping file of them, or a project file.

@@ -20,12 +20,15 @@ from jacaros.mas.programs import text_of
 _STANDARD_INPUT = Path("-")
 
 
-@click.command("fmt", short_help="Lay programs out in one style.")
+@click.command("fmt", short_help="Format programs in one style.")
 @click.argument("files", metavar="FILE...", type=click.Path(path_type=Path), nargs=-1, required=True)
 @click.option(
-    "--check", "only_check", is_flag=True, help="Change nothing; show what would change, with exit code 1."
+    "--check",
+    "only_check",
+    is_flag=True,
+    help="Write nothing; print the changes, and exit with status 1 if there are any.",
 )
-@click.option("--diff", "only_show", is_flag=True, help="Change nothing; show what would change.")
+@click.option("--diff", "only_show", is_flag=True, help="Write nothing; print the changes.")
 def command(files: tuple[Path, ...], only_check: bool, only_show: bool) -> int:
     """Lay each FILE out in one style: an agent program (.asl), or a folder with all programs in it. A `-` stands for
     the standard input, whose layout goes to the standard output.

@@ -56,7 +56,7 @@ faults_option = click.option(
     "--faults",
     type=click.Path(path_type=Path),
     metavar="FILE",
-    help="Fault file: what goes wrong in the world, and when.",
+    help="File with faults of the world and their times.",
 )
 
 _ADDRESS = (
@@ -64,27 +64,29 @@ _ADDRESS = (
         "--domain-id",
         type=int,
         metavar="N",
-        help="Domain of the ROS 2 graph, in place of the environment's ROS_DOMAIN_ID.",
+        help="Domain of the ROS 2 graph, instead of ROS_DOMAIN_ID.",
     ),
     click.option(
         "--master",
         metavar="URI",
-        help="Master of the ROS 1 graph, in place of the environment's ROS_MASTER_URI.",
+        help="Master of the ROS 1 graph, instead of ROS_MASTER_URI.",
     ),
     click.option(
         "--bridge",
         metavar="URL",
-        help="Address of a rosbridge server, such as ws://robot.lab.example:9090, in place of ROSBRIDGE_URI.",
+        help="Address of a rosbridge server, such as ws://robot.lab.example:9090, instead of ROSBRIDGE_URI.",
     ),
 )
-_NAMESPACE = click.option("--namespace", default="", metavar="NAME", help="Put before relative ROS names.")
+_NAMESPACE = click.option("--namespace", default="", metavar="NAME", help="Prefix of relative ROS names.")
 _NAMES = (
-    click.option("--node-name", metavar="NAME", help="Name of our node, in place of the system's name."),
+    click.option(
+        "--node-name", metavar="NAME", help="Name of the ROS node (default: the name of the system)."
+    ),
     click.option(
         "--remap",
         multiple=True,
         metavar="FROM:=TO",
-        help="Use the topic or service TO wherever FROM is asked for; may be given more often.",
+        help="Use the topic or service TO instead of FROM. Repeatable.",
     ),
 )
 
@@ -93,14 +95,14 @@ _PARAMETERS = (
         "--param",
         multiple=True,
         metavar="NAME:=VALUE",
-        help="Value of a parameter that a mapping file or an artifact declares; may be given more often.",
+        help="Value of a parameter that a mapping file or an artifact declares. Repeatable.",
     ),
     click.option(
         "--params-file",
         multiple=True,
         type=click.Path(path_type=Path),
         metavar="FILE",
-        help="File of ROS 2 with the parameters of nodes, ours among them; may be given more often.",
+        help="ROS 2 parameter file with parameters of this node. Repeatable.",
     ),
 )
 

@@ -28,12 +28,10 @@ LEAST_TIMEOUT = 0.15
     show_default=True,
     envvar="JACAROS_GUARD_TIMEOUT",
     show_envvar=True,
-    help="Seconds without a heartbeat after which the robot is stopped. Less stops sooner; more has fewer false alarms on "
+    help="Seconds without a heartbeat after which the guard stops the robot. Larger values have fewer false alarms on "
     "a busy machine.",
 )
-@click.option(
-    "--once", is_flag=True, help="Exit when the agents have ended in good order, or when none connect."
-)
+@click.option("--once", is_flag=True, help="Exit when the agents have shut down, or when none connect.")
 def command(
     name: str,
     timeout: float,

@@ -22,8 +22,8 @@ ENDED_BY_SIGNAL = (130, 143)
 COMMANDS = {
     "run": ("jacaros.cli.run", "Run an agent program or a project."),
     "check": ("jacaros.cli.check", "Report problems in programs, projects and mappings."),
-    "fmt": ("jacaros.cli.fmt", "Lay programs out in one style."),
-    "compile": ("jacaros.cli.compile", "Show the Python code that is made of a program."),
+    "fmt": ("jacaros.cli.fmt", "Format programs in one style."),
+    "compile": ("jacaros.cli.compile", "Show the Python code generated for a program."),
     "view": ("jacaros.cli.view", "Show a recorded run on a page in the browser."),
     "why": ("jacaros.cli.why", "Explain why something happened in a recorded run, or did not."),
     "replay": ("jacaros.cli.replay", "Give a recorded run to a changed program, and compare its decisions."),

@@ -53,7 +53,7 @@ _INTERFACES = click.option(
 )
 
 
-@click.group("ros", short_help="Look at a live ROS graph, and write mapping files for it.")
+@click.group("ros", short_help="Inspect a live ROS graph, and write mapping files for it.")
 def command() -> None:
     """Look at a live ROS graph, and write and check mapping files for it.
 
@@ -64,7 +64,7 @@ def command() -> None:
 @command.command("list", short_help="List topics, actions, services and nodes.")
 @_asking
 @click.option("--rates", is_flag=True, help="Listen for two seconds and print the rate of each topic.")
-@click.option("--json", "as_json", is_flag=True, help="As JSON, for other programs.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def list_command(rates: bool, as_json: bool, **graph: Any) -> None:
     """List the topics, actions, services and nodes of the graph with their types.
 
@@ -88,11 +88,11 @@ def list_command(rates: bool, as_json: bool, **graph: Any) -> None:
     _in_graph(look, **graph)
 
 
-@command.command("show", short_help="Show one of them, or a type, with its fields.")
+@command.command("show", short_help="Show a topic, action, service, node or type.")
 @click.argument("name")
 @_asking
 @_INTERFACES
-@click.option("--json", "as_json", is_flag=True, help="As JSON, for other programs.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def show_command(name: str, as_json: bool, **graph: Any) -> None:
     """Show NAME: a topic, service, action or node of the graph, or a type such as nav_msgs/msg/Odometry.
 
@@ -125,9 +125,9 @@ def show_command(name: str, as_json: bool, **graph: Any) -> None:
     "--output",
     type=click.Path(path_type=Path),
     metavar="FILE",
-    help="File to write; else it is printed.",
+    help="File to write (default: standard output).",
 )
-@click.option("--force", is_flag=True, help="Write over a file that is there.")
+@click.option("--force", is_flag=True, help="Overwrite an existing file.")
 @_asking
 @_INTERFACES
 def map_command(
@@ -159,8 +159,8 @@ def map_command(
             frames = await listening.frames(joined)
             if not things:
                 raise NothingThere(
-                    "nothing that robots usually have is in the graph (odometry, scan, cmd_vel, battery, actions to "
-                    "drive); name topics, services and actions of `jacaros ros list`"
+                    "the graph has none of the usual topics of a robot (odometry, scan, cmd_vel, battery) or actions to "
+                    "drive; name topics, services and actions of `jacaros ros list`"
                 )
         return first_mapping.mapping_for(joined, things, frames, file.name, _written(**graph), left, folders)
 

@@ -20,29 +20,29 @@ from jacaros.text_files import is_file
 @click.argument("world")
 @ros_option("The ROS graph to join.", required=True, but_with="only_hash")
 @world_options
-@click.option("--for", "seconds", type=float, metavar="S", help="End after S seconds.")
+@click.option("--for", "seconds", type=float, metavar="S", help="Exit after S seconds.")
 @click.option(
     "--ground-truth",
     type=click.Path(path_type=Path),
     metavar="FILE",
-    help="Write what truly happens as JSON lines.",
+    help="Write the ground truth of the world to FILE (JSON lines).",
 )
-@click.option("--seed", type=int, help="Makes the noise of the sensors repeatable.")
+@click.option("--seed", type=int, help="Seed for the noise of the sensors.")
 @faults_option
-@click.option("--full-battery", is_flag=True, help="Batteries stay full, however long the world runs.")
+@click.option("--full-battery", is_flag=True, help="Keep all batteries full.")
 @click.option(
     "--hash",
     "only_hash",
     is_flag=True,
-    help="Print a hash of a minute (--for S: of S seconds) in which the robots drive about, and end; it is the same on "
-    "every machine.",
+    help="Drive all robots for a minute (or --for S seconds), print a hash of their poses and scans, and exit. The hash is "
+    "the same on every machine.",
 )
 @click.option(
     "--clock",
     type=click.Choice(["real", "fast"]),
     default="real",
     show_default=True,
-    help="In real time, or as fast as the machine can (only with --ros memory).",
+    help="Clock to run on: real, or fast (virtual time; with --ros memory only).",
 )
 @click.option(
     "--publish-clock",
@@ -53,7 +53,7 @@ from jacaros.text_files import is_file
     "--speed",
     type=click.FloatRange(0.0, 100.0, min_open=True),
     metavar="X",
-    help="Let the world run X times as fast as real time; includes --publish-clock.",
+    help="Run X times as fast as real time; includes --publish-clock.",
 )
 def command(
     world: str,
@@ -85,9 +85,7 @@ def command(
     from jacaros.sim import serve
 
     if clock == "fast" and (ros != "memory" or seconds is None):
-        raise UsageError(
-            "--clock fast goes with --ros memory and --for S; a real ROS graph lives in real time"
-        )
+        raise UsageError("--clock fast needs --ros memory and --for S; a real ROS graph runs in real time")
     if clock == "fast" and speed is not None:
         raise UsageError("--speed goes with --clock real; --clock fast is as fast as the machine can")
     time: Clock = VirtualClock() if clock == "fast" else WallClock(speed or 1.0)

@@ -28,14 +28,14 @@ _COLOURS = {"passed": "green", "failed": "red", "place": "cyan"}
     metavar="PATTERN",
     help="Run only tests whose FILE::NAME contains PATTERN; * matches anything.",
 )
-@click.option("-x", "first", is_flag=True, help="End after the first test that fails.")
+@click.option("-x", "first", is_flag=True, help="Exit after the first failed test.")
 @click.option(
     "--timeout",
     type=click.FloatRange(0.0, min_open=True),
     default=60.0,
     show_default=True,
     metavar="S",
-    help="Seconds of the run's clock that a test may take; a label [test, timeout(Ms)] has its own.",
+    help="Time limit of a test, in seconds of the run's clock; the label [test, timeout(Ms)] overrides it.",
 )
 @click.option(
     "--cycles",
@@ -43,7 +43,7 @@ _COLOURS = {"passed": "green", "failed": "red", "place": "cyan"}
     default=1_000_000,
     show_default=True,
     metavar="N",
-    help="Reasoning cycles that a test may take.",
+    help="Limit of reasoning cycles of a test.",
 )
 @click.option(
     "--patience",
@@ -51,33 +51,35 @@ _COLOURS = {"passed": "green", "failed": "red", "place": "cyan"}
     default=300.0,
     show_default=True,
     metavar="S",
-    help="Seconds of real time that a test may take; 0 for any.",
+    help="Limit of real time of a test, in seconds; 0: no limit.",
 )
 @click.option(
     "--clock",
     type=click.Choice(["real", "fast"]),
     default="fast",
     show_default=True,
-    help="In real time, or as fast as the machine can.",
+    help="Clock to run on: real, or fast (virtual time).",
 )
-@click.option("--seed", type=int, default=0, show_default=True, metavar="N", help="Of all random numbers.")
+@click.option("--seed", type=int, default=0, show_default=True, metavar="N", help="Seed for random numbers.")
 @click.option(
     "--world",
     metavar="FILE",
-    help="World file, or the name of a world, in place of the project's own; `none` for a graph without a robot.",
+    help="World file or name of a world to use instead of the project's; `none`: a graph without robots.",
 )
 @click.option(
     "--mapping",
     "mappings",
     multiple=True,
     metavar="FILE",
-    help="Mapping file whose artifacts all tests have; a label [test, mapping(FILE)] has its own. May be given more often.",
+    help="Mapping file for all tests; the label [test, mapping(FILE)] adds one for a test. Repeatable.",
 )
 @click.option(
-    "--shared", is_flag=True, help="One run for all tests of a file, as on Jason; else one for each."
+    "--shared",
+    is_flag=True,
+    help="Run all tests of a file in one run, as Jason does (default: one run per test).",
 )
 @click.option(
-    "--junit", type=click.Path(path_type=Path), metavar="FILE", help="Write the outcomes as JUnit XML."
+    "--junit", type=click.Path(path_type=Path), metavar="FILE", help="Write the results to FILE as JUnit XML."
 )
 @click.option(
     "--slowest", "slow", type=int, default=3, metavar="N", help="Number of slow tests to list (default 3)."
@@ -87,13 +89,13 @@ _COLOURS = {"passed": "green", "failed": "red", "place": "cyan"}
     type=click.Choice(["auto", "always", "never"]),
     default="auto",
     show_default=True,
-    help="Colours in the report; auto looks for a terminal and NO_COLOR.",
+    help="Colours in the report; auto: on a terminal, unless NO_COLOR is set.",
 )
 @click.option(
     "-v",
     "--verbose",
     is_flag=True,
-    help="Show how long tests take, and what agents print in those that pass.",
+    help="Show the time of each test and the output of passed tests, too.",
 )
 def command(
     paths: tuple[Path, ...],
