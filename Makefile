@@ -31,7 +31,7 @@ coverage: $(VENV)/.installed-dev
 	$(VENV)/bin/python tools/measure_coverage.py
 
 # The reference pages that follow from the code, and the pictures.
-reference: $(VENV)/.installed
+reference: $(VENV)/.installed-dev
 	$(VENV)/bin/python tools/make_reference.py
 	$(VENV)/bin/python tools/make_pictures.py
 

@@ -1,5 +1,9 @@
-"""Draw the pictures of the documentation: runs of the examples, by the project's own recorder and pen."""
+"""Draw the pictures of the documentation: runs of the examples, by the project's own recorder and page."""
 
+import asyncio
+import os
+import re
+import sys
 import tempfile
 from pathlib import Path
 
@@ -14,6 +18,9 @@ PICTURES = {
     "house_cleaning.svg": ("examples/05_house_cleaning/house_cleaning.jcm", None, 560),
 }
 """From the picture's name to project, seconds, and width in pixels."""
+
+LIVE_PAGE = ("page.png", "examples/09_three_robots/three_robots.jcm", 30.0)
+"""The picture of a live page: its name, the project, and the seconds of the run at which it is taken."""
 
 
 def main() -> None:
@@ -37,6 +44,33 @@ def main() -> None:
             if call(arguments) != 0:
                 raise SystemExit(f"{project} did not end well")
             write_picture(Recording.read(record), IMAGES / name, width)
+    asyncio.run(take_live_page(*LIVE_PAGE))
+
+
+async def take_live_page(name: str, project: str, seconds: float) -> None:
+    """Take a picture of the live page of a run, with the browser that tests drive."""
+    sys.path.append(str(ROOT / "tests" / "unit" / "inspector"))
+    from devtools import chromium
+
+    jacaros = Path(sys.executable).parent / "jacaros"
+    run = await asyncio.create_subprocess_exec(
+        jacaros,
+        *("run", ROOT / project, "--seed", "1", "--view"),
+        stdout=asyncio.subprocess.DEVNULL,
+        stderr=asyncio.subprocess.PIPE,
+        env={**os.environ, "BROWSER": "true"},  # a command that opens nothing
+    )
+    try:
+        assert run.stderr is not None
+        while (found := re.search(rb"http\S+", await run.stderr.readline())) is None:
+            pass
+        async with chromium(1280, 800) as page:
+            await page.open(found[0].decode())
+            await page.wait_for(f"document.querySelector('#scrub').max >= {seconds}", patience=10 * seconds)
+            (IMAGES / name).write_bytes(await page.screenshot())
+    finally:
+        run.terminate()
+        await run.communicate()
 
 
 if __name__ == "__main__":
