@@ -14,7 +14,7 @@ from jacaros.env.operation import OperationOutcome, OperationRequest
 from jacaros.env.values import text as value_text
 from jacaros.inspector.live.commands import Command, Given, Refused, text_in
 from jacaros.mas.system import System
-from jacaros.terms.values import Var
+from jacaros.terms.values import Var, bare
 
 YOU = "you"
 """On whose behalf operations of the page are executed."""
@@ -37,7 +37,7 @@ async def _operate(environment: Environment, artifact: str, written: str) -> str
     target = _find(environment, artifact)
     names = Names()
     outputs: Outputs = []
-    term: Any = lower_value(parse_literal(written), names.__getitem__)
+    term: Any = bare(lower_value(parse_literal(written), names.__getitem__))
     arguments = term[1:] if term.__class__ is tuple else ()
     name = term[0].name if term.__class__ is tuple else term.name
     values = tuple(to_value(each, outputs) for each in arguments)
