@@ -121,7 +121,7 @@ export class FloorDrawing {
   }
 
   drawScale({ width, height }) {
-    const { pen, projection: p } = this, metres = roundLength(BAR / p.scale);
+    const { pen, projection: p } = this, metres = roundLength(Math.min(BAR, width * 0.15) / p.scale);
     const end = width - 16, start = end - metres * p.scale, base = height - 17;
     pen.strokeStyle = pen.fillStyle = themeColor("muted"); pen.lineWidth = 1.5;
     pen.beginPath(); pen.moveTo(start, base - 4); pen.lineTo(start, base); pen.lineTo(end, base); pen.lineTo(end, base - 4); pen.stroke();
@@ -130,11 +130,11 @@ export class FloorDrawing {
   }
 }
 
-/** The next larger length of 1, 2 or 5 metres, or a power of ten times that. */
+/** The largest length of 1, 2 or 5 metres, or a power of ten times that, that is at most `metres`. */
 function roundLength(metres) {
   const power = 10 ** Math.floor(Math.log10(metres));
-  return power * ([1, 2, 5].find((each) => each * power >= metres) ?? 10);
+  return power * ([5, 2, 1].find((each) => each * power <= metres) ?? 1);
 }
 
-const CELL = 12, BAR = 28;  // pixels: the least width of a cell of the grid, and of the scale
+const CELL = 12, BAR = 120;  // pixels: the least width of a cell of the grid, and the largest of the scale
 const BOLT = [[0.1, -0.42], [-0.24, 0.08], [-0.02, 0.08], [-0.1, 0.42], [0.24, -0.08], [0.02, -0.08]];
