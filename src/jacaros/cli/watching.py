@@ -4,20 +4,22 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 from types import TracebackType
+from typing import TYPE_CHECKING
 
 from jacaros.cli.outputs import Outputs
-from jacaros.cli.pages import serve_pages
 from jacaros.errors import UsageError
-from jacaros.inspector.page import write_replay
 from jacaros.inspector.recorder import Recorder
 from jacaros.inspector.recording import Recording
-from jacaros.inspector.terminal_view import TerminalView
 from jacaros.inspector.watch import Watch, Watcher
 from jacaros.inspector.watch_of import watch_of
 from jacaros.mas.console import Console
 from jacaros.mas.system import System
 from jacaros.sim import World
 from jacaros.sim.process import GroundTruthFile
+
+if TYPE_CHECKING:
+    from jacaros.inspector.live.run_view import RunView
+    from jacaros.inspector.terminal_view import TerminalView
 
 
 class Watching:
@@ -54,15 +56,22 @@ class Watching:
         if self._recorder is not None:
             watchers.append(self._recorder)
         if self._outputs.view == "terminal":
+            from jacaros.inspector.terminal_view import TerminalView  # here: rich comes with it
+
             self._view = TerminalView(stream=self._terminal)
             watchers.append(self._view)
-        pages = serve_pages(mas, self._outputs, self._console) if self._outputs.view == "page" else None
+        pages = self._serve(mas) if self._outputs.view == "page" else None
         if pages is not None:
             watchers.append(pages.watcher)
         self._watch = watch_of(mas, watchers, live=pages is not None and len(watchers) == 1)
         self._watch.start()
         if pages is not None:
             pages.begin(self._watch)
+
+    def _serve(self, mas: System) -> "RunView":
+        from jacaros.cli.pages import serve_pages  # here: a server comes with it
+
+        return serve_pages(mas, self._outputs, self._console)
 
     def print(self, agent: str, text: str) -> None:
         """Show a line of an agent's output; a view that draws on the terminal shows it itself."""
@@ -93,6 +102,8 @@ class Watching:
             self._ground_truth.__exit__(kind, error, trace)
 
     def _write_replay(self, recording: Recording, path: Path) -> None:
+        from jacaros.inspector.page import write_replay  # here: few runs make a page
+
         try:
             write_replay(recording, path)
         except OSError as error:

@@ -3,7 +3,7 @@
 import asyncio
 import contextlib
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any
 
@@ -132,6 +132,10 @@ class GraphScene:
     def robots(self) -> list[RobotView]:
         """The robots where they believe to be."""
         return [robot.view(self._backend) for robot in self._shown]
+
+    def follow(self, moved: Callable[[], None]) -> bool:
+        """Messages come at any rate: nothing is followed."""
+        return False
 
     def close(self) -> None:
         """Leave the topics."""

@@ -50,6 +50,9 @@ class Scene(Protocol):
     def robots(self) -> list[RobotView]:
         """All robots as they are now, in an order to which new ones are added at the end."""
 
+    def follow(self, moved: Callable[[], None]) -> bool:
+        """Have *moved* called ten times a second while robots move; False if that is not known, or not yet."""
+
     def close(self) -> None:
         """Look no more."""
 
@@ -64,6 +67,7 @@ class EmbeddedScene:
     def __init__(self, find: Callable[[], World | None]) -> None:
         self._find = find
         self._drawing: Mapping[str, Any] | None = None
+        self._stop_following: Callable[[], None] | None = None
 
     def drawing(self) -> Mapping[str, Any] | None:
         """The world, which does not change; None while there is none."""
@@ -76,5 +80,15 @@ class EmbeddedScene:
         world = self._find()
         return views_of(world) if world is not None else []
 
+    def follow(self, moved: Callable[[], None]) -> bool:
+        """Have *moved* called when the world has noted where its robots are; False while there is no world."""
+        world = self._find()
+        if world is not None and self._stop_following is None:
+            self._stop_following = world.when_moved(moved)
+        return world is not None
+
     def close(self) -> None:
-        """Nothing is held."""
+        """Follow no longer."""
+        if self._stop_following is not None:
+            self._stop_following()
+            self._stop_following = None

@@ -9,6 +9,8 @@ from jacaros.mas.history import History
 
 PERIOD, LIVE_PERIOD = 0.1, 0.05
 """Seconds between two frames of a recording, and of a run in real time that is seen on a live page alone."""
+REST = 1.0
+"""Seconds between two frames of robots that rest, in a world that tells when they move."""
 
 
 class Watcher(Protocol):
@@ -85,7 +87,9 @@ class Watch:
             watcher.world(drawing)
 
     def _look(self) -> None:
-        self._timer = self.clock.call_later(self._period, self._look)
+        # On the virtual clock a timer costs as much as all else that a frame needs.
+        follows = self.clock.virtual and self._scene is not None and self._scene.follow(self.look)
+        self._timer = self.clock.call_later(REST if follows else self._period, self._look)
         self.look()
 
     def look(self) -> None:

@@ -5,7 +5,7 @@ and seed and the same commands at the same steps give the same run, to the last 
 """
 
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -73,6 +73,7 @@ class World:
         self._truth = GroundTruth(self.robots, description.drawing())
         self._charge_shown = {robot.name: (False, math.ceil(robot.battery.level)) for robot in self._row}
         self._next_sample = 0.0
+        self._move_listeners: tuple[Callable[[], None], ...] = ()
         self._sample_robots(all_of_them=True)
         self.faults = Faults(self, faults)
         self.faults.step(self.time)
@@ -368,6 +369,17 @@ class World:
         for robot in self._row:
             if all_of_them or robot.moving or self.time - self._truth.path(robot.name)[-1].time >= 1.0:
                 self._truth.record_sample(robot.name, robot.sample(self.time))
+        for moved in self._move_listeners:
+            moved()
+
+    def when_moved(self, moved: Callable[[], None]) -> Callable[[], None]:
+        """Have *moved* called ten times a second, when it has been noted where the robots are; returns what ends that."""
+        self._move_listeners = (*self._move_listeners, moved)
+
+        def end() -> None:
+            self._move_listeners = tuple(each for each in self._move_listeners if each is not moved)
+
+        return end
 
     def _note(self, robot: Robot, kind: str, data: dict[str, Any]) -> None:
         self._truth.record_event(Event(self.time, robot.name, kind, robot.x, robot.y, robot.yaw, data))
