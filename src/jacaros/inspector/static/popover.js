@@ -6,9 +6,9 @@ export class Popover {
     this.summary = element("summary", "plain", title);
     this.window = element("div", "window", ...content);
     this.root = element("details", "popover", this.summary, this.window);
-    this.root.addEventListener("keydown", (event) => {
+    // On the document: the focus is nowhere when the button that had it is gone.
+    document.addEventListener("keydown", (event) => {
       if (event.key !== "Escape" || !this.root.open) return;
-      event.stopPropagation();
       this.close();
       this.summary.focus();
     });

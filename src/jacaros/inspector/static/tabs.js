@@ -1,5 +1,6 @@
 import { button } from "./elements.js";
 import { recall, remember } from "./memory.js";
+import { paced } from "./paced.js";
 
 /**
  * The panels beside the map, one at a time: a list of tabs as the ARIA practices describe it (arrow keys move).
@@ -11,7 +12,7 @@ export class Tabs {
   constructor(list, panels, context) {
     this.list = list;
     this.time = context.time;
-    this.panels = panels.map(([panel, view]) => ({ panel, view, tab: this.makeTab(panel) }));
+    this.panels = panels.map(([panel, view]) => ({ panel, view, show: paced((t) => view.show(t)), tab: this.makeTab(panel) }));
     this.chosen = recall("tab");
     list.addEventListener("keydown", (event) => this.press(event));
   }
@@ -52,7 +53,7 @@ export class Tabs {
     return open;
   }
 
-  show(t) { this.arrange()?.view.show(t); }
+  show(t) { this.arrange()?.show(t); }
 
   press(event) {
     const tabs = this.available.map(({ tab }) => tab), at = tabs.indexOf(document.activeElement);
