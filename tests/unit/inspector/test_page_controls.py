@@ -1,4 +1,4 @@
-"""The controls of the live page in a real browser: pause, step, breakpoints, console, beliefs, goals, and errors at the control."""
+"""The controls of the live page in a real browser: pause, step, breakpoints, console, and errors at the control."""
 
 from collections.abc import Awaitable, Callable
 
@@ -83,7 +83,8 @@ def test_a_breakpoint_on_a_line_hits_and_shows_the_line() -> None:
     async def test(mas: Mas, page: Page) -> None:
         await page.click("#tab-program")
         await page.wait_for("document.querySelectorAll('.code-line').length > 5")
-        number = "[...document.querySelectorAll('.code-line')].find((each) => each.innerText.includes('-+count')).firstElementChild"
+        lines = "[...document.querySelectorAll('.code-line')]"
+        number = f"{lines}.find((each) => each.innerText.includes('-+count')).firstElementChild"
         await page.evaluate(f"{number}.focus()")
         await page.press("Enter")
         await page.wait_for("document.querySelector('.code-line.held')")
@@ -153,5 +154,23 @@ def test_a_goal_is_dropped_at_its_card() -> None:
         await page.click("[aria-label='Drop !live']")
         await page.wait_for("!document.querySelector('.intention')")
         assert "live" not in str(mas.agent("bob").goals)
+
+    browsing(test)
+
+
+@needs_chromium
+def test_a_button_gets_its_click_although_its_card_changes_all_the_time() -> None:
+    async def test(mas: Mas, page: Page) -> None:
+        x, y = await page.evaluate(
+            "(() => { const box = document.querySelector('.intention .ask').getBoundingClientRect();"
+            "return [box.x + box.width / 2, box.y + box.height / 2]; })()"
+        )
+        mouse = {"x": x, "y": y, "button": "left", "clickCount": 1}
+        await page.call("Input.dispatchMouseEvent", type="mousePressed", buttons=1, **mouse)
+        before = count(mas)
+        while count(mas) < before + 6:
+            await page.evaluate("1")
+        await page.call("Input.dispatchMouseEvent", type="mouseReleased", **mouse)
+        await page.wait_for("document.querySelector('#causes').checkVisibility()")
 
     browsing(test)
