@@ -8,6 +8,7 @@ from jacaros.cli.main import call
 from jacaros.inspector import Recording
 from jacaros.mas.history import explain
 from jacaros.mas.history.past import Record
+from jacaros.mas.history.well_formed import is_well_formed
 from jacaros.mas.replaying import replay_against
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "04_patrol"
@@ -25,6 +26,10 @@ def records(tmp_path_factory: pytest.TempPathFactory) -> list[Record]:
 def low_at(records: list[Record]) -> float:
     """When the battery was low for the first time."""
     return next(t for t, event, data in records if event == "deliberation" and data["trigger"] == LOW)
+
+
+def test_every_record_of_a_run_is_well_formed(records: list[Record]) -> None:
+    assert [record for record in records if not is_well_formed(record[1], record[2])] == []
 
 
 def test_the_stop_for_the_battery_is_traced_to_its_message(records: list[Record]) -> None:

@@ -49,5 +49,5 @@ def existing_recording(path: Path) -> Path:
     return path
 
 
-_RECORDINGS = {".jsonl", ".mcap"}
+_RECORDINGS = {".jsonl", ".gz"}
 """Suffixes that recordings usually have."""

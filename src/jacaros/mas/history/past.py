@@ -1,9 +1,10 @@
 """What happened in a run until a moment: records, found by what they are about."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any
+
+from jacaros.mas.history.well_formed import is_well_formed
 
 Data = Mapping[str, Any]
 """The data of a record, see docs/reference/recordings.md."""
@@ -75,19 +76,20 @@ class Past:
 
     @classmethod
     def of(cls, records: Iterable[Record], until: float | None = None) -> "Past":
-        """Read records.  Those later than *until* (seconds), of unknown kinds or without a field are left out."""
+        """Read records.  Those later than *until* (seconds), of unknown kinds or not well formed are left out."""
         past = cls()
         for t, event, data in records:
             if until is not None and t > until:
                 continue
             past.end = max(past.end, t)
+            if event in _SEEN_OFTEN or not is_well_formed(event, data):
+                continue
             take = _TAKERS.get(event)
-            with suppress(KeyError, TypeError, AttributeError):
-                if take is not None:
-                    take(past, t, data)
-                elif event not in _SEEN_OFTEN and data["robot"]:
-                    past.world.append((t, event, data))
-                    past.robots.add(data["robot"])
+            if take is not None:
+                take(past, t, data)
+            elif isinstance(data.get("robot"), str):
+                past.world.append((t, event, data))
+                past.robots.add(data["robot"])
         return past
 
     def plan(self, agent: str, plan: Any) -> Data:
@@ -117,7 +119,7 @@ def of_agent(records: Iterable[tuple[float, Data]], agent: str) -> Iterator[tupl
 
 def _take_cause(past: Past, t: float, data: Data) -> None:
     known = past.links.get(data["id"])
-    at = data.get("at", t)
+    at = t if data.get("at") is None else data["at"]
     # What a deliberation or an operation says of itself tells more than its link.
     past.links[data["id"]] = (at, data) if known is None else (at, {**data, **known[1]})
 
@@ -143,7 +145,7 @@ def _take_operation(past: Past, t: float, data: Data) -> None:
 
 
 def _take_program(past: Past, _: float, data: Data) -> None:
-    past.programs[data["agent"]] = {each["id"]: each for each in data["plans"]}
+    past.programs[data["agent"]] = {each["id"]: each for each in data["plans"] or ()}
     past.rules[data["agent"]] = list(data.get("rules") or ())
 
 

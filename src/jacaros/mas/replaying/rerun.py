@@ -19,6 +19,7 @@ from jacaros.mas.embedding.mas import Mas
 from jacaros.mas.embedding.running_agent import RunningAgent
 from jacaros.mas.history.chains import shown
 from jacaros.mas.history.past import Data, Past, Record
+from jacaros.mas.history.well_formed import is_well_formed
 from jacaros.mas.replaying.differences import Comparison, compare
 from jacaros.mas.replaying.recorded_acts import RecordedAct, RecordedActs, completion
 from jacaros.mas.replaying.recorded_inputs import Input, inputs_of
@@ -42,6 +43,7 @@ def replay_against(records: Sequence[Record], program: Path, agent: str = "") ->
         UsageError: the recording has no such agent, or no decisions of it.
         AslError: the program is wrong.
     """
+    records = [each for each in records if is_well_formed(each[1], each[2])]
     past = Past.of(records)
     name = _agent_of(past, agent)
     rerun = _Rerun(records, past, program, name)
