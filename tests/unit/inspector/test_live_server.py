@@ -292,7 +292,7 @@ def test_there_are_not_too_many_pages() -> None:
 
 
 def test_a_page_that_takes_nothing_is_disconnected(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(server, "PATIENCE", 0.2)
+    monkeypatch.setattr(server, "PATIENCE", 2.0)
     cut_off = asyncio.Event()
     disconnect = server.LiveServer._disconnect
 
