@@ -37,7 +37,7 @@ def command(files: tuple[Path, ...], only_check: bool, only_show: bool) -> int:
     it is. The page "The layout of programs" shows the style.
     """  # fmt: skip
     if _STANDARD_INPUT in files and len(files) > 1:
-        raise UsageError("'-' cannot stand beside files")
+        raise UsageError("'-' cannot be combined with files")
     code = 0
     changed = 0
     programs = list(_programs(files))
@@ -64,7 +64,7 @@ def command(files: tuple[Path, ...], only_check: bool, only_show: bool) -> int:
             try:
                 _replace(path, after)
             except OSError as fault:
-                click.echo(f"{path} cannot be written: {fault.strerror}", err=True)
+                click.echo(f"cannot write {path}: {fault.strerror}", err=True)
                 code = 1
     if _STANDARD_INPUT not in files:
         click.echo(_summary(changed, len(programs), only_check or only_show), err=True)

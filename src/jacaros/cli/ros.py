@@ -144,7 +144,7 @@ def map_command(
     from jacaros.cli.graph.standard_topics import left_out, usual_things
 
     if output is not None and output.exists() and not force:
-        raise UsageError(f"there is a file {output} already; --force writes over it")
+        raise UsageError(f"file exists: {output}; overwrite it with --force")
     file = output if output is not None else Path("robot.yaml")
     folders = [os.path.relpath(folder, file.parent) for folder in interfaces]
 
@@ -169,7 +169,7 @@ def map_command(
         click.echo(text, nl=False)
         return
     output.write_text(text, encoding="utf-8")
-    click.echo(f"{output} is written; see `jacaros describe {output}`")
+    click.echo(f"wrote {output}; see `jacaros describe {output}`")
 
 
 @command.command("check", short_help="Check a mapping file against the graph.")

@@ -169,7 +169,7 @@ class _Ros2Arguments:
 
     def _take(self, written: str, name: str, value: str | None) -> None:
         if value is None:
-            raise UsageError(f"a value is missing behind {written} of --ros-args")
+            raise UsageError(f"missing value after {written} of --ros-args")
         if name == "--params-file":
             self._files.append(value)
         elif name:

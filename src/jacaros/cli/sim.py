@@ -99,7 +99,7 @@ def command(
 
     def tell() -> None:
         names = ", ".join(robot.name for robot in loaded.description.robots)
-        click.echo(f"the world {loaded.description.name} with {names} runs; Ctrl-C ends it")
+        click.echo(f"running the world {loaded.description.name} with {names}; press Ctrl+C to stop")
 
     async def main() -> None:
         backend = address.open(time, "world", to_stderr)

@@ -135,7 +135,7 @@ def command(
         try:
             write_junit(junit, outcomes)
         except OSError as error:
-            raise UsageError(f"{junit} cannot be written: {error}") from error
+            raise UsageError(f"cannot write {junit}: {error}") from error
     return 0 if all(outcome.passed for outcome in outcomes) else 1
 
 
@@ -219,9 +219,7 @@ def _chosen(found: "list[Suite]", paths: Sequence[Path], pattern: str | None) ->
     ]
     if not any(suite.tests for suite in chosen) and not any(suite.error is not None for suite in chosen):
         names = [f"{suite.path}::{test.name}" for suite in found for test in suite.tests]
-        raise UsageError(
-            f"no test in {places} is meant by -k {pattern}; there are {', '.join(names[:5])} ..."
-        )
+        raise UsageError(f"no test in {places} matches -k {pattern}; tests: {', '.join(names[:5])} ...")
     return chosen
 
 

@@ -80,7 +80,7 @@ class Directory(Generic[H]):
     def add(self, name: str, host: H) -> None:
         """Enter an agent; the name must be free."""
         if self._is_taken(name):
-            raise ValueError(f"there is an agent {name} already")
+            raise ValueError(f"duplicate agent name {name}")
         self._hosts[name] = host
         self._changed(name, True)
 

@@ -52,7 +52,7 @@ class RunGuard:
                 await self._connect()
         except TimeoutError:
             raise UsageError(
-                f"the guard did not start within {STARTING:g} s; `jacaros guard` starts it by hand and prints why"
+                f"the guard did not start within {STARTING:g} s; run `jacaros guard` to see the reason"
             ) from None
 
     async def close(self) -> None:

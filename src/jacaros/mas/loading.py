@@ -47,7 +47,7 @@ def mapped(deployment: Deployment, names: Sequence[str | Path]) -> Deployment:
 
 def _lone_agent(path: Path) -> Deployment:
     if not is_file(path):
-        raise ProjectError([Diagnostic("error", f"{path} is not found")])
+        raise ProjectError([Diagnostic("error", f"file not found: {path}")])
     agent = AgentSpec(path.stem, path, path.stem)
     base = path.parent
     return Deployment(path.stem, base, (agent,), artifact_environment=True, source_paths=(base,))

@@ -95,7 +95,7 @@ class RunOptions(GraphAddress):
         if self.real_graph or self._names_the_graph():
             GraphAddress.check(self)  # with slots, super() knows an older class
         if self.seconds is not None and self.seconds < 0:
-            raise UsageError("--for wants a number of seconds that is not negative")
+            raise UsageError("--for must be a non-negative number of seconds")
 
     def _names_the_graph(self) -> bool:
         options = (self.node_name, *(self._given(kind) for kind in MIDDLEWARES.values()))

@@ -240,9 +240,9 @@ def text_of(path: Path) -> str:
     try:
         return file_text(path)
     except FileNotFoundError:
-        raise AslError([_unreadable(f"{path} is not found")]) from None
+        raise AslError([_unreadable(f"file not found: {path}")]) from None
     except (OSError, UnicodeError) as error:
-        raise AslError([_unreadable(f"{path} cannot be read: {error}")]) from error
+        raise AslError([_unreadable(f"cannot read {path}: {error}")]) from error
 
 
 def _unreadable(message: str) -> Diagnostic:

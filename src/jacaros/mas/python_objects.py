@@ -52,7 +52,7 @@ class _Classes:
         """``cartago.new_obj(Class, Arguments, -Reference)``."""
         name = name_of(bare(class_name))
         if name is None:
-            raise ActionError(f"the name of a class is wanted, not {text(class_name)}")
+            raise ActionError(f"expected the name of a class, found {text(class_name)}")
         made = _call(f"{name}(...)", self._find(name), _values(arguments))
         return ctx.unify(reference, Reference(made))
 
@@ -62,7 +62,7 @@ class _Classes:
         call = bare(call)
         name = name_of(call[0] if isinstance(call, tuple) else call)
         if name is None:
-            raise ActionError(f"a call such as append(3) is wanted, not {text(call)}")
+            raise ActionError(f"expected a call such as append(3), found {text(call)}")
         try:
             member = getattr(owner, name)
         except AttributeError:
@@ -79,7 +79,7 @@ class _Classes:
             return target.value, f"an object of class {type(target.value).__name__}"
         name = name_of(target)
         if name is None:
-            raise ActionError(f"an object or the name of a class is wanted, not {text(target)}")
+            raise ActionError(f"expected an object or the name of a class, found {text(target)}")
         return self._find(name), f"class {name}"
 
     def _find(self, name: str) -> Any:
@@ -138,7 +138,7 @@ def _said(error: BaseException) -> str:
 
 def _values(arguments: Term) -> list[Any]:
     if not is_list(bare(arguments)):
-        raise ActionError(f"a list of arguments is wanted, not {text(arguments)}")
+        raise ActionError(f"expected a list of arguments, found {text(arguments)}")
     values: list[Any] = [_bound(value) for value in to_value(bare(arguments))]
     return values
 
@@ -157,7 +157,7 @@ def _new_array(ctx: Context, type_name: Term, items: Term, reference: Term) -> b
     """``cartago.new_array("int[]", List, -Reference)``: a Python list; the type says what its items are."""
     name = name_of(bare(type_name))
     if name is None or not name.endswith("[]"):
-        raise ActionError(f'a type such as "int[]" is wanted, not {text(type_name)}')
+        raise ActionError(f'expected a type such as "int[]", found {text(type_name)}')
     kinds = _ITEMS.get(name.removesuffix("[]").rpartition(".")[2])
     values = _values(items)
     for value in values:
@@ -185,7 +185,7 @@ def _array_to_list(ctx: Context, reference: Term, result: Term) -> bool:
     target = bare(reference)
     value = plain(target.value) if target.__class__ is Reference else None
     if not isinstance(value, Iterable) or isinstance(value, str):
-        raise ActionError(f"an array is wanted, not {text(reference)}")
+        raise ActionError(f"expected an array, found {text(reference)}")
     try:
         items = list(value)
     except FAULTS as error:

@@ -119,7 +119,7 @@ def test_files_that_cannot_be_read_are_told(folder: Path, capsys: pytest.Capture
     (folder / "bytes.asl").write_bytes(b"p(\xff).")
     code, output, _ = outcome(capsys, "bytes.asl")
     assert code == 1
-    assert "bytes.asl cannot be read" in output
+    assert "cannot read bytes.asl" in output
     assert "[unreadable-file]" in output
 
 

@@ -90,7 +90,7 @@ def test_nothing_to_run_is_wrong_usage(folder: Path, capsys: pytest.CaptureFixtu
     )
     code, _, errors = outcome(capsys, "tests", "-k", "nothing")
     assert code == 2
-    assert "no test in tests is meant by -k nothing; there are tests/sums.asl::adds" in errors
+    assert "no test in tests matches -k nothing; tests: tests/sums.asl::adds" in errors
     assert outcome(capsys, "nowhere")[0] == 2
     assert outcome(capsys, "--timeout", "0")[0] == 2
 

@@ -62,7 +62,7 @@ def test_a_wrong_program_is_left_as_it_is_and_the_others_are_laid_out(
     code, output, errors = outcome(capsys, ".")
     assert (code, output) == (1, "")
     assert "0.asl:1:" in errors
-    assert "1.asl cannot be read" in errors
+    assert "cannot read 1.asl" in errors
     assert (folder / "a.asl").read_text(encoding="utf-8") == NICE
     assert (folder / "0.asl").read_text(encoding="utf-8") == "p( "
 
@@ -81,7 +81,7 @@ def test_a_program_that_would_change_is_left_as_it_is(
     ("arguments", "told"),
     [
         (["b.asl"], "did you mean a.asl?"),
-        (["-", "a.asl"], "'-' cannot stand beside files"),
+        (["-", "a.asl"], "'-' cannot be combined with files"),
         (["p.jcm"], "unsupported file type: p.jcm (expected .asl)"),
         ([], "FILE"),
     ],

@@ -101,7 +101,7 @@ def test_other_commands_and_options_with_such_values_are_left_alone() -> None:
     ("written", "told"),
     [
         (("--ros-args", "--clock", "ros"), "or -- before other arguments"),
-        (("--ros-args", "-r"), "a value is missing behind -r"),
+        (("--ros-args", "-r"), "missing value after -r"),
         (("--ros-args", "-r", "odom"), "is written -r NAME:=VALUE"),
         (("--ros-args", "-r", "other:odom:=x"), "leave out the name of the node"),
         (("--ros-args", "-p", "x"), "is written -p NAME:=VALUE"),

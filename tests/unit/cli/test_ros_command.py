@@ -198,11 +198,11 @@ def test_docking_of_a_kobuki_is_called_as_plans_call_it(capsys: pytest.CaptureFi
 
 def test_a_file_is_written_but_not_over_another(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     file = tmp_path / "robot.yaml"
-    assert "is written" in told(capsys, "map", "/odom", "-o", str(file))
+    assert "wrote " in told(capsys, "map", "/odom", "-o", str(file))
     first = file.read_text(encoding="utf-8")
     code, _, errors = outcome(capsys, "map", "/scan", "-o", str(file))
     assert code == 2
-    assert "--force writes over it" in errors
+    assert "overwrite it with --force" in errors
     assert file.read_text(encoding="utf-8") == first
     told(capsys, "map", "/scan", "-o", str(file), "--force")
     assert "LaserScan" in file.read_text(encoding="utf-8")

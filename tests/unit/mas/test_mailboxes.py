@@ -92,7 +92,7 @@ def test_a_taken_name_gets_a_number() -> None:
     assert directory.free_name("a") == "a_1"
     directory.add("a_1", 2)
     assert directory.free_name("a") == "a_2"
-    with pytest.raises(ValueError, match="there is an agent a already"):
+    with pytest.raises(ValueError, match="duplicate agent name a"):
         directory.add("a", 3)
 
 

@@ -45,7 +45,7 @@ def test_the_errors_of_all_programs_are_told_together(tmp_path: Path) -> None:
         programs(tmp_path).load_all([*specs, AgentSpec("c", tmp_path / "missing.asl")])
     assert "a.asl:1" in str(wrong.value)
     assert "b.asl:1" in str(wrong.value)
-    assert "missing.asl is not found" in str(wrong.value)
+    assert f"file not found: {tmp_path / 'missing.asl'}" in str(wrong.value)
 
 
 def test_programs_are_found_in_the_folders_of_the_project(tmp_path: Path) -> None:

@@ -183,5 +183,5 @@ def test_the_clock_of_the_run_is_seen_by_agents(project: Project) -> None:
 def test_undeclared_files_are_told(tmp_path: Path) -> None:
     result = run_project(tmp_path / "none.asl")
     assert result.exit_code == 1
-    assert "is not found" in result.errors[0]
+    assert "file not found: " in result.errors[0]
     assert isinstance(result, RunResult)

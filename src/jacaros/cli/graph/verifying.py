@@ -122,7 +122,7 @@ def _of_qos(place: Place, info: TopicInfo, requested: QoS) -> Iterator[Problem]:
         if why is not None:
             node = publisher.node or "a publisher"
             yield place.problem(
-                f"nothing of {info.name} would come from {node}: {why}",
+                f"no messages of {info.name} would arrive from {node}: {why}",
                 f"write {_suiting(publisher.qos, requested)}",
             )
 
@@ -213,7 +213,7 @@ def _of_frame(names: Names, part: FramePart, frames: dict[str, str]) -> Iterator
         yield part.place.problem(f"unknown frame {frame}", told)
     if not unknown and root(frames, target) != root(frames, source):
         yield part.place.problem(
-            f"the frames {target} and {source} are not connected: the first hangs on {root(frames, target)}, the "
+            f"the frames {target} and {source} are not connected: the root of the first is {root(frames, target)}, of the "
             f"second on {root(frames, source)}",
             "start the node that connects them, such as the localisation",
         )

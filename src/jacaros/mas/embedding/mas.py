@@ -149,7 +149,7 @@ class Mas(EmbeddedRun):
                 f"invalid agent name {spec.name!r}: it must not be empty or have spaces or control characters"
             )
         if spec.name in system.directory.names():
-            raise UsageError(f"there is an agent {spec.name} already; every name is given once")
+            raise UsageError(f"duplicate agent name {spec.name}")
         if spec.join or spec.focus:
             spec = _placed(spec, self._run_environment.environment)
         tree = system.population.programs.load(spec, written)
@@ -233,7 +233,7 @@ class Mas(EmbeddedRun):
         known = self._mailboxes.find(name)
         if known is None:
             if name in system.directory.names():
-                raise UsageError(f"there is an agent {name}; a mailbox needs a name of its own")
+                raise UsageError(f"the name {name} belongs to an agent; give the mailbox another name")
             known = Mailbox(name, system.deliver, system.agent_names, waits)
             self._mailboxes.add(known)
         return known

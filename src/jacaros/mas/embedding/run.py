@@ -52,7 +52,7 @@ class EmbeddedRun:
             JacarosError: it cannot be started; the text tells what is wrong.
         """
         if self._begun is not None:
-            raise UsageError("this system has run already; make another Mas")
+            raise UsageError("this Mas has already run; create another one")
         loop = asyncio.get_running_loop()
         clock: Clock = clock_of(loop)
         options = replace(self._options, fast=clock.virtual)
@@ -95,7 +95,7 @@ class EmbeddedRun:
     @property
     def _running(self) -> tuple[System, Waits]:
         if self._begun is None:
-            raise RunEnded("the system has not begun to run: use it inside `async with Mas(...) as mas:`")
+            raise RunEnded("the system is not running: use it inside `async with Mas(...) as mas:`")
         self._begun[1].check_thread()
         return self._begun
 
@@ -236,7 +236,7 @@ def run(main: Coroutine[Any, Any, T], *, clock: Literal["real", "fast"] = "real"
             raise UsageError(f"unknown clock {clock!r}; expected 'real' or 'fast'")
         if _is_running():
             raise UsageError(
-                "an event loop runs here already (a notebook?): await the coroutine, without jacaros.run"
+                "an event loop is already running (a notebook?): await the coroutine instead of calling jacaros.run"
             )
     except UsageError:
         main.close()

@@ -114,9 +114,9 @@ def _text(path: Path) -> str:
     try:
         return file_text(path)
     except FileNotFoundError:
-        raise ProjectError([Diagnostic("error", f"{path} is not found")]) from None
+        raise ProjectError([Diagnostic("error", f"file not found: {path}")]) from None
     except (OSError, UnicodeError) as error:
-        raise ProjectError([Diagnostic("error", f"{path} cannot be read: {error}")]) from error
+        raise ProjectError([Diagnostic("error", f"cannot read {path}: {error}")]) from error
 
 
 def _read_part(suffix: str, cursor: ProjectCursor) -> ProjectPart:

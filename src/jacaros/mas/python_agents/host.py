@@ -235,8 +235,8 @@ class PythonAgentHost(AgentHost):
         if self._session is None:
             if self.open_session is None:
                 raise WorkspaceError(
-                    "the project has no environment (a line `environment: jacaros.Environment` in the project "
-                    "file gives it one)"
+                    "the project has no environment (add the line `environment: jacaros.Environment` to the project "
+                    "file)"
                 )
             self._session = self.open_session()
             self._session.observer = self._observer

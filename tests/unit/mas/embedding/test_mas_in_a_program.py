@@ -167,7 +167,7 @@ def test_mistakes_are_told_where_they_are_made(tmp_path: Path) -> None:
         with pytest.raises(UsageError, match=r"program not found: carl\.asl in"):
             mas.add_agent("carl")
         mas.add_agent("bob", "")
-        with pytest.raises(UsageError, match="there is an agent bob already"):
+        with pytest.raises(UsageError, match="duplicate agent name bob"):
             mas.add_agent("bob", "")
         with pytest.raises(UnknownAgent, match="unknown agent bbo; did you mean bob"):
             mas.agent("bbo")
@@ -198,7 +198,7 @@ def test_a_system_is_used_inside_its_block() -> None:
         async with mas:
             pass
 
-    with pytest.raises(UsageError, match="this system has run already"):
+    with pytest.raises(UsageError, match="this Mas has already run"):
         jacaros.run(twice(), clock="fast")
     assert repr(mas) == "<Mas mas, ended with exit code 0>"
 

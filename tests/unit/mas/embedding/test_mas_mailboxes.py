@@ -42,7 +42,9 @@ def test_python_code_has_mailboxes() -> None:
             me.send("bobb", "tell", "x")
         with pytest.raises(TimeoutError, match="no message came for me within 1 s"):
             await me.get(timeout=1)
-        with pytest.raises(UsageError, match="there is an agent bob; a mailbox needs a name of its own"):
+        with pytest.raises(
+            UsageError, match="the name bob belongs to an agent; give the mailbox another name"
+        ):
             mas.mailbox("bob")
 
     lines: list[str] = []
