@@ -24,7 +24,7 @@ def explain_stop(past: Past, question: str, agent: str = "", robot: str = "") ->
     """Explain why a robot stopped: the first command to stand still after the last one to move."""
     commands = _commands(past, robot)
     if not commands:
-        return _no_command(past, question, robot)
+        return _by_operation(past, question, agent, robot) or _no_command(past, question, robot)
     stop = _stop_of(commands)
     if stop is None:
         t, last = commands[-1]
@@ -55,6 +55,30 @@ def explain_stop(past: Past, question: str, agent: str = "", robot: str = "") ->
             *chain(past, handled[-1][1]["id"]),
         )
     return Explanation(question, answer, t, tuple(facts[:MOST_FACTS]), because)
+
+
+def _by_operation(past: Past, question: str, agent: str, robot: str) -> Explanation | None:
+    """Explain the end of the last operation of an artifact of a robot, where other nodes send the commands."""
+    ended = [
+        (each.ended, number, each)
+        for number, each in past.operations.items()
+        if each.ended is not None and _drives(past, str(each.data["artifact"]), robot)
+    ]
+    if not ended:
+        return None
+    t, number, last = max(ended, key=lambda each: each[:2])
+    reason = f": {last.reason}" if last.reason else ""
+    what = f"{last.data['operation']} of {last.data['artifact']} {last.outcome} at {seconds(t)}{reason}"
+    stop = t, {"id": number, "parent": 0}
+    goals = goals_interrupted(past, stop, agent, only_own=True)
+    events = [event_fact(past, *each) for each in events_before(past, stop, agent)] if goals else []
+    answer = f"no agent sent commands to the wheels; the last operation: {what}"
+    return Explanation(question, answer, t, (*events, *goals)[:MOST_FACTS], chain(past, number))
+
+
+def _drives(past: Past, artifact: str, robot: str) -> bool:
+    whose = past.artifacts.get(artifact, {}).get("robot")
+    return whose is not None and robot in ("", whose)
 
 
 def explain_command(past: Past, question: str, about: str = "", robot: str = "") -> Explanation:

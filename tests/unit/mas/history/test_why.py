@@ -331,3 +331,21 @@ def test_plans_that_a_busy_agent_did_not_examine_are_listed() -> None:
     assert answer.facts[0].text == "`+a(X)[source(percept)]`: its annotations do not match"
     answer = explain([*RECORDS, event(13.0, 60, 0, "+alarm(a,b)", None)], "+alarm(_,_)")
     assert answer.answer == "guard has no relevant plan for `+alarm(a,b)` at 13.000 s"
+
+
+def test_a_stop_of_a_robot_that_others_drive_is_the_end_of_an_operation() -> None:
+    begun = {"id": 5, "artifact": "/main/nav", "operation": "navigate_to(1,2)", "agent": "guard", "cause": 4}
+    records = [
+        (0.0, "artifact", {"artifact": "/main/nav", "type": "Nav2", "state": "made", "robot": "robot1"}),
+        event(1.0, 3, 0, "+!go", 1, intention=1),
+        cause(1.0, 4, 3, "act", "guard navigate_to/2", agent="guard", intention=1),
+        cause(1.0, 5, 4, "operation", "navigate_to(1,2)", artifact="/main/nav"),
+        (1.0, "operation", {**begun, "state": "began"}),
+        (4.0, "operation", {**begun, "state": "failed", "reason": "no way"}),
+    ]
+    answer = explain(records, "why did robot1 stop?")
+    assert answer.answer == (
+        "no agent sent commands to the wheels; the last operation: navigate_to(1,2) of /main/nav failed at 4.000 s: no way"
+    )
+    assert kinds(answer) == ["operation", "act", "event"]
+    assert explain(records, "stopped", robot="robot2").t is None
