@@ -62,7 +62,7 @@ export class BeliefList {
     if (file) return [placeName({ file, line })];
     const artifact = /artifact_name\(([^)]*)\)/.exec(text)?.[1], source = artifact ?? /source\(([^)]*)\)/.exec(text)?.[1];
     if (source && source !== "self") return [`from ${source === "percept" ? "perception" : source}`];
-    return [cause ? "" : since === 0 ? "initial" : ""];
+    return [cause ? "" : since < 0.5 ? "initial" : ""];
   }
 
   choose(mind, { cause, file, line }) {

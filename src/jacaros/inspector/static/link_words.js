@@ -62,8 +62,8 @@ function stepText(link, minds) {
   return `${single ? written : what}${plan ? ` of ${planName(plan)}` : ""}`;
 }
 
-function outcome({ outcome: end, reason, ended, t: began }, t) {
-  if (!end) return "";
+function outcome({ outcome: end, reason, ended, t: began, call: isCalled }, t) {
+  if (!end) return isCalled ? ", still running" : "";
   if (ended > t) return ", still running";
   if (end === "failed") return `, failed${reason ? `: ${reason}` : ""}`;
   return ended - began >= 0.05 ? `, done after ${(ended - began).toFixed(1)} s` : "";
