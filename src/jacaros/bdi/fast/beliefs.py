@@ -104,7 +104,7 @@ def take_in(agent: Circumstance, percepts: list[Percept]) -> None:
         agent.waits.events
         or agent.waits.conditions
         or agent.features.subplans
-        or agent.observers.mind is not None
+        or agent.observers.hear_beliefs
         or not _has_room(agent, len(percepts))
     ):
         perceiving.take_in(agent, percepts)

@@ -65,9 +65,27 @@ def own_event(
     if new is None:
         return None
     note_change(agent, symbol, row)
-    if agent.observers.mind is not None:
-        agent.observers.mind.changed("+", symbol, row, new, agent.cause_now())
+    if agent.observers.hear_beliefs:
+        _tell_change(agent, "+", symbol, row, new, agent.cause_now())
     return _raise(agent, (agent.beliefs[symbol].added, *row), new, apart)
+
+
+def _tell_change(
+    agent: Circumstance,
+    operator: str,
+    symbol: Functor,
+    row: Row,
+    annotations: Annotations,
+    cause: Cause | None,
+    believed: bool = True,
+) -> None:
+    """Tell observers of a belief that changed, or (not *believed*) of a signal."""
+    observers, table = agent.observers, agent.beliefs[symbol]
+    if believed and observers.mind is not None:
+        observers.mind.changed(operator, symbol, row, annotations, cause)
+    kind = table.added if operator == "+" else table.deleted
+    if observers.step is not None and not agent.may_handle(kind):
+        observers.step.notes_unhandled(agent, (kind, *row), annotations)
 
 
 def _raise(agent: Circumstance, goal: Goal, annotations: Annotations, apart: bool) -> Raised:
@@ -140,8 +158,8 @@ def delete_belief(
 def deleted(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations, apart: bool) -> Raised:
     """Raise the event of a belief that a step has deleted."""
     note_change(agent, symbol, row)
-    if agent.observers.mind is not None:
-        agent.observers.mind.changed("-", symbol, row, annotations, agent.cause_now())
+    if agent.observers.hear_beliefs:
+        _tell_change(agent, "-", symbol, row, annotations, agent.cause_now())
     return _raise(agent, (agent.beliefs[symbol].deleted, *row), annotations, apart)
 
 
@@ -253,10 +271,9 @@ def external_change(
     believed: bool = True,
 ) -> None:
     """Raise the external event of a belief change, or (not *believed*) of a signal, if anybody cares."""
-    if agent.observers.mind is not None:
+    if agent.observers.hear_beliefs:
         cause = cause or agent.cause_now()
-        if believed:
-            agent.observers.mind.changed(operator, symbol, row, annotations, cause)
+        _tell_change(agent, operator, symbol, row, annotations, cause, believed)
     table = agent.beliefs[symbol]
     kind = table.added if operator == "+" else table.deleted
     if agent.library.selects[kind] is not None or agent.waits.events or _is_kept(agent, kind):

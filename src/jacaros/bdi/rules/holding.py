@@ -8,7 +8,13 @@ from jacaros.bdi.state.intention import Intention
 
 def observe_steps(agent: Circumstance, observer: StepObserver | None) -> None:
     """Have *observer* asked before each event and each step; None ends it, and lets a held agent continue."""
-    agent.observers.step = observer
+    observers, features = agent.observers, agent.features
+    if observers.step is None:
+        observers.usual_events = features.usual_events
+    observers.step = observer
+    observers.hear_beliefs = observer is not None or observers.mind is not None
+    # What is written out for speed tells nobody of changes that no plan handles.
+    features.usual_events = observers.usual_events and not observers.hear_beliefs
     if observer is None:
         agent.held = None
     look_at_plans(agent)

@@ -11,14 +11,14 @@ from jacaros.bdi.state.act import Percept
 from jacaros.bdi.state.belief_base import BeliefTables
 from jacaros.bdi.state.budget import SearchBudget, budgets
 from jacaros.bdi.state.condition_waits import ConditionWaits
-from jacaros.bdi.state.event import EVENT_GOAL, EVENT_INTENTION, Event
+from jacaros.bdi.state.event import EVENT_GOAL, EVENT_INTENTION, Annotations, Event
 from jacaros.bdi.state.intention import Intention
 from jacaros.bdi.state.observing import MindObserver
 from jacaros.bdi.state.options import Options
 from jacaros.bdi.state.plan_library import PlanLibrary, ProgramPlans
 from jacaros.bdi.state.selections import Selections
 from jacaros.bdi.state.speech_act import SpeechAct
-from jacaros.bdi.state.triggers import Trigger
+from jacaros.bdi.state.triggers import Goal, Trigger
 from jacaros.bdi.state.waiting import ActWait, Alarm, AnswerWait, EventWaits, Waiting
 from jacaros.terms.text import text
 from jacaros.terms.unifier import Trail
@@ -111,6 +111,9 @@ class StepObserver(Protocol):
     def holds_step(self, agent: Any, intention: Intention) -> bool:
         """Whether *agent* is held before it makes the next step of *intention*."""
 
+    def notes_unhandled(self, agent: Any, goal: Goal, annotations: Annotations) -> None:
+        """Hear of a belief change or signal for which *agent* has no plan, so that it need not become an event."""
+
 
 class HeldEvent(NamedTuple):
     """The event before which an agent is held.
@@ -132,15 +135,18 @@ class Observers:
         lost: called with what people are told of each lost goal (first line, further lines, place), or None.
         step: may hold the agent before an event or a step, or None, see `jacaros.bdi.rules.holding.observe_steps`.
         mind: told of plans, beliefs and messages, or None; see `jacaros.bdi.rules.meta_events.observe_mind`.
+        hear_beliefs: whether there is one of the last two.
+        usual_events: what the feature of this name was before `step` was there.
     """
 
-    __slots__ = ("goal", "lost", "mind", "step")
+    __slots__ = ("goal", "hear_beliefs", "lost", "mind", "step", "usual_events")
 
     def __init__(self) -> None:
         self.goal: Callable[[str, str, int, int, str], None] | None = None
         self.lost: Callable[[str, Sequence[str], Span | None], None] | None = None
         self.step: StepObserver | None = None
         self.mind: MindObserver | None = None
+        self.hear_beliefs = self.usual_events = False
 
 
 class Counts:

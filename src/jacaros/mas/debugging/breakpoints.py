@@ -10,8 +10,9 @@ from jacaros.asl.walk import nodes_in
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.event import EVENT_ANNOTATIONS, EVENT_GOAL, Event
 from jacaros.bdi.state.intention import PLAN, STEP, Frame, Intention
-from jacaros.bdi.state.literals import literal_of
+from jacaros.bdi.state.literals import EventAnnotations, literal_of
 from jacaros.bdi.state.plan import Plan, StepInfo
+from jacaros.bdi.state.triggers import Goal
 from jacaros.errors import UsageError
 from jacaros.mas.debugging.condition import Condition
 from jacaros.terms.text import text
@@ -115,14 +116,20 @@ class EventBreakpoint:
         self.text = pattern + (f" of {agent}" if agent is not None else "")
 
     def meets_event(self, agent: Circumstance, event: Event) -> bool:
-        """Whether the event unifies with the pattern."""
+        """Whether the event unifies with the pattern; those without a plan are noted when they come about."""
         goal = event[EVENT_GOAL]
+        return (goal[0].kind != "" or agent.may_handle(goal[0])) and self.fits(
+            agent, goal, event[EVENT_ANNOTATIONS]
+        )
+
+    def fits(self, agent: Circumstance, goal: Goal, annotations: EventAnnotations) -> bool:
+        """Whether a goal, belief change or signal of an agent unifies with the pattern."""
         kind = goal[0]
         if kind.operator != self._operator or kind.kind != self._kind or kind.functor is not self._functor:
             return False
         if self.agent not in (None, agent.name):
             return False
-        literal = literal_of(goal, event[EVENT_ANNOTATIONS] if annotations_of(self._pattern) else ())
+        literal = literal_of(goal, annotations if annotations_of(self._pattern) else ())
         trail = Trail()
         try:
             return unify(self._pattern, literal, trail)

@@ -8,14 +8,16 @@ from typing import Any, Literal, Protocol, get_args
 from jacaros.bdi.mind import Mind
 from jacaros.bdi.rules.holding import observe_steps
 from jacaros.bdi.state.circumstance import Circumstance
-from jacaros.bdi.state.event import Event
+from jacaros.bdi.state.event import Annotations, Event
 from jacaros.bdi.state.intention import PLAN, STEP, Intention
+from jacaros.bdi.state.triggers import Goal
 from jacaros.clock import Clock, WallClock, outside_run
 from jacaros.errors import UsageError
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.debugging.breakpoints import (
     Breakpoint,
     ConditionBreakpoint,
+    EventBreakpoint,
     LineBreakpoint,
     breakpoint_at,
     lines_that_stop,
@@ -95,6 +97,8 @@ class Debugger:
         self._stepping: tuple[Step, str | None] | None = None
         self._stepped_from: dict[str, int] = {}
         """By agent, the number of the cycle in which a step began."""
+        self._noted: dict[str, dict[str, None]] = {}
+        """By agent, the breakpoints met by belief changes and signals that no plan handles, since its last step."""
         self._watches = False
 
     # ---- what is shown
@@ -278,7 +282,9 @@ class Debugger:
         """Whether *agent* is held before it selects a plan for *event*."""
         if self.paused:
             return True
-        why = self._why_before(agent, "event") or self._met(lambda each: each.meets_event(agent, event))
+        why = self._met(agent, lambda each: each.meets_event(agent, event)) or self._why_before(
+            agent, "event"
+        )
         return self._hold(agent, why, None)
 
     def holds_step(self, agent: Circumstance, intention: Intention) -> bool:
@@ -288,14 +294,21 @@ class Debugger:
         if not (self._breakpoints or self._stepping):
             observe_steps(agent, None)  # from now on, the agent costs no more than without a debugger
             return False
-        why = self._met(lambda each: each.meets_step(agent, intention))
+        why = self._met(agent, lambda each: each.meets_step(agent, intention))
         if not why and intention.frames[-1][STEP] is not None:
             why = self._why_before(agent, "step")
         return self._hold(agent, why, intention)
 
-    def _met(self, test: Callable[[Breakpoint], bool]) -> str:
+    def notes_unhandled(self, agent: Circumstance, goal: Goal, annotations: Annotations) -> None:
+        """Hold *agent* before its next event or step if a breakpoint is for a change that no plan handles."""
+        for each in self._breakpoints.values():
+            if isinstance(each, EventBreakpoint) and each.fits(agent, goal, annotations):
+                self._noted.setdefault(agent.name, {})[each.text] = None
+
+    def _met(self, agent: Circumstance, test: Callable[[Breakpoint], bool]) -> str:
         # All are asked: conditions note at each test whether they hold.
-        met = [each.text for each in self._breakpoints.values() if test(each)]
+        met = list(self._noted.pop(agent.name, ()))
+        met += [each.text for each in self._breakpoints.values() if test(each)]
         return f"breakpoint {', '.join(met)}" if met else ""
 
     def _why_before(self, agent: Circumstance, what: Step) -> str:
@@ -365,10 +378,11 @@ class Debugger:
         """Test conditions also after a turn: a percept that no plan handles is followed by no step."""
         if self.paused:
             return
-        conditions = [each for each in self._breakpoints.values() if isinstance(each, ConditionBreakpoint)]
-        met = [each.text for each in conditions if each.becomes_true(agent)]
-        if met:
-            self._stop(DebugState("paused", f"breakpoint {', '.join(met)}", agent=agent.name))
+        why = self._met(
+            agent, lambda each: isinstance(each, ConditionBreakpoint) and each.becomes_true(agent)
+        )
+        if why:
+            self._stop(DebugState("paused", why, agent=agent.name))
 
 
 def _is_news(state: DebugState, found: "asyncio.Future[DebugState]") -> bool:

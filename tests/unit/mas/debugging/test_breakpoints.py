@@ -227,3 +227,34 @@ def test_records_show_the_step_before_which_an_agent_is_held() -> None:
         debugger.resume()
 
     debugged(test)
+
+
+@pytest.mark.parametrize(
+    ("pattern", "times"), [("+count(_)", 3), ("-count(_)", 3), ("+count(2)", 1), ("-count(9)", 0)]
+)
+def test_a_belief_change_that_no_plan_handles_stops_the_run_before_the_next_step(
+    pattern: str, times: int
+) -> None:
+    found = stops({"event": pattern})
+    assert [why for why, _, _ in found] == [f"breakpoint {pattern}"] * times
+    if pattern == "+count(2)":
+        assert (found[0][1], found[0][2][-1]) == (5, "at1"), "before the step behind the change"
+
+
+@pytest.mark.parametrize("program", ["ready.", "ready. +other <- true.", "ready. +!seen(X) <- true."])
+def test_percepts_and_signals_that_no_plan_handles_stop_the_run(program: str) -> None:
+    async def test(mas: Mas, debugger: Debugger, lines: list[str]) -> None:
+        debugger.add_breakpoint({"event": "+seen(key)"})
+        bob = mas.agent("bob")
+        for give in (bob.perceive, bob.signal):
+            give("seen(door)")
+            await mas.sleep(1.0)
+            assert not debugger.paused
+            give("seen(key)")
+            assert (await debugger.wait_until_paused()).why == "breakpoint +seen(key)"
+            debugger.resume()
+            bob.perceive_no_more("seen(key)")
+            await mas.sleep(1.0)
+            assert not debugger.paused
+
+    debugged(test, program)
