@@ -118,7 +118,8 @@ class Recorder:
         """Something that happened; *data* is plain JSON data, which nobody changes."""
         if self._keep:
             self.recording.events.append((t, kind, dict(data)))
-        self._write({"kind": "event", "t": _short(t), "event": kind, "data": data})
+        if self._file is not None:
+            self._file.write({"kind": "event", "t": round(t, 3), "event": kind, "data": data})
 
     def message(self, t: float, topic: str, message: Any) -> None:
         """A message of ROS that had an effect."""

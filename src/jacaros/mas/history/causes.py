@@ -112,8 +112,11 @@ class CauseRecords:
         """Make the first link of a chain, see `jacaros.trace.Tracer`."""
         # Called for each message of each sensor: most of what a recording costs would be here.
         self._last = number = self._last + 1
-        made = Cause(number, 0, "sample", topic)
-        traffic = self.received.get(topic) or self._traffic(topic, message)
+        made = tuple.__new__(Cause, (number, 0, "sample", topic))  # half of the time of Cause(...)
+        try:
+            traffic = self.received[topic]
+        except KeyError:
+            traffic = self._traffic(topic, message)
         traffic.count += 1
         if traffic.heard is not None:
             traffic.heard(topic, message)
@@ -129,8 +132,9 @@ class CauseRecords:
 
     def sent_message(self, topic: str, message: Any, parent: Cause | None) -> None:
         """Make the last link of a chain, see `jacaros.trace.Tracer`; of many of one operation, one now and then."""
-        traffic = self.sent.get(topic)
-        if traffic is None:
+        try:
+            traffic = self.sent[topic]
+        except KeyError:
             traffic = self.sent[topic] = Traffic(topic, True, message)
         traffic.count += 1
         if parent is None:
