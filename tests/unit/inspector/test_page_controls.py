@@ -91,6 +91,8 @@ def test_a_breakpoint_on_a_line_hits_and_shows_the_line() -> None:
         await page.wait_for("document.querySelector('.debug-state').innerText.includes('breakpoint')")
         await page.wait_for("document.querySelector('.code-line.held.current')")
         assert await page.texts(".popover summary") == ["Breakpoints (1)"]
+        await page.evaluate("location.reload()")
+        await page.wait_for("document.querySelector('.popover summary')?.innerText === 'Breakpoints (1)'")
         await page.click(".popover summary")
         await page.click(".breakpoints .act")
         await page.wait_for("!document.querySelector('.code-line.held')")

@@ -1,11 +1,27 @@
 import { button } from "./elements.js";
 
-/** The breakpoints that were set from this page. */
+/** The breakpoints of the run, also those that other pages or a program set. */
 export class Breakpoints {
-  constructor(context) {
+  constructor(context, debugging) {
     this.context = context;
-    this.all = new Map();  // by their text: `at`, as the command has it
-    this.version = 0;
+    this.debugging = debugging;
+    this.known = null;
+    this.byText = new Map();
+    this.changes = 0;
+  }
+
+  /** A number that is another one when breakpoints have changed. */
+  get version() { return this.all && this.changes; }
+
+  /** By their text: `at`, as the command has it. */
+  get all() {
+    const set = this.debugging.now.breakpoints ?? this.known;
+    if (set !== this.known) {
+      this.known = set;
+      this.byText = new Map(set.map((at) => [textOf(at), at]));
+      this.changes += 1;
+    }
+    return this.byText;
   }
 
   /** Whether breakpoints can be set in this run. */
@@ -16,8 +32,6 @@ export class Breakpoints {
   /** Set a breakpoint, or remove it. */
   async change(at, op) {
     await this.context.commands.send("breakpoint", { op, at });
-    if (op === "add") this.all.set(textOf(at), at); else this.all.delete(textOf(at));
-    this.version += 1;
     this.context.time.notify();
   }
 

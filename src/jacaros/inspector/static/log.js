@@ -7,6 +7,7 @@ const MARKS = 20000;
 /** What agents printed and what happened, in the order of time; and the marks of the timeline. */
 export class Log {
   constructor() {
+    this.debugState = "running";
     this.times = [];
     this.entries = [];  // t, who (an agent or ""), text, sort, robot
     this.marks = [];  // t, sort, text, and the selection that it leads to
@@ -18,7 +19,11 @@ export class Log {
     const several = this.robots.size > 1;
     if (event === "text") this.enter({ t, who: data.agent, text: data.text, sort: "" });
     // A run begins with a record that it is not paused.
-    if (event === "debug" && !this.entries.length && data.state !== "paused") return;
+    if (event === "debug") {
+      // A new speed or breakpoint is a record, too, but neither a pause nor the end of one.
+      if (data.state === this.debugState) return;
+      this.debugState = data.state;
+    }
     const words = inWords(event, data, several), sort = sortOf(event, data);
     if (words) this.enter({ t, who: "", text: words, sort: sort ?? "world", robot: data.robot });
     if (sort) this.marks.push({ t, sort, text: markText(event, data, several), leads: leads(data) });

@@ -49,7 +49,7 @@ export function startPage({ live, commands }) {
   const models = [world, links, log, minds, environment, messages, causes, debugging];
   const run = new Run(models), selection = new Selection(), time = new Time(run, live);
   const context = { run, selection, commands, time, open: (panel) => tabs.open(panel), actions: new Actions() };
-  context.breakpoints = new Breakpoints(context);
+  context.breakpoints = new Breakpoints(context, debugging);
   const at = (id) => document.getElementById(id);
 
   const tabs = new Tabs(at("tabs"), [

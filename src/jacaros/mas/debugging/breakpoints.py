@@ -27,6 +27,9 @@ class Breakpoint(Protocol):
     def text(self) -> str:
         """What it is, such as ``patrol.asl:14``; no two breakpoints of a debugger have the same text."""
 
+    def data(self) -> dict[str, Any]:
+        """Plain data that describes it, as `breakpoint_at` takes it."""
+
     def meets_event(self, agent: Circumstance, event: Event) -> bool:
         """Whether the run stops before *agent* selects a plan for *event*."""
 
@@ -45,6 +48,10 @@ class LineBreakpoint:
     def __init__(self, file: str, line: int) -> None:
         self.file, self.line = file, line
         self.text = f"{file}:{line}"
+
+    def data(self) -> dict[str, Any]:
+        """Plain data that describes it."""
+        return {"line": {"file": self.file, "line": self.line}}
 
     def meets_event(self, agent: Circumstance, event: Event) -> bool:
         """False: lines have steps."""
@@ -77,6 +84,10 @@ class PlanBreakpoint:
         self.label, self.agent = label.removeprefix("@"), agent
         self.text = f"@{self.label}" + (f" of {agent}" if agent is not None else "")
 
+    def data(self) -> dict[str, Any]:
+        """Plain data that describes it."""
+        return {"plan": {"plan": self.label, "agent": self.agent}}
+
     def meets_event(self, agent: Circumstance, event: Event) -> bool:
         """False: it is not known yet which plan is taken."""
         del agent, event
@@ -106,6 +117,7 @@ class EventBreakpoint:
 
     def __init__(self, pattern: str, agent: str | None = None) -> None:
         node = parse_trigger(pattern)
+        self.pattern = pattern
         self._operator, self._kind = node.operator, node.kind
         names = Names()
         self._pattern = lower_value(node.literal, names.__getitem__)
@@ -114,6 +126,10 @@ class EventBreakpoint:
             raise UsageError(f"the event {pattern} is a variable; name what happens, such as +!go(_)")
         self.agent = agent
         self.text = pattern + (f" of {agent}" if agent is not None else "")
+
+    def data(self) -> dict[str, Any]:
+        """Plain data that describes it."""
+        return {"event": self.pattern, "agent": self.agent}
 
     def meets_event(self, agent: Circumstance, event: Event) -> bool:
         """Whether the event unifies with the pattern; those without a plan are noted when they come about."""
@@ -156,9 +172,13 @@ class ConditionBreakpoint:
 
     def __init__(self, condition: str, agent: str) -> None:
         self._condition = Condition(condition)
-        self.agent = agent
+        self.condition, self.agent = condition, agent
         self.text = f"{condition} of {agent}"
         self._held: bool | None = None
+
+    def data(self) -> dict[str, Any]:
+        """Plain data that describes it."""
+        return {"condition": self.condition, "agent": self.agent}
 
     def becomes_true(self, agent: Circumstance) -> bool:
         """Whether the condition holds, and did not at the last test; at the first test, false."""

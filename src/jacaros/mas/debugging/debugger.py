@@ -49,6 +49,7 @@ class DebugState:
         agent: the agent that is held before an event or a step; empty when none is.
         file, line: of the step before which it is held; empty and 0 when it is not a step.
         intention: the number of its intention; 0 without one.
+        breakpoints: those that are set, as data that `Debugger.add_breakpoint` takes.
     """
 
     state: Literal["paused", "running"]
@@ -59,10 +60,11 @@ class DebugState:
     file: str = ""
     line: int = 0
     intention: int = 0
+    breakpoints: tuple[Mapping[str, Any], ...] = ()
 
     def data(self) -> dict[str, Any]:
         """Plain data for JSON."""
-        return {**asdict(self), "cannot": list(self.cannot)}
+        return {**asdict(self), "cannot": list(self.cannot), "breakpoints": list(self.breakpoints)}
 
 
 Listener = Callable[[DebugState], None]
@@ -237,6 +239,7 @@ class Debugger:
             host = self._system.directory.find(known.agent)
             if host is not None and isinstance(host.mind, Mind):
                 known.becomes_true(host.mind)
+        self._change(self._state)
         return known
 
     def _refuse_useless(self, made: LineBreakpoint) -> None:
@@ -256,7 +259,10 @@ class Debugger:
             UsageError: the data describes no breakpoint.
         """
         made = breakpoint_at(at) if isinstance(at, Mapping) else at
-        return self._breakpoints.pop(made.text, None) is not None
+        if self._breakpoints.pop(made.text, None) is None:
+            return False
+        self._change(self._state)
+        return True
 
     # ---- programs
 
@@ -345,7 +351,8 @@ class Debugger:
         self._change(replace(state, cannot=cannot))
 
     def _change(self, state: DebugState) -> None:
-        self._state = replace(state, speed=self.speed)
+        breakpoints = tuple(each.data() for each in self._breakpoints.values())
+        self._state = replace(state, speed=self.speed, breakpoints=breakpoints)
         with outside_run():
             for listener in self._listeners:
                 listener(self._state)

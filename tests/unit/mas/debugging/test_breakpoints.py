@@ -11,6 +11,7 @@ from jacaros import Mas
 from jacaros.asl.diagnostics import AslError
 from jacaros.errors import UsageError
 from jacaros.mas.debugging import Debugger, DebugState
+from jacaros.mas.debugging.breakpoints import breakpoint_at
 
 
 def stops(at: Mapping[str, Any], program: str = COUNTER, **options: Any) -> list[tuple[str, int, list[str]]]:
@@ -156,9 +157,11 @@ def test_a_removed_breakpoint_stops_nothing_and_the_agent_is_asked_no_more() -> 
         debugger.add_breakpoint(at)
         debugger.add_breakpoint(at)
         assert [each.text for each in debugger.breakpoints] == ["<bob>:5"]
+        assert debugger.state.data()["breakpoints"] == [at]
         await debugger.wait_until_paused()
         assert debugger.remove_breakpoint(at)
         assert not debugger.remove_breakpoint(at)
+        assert debugger.state.breakpoints == ()
         debugger.resume()
         await mas.until_idle()
         mind = mas.agent("bob").mind
@@ -212,7 +215,8 @@ def test_an_atomic_plan_is_held_too() -> None:
         await mas.until_idle()
 
     assert debugged(test, program) == ["a", "b", "c"]
-    assert [each.state for each in states] == ["paused", "running"]
+    # The first one says which breakpoints there are.
+    assert [each.state for each in states] == ["running", "paused", "running"]
 
 
 def test_records_show_the_step_before_which_an_agent_is_held() -> None:
@@ -258,3 +262,16 @@ def test_percepts_and_signals_that_no_plan_handles_stop_the_run(program: str) ->
             assert not debugger.paused
 
     debugged(test, program)
+
+
+@pytest.mark.parametrize(
+    "at",
+    [
+        {"line": {"file": "a.asl", "line": 3}},
+        {"plan": {"plan": "dock", "agent": "bob"}},
+        {"event": "+!go(_)", "agent": None},
+        {"condition": "battery(B) & B < 20", "agent": "bob"},
+    ],
+)
+def test_a_breakpoint_is_described_by_the_data_that_makes_it(at: dict[str, Any]) -> None:
+    assert breakpoint_at(at).data() == at
