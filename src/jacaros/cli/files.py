@@ -3,9 +3,15 @@
 import difflib
 from collections.abc import Iterable
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
 
 from jacaros.errors import UsageError
 from jacaros.text_files import is_file
+
+if TYPE_CHECKING:
+    from jacaros.inspector.recording import Recording
 
 _KINDS = (".asl", ".mas2j", ".jcm")
 
@@ -33,11 +39,13 @@ def existing(path: Path, kinds: tuple[str, ...] = _KINDS) -> Path:
     return path
 
 
-def existing_recording(path: Path) -> Path:
-    """*path*, which must be a file; recordings may have any name.
+def read_recording(path: Path) -> "Recording":
+    """Read a recording of any name; what is wrong with it, but can be left out, is printed as warnings.
 
     Raises:
         UsageError: it does not exist or is a folder; with the names of similar files beside it.
+        JacarosError: it is not a recording.
+        OSError: it cannot be read.
     """
     if path.is_dir():
         raise UsageError(f"error: `{path}` is a folder\n  = help: name a recording in it")
@@ -46,7 +54,12 @@ def existing_recording(path: Path) -> Path:
         near = difflib.get_close_matches(path.name, beside, n=1)
         cure = f"did you mean `{path.parent / near[0]}`?" if near else f"jacaros run FILE --record {path}"
         raise UsageError(f"error: recording not found: `{path}`\n  = help: {cure}")
-    return path
+    from jacaros.inspector.recording import Recording  # here: numpy and the simulator come with it
+
+    recording = Recording.read(path)
+    for warning in recording.warnings:
+        click.echo(f"warning: {warning}", err=True)
+    return recording
 
 
 _RECORDINGS = {".jsonl", ".gz"}

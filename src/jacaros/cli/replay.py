@@ -5,7 +5,7 @@ from pathlib import Path
 
 import click
 
-from jacaros.cli.files import existing, existing_recording
+from jacaros.cli.files import existing, read_recording
 from jacaros.errors import UsageError
 
 
@@ -32,13 +32,12 @@ def command(run: Path, against: Path, agent: str, as_json: bool) -> int:
     action takes as long, and ends, as the same action did in RUN. An action that RUN does not have waits. The exit code is
     1 if a decision differs.
     """  # fmt: skip
-    from jacaros.inspector.recording import Recording  # here: numpy and the simulator come with it
     from jacaros.mas.replaying import replay_against
 
     program = existing(against, (".asl",))
     if program.is_dir():
         raise UsageError(f"error: `{against}` is a folder\n  = help: name a program in it")
-    comparison = replay_against(Recording.read(existing_recording(run)).events, program, agent)
+    comparison = replay_against(read_recording(run).events, program, agent)
     text = json.dumps(comparison.data(), ensure_ascii=False) if as_json else comparison.text()
     click.echo(text)
     return 1 if comparison.decisions else 0

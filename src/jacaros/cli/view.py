@@ -5,7 +5,7 @@ from pathlib import Path
 
 import click
 
-from jacaros.cli.files import existing_recording
+from jacaros.cli.files import read_recording
 from jacaros.cli.outputs import check_output, check_view
 from jacaros.cli.view_options import place_options
 
@@ -26,14 +26,11 @@ def command(
 
     The address of the page is printed to the standard error output.
     """  # fmt: skip
-    path = existing_recording(run)
     if output is not None:
         check_output(output, "replay page")
     else:
         check_view(view_address, view_token)
-    from jacaros.inspector.recording import Recording  # here: numpy and the simulator come with it
-
-    recording = Recording.read(path)
+    recording = read_recording(run)
     if output is not None:
         from jacaros.inspector.page import write_replay
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import click
 
-from jacaros.cli.files import existing_recording
+from jacaros.cli.files import read_recording
 from jacaros.mas.history.why import explain
 
 # An event such as `-hidden(_)` must not be read as options, not even as -h.
@@ -47,8 +47,6 @@ def command(
     Words around these are ignored: 'why did the robot stop?' asks `stopped`. Variables fit anything. Put the question in
     single quotes, since shells treat `!` and brackets specially.
     """  # fmt: skip
-    from jacaros.inspector.recording import Recording  # here: numpy and the simulator come with it
-
-    recording = Recording.read(existing_recording(run))
+    recording = read_recording(run)
     answer = explain(recording.events, " ".join(question), at, agent, robot)
     click.echo(json.dumps(answer.data(), ensure_ascii=False) if as_json else answer.text())

@@ -108,8 +108,7 @@ class Recording:
         first = _header_of(lines[0]) if lines else {}
         if first.get("version", 1) > VERSION:
             recording.warnings.append(
-                f"{path} is a recording of version {first['version']}, and this is a program for version {VERSION}: "
-                "what it does not know is left out"
+                f"{path} has version {first['version']}, which is newer than {VERSION}: unknown records are skipped"
             )
         part = first.get("part", 1)
         if part > 1 and older_part(path).is_file():
