@@ -22,7 +22,7 @@ def test_the_defaults_go_together() -> None:
         (RunOptions(fast=True, ros="ros1"), "use --clock real"),
         (RunOptions(fast=True, ros="ros2"), "use --clock real"),
         (RunOptions(ros="ros3"), "there are memory, ros1, ros2"),
-        (RunOptions(seconds=-1), "not negative"),
+        (RunOptions(seconds=-1), "non-negative"),
         (RunOptions(ros_clock=True), "--clock fast"),
         (RunOptions(domain_id=3), "--domain-id goes with --ros ros2, not with --ros memory"),
         (RunOptions(ros="ros1", domain_id=3), "not with --ros ros1"),
@@ -78,7 +78,8 @@ def test_tests_run_on_the_virtual_clock_with_a_seed_unless_told_otherwise() -> N
 
 
 def test_the_command_has_no_option_of_a_run_under_another_name() -> None:
-    outputs = {"record", "record_limit", "replay", "ground_truth", "view", "quiet"}
+    outputs = {"record", "record_limit", "replay", "ground_truth", "quiet", "explained"}
+    outputs |= {"view", "view_port", "view_address", "view_token"}
     combined = {"file", "clock", "param", "params_file"}
     given = {each.name for each in command.params if isinstance(each, click.Parameter)}
     assert given - outputs - combined <= {field.name for field in fields(RunOptions)}
