@@ -1,5 +1,6 @@
 """What a run is written to, apart from what the agents print."""
 
+import contextlib
 import os
 from dataclasses import dataclass
 from pathlib import Path
@@ -82,8 +83,21 @@ def check_view(address: str, token: str | None) -> None:
     """Refuse a view that others can reach without a token that the user has chosen.
 
     Raises:
-        UsageError: there is none, or it is too short.
+        UsageError: there is none, or it is too short; or the library that serves pages is not installed.
     """
+    from importlib.util import find_spec  # here: few runs have a page
+
+    with contextlib.suppress(ModuleNotFoundError):
+        if find_spec("websockets.asyncio") is not None:
+            _check_access(address, token)
+            return
+    raise UsageError(
+        "error: websockets, which serves pages, is not installed, or is older than 15\n"
+        "  = help: pip install 'websockets>=15', or --view=terminal, or --record RUN.jsonl"
+    )
+
+
+def _check_access(address: str, token: str | None) -> None:
     from jacaros.inspector.live.access import SHORTEST_TOKEN, Access  # here: few runs have a page
 
     if Access(address, token).exposed and token is None:

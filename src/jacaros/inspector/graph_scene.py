@@ -29,6 +29,8 @@ _ODOMETRY, _BATTERY, _GRID = (
     "sensor_msgs/msg/BatteryState",
     "nav_msgs/msg/OccupancyGrid",
 )
+_RECORDED = {"scan": "sensor_msgs/msg/LaserScan", "plan": "nav_msgs/msg/Path"}
+"""Topics of a robot whose messages the history of the run records, as soon as our node receives them."""
 _LATCHED = QoS(durability="transient_local", depth=1)
 _NEWEST = QoS(reliability="best_effort", depth=1)
 """Suits publishers that are reliable and those that are not."""
@@ -92,7 +94,7 @@ class SeenRobot:
 
 
 class GraphScene:
-    """Looks at a real graph: ``map``, and for every ``odom`` a robot, each below any namespace.
+    """Looks at a real graph: ``map``, and for every ``odom`` a robot, its ``scan`` and its ``plan``, in any namespace.
 
     Args:
         backend: our node; it is started already.
@@ -166,6 +168,9 @@ class GraphScene:
                 battery = f"{namespace}/battery_state"
                 if battery in topics and _BATTERY in topics[battery].types:
                     self._listen(battery, _BATTERY, robot.hear_battery, _NEWEST)
+                for word, type_name in _RECORDED.items():
+                    if f"{namespace}/{word}" in found and type_name in topics[f"{namespace}/{word}"].types:
+                        self._listen(f"{namespace}/{word}", type_name, lambda _: None, _NEWEST)
 
     def _listen(self, topic: str, type_name: str, hear: Any, qos: QoS) -> None:
         if topic not in self._subscriptions:

@@ -245,6 +245,9 @@ class Backend(Protocol):
             MessageMismatch: a field is unknown, or a value has the wrong type or is out of range.
         """
 
+    def receivers(self, topic: str) -> int:
+        """Return how many subscriptions of this node receive the messages of a topic, given by its absolute name."""
+
     def publisher(self, topic: str, type_name: str, qos: QoS = DEFAULT_QOS) -> Publisher:
         """Make a publisher; raises `NameInvalid` or `UnknownInterface`."""
 

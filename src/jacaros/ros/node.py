@@ -240,6 +240,10 @@ class Node:
         """Note that a member has left."""
         self.members.pop(member, None)
 
+    def receivers(self, topic: str) -> int:
+        """Return how many subscriptions of this node receive the messages of a topic, given by its absolute name."""
+        return sum(getattr(member, "received_topic", None) == topic for member in self.members)
+
     def close_actions(self) -> None:
         """Tell servers and clients of actions that we go."""
         for action in list(self.actions):

@@ -103,6 +103,11 @@ class TopicSubscription(_TopicEnd[N]):
         self._waiting: deque[Any] = deque(maxlen=wanted.qos.depth)
         self._loop = node.loop
 
+    @property
+    def received_topic(self) -> str:
+        """Absolute name of the topic whose messages come here, see `Node.receivers`."""
+        return self.topic
+
     def put(self, message: Any) -> None:
         """Queue *message* for a turn of the loop, on the loop; the oldest is dropped when the queue is full."""
         if not self._loop.is_closed():

@@ -1,5 +1,6 @@
 """The options about the view, and ``jacaros view``: what is refused before anything runs."""
 
+import sys
 from pathlib import Path
 
 import pytest
@@ -53,6 +54,15 @@ def test_other_machines_need_a_token(program: Path, monkeypatch: pytest.MonkeyPa
     assert "needs a token" in told
     assert "JACAROS_VIEW_TOKEN" in told
     assert "invalid view token" in refused(run_command, str(program), "--view", "--view-token", "short")
+
+
+def test_a_page_without_its_library_is_refused_before_the_run(
+    program: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "websockets.asyncio", None)
+    told = refused(run_command, str(program), "--view")
+    assert "pip install 'websockets>=15'" in told
+    assert "[hello] hello" in run(str(program), "--view=terminal").stdout
 
 
 def test_what_other_machines_can_do_is_printed(program: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -25,13 +25,16 @@ export class World {
     this.people = new Map();
     this.obstacles = new Map();
     this.dirt = new Map();
-    this.bounds = null;  // of the drawings, and of where robots were
+    this.visited = null;  // bounds of where robots were
   }
 
   add(t, event, data) { TAKE[event]?.(this, t, data); }
 
   /** Whether there is anything to draw. */
   get empty() { return !this.bounds; }
+
+  /** Bounds of the newest drawing, and of where robots were. */
+  get bounds() { return joined(this.drawings.values.at(-1)?.bounds, this.visited); }
 
   /** The drawing at time `t`; before the first one, that one: on a real graph it comes late. */
   drawing(t) { return this.drawings.at(t) ?? this.drawings.values[0] ?? EMPTY; }
@@ -98,18 +101,17 @@ export class World {
   }
   path(robot, t) { return this.paths.get(robot)?.at(t) ?? []; }
   belief(robot, t) { return this.believed.get(robot)?.at(t); }
+}
 
-  widen(left, bottom, right, top) {
-    const b = this.bounds ?? [left, bottom, right, top];
-    this.bounds = [Math.min(b[0], left), Math.min(b[1], bottom), Math.max(b[2], right), Math.max(b[3], top)];
-  }
+function joined(a, b) {
+  if (!a || !b) return a ?? b ?? null;
+  return [Math.min(a[0], b[0]), Math.min(a[1], b[1]), Math.max(a[2], b[2]), Math.max(a[3], b[3])];
 }
 
 const TAKE = {
   world(world, t, drawing) {
     if (!drawing.bounds) return;
     world.drawings.add(t, { ...EMPTY, ...drawing });
-    world.widen(...drawing.bounds);
     world.version += 1;
   },
   frame(world, t, rows) {
@@ -148,7 +150,7 @@ function addRow(world, index, [x, y, yaw, battery, charging, touching]) {
   }
   const robot = world.columns[index];
   robot.x[last] = x; robot.y[last] = y; robot.yaw[last] = yaw; robot.battery[last] = battery; robot.flags[last] = flags;
-  world.widen(x, y, x, y);
+  world.visited = joined([x, y, x, y], world.visited);
 }
 
 /** Forget the oldest frames. */

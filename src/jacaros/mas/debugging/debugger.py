@@ -102,6 +102,7 @@ class Debugger:
         self._noted: dict[str, dict[str, None]] = {}
         """By agent, the breakpoints met by belief changes and signals that no plan handles, since its last step."""
         self._watches = False
+        self._over = False
 
     # ---- what is shown
 
@@ -147,9 +148,9 @@ class Debugger:
     def pause(self, why: str = "pause") -> None:
         """Pause agents, timers and the embedded world; on a real graph, command zero velocity first.
 
-        An agent in the middle of its turn is held before its next step.  No effect on a paused run.
+        An agent in the middle of its turn is held before its next step.  No effect on a run that is paused or has ended.
         """
-        if not self.paused:
+        if not self.paused and not self._over:
             self._hook()
             self._stop(DebugState("paused", why))
 
@@ -185,7 +186,8 @@ class Debugger:
         self.resume()
 
     def run_ended(self) -> None:
-        """Let the run end: what a pause holds would never end."""
+        """Let the run end: what a pause holds would never end.  From now on, nothing pauses it."""
+        self._over = True
         self._stepping = None
         self._breakpoints.clear()
         self.resume()

@@ -22,7 +22,7 @@ Tell = Callable[[str, Mapping[str, Any]], None]
 
 
 Link = tuple[Cause, float, Any]
-"""A cause, when it arose (in seconds that the clock has run), and what it is about."""
+"""A cause, when it arose (by the clock, which continues during a pause on a real graph), and what it is about."""
 
 
 class Traffic:
@@ -73,7 +73,7 @@ class CauseRecords:
         find_listener: Callable[[Any], Callable[[str, Any], None] | None] = lambda message: None,
     ) -> None:
         self._clock, self._tell, self._find_listener = clock, tell, find_listener
-        self._offset = clock.now() - clock.elapsed - beginning
+        self._beginning = beginning
         self.received: dict[str, Traffic] = {}
         self.sent: dict[str, Traffic] = {}
         self.with_effect: Callable[[float, str, Any], None] | None = None
@@ -101,7 +101,7 @@ class CauseRecords:
             return made
         if parent is not None and parent.kind == "sample":
             self._keep_sample(parent)
-        self._young[number] = made, self._clock.elapsed, about
+        self._young[number] = made, self._clock.now(), about
         if len(self._young) > _GENERATION:
             self._old, self._young = self._young, {}
         if kind in ("act", "operation"):
@@ -120,7 +120,7 @@ class CauseRecords:
         traffic.count += 1
         if traffic.heard is not None:
             traffic.heard(topic, message)
-        self._samples[number % _SAMPLES] = made, self._clock.elapsed, message if traffic.kept else None
+        self._samples[number % _SAMPLES] = made, self._clock.now(), message if traffic.kept else None
         return made
 
     def _keep_sample(self, cause: Cause) -> None:
@@ -139,7 +139,7 @@ class CauseRecords:
         traffic.count += 1
         if parent is None:
             return
-        now = self._clock.elapsed
+        now = self._clock.now()
         if traffic.parent == parent.id and now - traffic.at < COMMAND_PERIOD:
             traffic.held = parent, now, message
             return
@@ -147,13 +147,13 @@ class CauseRecords:
             self._record_command(traffic, *traffic.held)  # the last one of the operation before
         self._record_command(traffic, parent, now, message)
 
-    def _record_command(self, traffic: Traffic, parent: Cause, elapsed: float, message: Any) -> None:
-        traffic.parent, traffic.at, traffic.held = parent.id, self._clock.elapsed, None
+    def _record_command(self, traffic: Traffic, parent: Cause, moment: float, message: Any) -> None:
+        traffic.parent, traffic.at, traffic.held = parent.id, self._clock.now(), None
         self._keep_sample(parent)
         self.need(parent.id)
         self._last += 1
         made = Cause(self._last, parent.id, "command", traffic.topic)
-        self._record((made, elapsed, message if traffic.kept else None))
+        self._record((made, moment, message if traffic.kept else None))
 
     def need(self, number: int) -> None:
         """Record a cause and what led to it, as far as that is not recorded yet and still remembered."""
@@ -168,8 +168,8 @@ class CauseRecords:
             self._record(link)
 
     def _record(self, link: Link) -> None:
-        (number, parent, kind, what), elapsed, about = link
-        at = round(elapsed + self._offset, 3)
+        (number, parent, kind, what), moment, about = link
+        at = round(moment - self._beginning, 3)
         data = {"id": number, "parent": parent, "kind": kind, "what": what, "at": at}
         if about is not None:
             data.update(_details(kind, what, about))
@@ -184,7 +184,7 @@ class CauseRecords:
 
     def flush(self, all_of_them: bool = False) -> None:
         """Record the last command of each topic that was held back long enough; to be called a few times a second."""
-        now = self._clock.elapsed
+        now = self._clock.now()
         for traffic in self.sent.values():
             if traffic.held is not None and (all_of_them or now - traffic.at >= COMMAND_PERIOD):
                 self._record_command(traffic, *traffic.held)

@@ -39,7 +39,7 @@ class GraphRecords:
             contents = await backend.contents()
         except RosError:  # the graph may be gone for a while
             return
-        counts = self._counts()
+        counts = self._counts(backend)
         topics = self._topics(contents, counts, seconds, backend.node_name)
         self.pause = min(4.0 * PERIOD, 2.0 * self.pause)
         if self._recorded is None or _differ(self._recorded, topics):
@@ -48,16 +48,20 @@ class GraphRecords:
             self._recorded = topics
             self._tell("graph", {"node": backend.node_name, "topics": topics})
 
-    def _counts(self) -> dict[tuple[str, str], int]:
+    def _counts(self, backend: Backend) -> dict[tuple[str, str], float]:
         """The messages since the last time, by topic and direction."""
-        counts = {}
-        for traffic in (*self._messages.received.values(), *self._messages.sent.values()):
-            counts[traffic.topic, "out" if traffic.outgoing else "in"] = traffic.count
+        counts: dict[tuple[str, str], float] = {}
+        for traffic in self._messages.sent.values():
+            counts[traffic.topic, "out"] = traffic.count
+            traffic.count = 0
+        for traffic in self._messages.received.values():
+            # Each of our subscriptions, such as an artifact's and the page's, has counted the same messages.
+            counts[traffic.topic, "in"] = traffic.count / max(1, backend.receivers(traffic.topic))
             traffic.count = 0
         return counts
 
     def _topics(
-        self, contents: GraphContents, counts: Mapping[tuple[str, str], int], seconds: float, node: str
+        self, contents: GraphContents, counts: Mapping[tuple[str, str], float], seconds: float, node: str
     ) -> list[dict[str, Any]]:
         rows = []
         for name, info in sorted(contents.topics.items())[:_MOST_TOPICS]:

@@ -170,9 +170,11 @@ def _take_source(past: Past, _: float, data: Data) -> None:
 
 
 def _take_artifact(past: Past, _: float, data: Data) -> None:
-    past.artifacts[data["artifact"]] = data
-    if data.get("robot"):
-        past.robots.add(data["robot"])
+    # The record of an artifact that is disposed names no robot.
+    robot = data.get("robot") or past.artifacts.get(data["artifact"], {}).get("robot")
+    past.artifacts[data["artifact"]] = {**data, "robot": robot}
+    if robot:
+        past.robots.add(robot)
 
 
 def _take_debug(past: Past, _: float, data: Data) -> None:

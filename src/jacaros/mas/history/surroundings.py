@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 PERIOD = 1.0
 """Seconds between two looks at what tells nobody of its changes."""
+ONLY_ROBOT = {"": "robot"}
+"""The robot of a real graph whose topics have no namespace, and its name on the page."""
 
 Tell = Callable[[str, Mapping[str, Any]], None]
 
@@ -99,12 +101,13 @@ class Surroundings:
         if level != "debug":
             self._tell("log", {"level": level, "text": text})
 
-    # ---- robots of the embedded world
+    # ---- robots
 
     def _robots(self) -> Mapping[str, str]:
         world = self._system.ros.world
         if world is None:
-            return {}
+            joined = self._system.ros.joined
+            return {} if joined is None or joined.name == "memory" else ONLY_ROBOT
         names = {robot.description.namespace.strip("/"): name for name, robot in world.robots.items()}
         return {f"/{namespace}" if namespace else "": name for namespace, name in names.items()}
 

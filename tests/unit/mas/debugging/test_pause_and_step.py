@@ -249,3 +249,12 @@ def test_a_run_without_a_debugger_is_asked_nothing() -> None:
         assert not debugger.paused
 
     assert debugged(test)[-1] == "over"
+
+
+def test_a_run_that_has_ended_is_not_paused() -> None:
+    async def test(mas: Mas, debugger: Debugger, lines: list[str]) -> None:
+        mas.stop()
+        debugger.pause()
+        assert not debugger.paused
+
+    debugged(test)

@@ -223,6 +223,16 @@ def test_the_graph_around_our_node_is_recorded_with_rates(tmp_path: Path) -> Non
     assert len(graphs) <= 2, "nothing has changed"
 
 
+def test_a_message_for_two_artifacts_counts_once_in_the_rate(tmp_path: Path) -> None:
+    def rate(program: str) -> float:
+        topics = of(happened(tmp_path, program, 8), "graph")[-1]["topics"]
+        return float(next(each["rate"] for each in topics if each["name"] == "/odom"))
+
+    one = '!s. +!s <- makeArtifact(odom, "ArtOdometry", [], O); .wait(10000).'
+    two = '!s. +!s <- makeArtifact(a, "ArtOdometry", [], A); makeArtifact(b, "ArtOdometry", [], B); .wait(10000).'
+    assert abs(rate(one) - rate(two)) < 1.0
+
+
 def test_lines_of_the_log_are_recorded(tmp_path: Path) -> None:
     logged = of(happened(tmp_path, "!s. +!s <- !lost.", 1, on_log=lambda text, level: None), "log")
     assert any("lost" in each["text"] for each in logged)
