@@ -239,11 +239,11 @@ def constant(message: Any, name: str) -> Any:
 def type_of(message: Any) -> str:
     """Return the type of a message of any backend in full form, such as ``nav_msgs/msg/Odometry``."""
     kind = type(message)
-    name: str | None = getattr(kind, "_type", None)
-    if isinstance(name, str):  # genpy: nav_msgs/Odometry
-        package, _, short = name.partition("/")
+    genpy_name = getattr(kind, "_type", None)
+    if isinstance(genpy_name, str):  # genpy: nav_msgs/Odometry
+        package, _, short = genpy_name.partition("/")
         return f"{package}/msg/{short}"
-    name = getattr(kind, "__msgtype__", None) or kind.__name__.replace("__", "/")
+    name: str = getattr(kind, "__msgtype__", None) or kind.__name__.replace("__", "/")
     if "/" in name:  # rosbags
         return name
     return f"{kind.__module__.partition('.')[0]}/msg/{name}"  # rclpy: nav_msgs.msg._odometry.Odometry
