@@ -100,6 +100,7 @@ def test_an_early_message_that_cannot_be_serialised_does_not_silence_its_topic(
         unsent={},
         loop=loop,
         log=log.append,
+        tracer=None,
     )
     publisher = ros1_topics.Ros1Publisher(node, "/before", "std_msgs/msg/Int32", QoS())
     for number in (1, -1, 2):
