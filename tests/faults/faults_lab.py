@@ -81,16 +81,16 @@ class SimulatorClock:
 class RobotElsewhere(RosGraph):
     """The graph of a run whose robot is somebody else's affair."""
 
-    node: Backend
+    agents_node: Backend
 
     async def start(self) -> None:
         """All is made by the laboratory."""
 
     def backend(self) -> Backend:
-        return self.node
+        return self.agents_node
 
     async def close(self) -> None:
-        await self.node.close()
+        await self.agents_node.close()
 
 
 @dataclass
@@ -284,13 +284,13 @@ def in_lab(
     async def main() -> None:
         mas = System(deployment, time, lab, RunOptions(seed=0))
         mas.ros = RobotElsewhere(mas.options, time, "agents", None, lab.log)
-        mas.ros.node = open_backend(
+        mas.ros.agents_node = open_backend(
             "memory", time, "agents", log=lambda text: lab.log(f"[ros] {text}"), graph=lab.graph
         )
-        await mas.ros.node.start()
+        await mas.ros.agents_node.start()
         lab.start_robot()
         if isinstance(time, RosClock):
-            time.listen(mas.ros.node)
+            time.listen(mas.ros.agents_node)
             ticks = lab.node("simulator").publisher("/clock", CLOCK_TYPE)
             every(0.02, lambda: ticks.publish(ticks.message(clock=robot_clock.now())))
         every(GLANCE, glance)
