@@ -6,6 +6,7 @@ from pathlib import Path
 import click
 
 from jacaros.cli.files import read_recording
+from jacaros.errors import UsageError
 from jacaros.mas.history.why import explain
 
 # An event such as `-hidden(_)` must not be read as options, not even as -h.
@@ -48,5 +49,8 @@ def command(
     single quotes, since shells treat `!` and brackets specially.
     """  # fmt: skip
     recording = read_recording(run)
+    if robot and robot not in recording.robots:
+        known = ", ".join(recording.robots) or "none"
+        raise UsageError(f"error: unknown robot: `{robot}`\n  = help: robots of the recording: {known}")
     answer = explain(recording.events, " ".join(question), at, agent, robot)
     click.echo(json.dumps(answer.data(), ensure_ascii=False) if as_json else answer.text())

@@ -119,19 +119,22 @@ class Recording:
         return recording
 
     def _take_all(self, lines: list[str], path: Path) -> None:
-        described = False
+        described = damaged = False
         for number, line in enumerate(lines, 1):
             try:
-                record = json.loads(line)
+                record = _mapping(json.loads(line))
                 self._take(record)
                 described = described or record["kind"] == "world"
             except (ValueError, KeyError, TypeError, RecursionError, OverflowError) as error:
                 cut_off = number == len(lines) or line.startswith(_BEGINNING)
                 if (cut_off and isinstance(error, json.JSONDecodeError)) or self.warnings:
+                    damaged = True
                     continue
-                raise _not_a_recording(f"{path}:{number}", f"{type(error).__name__}: {error}") from None
+                raise _not_a_recording(f"{path}:{number}", _reason(error)) from None
         if not described:
             raise _not_a_recording(str(path), "no line of it describes a world")
+        if damaged and not self.warnings:
+            self.warnings.append(f"{path} is cut off or damaged: what can be read of it is shown")
 
     def _take(self, record: dict[str, Any]) -> None:
         kind = record["kind"]
@@ -162,6 +165,15 @@ class Recording:
                 row.append(_row_of(path[places[index]]))
             recording.frames.append(Frame(t, tuple(row)))
         return recording
+
+
+def _reason(error: Exception) -> str:
+    """Return what is wrong with a line, in words."""
+    if isinstance(error, KeyError):
+        return f"the key {error} is missing"
+    if isinstance(error, json.JSONDecodeError):
+        return f"invalid JSON: {error.msg}"
+    return str(error)
 
 
 def _number(value: Any) -> float:

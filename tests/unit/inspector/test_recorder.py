@@ -2,6 +2,7 @@
 
 import gzip
 import json
+import re
 import threading
 from pathlib import Path
 from random import Random
@@ -299,6 +300,27 @@ def test_of_a_newer_version_what_is_known_is_read_with_a_warning(tmp_path: Path)
     assert "version 9" in warning
 
 
+def test_a_recording_that_is_cut_off_is_read_with_a_warning(tmp_path: Path) -> None:
+    path = tmp_path / "run.jsonl"
+    record(path)
+    assert Recording.read(path).warnings == []
+    path.write_bytes(path.read_bytes()[:-10])
+    recording = Recording.read(path)
+    assert len(recording.frames) == 5
+    assert recording.warnings == [f"{path} is cut off or damaged: what can be read of it is shown"]
+
+
+@pytest.mark.parametrize(
+    ("line", "reason"),
+    [("[1, 2]", "names with values are expected, not [1, 2]"), ("{}", "the key 'kind' is missing")],
+)
+def test_a_line_that_is_not_a_record_is_named_in_words(tmp_path: Path, line: str, reason: str) -> None:
+    path = tmp_path / "run.jsonl"
+    path.write_text(f"{line}\n", encoding="utf-8")
+    with pytest.raises(JacarosError, match=re.escape(f"not a recording: {reason}")):
+        Recording.read(path)
+
+
 def test_a_recording_of_version_1_is_read_without_a_warning(tmp_path: Path) -> None:
     path = tmp_path / "run.jsonl"
     path.write_text('{"kind": "world", "version": 1, "world": {"name": "nowhere"}}\n', encoding="utf-8")
@@ -311,7 +333,7 @@ def test_what_is_wrong_with_a_file_is_reported_with_place_and_help(tmp_path: Pat
     with pytest.raises(JacarosError) as refused:
         Recording.read(path)
     assert str(refused.value) == (
-        f"error: not a recording: KeyError: 'name'\n  --> {path}:1\n"
+        f"error: not a recording: the key 'name' is missing\n  --> {path}:1\n"
         "  = help: `jacaros run FILE --record RUN.jsonl` makes one"
     )
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 
+from jacaros.errors import UsageError
 from jacaros.mas.history.about_beliefs import explain_belief
 from jacaros.mas.history.about_events import explain_event, known_names
 from jacaros.mas.history.about_motion import explain_command, explain_operation, explain_stop
@@ -27,11 +28,14 @@ def explain(
         robot: whose commands count; all robots if empty.
 
     Raises:
-        UsageError: the question is not understood, or names a plan that does not exist.
+        UsageError: the question is not understood, or names a plan or an agent that does not exist.
     """
     past = Past.of(records, at)
     asked = read_question(question, known_names(past))
     words = question.strip(" ?").split()
+    if agent and agent not in past.agents:
+        known = ", ".join(past.agents) or "none"
+        raise UsageError(f"error: unknown agent: `{agent}`\n  = help: agents until {past.end:.3f} s: {known}")
     agent = agent or next((word for word in words if word in past.agents), "")
     robot = robot or next((word for word in words if word in past.robots), "")
     if asked.kind == "name":

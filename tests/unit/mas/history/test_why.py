@@ -46,6 +46,16 @@ def test_robots_are_told_apart() -> None:
     assert ask("stopped", robot="robot2").t is None
 
 
+def test_an_artifact_that_was_disposed_drove_its_robot() -> None:
+    gone = {"artifact": "/main/wheels", "type": "Wheels", "state": "disposed", "robot": None}
+    assert explain([*RECORDS, (20.0, "artifact", gone)], "stopped", robot="robot1").t == 9.1
+
+
+def test_an_unknown_agent_lists_the_agents() -> None:
+    with pytest.raises(UsageError, match=r"unknown agent: `guart`\n  = help: agents until .* s: guard"):
+        ask("waiting", agent="guart")
+
+
 def test_a_command_by_its_topic() -> None:
     assert ask("command /cmd_vel").t == 9.2
     assert (
