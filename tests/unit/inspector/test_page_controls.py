@@ -105,6 +105,20 @@ def test_a_breakpoint_on_a_line_hits_and_shows_the_line() -> None:
 
 
 @needs_chromium
+def test_a_breakpoint_without_a_line_is_refused_at_the_field() -> None:
+    async def test(_: Mas, page: Page) -> None:
+        await page.click(".popover summary")
+        await page.click(".window .entry")
+        await page.type("patrol")
+        await page.press("Enter")
+        await page.wait_for(
+            "document.querySelector('.bubble')?.innerText.includes('expected a file and a line')"
+        )
+
+    browsing(test)
+
+
+@needs_chromium
 def test_a_breakpoint_on_a_condition_is_set_and_a_wrong_one_refused() -> None:
     async def test(mas: Mas, page: Page) -> None:
         await page.click(".popover summary")

@@ -37,8 +37,8 @@ export class BreakpointsForm {
   }
 
   async add() {
-    const at = KINDS[this.kind.value].at(this.field.value.trim(), this.agent.value);
-    const done = await this.context.actions.run(this.field, () => this.context.breakpoints.change(at, "add"));
+    const { actions, breakpoints } = this.context, place = () => KINDS[this.kind.value].at(this.field.value.trim(), this.agent.value);
+    const done = await actions.run(this.field, async () => breakpoints.change(place(), "add"));
     if (done !== undefined) this.field.value = "";
   }
 

@@ -66,7 +66,7 @@ export class ProgramView {
   showFiles(file) {
     if (this.listed !== this.minds.sources.size) {
       this.listed = this.minds.sources.size;
-      this.files.replaceChildren(...[...this.minds.sources.keys()].map((each) => new Option(each, each)));
+      this.files.replaceChildren(...[...this.minds.sources.keys()].map((each) => new Option(fileTitle(each, this.minds.sources), each)));
     }
     this.files.value = file;
     this.files.title = file;
@@ -146,6 +146,13 @@ export class ProgramView {
     const box = line.getBoundingClientRect(), outer = this.root.getBoundingClientRect();
     this.root.scrollTop += box.top - outer.top - (outer.height - box.height) / 2;
   }
+}
+
+/** The name of a file without its folder, which is shown only where two files have the same name. */
+function fileTitle(file, all) {
+  if (file.startsWith("$")) return file;
+  const name = shortName(file);
+  return [...all.keys()].some((each) => each !== file && shortName(each) === name) ? file : name;
 }
 
 /** By line: the agents whose current step it is, and those that will come back to it; whether it ran, and its plan. */
