@@ -26,6 +26,11 @@ def test_a_recording_has_the_map_and_the_robot(
         return seen.world.get("bounds") == [-1, -1, 4, 2] and len(places) > 5 and rows[-1][3] > 0
 
     agents.until(has_seen_it_drive, "the robot's way is recorded")
+    # The page looks for topics every three seconds; a robot whose scan comes late is seen without it until then.
+    agents.until(
+        lambda: any(event == "laser" for _, event, _ in Recording.read(record).events),
+        "the laser is recorded",
+    )
     agents.stop()
     truth = world.close()
     recording = Recording.read(record)
