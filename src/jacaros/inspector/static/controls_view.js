@@ -28,6 +28,8 @@ export class ControlsView {
     root.closest("header")?.after(this.state);
   }
 
+  get showsAlways() { return true; }
+
   get isPaused() { return this.debugging.now.state === "paused"; }
 
   stepArgs() {

@@ -126,7 +126,8 @@ class Page {
     document.body.classList.toggle("no-panels", bare && !world.empty);
     for (const [root, view] of this.beside) {
       root.hidden = view.empty === true;
-      if (!root.hidden) this.attempt(() => view.show(t));
+      // Controls also say, beside them, that the run is paused: they have to take this back when the run has ended.
+      if (!root.hidden || view.showsAlways) this.attempt(() => view.show(t));
     }
     if (!world.empty) this.attempt(() => map.show(t));  // last: the others decide how much room is left for it
     this.summarise(t);
