@@ -304,7 +304,7 @@ def test_a_file_that_is_not_there(project: Project) -> None:
     project.write("robot.asl", "!start. +!start <- .print(done).")
     assert project.run("run", "robott.asl") == told(
         2,
-        "jacaros: there is no file robott.asl; did you mean robot.asl?\n",
+        "jacaros: file not found: robott.asl; did you mean robot.asl?\n",
     )
 
 

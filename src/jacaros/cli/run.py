@@ -49,17 +49,18 @@ SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
     type=click.Choice(["real", "fast", "ros"]),
     envvar="JACAROS_CLOCK",
     show_envvar=True,
-    help="In real time, unless another is said; as fast as the machine can (not with a real ROS graph); or as /clock of a "
-    "real ROS graph says.",
+    help="Clock to run on: real (default), fast (virtual time; with --ros memory only) or ros (follow /clock).",
 )
-@click.option("--seed", type=int, help="Makes random numbers repeatable; with --clock fast the whole run.")
-@ros_option("The ROS graph: inside the process, or a real one.")
+@click.option(
+    "--seed", type=int, help="Seed for random numbers. With --clock fast, the whole run is reproducible."
+)
+@ros_option("ROS graph to use (default: memory, in-process).")
 @click.option(
     "--world",
     metavar="FILE",
     envvar="JACAROS_WORLD",
     show_envvar=True,
-    help="World file, or the name of a world that comes with jacaros; `none` for a graph without a robot.",
+    help="World file, or the name of a world that comes with jacaros; `none`: a graph without a robot.",
 )
 @faults_option
 @click.option(
@@ -67,15 +68,15 @@ SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
     "mappings",
     metavar="FILE",
     multiple=True,
-    help="Mapping file of a robot; a lone program focuses its artifacts. May be given more often.",
+    help="Mapping file of a robot; a lone program focuses its artifacts. Repeatable.",
 )
-@click.option("--until-idle", is_flag=True, help="End when no agent has anything to do or to wait for.")
+@click.option("--until-idle", is_flag=True, help="Exit once all agents are idle.")
 @click.option(
     "--fail-on-lost-goal",
     is_flag=True,
     help="Exit with code 1 instead of 0 if a goal failed and no plan took over, or an exception ended an agent in Python.",
 )
-@click.option("--for", "seconds", type=float, metavar="S", help="End after S seconds of the run's clock.")
+@click.option("--for", "seconds", type=float, metavar="S", help="Exit after S seconds of the run's clock.")
 @click.option(
     "--guard",
     is_flag=True,
@@ -88,12 +89,12 @@ SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
 @click.option(
     "--rosout/--no-rosout",
     default=None,
-    help="Write what agents print, and warnings, to /rosout too (on real graphs they are).",
+    help="Write output of agents, and warnings, to /rosout, too (default: on real graphs).",
 )
 @click.option(
     "--diagnostics/--no-diagnostics",
     default=None,
-    help="Publish the state of agents and connection on /diagnostics (on real graphs it is).",
+    help="Publish the state of agents and connection on /diagnostics (default: on real graphs).",
 )
 @click.option(
     "--record",
@@ -107,19 +108,19 @@ SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
     default=RECORD_LIMIT,
     metavar="MB",
     show_default=True,
-    help="Megabytes that the recording may have; FILE.1 has its older half.",
+    help="Limit of the recording, in megabytes; FILE.1 has its older half.",
 )
 @click.option(
     "--replay",
     type=click.Path(path_type=Path),
     metavar="FILE.html",
-    help="Write the run as a page to look at in a browser.",
+    help="Write the page of the run to FILE.html, which needs no server.",
 )
 @click.option(
     "--ground-truth",
     type=click.Path(path_type=Path),
     metavar="FILE",
-    help="Write what truly happens in the world as JSON lines.",
+    help="Write the ground truth of the world to FILE (JSON lines).",
 )
 @click.option(
     "--restrict",
@@ -137,7 +138,7 @@ SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
     "Repeatable.",
 )
 @view_options
-@click.option("--quiet", is_flag=True, help="Tell warnings and errors only.")
+@click.option("--quiet", is_flag=True, help="Print only warnings and errors.")
 def command(
     file: Path,
     clock: str | None,
@@ -159,8 +160,7 @@ def command(
 ) -> int:
     """Run FILE: an agent program (.asl, or .py for an agent in Python) or a project (.mas2j, .jcm).
 
-    What agents print goes to the standard output as `[agent] text`, everything else to the standard error
-    output.
+    Output of agents goes to the standard output as `[agent] text`, everything else to the standard error output.
 
     Compiled plans are kept in $XDG_CACHE_HOME/jacaros (default: ~/.cache/jacaros), so that the next start is faster. Set
     JACAROS_CACHE to another folder, or to 0 to keep nothing. You can remove the folder at any time.
@@ -332,4 +332,4 @@ def check_file(file: Path) -> None:
     near = [f"{file.name}{suffix}" for suffix in SUFFIXES if f"{file.name}{suffix}" in beside]
     near = near or difflib.get_close_matches(file.name, beside, n=2)
     hint = f"; did you mean {' or '.join(str(file.parent / name) for name in near)}?" if near else ""
-    raise UsageError(f"there is no file {file}{hint}")
+    raise UsageError(f"file not found: {file}{hint}")

@@ -126,6 +126,18 @@ def test_a_message_is_sent() -> None:
     commanding(test)
 
 
+def test_the_answer_to_a_question_of_the_page_is_recorded() -> None:
+    async def test(mas: Mas, page: LivePage) -> None:
+        printed = await done(page, "message", agent="bob", performative="askOne", text="ready")
+        assert printed == "sent; answers appear in Messages"
+        answer = await page.event("message", to="you", state="sent")
+        assert answer["from"] == "bob"
+        assert answer["content"].startswith("ready")
+        assert "you" not in mas.system.agent_names()
+
+    commanding(test)
+
+
 @pytest.mark.parametrize(
     ("line", "result"),
     [

@@ -6,6 +6,7 @@ from collections.abc import Awaitable, Callable, Mapping
 from typing import Any
 
 from jacaros.asl.diagnostics import AslError
+from jacaros.asl.source import TEXT
 from jacaros.clock import of_run
 from jacaros.env.errors import OperationFailed
 from jacaros.errors import JacarosError
@@ -103,9 +104,11 @@ def said(name: str, given: Given) -> str:
 
 
 def one_line(error: Exception) -> str:
-    """Return what is wrong, without excerpt and help."""
+    """Return what is wrong, without excerpt and help; with its place if it is in a file."""
     if isinstance(error, AslError) and error.diagnostics:
-        return error.diagnostics[0].message
+        wrong = error.diagnostics[0]
+        in_file = wrong.span is not None and wrong.span.file.name != TEXT
+        return f"{wrong.place()}{wrong.message}" if in_file else wrong.message
     lines = [line.strip() for line in str(error).splitlines() if line.strip()]
     return lines[0].removeprefix("error: ") if lines else type(error).__name__
 

@@ -1,6 +1,6 @@
 """Commands for agents: beliefs, goals, messages, and a console of AgentSpeak."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from itertools import islice
 
 from jacaros.asl.loader import parse_term
@@ -57,10 +57,29 @@ class _PageMind(OpenMind):
         return self._mind
 
 
+class _You:
+    """Where answers to messages of the page go, and other messages to `YOU`: they are recorded, as all messages are.
+
+    Agents do not find it among the names of the system, so broadcasts do not reach it.
+    """
+
+    def names(self) -> Sequence[str]:
+        """No name: nobody else is to know of the page."""
+        return ()
+
+    def find(self, name: str) -> "_You | None":
+        """Find the mailbox."""
+        return self if name == YOU else None
+
+    def receive(self, message: SpeechAct) -> None:
+        """Take a message: the record of its delivery shows it."""
+
+
 class _MindCommands:
     def __init__(self, system: System) -> None:
         self._system = system
         self._messages = 0
+        system.directory.join(_You())
 
     def _mind(self, given: Given) -> _PageMind:
         name = text_in(given, "agent")
@@ -87,8 +106,8 @@ class _MindCommands:
         elif not mind.drop_goal(written):
             raise Refused(f"the agent does not pursue {written}")
 
-    def message(self, given: Given) -> None:
-        """Send a message to an agent."""
+    def message(self, given: Given) -> str:
+        """Send a message to an agent; returns what to print."""
         receiver, content = text_in(given, "agent"), text_in(given, "text")
         performative = choice_in(given, "performative", PERFORMATIVES)
         how = performative in ("tellHow", "untellHow")
@@ -100,6 +119,7 @@ class _MindCommands:
             raise Refused(str(failure)) from None
         if not known:
             raise Refused(f"unknown agent: `{receiver[:80]}`")
+        return "sent; answers appear in Messages" if performative.startswith("ask") else "sent"
 
     def console(self, given: Given) -> str:
         """Execute a line of AgentSpeak; returns what to print."""
