@@ -84,6 +84,8 @@ class Recorder:
 
     def frame(self, t: float, robots: Iterable[RobotView]) -> None:
         """The robots at a moment, in the order of the world."""
+        if self._file is not None:
+            self._file.flush()
         robots = tuple(robots)
         if robots == self._seen:  # the common case of a robot that rests
             self._rested = t

@@ -1,6 +1,11 @@
-"""The file of a recording, written by a thread: what the loop pays for a record is to remember it."""
+"""The file of a recording: records are packed some at a time, on the loop that makes them.
+
+A thread that packed them all made the run slower than the packing is: 600 s of the patrol took 2.9 s instead of 2.1.  One
+that packs what a loop has left behind costs nothing, and saves the last records of a loop that is stuck.
+"""
 
 import threading
+import time
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from io import FileIO
@@ -12,10 +17,8 @@ from jacaros.output import CLOSING, PATIENCE, Output
 
 FLUSH = 0.2
 """Seconds after which a record is in the file: as much is lost when the process is killed."""
-_BATCH = 500
-"""Records that are packed together at most."""
-_MOST = 50_000
-"""Records that may wait for the thread; beyond that, the caller packs them."""
+_BATCH = 64
+"""Records that are packed together at most: to pack many costs less, and to keep many more memory."""
 
 Data = Mapping[str, Any]
 
@@ -65,20 +68,25 @@ class RecordingFile:
         self._packing = threading.Lock()
         self._closing = threading.Event()
         self._thread: threading.Thread | None = None
-        self._lost = 0
+        self._packed = time.monotonic()
+        """When records were packed last, on a clock of real time."""
         self._file: FileIO | None = None
         self._output: Output | None = None
         self._open()
 
     def write(self, record: Data) -> None:
-        """Have *record* written soon."""
+        """Have *record* written soon: with others, by the next `flush` that is due, or by the thread."""
         self._pending.append(record)
-        if self._thread is None:
-            self._thread = threading.Thread(target=self._keep_packing, name=str(self._path), daemon=True)
+        if len(self._pending) >= self._batch:
+            self._pack_pending(FLUSH)
+        elif self._thread is None:
+            self._thread = threading.Thread(target=self._watch_loop, name=str(self._path), daemon=True)
             self._thread.start()
-        elif len(self._pending) > _MOST and not self._pack_pending(0.0):
-            self._pending.pop()  # the thread is stuck with a disk
-            self._lost += 1
+
+    def flush(self) -> None:
+        """Write what waits if that was last done half of `FLUSH` ago; to be called several times a second."""
+        if self._pending and self._age() >= 0.5 * FLUSH:
+            self._pack_pending(0.0)
 
     def close(self) -> None:
         """Write what waits and close the file; closing twice does no harm."""
@@ -86,28 +94,28 @@ class RecordingFile:
         if self._thread is not None:
             self._thread.join(CLOSING)
             self._thread = None
-        if not self._pack_pending(0.0, close=True):
-            self._lost += len(self._pending)
-        if self._lost and self._warn is not None:
-            self._warn(f"{self._lost} records could not be written to {self._path}")
-            self._lost = 0
+        if self._pack_pending(CLOSING):
+            self._close_file(CLOSING)
+        elif self._warn is not None:
+            self._warn(f"{len(self._pending)} records could not be written to {self._path}")
 
-    # ---- in the thread
+    def _age(self) -> float:
+        return time.monotonic() - self._packed
 
-    def _keep_packing(self) -> None:
-        # To be woken by the loop would cost it more than the records.
+    def _watch_loop(self) -> None:
+        """Pack, in the thread, what the loop has not packed in time."""
         while not self._closing.wait(0.5 * FLUSH):
-            self._pack_pending()
+            if self._pending and self._age() >= 0.75 * FLUSH:
+                self._pack_pending(FLUSH)
 
-    def _pack_pending(self, patience: float = -1.0, close: bool = False) -> bool:
-        """Write what waits; False when another thread still does that after *patience* seconds (negative: for ever)."""
+    def _pack_pending(self, patience: float) -> bool:
+        """Write what waits; False when another thread still does that after *patience* seconds."""
         if not self._packing.acquire(timeout=patience):
             return False
         try:
             while self._pending:
                 self._put([self._pending.popleft() for _ in range(min(len(self._pending), self._batch))])
-            if close:
-                self._close_file(CLOSING)
+            self._packed = time.monotonic()
         finally:
             self._packing.release()
         return True
