@@ -22,9 +22,6 @@ class QueuedTimer:
         self.callback: Callable[[], None] | None = callback
         self._queue = queue
 
-    def __lt__(self, other: "QueuedTimer") -> bool:
-        return (self.when, self.number) < (other.when, other.number)
-
     def cancel(self) -> None:
         """Take the call back; no effect after it."""
         if self.callback is not None:
@@ -38,13 +35,17 @@ class QueuedTimer:
             callback()
 
 
+_Entry = tuple[float, int, QueuedTimer]
+"""A moment, a number that no other timer has, and the timer: tuples are compared without calls of Python functions."""
+
+
 class TimerQueue:
     """The pending timers of a clock, earliest first; equal moments keep the order in which they were set."""
 
     __slots__ = ("_cancelled", "_heap", "_numbers")
 
     def __init__(self) -> None:
-        self._heap: list[QueuedTimer] = []
+        self._heap: list[_Entry] = []
         self._numbers = itertools.count()
         self._cancelled = 0
 
@@ -54,37 +55,37 @@ class TimerQueue:
     def add(self, when: float, callback: Callable[[], None]) -> QueuedTimer:
         """Set a timer."""
         timer = QueuedTimer(when, next(self._numbers), callback, self)
-        heapq.heappush(self._heap, timer)
+        heapq.heappush(self._heap, (when, timer.number, timer))
         return timer
 
     def put_back(self, timer: QueuedTimer) -> None:
         """Take a timer again that `next_due` gave and that has not rung."""
-        heapq.heappush(self._heap, timer)
+        heapq.heappush(self._heap, (timer.when, timer.number, timer))
 
     def first_moment(self) -> float | None:
         """The moment of the earliest timer; None without one."""
         heap = self._heap
-        while heap and heap[0].callback is None:
+        while heap and heap[0][2].callback is None:
             heapq.heappop(heap)
-        return heap[0].when if heap else None
+        return heap[0][0] if heap else None
 
     def next_due(self, moment: float) -> QueuedTimer | None:
         """Take out the earliest timer that is due at *moment*; None when none is."""
         heap = self._heap
-        while heap and heap[0].when <= moment:
-            timer = heapq.heappop(heap)
+        while heap and heap[0][0] <= moment:
+            timer = heapq.heappop(heap)[2]
             if timer.callback is not None:
                 return timer
         return None
 
     def pending(self) -> Sequence[QueuedTimer]:
         """The timers that are still to ring, in no order."""
-        return [timer for timer in self._heap if timer.callback is not None]
+        return [timer for _, _, timer in self._heap if timer.callback is not None]
 
     def note_cancelled(self) -> None:
         """Count a timer that was cancelled; drop cancelled ones when they are many."""
         self._cancelled += 1
         if self._cancelled > COMPACT_ABOVE and 2 * self._cancelled > len(self._heap):
-            self._heap = list(self.pending())
+            self._heap = [entry for entry in self._heap if entry[2].callback is not None]
             heapq.heapify(self._heap)
             self._cancelled = 0

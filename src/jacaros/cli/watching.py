@@ -63,7 +63,7 @@ class Watching:
         pages = self._serve(mas) if self._outputs.view == "page" else None
         if pages is not None:
             watchers.append(pages.watcher)
-        self._watch = watch_of(mas, watchers, live=pages is not None and len(watchers) == 1)
+        self._watch = watch_of(mas, watchers, live=pages is not None)
         self._watch.start()
         if pages is not None:
             pages.begin(self._watch)

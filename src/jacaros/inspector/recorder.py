@@ -91,11 +91,18 @@ class Recorder:
             self._rested = t
             return
         self._seen = robots
-        rows = tuple(map(_row, robots))
-        if self._last is not None and rows == self._last:
+        # A tenth of a millimetre is fine enough for a picture, and a third of the bytes.
+        rows = tuple(
+            [
+                (round(x, 4), round(y, 4), round(yaw, 4), round(battery, 2), int(charging), int(touching))
+                for _, x, y, yaw, battery, charging, touching in robots
+            ]
+        )
+        if rows == self._last:
             self._rested = t
             return
-        self._take_rest()
+        if self._rested is not None:
+            self._take_rest()
         self._take(t, rows)
 
     def _take_rest(self) -> None:
@@ -104,30 +111,30 @@ class Recorder:
         self._rested = None
 
     def _take(self, t: float, rows: tuple[tuple[Any, ...], ...]) -> None:
-        self._last = rows
-        t = _short(t)
+        self._last, t = rows, round(t, 3)
         if self._keep:
             self.recording.frames.append(Frame(t, rows))
-        self._write({"kind": "frame", "t": t, "robots": rows})
+        if self._file is not None:
+            self._file.write({"kind": "frame", "t": t, "robots": rows})
 
     def text(self, t: float, agent: str, text: str) -> None:
         """What an agent printed."""
         if self._keep:
             self.recording.texts.append((t, agent, text))
-        self._write({"kind": "text", "t": _short(t), "agent": agent, "text": text})
+        self._write({"kind": "text", "t": round(t, 3), "agent": agent, "text": text})
 
     def event(self, t: float, kind: str, data: Mapping[str, Any]) -> None:
-        """Something that happened; *data* is plain JSON data, which nobody changes."""
+        """Something that happened at a whole millisecond; *data* is plain JSON data, which nobody changes."""
         if self._keep:
             self.recording.events.append((t, kind, dict(data)))
         if self._file is not None:
-            self._file.write({"kind": "event", "t": round(t, 3), "event": kind, "data": data})
+            self._file.write({"kind": "event", "t": t, "event": kind, "data": data})
 
     def message(self, t: float, topic: str, message: Any) -> None:
         """A message of ROS that had an effect."""
         if self.takes_messages:
             kind = type_of(message)
-            self._write({"kind": "message", "t": _short(t), "topic": topic, "type": kind, "message": message})
+            self._write({"kind": "message", "t": round(t, 3), "topic": topic, "type": kind, "message": message})
 
     def close(self) -> None:
         """Write the last frame and close the file; closing twice does no harm."""
@@ -139,13 +146,3 @@ class Recorder:
     def _write(self, record: dict[str, Any]) -> None:
         if self._file is not None:
             self._file.write(record)
-
-
-def _short(value: float) -> float:
-    return round(value, 3)
-
-
-def _row(robot: RobotView) -> tuple[Any, ...]:
-    """A tenth of a millimetre is fine enough for a picture, and a third of the bytes."""
-    _, x, y, yaw, battery, charging, touching = robot
-    return round(x, 4), round(y, 4), round(yaw, 4), round(battery, 2), int(charging), int(touching)

@@ -5,10 +5,12 @@ from typing import Any, Protocol, runtime_checkable
 
 from jacaros.clock import Clock, Timer
 from jacaros.inspector.scene import RobotView, Scene
-from jacaros.mas.history import History
+from jacaros.mas.history.history import History
 
-PERIOD, LIVE_PERIOD = 0.1, 0.05
-"""Seconds between two frames of a recording, and of a run in real time that is seen on a live page alone."""
+PERIOD, LIVE_PERIOD = 0.2, 0.05
+"""Seconds between two frames of a recording, and of a run in real time that is seen on a live page.
+
+Readers interpolate: a TurtleBot at full speed in its tightest curve is 5 mm off then."""
 REST = 1.0
 """Seconds between two frames of robots that rest, in a world that tells when they move."""
 
@@ -65,8 +67,9 @@ class Watch:
         self._scene, self._period = scene, period
         self._drawing: Mapping[str, Any] | None = None
         self._timer: Timer | None = None
+        self._looked = 0.0
         self._history = history
-        self._stop_listening: Callable[[], None] | None = None
+        self._stop_listening: list[Callable[[], None]] = []
 
     def start(self) -> None:
         """Begin to look."""
@@ -76,8 +79,8 @@ class Watch:
         if self._history is not None:
             for happening in self._history.all():
                 self.event(*happening)
-            self._stop_listening = self._history.listen(self.event)
             for watcher in self.watchers:
+                self._stop_listening.append(self._history.listen(watcher.event))
                 if isinstance(watcher, MessageWatcher) and watcher.takes_messages:
                     self._history.listen_to_messages(watcher.message)
             self._history.start()
@@ -88,12 +91,18 @@ class Watch:
 
     def _look(self) -> None:
         # On the virtual clock a timer costs as much as all else that a frame needs.
-        follows = self.clock.virtual and self._scene is not None and self._scene.follow(self.look)
+        follows = self.clock.virtual and self._scene is not None and self._scene.follow(self._moved)
         self._timer = self.clock.call_later(REST if follows else self._period, self._look)
         self.look()
 
+    def _moved(self) -> None:
+        """Look if the last look is a period ago: the world calls ten times a second while robots move."""
+        if self.clock.elapsed - self._looked > 0.9 * self._period:
+            self.look()
+
     def look(self) -> None:
         """Show the robots as they are now, also between two frames."""
+        self._looked = self.clock.elapsed
         robots: list[RobotView] = []
         if self._scene is not None:
             drawing = self._scene.drawing()
@@ -127,7 +136,7 @@ class Watch:
             self.look()
             if self._scene is not None:
                 self._scene.close()
-        if self._stop_listening is not None and self._history is not None:
+        if self._stop_listening and self._history is not None:
             self._history.stop()
-            self._stop_listening()
-            self._stop_listening = None
+            while self._stop_listening:
+                self._stop_listening.pop()()

@@ -11,7 +11,7 @@ def watch_of(mas: System, watchers: list[Watcher], live: bool = False) -> Watch:
     Args:
         mas: the system.
         watchers: who is told.
-        live: whether the watchers are live pages alone.
+        live: whether a live page is among the watchers.
     """
     period = LIVE_PERIOD if live and not mas.clock.virtual else PERIOD
     return Watch(mas.clock, watchers, _scene_of(mas), mas.history(), period)

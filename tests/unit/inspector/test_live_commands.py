@@ -305,7 +305,7 @@ def test_a_battery_is_drained() -> None:
         assert mas.world is not None
         await done(page, "battery", robot="turtlebot", level=7)
         assert mas.world.robot().battery.level <= 7
-        await page.event("battery", robot="turtlebot", level=7)
+        await page.event("battery_set", robot="turtlebot", level=7)
         assert "0 to 100" in await refused(page, "battery", robot="turtlebot", level=101)
 
     commanding(test, WORLD)

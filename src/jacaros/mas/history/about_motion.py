@@ -161,7 +161,7 @@ def _ended_operation(past: Past, t: float, command: Data) -> Iterator[Fact]:
 def _world(past: Past, t: float, robot: str) -> Iterator[Fact]:
     """What the world did to the robot at that time."""
     for at, event, data in past.world:
-        if event != "battery" and abs(at - t) <= AT_ONCE and robot in ("", data.get("robot")):
+        if abs(at - t) <= AT_ONCE and robot in ("", data.get("robot")):
             yield Fact("note", f"{data.get('robot')}: {event} at {seconds(at)}", at)
 
 

@@ -1,7 +1,7 @@
 """Observes the agents of a run as they come and go: what they do, why, and the messages between them."""
 
 from collections.abc import Callable, Mapping
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from jacaros.bdi.mind import Mind
 from jacaros.clock import Clock
@@ -13,8 +13,10 @@ from jacaros.mas.history.intentions import Looks, Moments
 from jacaros.mas.history.messages import MessageRecords
 from jacaros.mas.history.minds import MindRecords, Records
 from jacaros.mas.history.programs import ProgramRecords
-from jacaros.mas.python_agents.host import PythonAgentHost
 from jacaros.trace import Cause
+
+if TYPE_CHECKING:
+    from jacaros.mas.python_agents.host import PythonAgentHost
 
 Tell = Callable[[str, Mapping[str, Any]], None]
 
@@ -83,15 +85,19 @@ class AgentRecords:
             self._ended(name)
 
     def _began(self, host: AgentHost) -> None:
-        what = "python" if isinstance(host, PythonAgentHost) else "asl"
+        mind = host.mind
+        what = "asl" if isinstance(mind, Mind) else "python"
         self._tell("agent", {"agent": host.name, "what": what, "state": "began"})
         self._goals.listen(host)
+        if isinstance(mind, Mind):
+            self._ends[host.name] = self._observe_mind(host, mind)
+            return
+        from jacaros.mas.python_agents.host import PythonAgentHost  # here: most runs have no agent in Python
+
         if isinstance(host, PythonAgentHost):
             self._ends[host.name] = self._observe_inbox(host)
-        elif isinstance(host.mind, Mind):
-            self._ends[host.name] = self._observe_mind(host, host.mind)
 
-    def _observe_inbox(self, host: PythonAgentHost) -> Callable[[], None]:
+    def _observe_inbox(self, host: "PythonAgentHost") -> Callable[[], None]:
         inbox = host.mail.inbox
         inbox.when_read = self._records.messages.read
 

@@ -9,12 +9,9 @@ from jacaros.trace import Cause, Tracer
 
 _GENERATION = 4096
 """Causes that are remembered at least until something needs them, and at most twice as many."""
-_SAMPLES = 64
-"""Messages that are remembered until they lead to something, which they do immediately or not at all.
-
-Each costs more the more of them are kept, since new messages then need new memory: 512 made a run a tenth slower."""
-COMMAND_PERIOD = 0.5
-"""Seconds between two records of commands that one operation sends to one topic; the last one is recorded, too."""
+COMMAND_PERIOD = 1.0
+"""Seconds between two records of commands that one operation sends to one topic; the last one is recorded, too, and the
+first one to stand still."""
 RECORDED = ("event", "message")
 """Links that have records of their own, deliberations and messages; what led to them is recorded with these."""
 LARGE = 4096
@@ -27,6 +24,16 @@ Link = tuple[Cause, float, Any]
 """A cause, when it arose (by the clock, which continues during a pause on a real graph), and what it is about."""
 
 
+class _Received(Cause):
+    """A message as a cause, with the message behind its fields.
+
+    Most messages lead to nothing.  To keep them anywhere, even 64, makes a run a tenth slower: new messages then need new
+    memory.  So a message lives as long as its cause.
+    """
+
+    __slots__ = ()
+
+
 class Traffic:
     """The messages of one topic that our node received or sent.
 
@@ -36,17 +43,19 @@ class Traffic:
         outgoing: whether we send them.
         heard: takes each message, None when nobody wants them.
         kept: whether messages are small enough to be remembered.
-        parent, at: of the command recorded last: the id of what led to it, and when.
-        held: the newest command that was not recorded: what led to it, when it was sent, and the message; None without one.
+        velocity: gives the velocity in a message; None for messages without one.
+        parent, at, stands: of the command recorded last: the id of what led to it, when, and whether it was to stand still.
+        held: the newest command that was not recorded: what led to it, the seconds of the clock's `elapsed`, and the message.
     """
 
-    __slots__ = ("at", "count", "heard", "held", "kept", "outgoing", "parent", "topic")
+    __slots__ = ("at", "count", "heard", "held", "kept", "outgoing", "parent", "stands", "topic", "velocity")
 
     def __init__(self, topic: str, outgoing: bool, message: Any) -> None:
         self.topic, self.outgoing, self.count = topic, outgoing, 0
         self.heard: Callable[[str, Any], None] | None = None
         self.kept = _is_small(message)
-        self.parent, self.at = 0, 0.0
+        self.velocity = _velocity_in(message)
+        self.parent, self.at, self.stands = 0, 0.0, False
         self.held: tuple[Cause, float, Any] | None = None
 
 
@@ -83,7 +92,8 @@ class CauseRecords:
         # Two generations: the older one is dropped as a whole, which costs nothing for each cause.
         self._young: dict[int, Link] = {}
         self._old: dict[int, Link] = {}
-        self._samples: list[Link | None] = [None] * _SAMPLES
+        self._samples: set[int] = set()
+        """Messages that have led to something: each is remembered, or recorded, once."""
 
     def listen_to(self, trace: Callable[[Tracer | None], None]) -> Callable[[], None]:
         """Be the tracer of a system, which *trace* sets; gives what ends it."""
@@ -101,20 +111,18 @@ class CauseRecords:
         made = Cause(number, 0 if parent is None else parent.id, kind, what)
         if kind in RECORDED:
             return made
-        if parent is not None and parent.kind == "sample":
+        if parent.__class__ is _Received:
             self._keep_sample(parent)
         self._young[number] = made, self._clock.now(), about
         if len(self._young) > _GENERATION:
             self._old, self._young = self._young, {}
         if kind in ("act", "operation"):
-            self.need(number)
+            self.need(made)
         return made
 
     def received_message(self, topic: str, message: Any) -> Cause:
         """Make the first link of a chain, see `jacaros.trace.Tracer`."""
         # Called for each message of each sensor: most of what a recording costs would be here.
-        self._last = number = self._last + 1
-        made = tuple.__new__(Cause, (number, 0, "sample", topic))  # half of the time of Cause(...)
         try:
             traffic = self.received[topic]
         except KeyError:
@@ -122,15 +130,19 @@ class CauseRecords:
         traffic.count += 1
         if traffic.heard is not None:
             traffic.heard(topic, message)
-        self._samples[number % _SAMPLES] = made, self._clock.now(), message if traffic.kept else None
-        return made
+        self._last = number = self._last + 1
+        kept = message if traffic.kept else None
+        return tuple.__new__(_Received, (number, 0, "sample", topic, kept))
 
     def _keep_sample(self, cause: Cause) -> None:
-        """Remember a message that has led to something; most are forgotten soon."""
-        link = self._samples[cause.id % _SAMPLES]
-        if link is not None and link[0] is cause:
-            self._samples[cause.id % _SAMPLES] = None
-            self._young[cause.id] = link
+        """Remember a message that has led to something, until something needs it."""
+        if cause.id not in self._samples:
+            if len(self._samples) > _GENERATION:
+                self._samples.clear()
+            self._samples.add(cause.id)
+            link: tuple[Any, ...] = cause
+            # What a message leads to comes in the same pass of the loop.
+            self._young[cause.id] = Cause(*link[:4]), self._clock.now(), link[4]
 
     def sent_message(self, topic: str, message: Any, parent: Cause | None) -> None:
         """Make the last link of a chain, see `jacaros.trace.Tracer`; of many of one operation, one now and then."""
@@ -141,28 +153,31 @@ class CauseRecords:
         traffic.count += 1
         if parent is None:
             return
-        now = self._clock.now()
-        if traffic.parent == parent.id and now - traffic.at < COMMAND_PERIOD:
+        now = self._clock.elapsed
+        velocity = traffic.velocity
+        stands = velocity is not None and _stands(velocity(message))
+        if traffic.parent == parent.id and now - traffic.at < COMMAND_PERIOD and stands == traffic.stands:
             traffic.held = parent, now, message
             return
         if traffic.held is not None and traffic.parent != parent.id:
             self._record_command(traffic, *traffic.held)  # the last one of the operation before
+        traffic.stands = stands
         self._record_command(traffic, parent, now, message)
 
-    def _record_command(self, traffic: Traffic, parent: Cause, moment: float, message: Any) -> None:
-        traffic.parent, traffic.at, traffic.held = parent.id, self._clock.now(), None
-        self._keep_sample(parent)
-        self.need(parent.id)
+    def _record_command(self, traffic: Traffic, parent: Cause, elapsed: float, message: Any) -> None:
+        traffic.parent, traffic.at, traffic.held = parent.id, self._clock.elapsed, None
+        moment = self._clock.now() - (traffic.at - elapsed)
+        self.need(parent)
         self._last += 1
         made = Cause(self._last, parent.id, "command", traffic.topic)
         self._record((made, moment, message if traffic.kept else None))
 
-    def need(self, number: int) -> None:
+    def need(self, cause: Cause) -> None:
         """Record a cause and what led to it, as far as that is not recorded yet and still remembered."""
+        if cause.__class__ is _Received:
+            self._keep_sample(cause)
+        number = cause.id
         chain: list[Link] = []
-        sample = self._samples[number % _SAMPLES]
-        if sample is not None and sample[0].id == number:
-            self._keep_sample(sample[0])
         while (link := self._young.pop(number, None) or self._old.pop(number, None)) is not None:
             chain.append(link)
             number = link[0].parent
@@ -186,10 +201,24 @@ class CauseRecords:
 
     def flush(self, all_of_them: bool = False) -> None:
         """Record the last command of each topic that was held back long enough; to be called a few times a second."""
-        now = self._clock.now()
+        now = self._clock.elapsed
         for traffic in self.sent.values():
             if traffic.held is not None and (all_of_them or now - traffic.at >= COMMAND_PERIOD):
                 self._record_command(traffic, *traffic.held)
+
+
+def _velocity_in(message: Any) -> Callable[[Any], Any] | None:
+    """Return what finds the velocity in messages such as *message*: geometry_msgs/Twist, or TwistStamped."""
+    if hasattr(message, "linear") and hasattr(message, "angular"):
+        return lambda command: command
+    if hasattr(message, "twist") and hasattr(message.twist, "linear"):
+        return lambda command: command.twist
+    return None
+
+
+def _stands(velocity: Any) -> bool:
+    linear = velocity.linear
+    return not (linear.x or linear.y or velocity.angular.z)
 
 
 def _is_small(message: Any) -> bool:

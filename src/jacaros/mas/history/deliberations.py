@@ -26,7 +26,7 @@ Tell = Callable[[str, Mapping[str, Any]], None]
 class Links(Tracer, Protocol):
     """Makes the links of chains, and records them (`jacaros.mas.history.causes.CauseRecords`)."""
 
-    def need(self, number: int) -> None:
+    def need(self, cause: Cause) -> None:
         """Record a link and those that led to it."""
 
 
@@ -127,7 +127,7 @@ class DeliberationRecords:
             reason = _Reason(len(intention.frames), frame, link)
             self._reasons.setdefault(intention.id, []).append(reason)
         if parent is not None:
-            self._links.need(parent.id)
+            self._links.need(parent)
         chosen = None if frame is None else frame[PLAN]
         place = plans.index(chosen) if chosen in plans else len(plans) if chosen is None else 0
         record = {

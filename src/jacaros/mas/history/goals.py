@@ -9,7 +9,6 @@ from jacaros.bdi.mind import Mind
 from jacaros.bdi.rules.meta_events import observe_goals
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.history.words import named
-from jacaros.mas.python_agents.host import PythonAgentHost
 
 Tell = Callable[[dict[str, object]], None]
 
@@ -50,10 +49,13 @@ class GoalRecords:
 
     def listen(self, host: AgentHost) -> None:
         """Hear of the goals of an agent from now on."""
+        if isinstance(host.mind, Mind):
+            observe_goals(host.mind, partial(self, host.name))
+            return
+        from jacaros.mas.python_agents.host import PythonAgentHost  # here: most runs have no agent in Python
+
         if isinstance(host, PythonAgentHost):
             host.observe(_Work(self, host.name))
-        elif isinstance(host.mind, Mind):
-            observe_goals(host.mind, partial(self, host.name))
 
     def __call__(self, agent: str, state: str, goal: str, which: int, intention: int, why: str = "") -> None:
         """Be told by a mind, see `jacaros.bdi.rules.meta_events.observe_goals`."""

@@ -41,7 +41,7 @@ class GraphRecords:
             return
         counts = self._counts(backend)
         topics = self._topics(contents, counts, seconds, backend.node_name)
-        self.pause = min(4.0 * PERIOD, 2.0 * self.pause)
+        self.pause = min(10.0 * PERIOD, 2.0 * self.pause)
         if self._recorded is None or _differ(self._recorded, topics):
             if self._recorded is None or len(self._recorded) != len(topics):
                 self.pause = PERIOD

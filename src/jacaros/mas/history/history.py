@@ -192,4 +192,5 @@ class History:
         return end
 
     def _hear_world(self, record: "Record") -> None:
-        self.record(record["event"], {"robot": record["robot"], **record["data"]})
+        if record["event"] != "battery":  # each percent of each robot, which frames have, too
+            self.record(record["event"], {"robot": record["robot"], **record["data"]})

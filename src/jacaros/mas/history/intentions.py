@@ -9,7 +9,7 @@ from jacaros.bdi.state.intention import PLAN, STEP, Frame, Intention
 from jacaros.bdi.state.waiting import OwnSuspension, TimedWait, Waiting
 from jacaros.clock import Clock, Timer
 from jacaros.mas.history.programs import PlanNumbers
-from jacaros.mas.history.steps import stack_of
+from jacaros.mas.history.steps import Stacks
 from jacaros.mas.history.waiting import waits_for
 from jacaros.mas.history.words import shown
 from jacaros.trace import Cause
@@ -114,7 +114,8 @@ class IntentionRecords:
         tell: Tell,
         looks: Looks,
     ) -> None:
-        self._mind, self._numbers, self._cause, self._t = mind, numbers, cause, t
+        self._mind, self._cause, self._t = mind, cause, t
+        self._stacks = Stacks(numbers)
         self._tell, self._looks = tell, looks
         self._seen: dict[int, _Seen] = {}
         self._is_due = False
@@ -131,6 +132,7 @@ class IntentionRecords:
         alive = self._mind.alive
         for number in [number for number in self._seen if number not in alive]:
             del self._seen[number]
+            self._stacks.forget(number)
             self._tell("intention", {"agent": self._mind.name, "id": number, "state": "over"})
         for _, intention in zip(range(MOST), list(alive.values()), strict=False):
             seen = self._seen.get(intention.id)
@@ -147,7 +149,7 @@ class IntentionRecords:
             "agent": self._mind.name,
             "id": intention.id,
             "state": "suspended" if suspended else "waits" if waiting is not None else "runs",
-            "stack": stack_of(intention, self._numbers),
+            "stack": self._stacks.of(intention),
             "waits": "" if waiting is None else waits_for(waiting),
             "since": self._t(waiting.began if isinstance(waiting, TimedWait) else None),
             "reason": "" if intention.suspended is None else shown(intention.suspended),

@@ -1,31 +1,72 @@
 """Where an intention is in its plans: the stack of its goals, each with the step that it is at."""
 
-from typing import Any
+from typing import Any, NamedTuple
 
 from jacaros.asl.source import Span
 from jacaros.bdi.explaining.failure_reason import StepPlace, place_of_call
 from jacaros.bdi.state.intention import GOAL, PLAN, STEP, Frame, Intention
+from jacaros.bdi.state.literals import literal_of
 from jacaros.bdi.state.plan import Plan, StepInfo
 from jacaros.mas.history.programs import PlanNumbers
 from jacaros.mas.history.words import cut, named, shown_event
+from jacaros.terms.substitution import is_ground
 
 DEEPEST = 24
 """Goals of a stack that are recorded: the lowest one, and those next to the top."""
 
 
-def stack_of(intention: Intention, numbers: PlanNumbers) -> list[dict[str, Any]]:
-    """Return the goals of an intention from the bottom up, with the steps they are at."""
-    frames = [frame for frame in intention.frames if frame[GOAL][0].functor.namespace != "jacaros"]
-    shown = list(enumerate(frames))
-    if len(shown) > DEEPEST:
-        shown = [shown[0], *shown[1 - DEEPEST :]]
-    return [_level(frame, frames[index + 1 : index + 2], numbers) for index, frame in shown]
+class Stacks:
+    """Shows the stacks of intentions; a level whose goals hold no variables is the same as long as its step is.
+
+    Args:
+        numbers: of the plans.
+    """
+
+    def __init__(self, numbers: PlanNumbers) -> None:
+        self._numbers = numbers
+        self._levels: dict[int, list[_Shown]] = {}
+
+    def of(self, intention: Intention) -> list[dict[str, Any]]:
+        """Return the goals of an intention from the bottom up, with the steps they are at."""
+        frames = [frame for frame in intention.frames if frame[GOAL][0].functor.namespace != "jacaros"]
+        levels = list(zip(frames, [*frames[1:], None], strict=True))
+        if len(levels) > DEEPEST:
+            levels = [levels[0], *levels[1 - DEEPEST :]]
+        known = self._levels.get(intention.id, ())
+        shown = [
+            known[place] if place < len(known) and known[place].is_still(*level) else self._show(*level)
+            for place, level in enumerate(levels)
+        ]
+        self._levels[intention.id] = shown
+        return [each.data for each in shown]
+
+    def forget(self, number: int) -> None:
+        """Forget an intention that is over."""
+        self._levels.pop(number, None)
+
+    def _show(self, frame: Frame, above: Frame | None) -> "_Shown":
+        lasting = above is not None and all(is_ground(literal_of(each[GOAL], ())) for each in (frame, above))
+        return _Shown(frame, above, frame[STEP], lasting, _level(frame, above, self._numbers))
 
 
-def _level(frame: Frame, above: list[Frame], numbers: PlanNumbers) -> dict[str, Any]:
+class _Shown(NamedTuple):
+    """A level of a stack as it was recorded, and whether that stays true until its step changes."""
+
+    frame: Frame
+    above: Frame | None
+    step: object
+    lasting: bool
+    data: dict[str, Any]
+
+    def is_still(self, frame: Frame, above: Frame | None) -> bool:
+        """Whether nothing of it has changed."""
+        return self.lasting and self.frame is frame and self.above is above and self.step is frame[STEP]
+
+
+def _level(frame: Frame, above: Frame | None, numbers: PlanNumbers) -> dict[str, Any]:
     plan: Plan = frame[PLAN]
-    if above:
-        span, step = place_of_call(frame, above[0][GOAL][0].functor), shown_goal(above[0])
+    if above is not None:
+        span, step = place_of_call(frame, above[GOAL][0].functor), shown_goal(above)
     else:
         span, step = _span(frame), step_of(frame)
     return {

@@ -1,7 +1,8 @@
 """Values of the environment and messages of ROS as plain JSON data of limited length."""
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Sequence
+from functools import lru_cache
 from typing import Any
 
 from jacaros.env.operation import OperationRequest
@@ -63,32 +64,33 @@ def _text(value: object, quoted: bool = False) -> str:
 def message_text(message: Any) -> str:
     """Return the numbers, texts and truth values of a message that are not 0 or empty, by their fields."""
     found: list[str] = []
-    for path, value in _leaves(message, "", 4):
-        if len(found) == _FIELDS:
-            found.append("...")
-            break
-        found.append(f"{path}={value}")
+    _add_fields(message, "", 4, found)
+    if len(found) > _FIELDS:
+        found[_FIELDS:] = ["..."]
     return limited(", ".join(found))
 
 
-def _leaves(message: Any, path: str, depth: int) -> Iterator[tuple[str, object]]:
-    for name in _field_names(message):
+def _add_fields(message: Any, path: str, depth: int, found: list[str]) -> None:
+    for name in _field_names(message.__class__):
         value = getattr(message, name)
-        inner = f"{path}.{name}" if path else name
-        if isinstance(value, bool | int | float | str):
+        if isinstance(value, float):
             if value:
-                yield inner, f"{value:.4g}" if isinstance(value, float) else limited(str(value))
+                found.append(f"{path}{name}={value:.4g}")
+        elif isinstance(value, int | str):
+            if value:
+                found.append(f"{path}{name}={limited(str(value))}")
         elif hasattr(value, "__len__"):
             if len(value) and name != "covariance":
-                yield inner, f"[{len(value)} values]"
-        elif name != "header" and depth:
-            yield from _leaves(value, inner, depth - 1)
+                found.append(f"{path}{name}=[{len(value)} values]")
+        elif name != "header" and depth and len(found) <= _FIELDS:
+            _add_fields(value, f"{path}{name}.", depth - 1, found)
 
 
-def _field_names(message: Any) -> Iterable[str]:
-    """Names of the fields of a message, whatever library has made it."""
+@lru_cache(256)
+def _field_names(message_class: type) -> Sequence[str]:
+    """Names of the fields of messages, whatever library has made their class."""
     for attribute in ("__dataclass_fields__", "_fields_and_field_types", "__slots__"):
-        names = getattr(message, attribute, None)
+        names = getattr(message_class, attribute, None)
         if names is not None:
             return [name for name in names if not name.startswith("_")]
     return ()

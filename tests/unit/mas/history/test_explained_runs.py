@@ -8,7 +8,7 @@ import jacaros
 from jacaros import Mas
 from jacaros.cli.main import call
 from jacaros.errors import UsageError
-from jacaros.mas.history import Explanation
+from jacaros.mas.history.explanation import Explanation
 
 PROGRAM = """
 !start.

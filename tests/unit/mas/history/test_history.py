@@ -5,7 +5,7 @@ from observed_runs import of, records_of
 
 import jacaros
 from jacaros import Mas
-from jacaros.mas.history import History
+from jacaros.mas.history.history import History
 
 
 def test_agents_that_come_later_are_observed():
