@@ -44,8 +44,8 @@ class Traffic:
         heard: takes each message, None when nobody wants them.
         kept: whether messages are small enough to be remembered.
         velocity: gives the velocity in a message; None for messages without one.
-        parent, at, stands: of the command recorded last: the id of what led to it, when, and whether it was to stand still.
-        held: the newest command that was not recorded: what led to it, the seconds of the clock's `elapsed`, and the message.
+        parent, at, stands: of the command recorded last: what led to it (an id), when, and whether it was to stand still.
+        held: the newest command that was not recorded: what led to it, when (`elapsed` of the clock), and the message.
     """
 
     __slots__ = ("at", "count", "heard", "held", "kept", "outgoing", "parent", "stands", "topic", "velocity")
