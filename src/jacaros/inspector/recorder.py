@@ -4,6 +4,7 @@
 """
 
 from collections.abc import Callable, Iterable, Mapping
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
@@ -91,13 +92,7 @@ class Recorder:
             self._rested = t
             return
         self._seen = robots
-        # A tenth of a millimetre is fine enough for a picture, and a third of the bytes.
-        rows = tuple(
-            [
-                (round(x, 4), round(y, 4), round(yaw, 4), round(battery, 2), int(charging), int(touching))
-                for _, x, y, yaw, battery, charging, touching in robots
-            ]
-        )
+        rows = tuple(map(_row, robots))
         if rows == self._last:
             self._rested = t
             return
@@ -148,3 +143,15 @@ class Recorder:
     def _write(self, record: dict[str, Any]) -> None:
         if self._file is not None:
             self._file.write(record)
+
+
+def _row(robot: RobotView) -> tuple[Any, ...]:
+    """Millimetres are fine enough for a picture, and a third of the bytes."""
+    _, x, y, yaw, battery, charging, touching = robot
+    return _short(x), _short(y), _short(yaw), _short(battery), int(charging), int(touching)
+
+
+def _short(value: float) -> float:
+    """Return a number with three digits after the point."""
+    # `round` to digits takes five times as long.
+    return round(value * 1e3) / 1e3 if isfinite(value) else value

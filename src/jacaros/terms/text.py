@@ -39,8 +39,8 @@ from jacaros.terms.values import (
     parted,
 )
 
-_LEAST, _GREATEST = -(2.0**63), 2.0**63
-"""Of the whole numbers that Java's ``long`` can have."""
+_LEAST, _GREATEST, _LARGEST = -(2.0**63), 2.0**63, 2**63 - 1
+"""Of the whole numbers that Java's ``long`` can have; `_GREATEST` is one more than the largest."""
 
 
 def number_text(value: float) -> str:
@@ -48,7 +48,7 @@ def number_text(value: float) -> str:
     if _LEAST <= value <= _GREATEST:
         whole = int(value)
         if whole == value:
-            return str(min(whole, 2**63 - 1))
+            return str(whole) if whole <= _LARGEST else str(_LARGEST)
     return double_text(value)
 
 

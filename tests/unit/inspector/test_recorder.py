@@ -192,7 +192,7 @@ def test_a_watch_records_frames_and_prints() -> None:
     recorder, world = watched_run()
     recording = recorder.recording
     assert recording.frames[0].t == 0.0
-    assert recording.frames[-1].robots[0][0] == pytest.approx(world.robot().x, abs=1e-4)
+    assert recording.frames[-1].robots[0][0] == pytest.approx(world.robot().x, abs=6e-4)
     assert recording.texts == [(pytest.approx(2.0), "cleaner", "here I am")]
 
 

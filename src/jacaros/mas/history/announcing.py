@@ -1,4 +1,5 @@
-"""Explanations while a run continues: each time an event of interest is handled, or a goal of interest fails."""
+"""Explanations while a run continues: each time an event of interest is handled, or a goal of interest fails; and at its
+end, of events that never happened."""
 
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
@@ -25,6 +26,7 @@ class Announcer:
     def __init__(self, history: History, events: Sequence[str], tell: Callable[[str], None]) -> None:
         self._history, self._tell = history, tell
         self._wanted = {event: Pattern(event) for event in events}
+        self._unmet = dict.fromkeys(events)
 
     def begin(self) -> None:
         """Explain from now on."""
@@ -33,13 +35,21 @@ class Announcer:
     def _hear(self, t: float, event: str, data: Mapping[str, Any]) -> None:
         read = _READERS.get(event)
         if read is None:
+            if event == "ended":
+                self._explain_unmet()
             return
         happened = read(data)
         for asked, pattern in self._wanted.items():
             if happened and pattern.fits(happened):
                 explanation = self._explain(asked, t, event, data)
                 if explanation is not None:
+                    self._unmet.pop(asked, None)
                     self._tell(explanation.text())
+
+    def _explain_unmet(self) -> None:
+        past = Past.of(self._history.all())
+        for asked in self._unmet:
+            self._tell(explain_event(past, asked, asked, "").text())
 
     def _explain(self, asked: str, t: float, event: str, data: Mapping[str, Any]) -> Explanation | None:
         past = Past.of(self._history.all())

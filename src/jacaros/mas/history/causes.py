@@ -43,18 +43,18 @@ class Traffic:
         outgoing: whether we send them.
         heard: takes each message, None when nobody wants them.
         kept: whether messages are small enough to be remembered.
-        velocity: gives the velocity in a message; None for messages without one.
+        moves: whether messages are velocities: geometry_msgs/Twist, or TwistStamped.
         parent, at, stands: of the command recorded last: what led to it (an id), when, and whether it was to stand still.
         held: the newest command that was not recorded: what led to it, when (`elapsed` of the clock), and the message.
     """
 
-    __slots__ = ("at", "count", "heard", "held", "kept", "outgoing", "parent", "stands", "topic", "velocity")
+    __slots__ = ("at", "count", "heard", "held", "kept", "moves", "outgoing", "parent", "stands", "topic")
 
     def __init__(self, topic: str, outgoing: bool, message: Any) -> None:
         self.topic, self.outgoing, self.count = topic, outgoing, 0
         self.heard: Callable[[str, Any], None] | None = None
         self.kept = _is_small(message)
-        self.velocity = _velocity_in(message)
+        self.moves = hasattr(getattr(message, "twist", message), "linear")
         self.parent, self.at, self.stands = 0, 0.0, False
         self.held: tuple[Cause, float, Any] | None = None
 
@@ -154,8 +154,7 @@ class CauseRecords:
         if parent is None:
             return
         now = self._clock.elapsed
-        velocity = traffic.velocity
-        stands = velocity is not None and _stands(velocity(message))
+        stands = traffic.moves and _stands(message)
         if traffic.parent == parent.id and now - traffic.at < COMMAND_PERIOD and stands == traffic.stands:
             traffic.held = parent, now, message
             return
@@ -207,16 +206,8 @@ class CauseRecords:
                 self._record_command(traffic, *traffic.held)
 
 
-def _velocity_in(message: Any) -> Callable[[Any], Any] | None:
-    """Return what finds the velocity in messages such as *message*: geometry_msgs/Twist, or TwistStamped."""
-    if hasattr(message, "linear") and hasattr(message, "angular"):
-        return lambda command: command
-    if hasattr(message, "twist") and hasattr(message.twist, "linear"):
-        return lambda command: command.twist
-    return None
-
-
-def _stands(velocity: Any) -> bool:
+def _stands(message: Any) -> bool:
+    velocity = message if hasattr(message, "linear") else message.twist
     linear = velocity.linear
     return not (linear.x or linear.y or velocity.angular.z)
 

@@ -89,6 +89,7 @@ class History:
         self._system = system
         self.beginning = system.clock.now()
         self.events: deque[Happening] = deque(maxlen=kept)
+        self._kept = kept
         self._lasting: dict[tuple[object, ...], Happening] = {}
         self._listeners: tuple[Listener, ...] = ()
         self._message_listeners: tuple[Callable[[float, str, Any], None], ...] = ()
@@ -154,12 +155,14 @@ class History:
 
     def record(self, event: str, data: Mapping[str, Any]) -> None:
         """Keep a record of something that happened now, and pass it to the listeners."""
-        happening = Happening(self.t(), event, data)
-        if len(self.events) == self.events.maxlen:
-            self._keep(self.events[0])
-        self.events.append(happening)
+        # As `t`, without a further call: most of a recording's records come here.
+        t = round((self._system.clock.now() - self.beginning) * 1e3) / 1e3
+        events = self.events
+        if len(events) == self._kept:
+            self._keep(events[0])
+        events.append(Happening(t, event, data))
         for listener in self._listeners:
-            listener(*happening)
+            listener(t, event, data)
 
     def _keep(self, forgotten: Happening) -> None:
         event, data = forgotten.event, forgotten.data

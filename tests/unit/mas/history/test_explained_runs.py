@@ -64,6 +64,19 @@ def test_a_run_explains_events(tmp_path: Path, capfd: pytest.CaptureFixture[str]
     assert "lost" not in capfd.readouterr().err
 
 
+def test_the_end_explains_events_that_never_happened(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    program = tmp_path / "bob.asl"
+    program.write_text("!start. +!start <- +alarm(3). +alarm(_).")
+    events = ["--explain", "+alrm", "--explain", "+alarm"]
+    assert call(["run", str(program), "--until-idle", "--clock", "fast", *events]) == 0
+    told = capfd.readouterr().err
+    assert "no event `+alrm` happened" in told
+    assert "did you mean `alarm`?" in told
+    assert "no event `+alarm`" not in told
+
+
 def test_what_cannot_be_explained_is_refused_before_the_run(
     tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
