@@ -23,7 +23,12 @@ GoalObserver = Callable[[str, str, int, int, str], None]
 
 
 def goal_state(
-    agent: Circumstance, goal: Goal, annotations: EventAnnotations, state: str, reason: Term = _NO_REASON
+    agent: Circumstance,
+    goal: Goal,
+    annotations: EventAnnotations,
+    state: str,
+    reason: Term = _NO_REASON,
+    *details: Term,
 ) -> None:
     """Tell plans that a goal has got into another state: the event comes one cycle later, before ordinary ones."""
     kind = goal[0]
@@ -32,7 +37,7 @@ def goal_state(
     meta = trigger("^", kind.kind, kind.functor)
     if agent.library.selects[meta] is None:
         return
-    told = Annotated(structure("state", atom(state)), (structure("reason", reason),))
+    told = Annotated(structure("state", atom(state)), annotation_set((structure("reason", reason), *details)))
     event = ((meta, *goal[1:]), None, annotation_set((told, *annotations_of_event(annotations))), None)
     agent.do_soon(_insert, event)
 
