@@ -1,14 +1,15 @@
 """Plans whose labels say what must hold while they run: ``@p[while(Condition), within(Ms), cleanup(Goal)]``.
 
-The condition is watched as that of a ``.wait``.  When it does not hold any more, the plan stops in the middle of its step, its
-clean-up goal is pursued, and then the plan fails.
+The condition is watched as that of a ``.wait``.  When it no longer holds, the plan stops in the middle of its step, its clean-up
+goal is pursued, and then the plan fails.
 """
 
 from jacaros.asl.lowering import Names, lower
 from jacaros.bdi.explaining.failure_reason import ERROR, ERROR_MSG, FailureReason, nowhere
 from jacaros.bdi.rules import failure
 from jacaros.bdi.rules.body_steps import interpreted
-from jacaros.bdi.rules.deadlines import deadline_terms, interrupt_plan, set_deadline
+from jacaros.bdi.rules.deadlines import deadline_terms, set_deadline
+from jacaros.bdi.rules.interrupted_plans import give_up, interrupt_plan
 from jacaros.bdi.rules.supervision import plan_ended, supervising
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.condition_waits import ConditionWatch, asked_by
@@ -74,7 +75,7 @@ def _holds(agent: Circumstance, condition: Term) -> bool:
 
 
 def _lost(condition: Term) -> FailureReason:
-    message = f"the condition {text(condition)} of the plan does not hold any more"
+    message = f"the condition {text(condition)} of the plan no longer holds"
     return nowhere(
         (ERROR, atom("condition_lost")),
         (ERROR_MSG, String(message)),
