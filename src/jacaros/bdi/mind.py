@@ -355,7 +355,8 @@ class Mind(Circumstance):
             annotations, goal = goal.annotations, goal.goal
         current = self.current
         cause = self.cause_now() or (current.cause if current else None)
-        pursuits.adopt(self, (apart(goal), None, annotations, cause))
+        adopt = meta_events.post_new_goal if annotations is BY_SELF else pursuits.adopt
+        adopt(self, (apart(goal), None, annotations, cause))
 
     def begin_act(
         self, symbol: Functor, arguments: tuple[Term, ...], annotations: tuple[Term, ...], next_step: NextStep

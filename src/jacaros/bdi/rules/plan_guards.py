@@ -1,7 +1,7 @@
 """Plans whose labels say what must hold while they run: ``@p[while(Condition), within(Ms), cleanup(Goal)]``.
 
-The condition is watched as that of a ``.wait``.  When it no longer holds, the plan stops in the middle of its step, its clean-up
-goal is pursued, and then the plan fails.
+The condition is watched as that of a ``.wait``.  When it no longer holds, the plan stops in the middle of its step, its
+clean-up goal is pursued, and then the plan fails.
 """
 
 from jacaros.asl.lowering import Names, lower

@@ -6,13 +6,15 @@ That frame is reached when the goal or plan has ended.
 
 from jacaros.bdi.explaining.failure_reason import FailureReason
 from jacaros.bdi.state.condition_waits import ConditionWatch
-from jacaros.bdi.state.intention import FIRST_SLOT, GOAL, Frame, Intention
+from jacaros.bdi.state.intention import FIRST_SLOT, GOAL, PLAN, Frame, Intention
 from jacaros.bdi.state.triggers import Trigger, trigger
 from jacaros.bdi.state.waiting import Alarm
 from jacaros.terms.values import Term, functor
 
 SUPERVISED = trigger("+", "", functor("supervised", 0, namespace="jacaros"))
 """The trigger of frames that hold a supervision."""
+PAUSE = functor("pause", 0, namespace="jacaros")
+"""The label of the plan of a frame that stands for a goal between two of its plans."""
 SUPERVISION = FIRST_SLOT
 """The place of the supervision in such a frame; the arguments of a goal that is pursued follow."""
 
@@ -104,8 +106,15 @@ def caller_of(intention: Intention) -> Frame | None:
     return next((frame for frame in reversed(intention.frames) if not is_supervision(frame)), None)
 
 
+def is_pause(frame: Frame) -> bool:
+    """Whether a frame stands for a goal between two of its plans."""
+    return frame[PLAN].label is PAUSE
+
+
 def supervisions_below(intention: Intention, index: int) -> list[Supervision]:
     """Return what supervises the frame at *index*, or the goal that is about to get a frame there."""
+    if not index or not is_supervision(intention.frames[index - 1]):
+        return []
     found: list[Supervision] = []
     for frame in reversed(intention.frames[max(0, index - 2) : index]):
         if not is_supervision(frame):
