@@ -20,7 +20,7 @@ def clauses(program: nodes.Program) -> Iterator[Clause]:
 
 
 def conditions(node: nodes.Node) -> Iterator[nodes.Term]:
-    """The conditions that *node* itself has: contexts, tests, conditions of statements, bodies of rules, ``while`` of labels."""
+    """The conditions that *node* itself has: contexts, tests, conditions of statements, rules, ``while`` of labels."""
     if isinstance(node, nodes.Plan):
         if node.context is not None:
             yield node.context

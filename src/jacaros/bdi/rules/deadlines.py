@@ -12,6 +12,7 @@ from jacaros.bdi.state.supervision import (
     SUPERVISION,
     Pursuit,
     Supervision,
+    is_pause,
     is_supervision,
     place_of,
 )
@@ -66,7 +67,8 @@ def _fail_goal(agent: Circumstance, intention: Intention, index: int, reason: Fa
     frames = intention.frames
     place = next((at for at in range(index + 1, len(frames)) if not is_supervision(frames[at])), None)
     if place is not None:
-        goal, annotations, number = frames[place][GOAL], frames[place][ANNOTATIONS], frames[place][SERIAL]
+        goal, annotations = frames[place][GOAL], frames[place][ANNOTATIONS]
+        number = -1 if is_pause(frames[place]) else frames[place][SERIAL]
         reason = reason.interrupted(frames[place:])
         goal_failure.observe_failed(agent, intention, place + 1, reason)
     release_bindings(goal, frame[SERIAL])

@@ -139,7 +139,7 @@ def _time_to_next(agent: Circumstance, pursuit: Pursuit, goal: Goal, annotations
 
 def next_period(agent: Circumstance, frame: Frame) -> Posted:
     """The step behind the pause between two periods."""
-    intention = end_pause(agent, frame)
+    intention = end_pause(agent)
     goal, annotations = frame[GOAL], frame[ANNOTATIONS]
     pursuit: Pursuit = intention.frames[-1][SUPERVISION]
     assert pursuit.period is not None

@@ -10,6 +10,7 @@ from jacaros.bdi.state.intention import Frame, Intention, NextStep
 from jacaros.bdi.state.literals import EventAnnotations
 from jacaros.bdi.state.plan import Plan
 from jacaros.bdi.state.supervision import (
+    PAUSE,
     SUPERVISED,
     SUPERVISION,
     PlanGuard,
@@ -20,19 +21,18 @@ from jacaros.bdi.state.supervision import (
 )
 from jacaros.bdi.state.triggers import Goal
 from jacaros.bdi.state.waiting import TimedWait
-from jacaros.terms.values import BY_SELF, Term, atom, functor, structure
+from jacaros.terms.values import BY_SELF, Functor, Term, atom, functor, structure
 
 ATTEMPTS = functor("attempts", 1)
 
 
-def _plan(name: str) -> Plan:
-    """A plan without a body: its frames stand for what goes on between the plans of a goal."""
-    return Plan(
-        nodes.Plan(None, nodes.Trigger("+", "!", nodes.Literal(name)), None, nodes.Body()), atom(name)
-    )
+def _plan(label: Functor) -> Plan:
+    """A plan without a body, for the frames between the plans of a goal."""
+    node = nodes.Plan(None, nodes.Trigger("+", "!", nodes.Literal(label.name)), None, nodes.Body())
+    return Plan(node, label)
 
 
-_SUPERVISING, _WAITING = _plan("supervising"), _plan("waiting")
+_SUPERVISING, _WAITING = _plan(SUPERVISED.functor), _plan(PAUSE)
 
 
 def supervising(
@@ -153,16 +153,15 @@ def _resume(agent: Circumstance, waiting: TimedWait) -> None:
     agent.end_wait(waiting)
 
 
-def end_pause(agent: Circumstance, frame: Frame) -> Intention:
+def end_pause(agent: Circumstance) -> Intention:
     """Take the frame of a pause off the stack of the running intention."""
     intention = agent.current
     assert intention is not None
-    meta_events.observe(agent, intention, frame, "finished")
     intention.frames.pop()
     return intention
 
 
 def post_again(agent: Circumstance, frame: Frame) -> Posted:
     """The step behind a pause between two attempts."""
-    end_pause(agent, frame)
+    end_pause(agent)
     return Posted(frame[1], frame[2])
