@@ -511,6 +511,30 @@ def test_a_plan_for_an_event_has_guards():
     assert host.cancelled == [1]
 
 
+@pytest.mark.parametrize("added", ["{{{}}}", '"{}."'])
+def test_plans_that_are_added_at_run_time_have_guards(added):
+    plan = added.format("@p[while(ok), cleanup(park)] +!h <- drive(5)")
+    assert printed(
+        f"""
+        ok. !g. !t.
+        +!g <- .add_plan({plan}); !h.
+        -!h[error(E)] <- .print(E).
+        +!park <- .print(parked).
+        +!t <- .wait(100); -ok.
+        """
+    ) == ["parked", "condition_lost"]
+
+
+def test_sub_plans_have_guards():
+    assert printed(
+        """
+        ok. !g. !t.
+        +!g <- !h; .print(after). { @[while(ok)] +!h <- drive(3). -!h[error(E)] <- .print(E). }
+        +!t <- .wait(100); -ok.
+        """
+    ) == ["condition_lost", "after"]
+
+
 # --- stored minds ------------------------------------------------------------------------------------------
 
 
