@@ -21,6 +21,7 @@ from jacaros.asl.checks.plans import (
     never_selected,
     wrong_urgencies,
 )
+from jacaros.asl.checks.supervision import wrong_supervision
 from jacaros.asl.checks.variables import singletons, singletons_of_facts, vain_comparisons
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.source import Span
@@ -69,6 +70,7 @@ def _mistakes(program: nodes.Program, known: KnownActions, errors: Sequence[Diag
         *contexts_never_true(found),
         *misspelt_label_words(found),
         *wrong_urgencies(found),
+        *wrong_supervision(program.goals, found),
     ]
     for clause in clauses:
         warnings += vain_comparisons(clause)

@@ -199,6 +199,7 @@ KINDS: Final[dict[str, Kind]] = {
     "wrong-operator": Kind("error", "an operator of another language"),
     "wrong-project": Kind("error", "a mistake in a project file"),
     "wrong-separator": Kind("error", "',' in place of another sign"),
+    "wrong-supervision": Kind("warning", "an invalid or misplaced annotation such as `within` or `retry`"),
     "wrong-tail": Kind("error", "the tail of a list or of annotations is no variable"),
     "wrong-trigger": Kind("error", "something that cannot trigger a plan"),
     "wrong-urgency": Kind("warning", "an urgency of a plan that is no whole number from 0 on"),

@@ -1,6 +1,7 @@
 """Literals, variables, lists and annotations, and the namespaces that a file gives them."""
 
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -239,7 +240,7 @@ class LiteralParser(Cursor, ABC):
         if self.token.kind != "[":
             return None
         start = self.token
-        items, tail = self._elements()
+        items, tail = self._elements(self._annotation)
         if not items and tail is None:
             return None
         if tail is not None and not isinstance(tail, nodes.Variable):
@@ -249,16 +250,27 @@ class LiteralParser(Cursor, ABC):
             tail = None
         return nodes.Annotations(tuple(items), tail, span=self.span_from(start))
 
-    def _elements(self) -> tuple[list[nodes.Term], nodes.Term | None]:
+    def _annotation(self) -> nodes.Term:
+        """An annotation: an element, or ``while(Condition)`` of a label."""
+        start = self.token
+        if start.kind != "while" or self.peek().kind != "(":
+            return self.element()
+        self.advance()
+        return nodes.Literal("while", self._arguments(), span=self.span_from(start))
+
+    def _elements(
+        self, element: Callable[[], nodes.Term] | None = None
+    ) -> tuple[list[nodes.Term], nodes.Term | None]:
         """The elements and the tail of what stands in brackets; a tail that is a list is spliced in."""
+        element = element or self.element
         opener = self.advance()
         items: list[nodes.Term] = []
         tail: nodes.Term | None = None
         outside = self._enter_term()
         if self.token.kind not in ("]", "|"):
-            items.append(self.element())
+            items.append(element())
             while self.accept(","):
-                items.append(self.element())
+                items.append(element())
         if self.accept("|"):
             tail = self.operand()
             if isinstance(tail, nodes.ListTerm):

@@ -18,9 +18,10 @@ from jacaros.bdi.rules import (
     perceiving,
     plan_changes,
     plan_terms,
+    pursuits,
     query,
+    supervision,
     waits,
-    watched,
 )
 from jacaros.bdi.rules.answers import answer_by_plan
 from jacaros.bdi.rules.context import Context
@@ -194,7 +195,7 @@ class Mind(Circumstance):
             raise ActionError("a goal must be a literal")
         kind = trigger("+", "!", symbol)
         event = ((kind, *arguments), None, own_annotations(annotations), goal_cause)
-        meta_events.post_new_goal(self, event)
+        pursuits.adopt(self, event)
         self.architecture.ready()
 
     def run(self, fuel: int) -> bool:
@@ -270,6 +271,8 @@ class Mind(Circumstance):
     shut_down_in = meta_events.shutting_down
     observe_rest = meta_events.observe_rest  # pyright: ignore[reportAssignmentType]
     drop_wait = waits.drop  # pyright: ignore[reportAssignmentType]
+    end_above = supervision.end_above  # pyright: ignore[reportAssignmentType]
+    end_wait = waits.come_true  # pyright: ignore[reportAssignmentType]
     notify_event_waits = waits.notify_event_waits  # pyright: ignore[reportAssignmentType]
 
     # --- called by generated code --------------------------------------------------------------------------
@@ -317,8 +320,7 @@ class Mind(Circumstance):
     ) -> Posted:
         """A goal that is posted with annotations."""
         annotations = own_annotations(items, tail)
-        watched.watch_deadline(self, goal, annotations, separate)
-        return Posted(goal, annotations)
+        return Posted(goal, annotations) if separate else pursuits.posted(self, goal, annotations)
 
     def goal_from(self, operator: str, kind: str, term: Term, separate: bool = False) -> Goal | Posted:
         """The goal that a term denotes.
@@ -334,9 +336,9 @@ class Mind(Circumstance):
         if not annotations_of(term):
             return goal
         annotations = own_annotations(annotations_of(term))
-        if kind == "!":
-            watched.watch_deadline(self, goal, annotations, separate)
-        return Posted(goal, annotations)
+        return (
+            Posted(goal, annotations) if separate or kind != "!" else pursuits.posted(self, goal, annotations)
+        )
 
     def test_goal_from(self, term: Term) -> Goal | Posted:
         """The test goal for a query known only at run time; fails without plans for it."""
@@ -353,7 +355,8 @@ class Mind(Circumstance):
             annotations, goal = goal.annotations, goal.goal
         current = self.current
         cause = self.cause_now() or (current.cause if current else None)
-        meta_events.post_new_goal(self, (apart(goal), None, annotations, cause))
+        adopt = meta_events.post_new_goal if annotations is BY_SELF else pursuits.adopt
+        adopt(self, (apart(goal), None, annotations, cause))
 
     def begin_act(
         self, symbol: Functor, arguments: tuple[Term, ...], annotations: tuple[Term, ...], next_step: NextStep

@@ -12,7 +12,8 @@ from typing import Any
 
 from jacaros.bdi.mind import Mind
 from jacaros.bdi.object_table import Reader, Writer
-from jacaros.bdi.rules import urgency, waits
+from jacaros.bdi.rules import urgency
+from jacaros.bdi.rules.alarms import start_alarm
 from jacaros.bdi.rules.belief_update import look_again
 from jacaros.bdi.rules.plan_changes import look_at_plans
 from jacaros.bdi.state.act import Completion
@@ -20,6 +21,7 @@ from jacaros.bdi.state.belief_base import take_away
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.event import EVENT_INTENTION
 from jacaros.bdi.state.intention import Intention
+from jacaros.bdi.state.supervision import SUPERVISION, Pursuit, is_supervision
 from jacaros.bdi.state.waiting import TimedWait
 from jacaros.terms.values import SOURCE_PERCEPT, String, atom, functor
 
@@ -149,9 +151,18 @@ def _wait_again(mind: Mind, held: dict[str, Any]) -> None:
     for intention in mind.alive.values():
         if isinstance(intention.waiting, TimedWait):
             intention.waiting.began -= set_back
+    for pursuit in _pursuits(mind):
+        pursuit.began -= set_back
     for alarm in mind.waits.alarms.values():
         alarm.due -= set_back
-        waits.start_alarm(mind, alarm, max(0.0, alarm.due - now))
+        start_alarm(mind, alarm, max(0.0, alarm.due - now))
+
+
+def _pursuits(mind: Mind) -> set[Pursuit]:
+    """The pursuits of goals, each once: the branches of a fork share them."""
+    frames = (frame for intention in mind.alive.values() for frame in intention.frames)
+    held = (frame[SUPERVISION] for frame in frames if is_supervision(frame))
+    return {each for each in held if isinstance(each, Pursuit)}
 
 
 def knowledge(agent: Circumstance) -> dict[str, Any]:

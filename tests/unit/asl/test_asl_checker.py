@@ -357,3 +357,39 @@ def test_codes_that_there_are_not_are_told():
 )
 def test_slips_of_the_pen(written: str, meant: str, like: bool):
     assert is_slip_of(written, meant) is like
+
+
+RETRY = "write how often, and milliseconds before the second attempt, such as retry(3) or retry(3, 500)"
+
+
+@pytest.mark.parametrize(
+    ("text", "help_"),
+    [
+        ("!g[every(0)]. +!g.", "write a number of milliseconds, such as every(1000)"),
+        ("+!g <- !!g[every(-5)].", "write a number of milliseconds, such as every(1000)"),
+        ("+!g <- !g[within(abc)].", "write a number of milliseconds, such as within(5000)"),
+        ("+!g <- !g[within(1, 2)].", "write a number of milliseconds, such as within(5000)"),
+        ("@p[within(-1)] +!g.", "write a number of milliseconds, such as within(5000)"),
+        ("+!g <- !g[retry(0)].", RETRY),
+        ("+!g <- !g[retry(3, -1)].", RETRY),
+        ("+!g <- ?g[every(100)].", "write it at a goal that asks, such as !ask[within(5000)]"),
+        ("@p[retry(3)] +!g.", "write it at the goal, such as !g[retry(3)]"),
+        ("+!g <- !g[while(g)].", "write it in the label of the plan, such as @p[while(ready)] +!g <- ..."),
+        ("@p[cleanup(3)] +!g.", "write one goal, such as cleanup(park)"),
+        ("@p[while(a, b)] +!g.", "write one condition, such as while(battery(B) & B > 20)"),
+    ],
+)
+def test_annotations_that_act_are_valid_and_at_their_places(text, help_):
+    (found,) = warnings(text)
+    assert (found.code, found.hint) == ("wrong-supervision", help_)
+
+
+def test_valid_annotations_that_act_are_not_reported():
+    assert codes("!g(1)[every(1000)]. +!g(T) <- !g(3)[within(T), retry(3, 0.5), hard_deadline(T * 2)].") == []
+    assert codes("@p[while(ok & not b(3)), within(10), cleanup(g)] +!g.") == []
+
+
+def test_conditions_and_clean_up_goals_of_labels_are_looked_at():
+    assert codes("@p[while(a & not a)] +!g.") == ["context-never-true"]
+    assert codes("@p[while(a), cleanup(park)] +!g.") == ["unknown-goal"]
+    assert codes("@p[while(at(Room))] +!g(Room).") == []

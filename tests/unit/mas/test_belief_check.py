@@ -83,6 +83,7 @@ def warnings(folder: Path, program: str, project: str, mappings: tuple[str, ...]
         "+!go <- .count(obstacel(_), N); .print(N).",
         "+!go <- .findall(D, obstacel(D), L); .print(L).",
         "+!go <- .wait({+obstacel(D)}); .print(D).",
+        "@p[while(obstacel(D) & D > 1)] +!go <- .print(a).",
     ],
 )
 def test_each_place_where_a_property_is_asked_for(folder: Path, use: str) -> None:

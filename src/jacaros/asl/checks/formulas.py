@@ -20,7 +20,7 @@ def clauses(program: nodes.Program) -> Iterator[Clause]:
 
 
 def conditions(node: nodes.Node) -> Iterator[nodes.Term]:
-    """The conditions that *node* itself has: contexts, tests, conditions of statements, bodies of rules."""
+    """The conditions that *node* itself has: contexts, tests, conditions of statements, rules, ``while`` of labels."""
     if isinstance(node, nodes.Plan):
         if node.context is not None:
             yield node.context
@@ -32,6 +32,16 @@ def conditions(node: nodes.Node) -> Iterator[nodes.Term]:
         yield node.formula
     elif isinstance(node, nodes.Rule):
         yield node.body
+    elif isinstance(node, nodes.Literal) and node.functor == "while" and len(node.arguments) == 1:
+        yield node.arguments[0]
+
+
+def labelled(plan: nodes.Plan) -> Iterator[nodes.Literal]:
+    """The annotations of a plan's label, but for those that are no literals."""
+    annotations = plan.label.annotations if isinstance(plan.label, nodes.Literal) else None
+    for item in () if annotations is None else annotations.items:
+        if isinstance(item, nodes.Literal):
+            yield item
 
 
 def parts_of(formula: nodes.Term) -> Iterator[nodes.Term]:

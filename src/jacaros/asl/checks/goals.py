@@ -8,6 +8,7 @@ from typing import Final
 
 from jacaros.asl import nodes
 from jacaros.asl.checks.actions import KnownActions
+from jacaros.asl.checks.formulas import labelled
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.slips import MOST_ASKED, close_matches
 
@@ -36,6 +37,8 @@ def goals_without_plan(
                 handled.add(signature)
         elif isinstance(node, nodes.Achieve) and isinstance(node.goal, nodes.Literal):
             posted.append(node.goal)
+        elif isinstance(node, nodes.Plan):
+            posted += _cleanups(node)
         elif isinstance(node, nodes.InternalAction):
             action = known.of(node)
             if action.brings_in and action.changes_plans:
@@ -57,6 +60,12 @@ def goals_without_plan(
             _meant_goal(signature, handled) if len(reported) <= MOST_ASKED else None,
             "unknown-goal",
         )
+
+
+def _cleanups(plan: nodes.Plan) -> list[nodes.Literal]:
+    """The clean-up goal of a plan: ``cleanup(Goal)`` in its label."""
+    found = [each.arguments[0] for each in labelled(plan) if each.functor == "cleanup" and each.arguments]
+    return [goal for goal in found if isinstance(goal, nodes.Literal)]
 
 
 def _is_test(plan: nodes.Plan) -> bool:

@@ -21,9 +21,9 @@ from jacaros.bdi.actions.internal_action import (
     whole,
 )
 from jacaros.bdi.mind import Mind
+from jacaros.bdi.rules.alarms import set_alarm
 from jacaros.bdi.rules.context import Context
 from jacaros.bdi.rules.proc_msg import nobody_there, time_out_question
-from jacaros.bdi.rules.waits import set_alarm
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.bdi.state.waiting import AnswerWait, Waiting
 from jacaros.terms.substitution import ATOMIC, is_flat, rename, resolve

@@ -16,6 +16,7 @@ from jacaros.bdi.state.event import EVENT_GOAL, Event
 from jacaros.bdi.state.intention import ANNOTATIONS, GOAL, PLAN, STEP, Frame, Intention
 from jacaros.bdi.state.literals import literal_of
 from jacaros.bdi.state.plan import SUSPENDED, Failure
+from jacaros.bdi.state.supervision import is_supervision
 from jacaros.bdi.state.triggers import Trigger
 from jacaros.bdi.state.waiting import OWN_SUSPENSION, OwnSuspension, is_action
 from jacaros.terms.order import annotation_set
@@ -108,7 +109,7 @@ def _state(candidate: Intention) -> Term:
 
 def _stack(ctx: Context, intention: Intention) -> Term:
     """The list of an intention's plans, the one at work first."""
-    frames = intention.frames
+    frames = [frame for frame in intention.frames if not is_supervision(frame)]
     called = [frame[GOAL][0] for frame in frames[1:]]
     event = pending_event(ctx.agent, intention)
     called.append(event[EVENT_GOAL][0] if event is not None else None)

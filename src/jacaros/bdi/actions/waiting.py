@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 from jacaros.bdi.actions.internal_action import WrongArguments, internal_action
 from jacaros.bdi.rules import waits
+from jacaros.bdi.rules.alarms import set_alarm
 from jacaros.bdi.rules.context import Context
 from jacaros.bdi.rules.goals import post_external
 from jacaros.bdi.rules.plan_terms import trigger_of
@@ -33,7 +34,7 @@ def wait(ctx: Context, what: Term, limit: Term = None, elapsed: Term = None) -> 
     agent, intention, began = ctx.agent, ctx.suspendable(), ctx.architecture.now()
     if what.__class__ is float:
         timed = TimedWait(intention, _reason(intention, (TIME, what)), elapsed, began)
-        timed.alarm = waits.set_alarm(agent, what / 1000.0, waits.come_true, timed)
+        timed.alarm = set_alarm(agent, what / 1000.0, waits.come_true, timed)
         return timed
     found = trigger_of(what)
     waiting: EventWait | ConditionWait
@@ -48,7 +49,7 @@ def wait(ctx: Context, what: Term, limit: Term = None, elapsed: Term = None) -> 
         agent.waits.conditions.add(waiting)
         agent.incoming.called = True
     if limit is not None:
-        waiting.alarm = waits.set_alarm(agent, limit / 1000.0, waits.time_out, waiting)
+        waiting.alarm = set_alarm(agent, limit / 1000.0, waits.time_out, waiting)
     return waiting
 
 
@@ -80,7 +81,7 @@ def at(ctx: Context, moment: Term, event: Term) -> None:
     if found is None or found[0] is None or match is None or unit is None:
         raise WrongArguments('.at takes a moment such as "now +5 s" and an event such as {+!g}')
     delay = float(match.group(1) or 0) * _UNITS[unit]
-    waits.set_alarm(ctx.agent, delay, post_external, found[0], rename(found[1]))
+    set_alarm(ctx.agent, delay, post_external, found[0], rename(found[1]))
 
 
 @internal_action(".signal", arity=(1, 2))

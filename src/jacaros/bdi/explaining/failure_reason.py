@@ -82,6 +82,10 @@ class FailureReason:
             self._terms = self._terms()
         return self._terms
 
+    def add(self, *terms: Term) -> None:
+        """Say more about the failure: to plans for the goals further down, and to people."""
+        self._terms, self._made = (*self.terms, *terms), None
+
     def annotations(self) -> tuple[Term, ...]:
         """All annotations, sorted."""
         if self._made is None:

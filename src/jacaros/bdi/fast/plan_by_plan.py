@@ -121,7 +121,9 @@ class _Waiting:
             self._selection = self._plans.interpreted(self._place)
         frame = self._selection(agent, goal, annotations)
         if frame is not None and self._plans.compile(self._place).__class__ is not Selection:
-            frame[STEP] = self._selection.plans[0].first
+            plan = self._selection.plans[0]
+            if not plan.guards:  # a plan with guards finds its first step itself
+                frame[STEP] = plan.first
         return frame
 
 

@@ -11,6 +11,7 @@ from jacaros.asl import nodes
 from jacaros.asl.lowering import Names, lower
 from jacaros.asl.walk import names_in
 from jacaros.bdi.rules.body_steps import interpreted
+from jacaros.bdi.rules.plan_guards import begin_guarded
 from jacaros.bdi.rules.query import answers
 from jacaros.bdi.rules.searching import run, unify_rows
 from jacaros.bdi.state.circumstance import Circumstance
@@ -119,4 +120,5 @@ def _frame(plan: Plan, goal: Goal, annotations: EventAnnotations, names: Names, 
     for name in body.known:
         names[name]  # made if it has not been asked for: it may be on another branch
     values = [deref(names[name]) if name in names else None for name in plan.slots]
-    return [body.first, goal, annotations, serial, plan, *values, *([None] * body.extra)]
+    first = begin_guarded if plan.guards else body.first
+    return [first, goal, annotations, serial, plan, *values, *([None] * body.extra)]

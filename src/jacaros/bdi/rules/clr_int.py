@@ -2,6 +2,7 @@
 
 from jacaros.bdi.rules import failure, meta_events
 from jacaros.bdi.rules.forks import leave
+from jacaros.bdi.rules.supervision import end_above
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.event import EVENT_INTENTION, Event
 from jacaros.bdi.state.intention import GOAL, PLAN, Frame, Intention
@@ -97,6 +98,7 @@ def cut(agent: Circumstance, intention: Intention, index: int) -> None:
     intention.parked = False
     intention.suspended = None
     leave(agent, intention, index)
+    end_above(agent, intention, index)
     del intention.frames[index:]
     while intention.handlers and intention.handlers[-1] >= index:
         intention.handlers.pop()

@@ -69,9 +69,9 @@ def _step(agent: Circumstance, intention: Intention, frame: Frame) -> Any:
     except InternalError:
         raise
     except Exception as fault:
-        goal = step_failed(agent, intention, fault)
+        goal = step_failed(agent, intention, fault) or SUSPENDED
     if goal is FAILED:
-        goal = step_failed(agent, intention)
+        goal = step_failed(agent, intention) or SUSPENDED
     agent.trail.clear()
     return goal
 

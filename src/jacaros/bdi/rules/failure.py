@@ -6,6 +6,7 @@ message, event or intention; it says so, and lives on.
 from jacaros.asl import nodes
 from jacaros.bdi.actions.internal_action import ActionError, WrongArguments
 from jacaros.bdi.explaining.failure_reason import ERROR, ERROR_MSG, FailureReason, GoalPlace, goal_text
+from jacaros.bdi.rules import supervision
 from jacaros.bdi.rules.subplans import handles
 from jacaros.bdi.state.budget import SearchLimit
 from jacaros.bdi.state.circumstance import Circumstance
@@ -13,6 +14,7 @@ from jacaros.bdi.state.event import Posted
 from jacaros.bdi.state.intention import GOAL, PLAN, STEP, Frame, Intention
 from jacaros.bdi.state.literals import EventAnnotations
 from jacaros.bdi.state.plan import Fail, Failure, StepInfo
+from jacaros.bdi.state.supervision import SUPERVISED
 from jacaros.bdi.state.triggers import Goal
 from jacaros.errors import InternalError
 from jacaros.terms.deep import CyclicTerm
@@ -174,11 +176,11 @@ def release_bindings(goal: Goal, serial: int) -> None:
             stack.extend(a for a in term.stack[term.settled : term.size] if a.__class__ in _MAY_BE_BOUND)
 
 
-def handler_event(agent: Circumstance, intention: Intention, reason: FailureReason) -> Posted | None:
+def handler_event(agent: Circumstance, intention: Intention, reason: FailureReason) -> Posted | int | None:
     """Find the nearest goal down the stack that has a handler; None when there is none.
 
     The failed frames stay on the stack under the handler until it ends.  A failure inside a handler goes on to the goals
-    below the one it handles.
+    below the one it handles.  A goal that is to be tried again comes before its handler: the index of its frame is given.
     """
     frames, selects = intention.frames, agent.library.selects
     handlers = len(intention.handlers)
@@ -186,6 +188,14 @@ def handler_event(agent: Circumstance, intention: Intention, reason: FailureReas
     while index >= 0:
         frame = frames[index]
         trigger = frame[1][0]
+        if (
+            index
+            and frames[index - 1][1][0] is SUPERVISED
+            and supervision.fails(agent, intention, index, reason)
+        ):
+            del intention.handlers[handlers:]
+            release_bindings(frame[1], frame[3])
+            return index
         if trigger.failing:
             handlers -= 1
             index = intention.handlers[handlers] - 1
@@ -214,6 +224,8 @@ def has_handler(agent: Circumstance, intention: Intention, above: int) -> bool:
             index = intention.handlers[handlers] - 1
             continue
         if trigger.on_fail is not None and handles(agent, intention, index, trigger.on_fail):
+            return True
+        if supervision.has_attempt(intention, index):
             return True
         index -= 1
     return False

@@ -4,12 +4,13 @@ from typing import Any
 
 from jacaros.bdi.explaining import lost_goals
 from jacaros.bdi.explaining.failure_reason import FailureReason
-from jacaros.bdi.rules import failure, meta_events, subplans
+from jacaros.bdi.rules import failure, meta_events, subplans, supervision
 from jacaros.bdi.rules.forks import branch_failed
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.event import Posted
 from jacaros.bdi.state.intention import ANNOTATIONS, GOAL, SERIAL, Frame, Intention
 from jacaros.bdi.state.literals import EventAnnotations
+from jacaros.bdi.state.supervision import caller_of
 from jacaros.bdi.state.triggers import Goal
 from jacaros.terms.values import atom
 
@@ -26,8 +27,11 @@ def unplanned(
     if trigger.failing:
         _lost_in_handler(agent, intention, goal, annotations)
         return None
-    caller = intention.frames[-1] if intention.frames else None
+    caller = caller_of(intention)
     reason = failure.no_plan(agent, goal, annotations, caller)
+    height = len(intention.frames)
+    if supervision.fails(agent, intention, height, reason):
+        return supervision.try_again(agent, intention, height, goal, annotations, reason.error())
     return fail_goal(agent, intention, goal, annotations, reason)
 
 
@@ -43,7 +47,7 @@ def too_deep(agent: Circumstance, intention: Intention) -> Posted | None:
     frame = intention.frames.pop()
     goal, annotations = frame[GOAL], frame[ANNOTATIONS]
     failure.release_bindings(goal, frame[SERIAL])
-    reason = failure.too_deep(goal, annotations, intention.frames[-1], agent.options.goal_depth)
+    reason = failure.too_deep(goal, annotations, caller_of(intention) or frame, agent.options.goal_depth)
     if goal[0].failing:
         # Handlers of handlers without end: nobody is left who could deal with it.
         intention.handlers.clear()
@@ -65,6 +69,7 @@ def fail_goal(
     *number* is that of the frame that it had, by which observers know it.
     """
     trigger = goal[0]
+    supervision.end_below(agent, intention, len(intention.frames))
     if number < 0:
         agent.trail.serial += 1
         number = agent.trail.serial
@@ -98,6 +103,8 @@ def fail_intention(
             agent.finish(intention)
             return None
     posted = failure.handler_event(agent, intention, reason)
+    if isinstance(posted, int):
+        return _try_again(agent, intention, posted, reason, unplanned)
     if posted is not None:
         if agent.features.meta:
             _tell_unplanned(agent, intention, unplanned, reason, over=True)
@@ -123,6 +130,17 @@ def fail_intention(
         _tell_failed(agent, intention, reason)
     agent.finish(intention)
     return None
+
+
+def _try_again(
+    agent: Circumstance, intention: Intention, index: int, reason: FailureReason, unplanned: _Unplanned | None
+) -> Posted | None:
+    """The goal of the frame at *index* is tried again; None when that is done later."""
+    if agent.features.meta:
+        _tell_unplanned(agent, intention, unplanned, reason, over=True)
+        observe_failed(agent, intention, index, reason)
+    frame = intention.frames[index]
+    return supervision.try_again(agent, intention, index, frame[GOAL], frame[ANNOTATIONS], reason.error())
 
 
 def _tell_unplanned(

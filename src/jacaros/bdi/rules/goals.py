@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 from jacaros.bdi.explaining.failure_reason import FailureReason, nowhere
 from jacaros.bdi.rules import goal_failure, meta_events, waits
+from jacaros.bdi.rules.alarms import cancel_alarm
 from jacaros.bdi.rules.clr_int import achieve, cut, pending_event, pop_finished, remove_event
 from jacaros.bdi.rules.failure import release_bindings
 from jacaros.bdi.state.belief_base import parts
@@ -172,7 +173,7 @@ def drop_all_intentions(agent: Circumstance) -> None:
     """All but the running one; what ``.at`` is to post does not come either."""
     for alarm in list(agent.waits.alarms.values()):
         if alarm.function is post_external:
-            waits.cancel_alarm(agent, alarm)
+            cancel_alarm(agent, alarm)
     for intention in list(agent.alive.values()):
         if intention is not agent.current:
             drop_intention(agent, intention)

@@ -10,6 +10,7 @@ from jacaros.bdi.state.event import EVENT_ANNOTATIONS, EVENT_GOAL, Event
 from jacaros.bdi.state.intention import ANNOTATIONS, GOAL, SERIAL, Frame, Intention
 from jacaros.bdi.state.literals import EventAnnotations, annotations_of_event, literal_of
 from jacaros.bdi.state.observing import MindObserver
+from jacaros.bdi.state.supervision import is_pause
 from jacaros.bdi.state.triggers import Goal, trigger
 from jacaros.terms.order import annotation_set
 from jacaros.terms.text import text
@@ -23,7 +24,12 @@ GoalObserver = Callable[[str, str, int, int, str], None]
 
 
 def goal_state(
-    agent: Circumstance, goal: Goal, annotations: EventAnnotations, state: str, reason: Term = _NO_REASON
+    agent: Circumstance,
+    goal: Goal,
+    annotations: EventAnnotations,
+    state: str,
+    reason: Term = _NO_REASON,
+    *details: Term,
 ) -> None:
     """Tell plans that a goal has got into another state: the event comes one cycle later, before ordinary ones."""
     kind = goal[0]
@@ -32,7 +38,7 @@ def goal_state(
     meta = trigger("^", kind.kind, kind.functor)
     if agent.library.selects[meta] is None:
         return
-    told = Annotated(structure("state", atom(state)), (structure("reason", reason),))
+    told = Annotated(structure("state", atom(state)), annotation_set((structure("reason", reason), *details)))
     event = ((meta, *goal[1:]), None, annotation_set((told, *annotations_of_event(annotations))), None)
     agent.do_soon(_insert, event)
 
@@ -63,10 +69,10 @@ def observe_goal(
 
 
 def _goal_number(frame: Frame) -> int | None:
-    """The number of a frame's goal, the same in all branches of a fork; None when the goal has a frame below."""
+    """The number of a frame's goal, the same in all branches of a fork; None when the goal has a frame below, or pauses."""
     if not frame[GOAL][0].failing:
         number: int = frame[SERIAL]
-        return number
+        return None if is_pause(frame) else number
     return failed_number(frame[ANNOTATIONS])
 
 

@@ -6,8 +6,8 @@ from functools import lru_cache
 from jacaros.asl.diagnostics import AslError
 from jacaros.asl.lowering import fresh_names, lower_plan
 from jacaros.bdi.rules import belief_update, failure, waits
-from jacaros.bdi.rules.meta_events import post_new_goal
 from jacaros.bdi.rules.plan_terms import relevant_plans
+from jacaros.bdi.rules.pursuits import adopt
 from jacaros.bdi.rules.query import solve_formula
 from jacaros.bdi.rules.searching import run
 from jacaros.bdi.state.belief_base import is_source, parts
@@ -230,7 +230,7 @@ def _achieve(agent: Circumstance, message: SpeechAct) -> None:
             _refuse(agent, message)
         else:
             goal: Goal = (trigger("+", "!", symbol), *arguments)
-            post_new_goal(agent, (goal, None, annotations, agent.cause_now()))
+            adopt(agent, (goal, None, annotations, agent.cause_now()))
 
 
 def _unachieve(agent: Circumstance, message: SpeechAct) -> None:

@@ -7,6 +7,7 @@ from jacaros.bdi.state.intention import PLAN, Frame, Intention
 from jacaros.bdi.state.literals import EventAnnotations
 from jacaros.bdi.state.plan import Plan
 from jacaros.bdi.state.plan_library import concerns
+from jacaros.bdi.state.supervision import is_supervision
 from jacaros.bdi.state.triggers import Goal, Trigger
 
 
@@ -29,6 +30,9 @@ def select_in_scope(
 
 def _outer(intention: Intention, frame: Frame) -> Frame | None:
     """The frame of the plan that a frame's plan is a sub-plan of."""
+    if is_supervision(frame):  # it stands between a goal and the plan that posted it
+        place = next(place for place, each in enumerate(intention.frames) if each is frame)
+        return intention.frames[place - 1] if place else None
     scope = frame[PLAN].scope
     if scope is None:
         return None

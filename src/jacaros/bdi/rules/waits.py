@@ -1,21 +1,17 @@
 """What follows when a wait ends, or its intention is dropped, suspended or resumed: one function each."""
 
-from collections.abc import Callable
-from functools import partial
-from typing import Any
-
-from jacaros.bdi.rules import failure, meta_events
+from jacaros.bdi.rules import failure, meta_events, plan_guards
+from jacaros.bdi.rules.alarms import cancel_alarm
 from jacaros.bdi.rules.clr_int import pop_finished
 from jacaros.bdi.rules.failure import error_terms, step_failure
 from jacaros.bdi.rules.goal_failure import fail_intention
 from jacaros.bdi.state.circumstance import Circumstance
-from jacaros.bdi.state.condition_waits import ConditionObserver, ConditionWait
+from jacaros.bdi.state.condition_waits import ConditionObserver, ConditionWait, ConditionWatch
 from jacaros.bdi.state.event import EVENT_GOAL, Event, event_literal
 from jacaros.bdi.state.plan import Failure
 from jacaros.bdi.state.waiting import (
     OWN_SUSPENSION,
     ActWait,
-    Alarm,
     AnswerWait,
     CoroutineWait,
     EventWait,
@@ -31,34 +27,6 @@ from jacaros.terms.unifier import undo, unify
 from jacaros.terms.values import Term, atom, functor
 
 ERROR = functor("error", 1)
-
-# --- alarms ------------------------------------------------------------------------------------------------
-
-
-def set_alarm(agent: Circumstance, delay: float, function: Callable[..., None], *arguments: Any) -> Alarm:
-    """Call *function* with the agent and the arguments after *delay* seconds of the run's clock."""
-    agent.waits.alarms_made += 1
-    alarm = Alarm(agent.waits.alarms_made, agent.architecture.now() + delay, function, arguments)
-    agent.waits.alarms[alarm.number] = alarm
-    start_alarm(agent, alarm, delay)
-    return alarm
-
-
-def start_alarm(agent: Circumstance, alarm: Alarm, delay: float) -> None:
-    """Have the host ring after *delay* seconds."""
-    alarm.timer = agent.architecture.set_timer(delay, partial(_ring, agent, alarm))
-
-
-def cancel_alarm(agent: Circumstance, alarm: Alarm) -> None:
-    """Take an alarm back; nothing happens if it has rung."""
-    if agent.waits.alarms.pop(alarm.number, None) is not None:
-        alarm.timer.cancel()
-
-
-def _ring(agent: Circumstance, alarm: Alarm) -> None:
-    del agent.waits.alarms[alarm.number]
-    alarm.function(agent, *alarm.arguments)
-
 
 # --- ends --------------------------------------------------------------------------------------------------
 
@@ -214,6 +182,9 @@ def check_conditions(agent: Circumstance) -> None:
     for wait in agent.waits.conditions.take_due():
         if wait.ended:
             agent.waits.conditions.remove(wait)
+            continue
+        if isinstance(wait, ConditionWatch):
+            plan_guards.check(agent, wait)
             continue
         try:
             held = wait.holds() if isinstance(wait, ConditionObserver) else _holds(agent, wait)

@@ -1,24 +1,20 @@
-"""Goals that are watched: those given from outside of the mind, whose end is told, and those with a deadline
-(``!g[hard_deadline(Ms)]``)."""
+"""Goals that are watched: those given from outside of the mind, whose end is told."""
 
 from collections.abc import Callable
 
 from jacaros.asl import nodes
 from jacaros.bdi.actions.internal_action import ActionError
-from jacaros.bdi.explaining.failure_reason import FailureReason, nowhere
-from jacaros.bdi.rules import goals
-from jacaros.bdi.rules.failure import error_terms
-from jacaros.bdi.rules.waits import set_alarm
+from jacaros.bdi.explaining.failure_reason import FailureReason
+from jacaros.bdi.rules.pursuits import begin_watched
 from jacaros.bdi.state.belief_base import parts
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.intention import GOAL, Frame, Intention
-from jacaros.bdi.state.literals import literal_of, own_annotations
+from jacaros.bdi.state.literals import own_annotations
 from jacaros.bdi.state.plan import Plan
-from jacaros.bdi.state.triggers import Goal, trigger
+from jacaros.bdi.state.triggers import trigger
 from jacaros.terms.substitution import rename
-from jacaros.terms.values import BY_SELF, Term, atom, bare, functor
+from jacaros.terms.values import BY_SELF, Term, atom, functor
 
-HARD_DEADLINE = functor("hard_deadline", 1)
 _WATCHED = trigger("+", "", functor("watched", 0, namespace="jacaros"))
 
 
@@ -57,7 +53,7 @@ class WatchedGoal:
         intention.on_failed = (_end_in_failure, (self,))
         frame: Frame = [self._reached, self._bottom, BY_SELF, agent.trail.serial, _bottom_plan()]
         intention.frames.append(frame)
-        agent.post((self._goal, intention, own_annotations(annotations), None))
+        begin_watched(agent, intention, self._goal, own_annotations(annotations))
         agent.architecture.ready()
 
     @property
@@ -94,38 +90,3 @@ def _end_in_failure(agent: Circumstance, reason: FailureReason | None, goal: Wat
 def _bottom_plan() -> Plan:
     node = nodes.Plan(None, nodes.Trigger("+", "!", nodes.Literal("watched")), None, nodes.Body())
     return Plan(node, atom("watched"))
-
-
-def watch_deadline(agent: Circumstance, goal: Goal, annotations: tuple[Term, ...], separate: bool) -> None:
-    """Fail a goal that is still pursued when its deadline has come; goals without one are let be."""
-    for annotation in annotations:
-        inner = bare(annotation)
-        if inner.__class__ is tuple and inner[0] is HARD_DEADLINE and inner[1].__class__ is float:
-            _set_deadline(
-                agent, rename(literal_of(goal, ())), inner[1] / 1000.0, None if separate else agent.current
-            )
-
-
-def _set_deadline(agent: Circumstance, goal: Term, delay: float, intention: Intention | None) -> None:
-    height = len(intention.frames) - 1 if intention is not None else 0
-    set_alarm(agent, delay, _pass, goal, intention, height)
-
-
-def _pass(agent: Circumstance, goal: Term, intention: Intention | None, height: int) -> None:
-    agent.do_soon(_fail, goal, intention, height)
-    agent.architecture.ready()
-
-
-def _fail(agent: Circumstance, goal: Term, intention: Intention | None, height: int) -> None:
-    if intention is None or _pursues(agent, intention, goal, height):
-        goals.fail_goal(
-            agent, goal, nowhere(*error_terms("deadline_reached", "the goal was not achieved in time"))
-        )
-
-
-def _pursues(agent: Circumstance, intention: Intention, goal: Term, height: int) -> bool:
-    """Whether an intention still has the goal where it was posted, or above."""
-    if intention.dropped:
-        return False
-    index = goals.frame_of(agent, intention, goal, height)
-    return index is not None or intention in goals.intentions_for(agent, goal)

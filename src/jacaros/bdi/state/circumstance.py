@@ -19,7 +19,7 @@ from jacaros.bdi.state.plan_library import PlanLibrary, ProgramPlans
 from jacaros.bdi.state.selections import Selections
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.bdi.state.triggers import Goal, Trigger
-from jacaros.bdi.state.waiting import ActWait, Alarm, AnswerWait, EventWaits, Waiting
+from jacaros.bdi.state.waiting import ActWait, Alarm, AnswerWait, EventWaits, TimedWait, Waiting
 from jacaros.terms.text import text
 from jacaros.terms.unifier import Trail
 from jacaros.terms.values import Term
@@ -299,6 +299,8 @@ class Circumstance:
     call_own: Callable[[Term], Term]
     observe_rest: Callable[[Intention], None]
     drop_wait: Callable[[Waiting], None]
+    end_above: Callable[[Intention, int], None]
+    end_wait: Callable[[TimedWait], None]
     notify_event_waits: Callable[[Event], None]
 
     def __init__(
@@ -370,6 +372,7 @@ class Circumstance:
         if intention.frames:
             if self.observers.goal is not None:
                 self.observe_rest(intention)
+            self.end_above(intention, 0)
             intention.frames.clear()
         if intention.handlers:
             intention.handlers.clear()

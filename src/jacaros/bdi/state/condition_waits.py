@@ -80,7 +80,24 @@ class ConditionObserver:
         raise NotImplementedError
 
 
-AnyWait = ConditionWait | ConditionObserver
+class ConditionWatch:
+    """Watches a condition that must stay true.
+
+    Attributes:
+        condition: the condition.
+        asked, number: as in `ConditionWait`.
+        ended: whether it is not watched any more.
+    """
+
+    __slots__ = ("asked", "condition", "ended", "number")
+
+    def __init__(self, condition: Term, asked: list[Asked] | None) -> None:
+        self.condition, self.asked = condition, asked
+        self.number = 0
+        self.ended = False
+
+
+AnyWait = ConditionWait | ConditionObserver | ConditionWatch
 
 
 class ConditionWaits(dict[int, AnyWait]):

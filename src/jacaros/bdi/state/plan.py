@@ -26,6 +26,7 @@ from jacaros.terms.values import (
 ALL_UNIFIERS, ATOMIC_LABEL = atom("all_unifs"), atom("atomic")
 URL = functor("url", 1)
 URGENCY = functor("urgency", 1)
+GUARDS = frozenset({"while", "within", "cleanup"})
 
 
 @dataclass
@@ -62,6 +63,7 @@ class Plan:
         scope: the plan that this one is a sub-plan of, or None.
         replaceable: nothing is left to do once its last formula has called a goal: it has neither goal condition nor
             sub-plans.
+        guards: what its label says of the time while it runs: ``while(Condition)``, ``within(Ms)``, ``cleanup(Goal)``.
         goal_condition: tells of a frame whether its goal is achieved though the body has not ended; or None.
         subplans: plans for what happens while this one is pursued.
         subselects: their select functions by event kind, made at the first event.
@@ -75,6 +77,7 @@ class Plan:
         "by_name",
         "first",
         "goal_condition",
+        "guards",
         "interpreted",
         "label",
         "node",
@@ -95,6 +98,7 @@ class Plan:
         self.annotations = tuple(a for a in annotations_of(label) if not _is_source(a))
         self.atomic = ATOMIC_LABEL in self.annotations
         self.urgency = _urgency(self.annotations) if self.annotations else 0
+        self.guards = guards_of(node) if self.annotations else ()
         self.of_program = False
         self.body_term: Term = None
         self.replaceable = node.goal_condition is None and not node.subplans
@@ -116,7 +120,7 @@ class Plan:
         """Index in the frame by variable name.  A variable that is mentioned once has none: nobody reads its value."""
         if self._slots is None:
             node = self.node
-            own = occurrences(node.trigger, node.context, node.body, node.goal_condition)
+            own = occurrences(node.trigger, node.context, node.body, node.goal_condition, self.guards)
             inner = occurrences(node.subplans)
             outer = {} if self.scope is None else self.scope.slots
             calls = nodes_in(nodes.InternalAction, node.body) if self.by_name else ()
@@ -168,6 +172,16 @@ def _urgency(annotations: tuple[Term, ...]) -> int:
         a[1] for a in annotations if a.__class__ is tuple and a[0] is URGENCY and a[1].__class__ is float
     ]
     return int(max((number for number in found if number > 0 and number.is_integer()), default=0))
+
+
+def guards_of(node: nodes.Plan) -> tuple[nodes.Literal, ...]:
+    """The annotations of a label that say what must hold while the plan runs."""
+    annotations = node.label.annotations if isinstance(node.label, nodes.Literal) else None
+    return tuple(
+        item
+        for item in (() if annotations is None else annotations.items)
+        if isinstance(item, nodes.Literal) and item.functor in GUARDS and len(item.arguments) == 1
+    )
 
 
 def _is_source(annotation: Term) -> bool:

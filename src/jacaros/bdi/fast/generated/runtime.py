@@ -20,6 +20,7 @@ from jacaros.bdi.rules.calls import (
 )
 from jacaros.bdi.rules.deconstruction import constructed, deconstruct, deconstruct_in, deconstructed
 from jacaros.bdi.rules.forks import join_branch
+from jacaros.bdi.rules.plan_guards import begin_guarded
 from jacaros.bdi.rules.searching import (
     Loop,
     Remaining,
@@ -86,6 +87,7 @@ _FUNCTIONS = (
     first_answer_of,
     free_variables,
     holds,
+    begin_guarded,
     join_branch,
     literal_in,
     literal_of,

@@ -151,7 +151,13 @@ class SelectCompiler:
         first = body.body(node.body.steps, "None")
         self.bodies.append((plan, body, first))
         values = [fn.values.get(v, "None") for v in frame.slots]
-        fixed = [first, "goal", "annotations", "t.serial", fn.constant(plan)]
+        fixed = [
+            "begin_guarded" if plan.guards else first,
+            "goal",
+            "annotations",
+            "t.serial",
+            fn.constant(plan),
+        ]
         made = f"[{', '.join([*fixed, *values, *(['None'] * frame.extra)])}]"
         if not self.every:
             fn.line(f"return {made}")

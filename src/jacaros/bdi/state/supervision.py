@@ -1,0 +1,131 @@
+"""What supervises a goal or a plan while it is pursued, as data: deadlines, attempts, periods, and conditions.
+
+It is held by a frame of its own on the stack of the intention, right below the frame of the goal or plan that it is for.
+That frame is reached when the goal or plan has ended.
+"""
+
+from jacaros.bdi.explaining.failure_reason import FailureReason
+from jacaros.bdi.state.condition_waits import ConditionWatch
+from jacaros.bdi.state.intention import FIRST_SLOT, GOAL, PLAN, Frame, Intention
+from jacaros.bdi.state.triggers import Trigger, trigger
+from jacaros.bdi.state.waiting import Alarm
+from jacaros.terms.values import Term, functor
+
+SUPERVISED = trigger("+", "", functor("supervised", 0, namespace="jacaros"))
+"""The trigger of frames that hold a supervision."""
+PAUSE = functor("pause", 0, namespace="jacaros")
+"""The label of the plan of a frame that stands for a goal between two of its plans."""
+SUPERVISION = FIRST_SLOT
+"""The place of the supervision in such a frame; the arguments of a goal that is pursued follow."""
+
+
+class Supervision:
+    """What supervises one goal or plan.
+
+    Attributes:
+        alarm: of its deadline; None without one, or when the goal or plan has ended.
+    """
+
+    __slots__ = ("alarm",)
+
+    def __init__(self) -> None:
+        self.alarm: Alarm | None = None
+
+
+class Pursuit(Supervision):
+    """How a goal is pursued: ``!g[within(Ms), retry(N, Ms), every(Ms)]``.
+
+    Attributes:
+        kind: of the goal.
+        within: seconds in which the goal must be achieved, in each period; None for any time.
+        hard: the deadline is that of ``hard_deadline``.
+        retries: number of further attempts.
+        back_off: seconds before the second attempt; twice as many before each one that follows.
+        failed: number of attempts that have failed, in this period.
+        period: seconds from the beginning of one pursuit to the next; None for a goal that is pursued once.
+        began: when period 0 began, in seconds since the Unix epoch.
+        number: of the present period.
+        missed: number of periods that have been missed.
+    """
+
+    __slots__ = (
+        "back_off",
+        "began",
+        "failed",
+        "hard",
+        "kind",
+        "missed",
+        "number",
+        "period",
+        "retries",
+        "within",
+    )
+
+    def __init__(self, kind: Trigger) -> None:
+        super().__init__()
+        self.kind = kind
+        self.within: float | None = None
+        self.hard = False
+        self.retries = self.failed = 0
+        self.back_off = 0.0
+        self.period: float | None = None
+        self.began = 0.0
+        self.number = self.missed = 0
+
+    @property
+    def is_acting(self) -> bool:
+        """Whether there is anything to supervise."""
+        return self.within is not None or self.retries > 0 or self.period is not None
+
+
+class PlanGuard(Supervision):
+    """What must hold while a plan runs: ``@p[while(Condition), within(Ms), cleanup(Goal)]``.
+
+    Attributes:
+        watch: of the condition that must stay true, or None.
+        cleanup: the goal that is pursued when the condition does not hold any more, or None.
+        lost: why the plan is about to fail, once the condition does not hold any more.
+    """
+
+    __slots__ = ("cleanup", "lost", "watch")
+
+    def __init__(self, cleanup: Term) -> None:
+        super().__init__()
+        self.cleanup = cleanup
+        self.watch: ConditionWatch | None = None
+        self.lost: FailureReason | None = None
+
+
+def is_supervision(frame: Frame) -> bool:
+    """Whether a frame holds a supervision."""
+    return frame[GOAL][0] is SUPERVISED
+
+
+def caller_of(intention: Intention) -> Frame | None:
+    """Return the frame of the plan that has posted a goal without a frame; None when it was posted from outside."""
+    return next((frame for frame in reversed(intention.frames) if not is_supervision(frame)), None)
+
+
+def is_pause(frame: Frame) -> bool:
+    """Whether a frame stands for a goal between two of its plans."""
+    return frame[PLAN].label is PAUSE
+
+
+def supervisions_below(intention: Intention, index: int) -> list[Supervision]:
+    """Return what supervises the frame at *index*, or the goal that is about to get a frame there."""
+    if not index or not is_supervision(intention.frames[index - 1]):
+        return []
+    found: list[Supervision] = []
+    for frame in reversed(intention.frames[max(0, index - 2) : index]):
+        if not is_supervision(frame):
+            break
+        found.append(frame[SUPERVISION])
+    return found
+
+
+def place_of(intention: Intention, supervision: Supervision) -> int | None:
+    """Return the index of the frame that holds a supervision; None when the intention has none."""
+    for index, frame in enumerate(intention.frames):
+        if is_supervision(frame) and frame[SUPERVISION] is supervision:
+            return index
+    return None
