@@ -1,0 +1,103 @@
+"""One derived event: takes events of its streams, puts late ones in order, and drives its operator."""
+
+import heapq
+import itertools
+import math
+
+from jacaros.streams.operator import Emit, Values
+from jacaros.streams.schema import Spec, make
+
+
+class Pattern:
+    """The incremental evaluation of one declaration.
+
+    Event times are seconds of any clock. The *watermark* is the event time up to which everything is known: the time of
+    the newest event or of the last `advance`, whichever is later, minus the lateness. Events are evaluated in the order
+    of their times when the watermark reaches them; those older than the watermark are dropped.
+
+    Args:
+        spec: what is declared, without mistakes.
+        start: the time at which the pattern begins.
+        emit: takes the outputs, in order.
+
+    Attributes:
+        dropped: how many events came too late.
+    """
+
+    __slots__ = ("_dropped", "_early", "_lateness", "_mark", "_numbers", "_operator", "_start", "spec")
+
+    def __init__(self, spec: Spec, start: float, emit: Emit) -> None:
+        self.spec = spec
+        self._operator = make(spec, emit)
+        self._start, self._lateness = start, spec.lateness if self._operator.ordered else 0.0
+        self._mark = 0.0
+        self._early: list[tuple[float, int, int, Values | None]] = []
+        self._numbers = itertools.count()
+        self._dropped = 0
+
+    @property
+    def shown(self) -> Values | None:
+        """Values of the derived state, None while it does not hold."""
+        return self._operator.shown
+
+    @property
+    def dropped(self) -> int:
+        """How many events came too late."""
+        return self._dropped + int(getattr(self._operator, "dropped", 0))
+
+    @property
+    def deadline(self) -> float:
+        """When `advance` is to be called, if no event comes before; infinite for never."""
+        return self._start + self._due() + self._lateness
+
+    def _due(self) -> float:
+        """Return the event time of the next change without an event."""
+        due = self._operator.deadline
+        return self._early[0][0] if self._early and self._early[0][0] < due else due
+
+    def take(self, source: int, time: float, values: Values | None) -> None:
+        """Take an event.
+
+        Args:
+            source: the number of its stream among `Spec.streams`.
+            time: of the event, in seconds.
+            values: of the event; None when the state that the stream shows ended.
+        """
+        time -= self._start
+        operator = self._operator
+        if not operator.ordered:
+            operator.take(source, time, values)
+        elif time < self._mark:
+            self._dropped += 1
+        elif self._lateness:
+            heapq.heappush(self._early, (time, next(self._numbers), source, values))
+            self._release(time - self._lateness)
+        else:
+            if operator.deadline <= time:
+                self._pass(time)
+            self._mark = time
+            operator.take(source, time, values)
+
+    def advance(self, now: float) -> None:
+        """Let time pass until *now* on the clock of the event times."""
+        mark = now - self._start - self._lateness
+        # What is due at *now* is due, whatever was lost by rounding on the way there and back.
+        self._release(max(mark, self._due()) if self.deadline <= now else mark)
+
+    def _release(self, mark: float) -> None:
+        """Move the watermark, and evaluate the events up to it."""
+        self._mark = mark = max(self._mark, mark)
+        early = self._early
+        while early and early[0][0] <= mark:
+            time, _, source, values = heapq.heappop(early)
+            self._pass(time)
+            self._operator.take(source, time, values)
+        self._pass(mark)
+
+    def _pass(self, time: float) -> None:
+        """Let the operator meet its deadlines up to *time*."""
+        operator = self._operator
+        while (due := operator.deadline) <= time:
+            operator.advance(due)
+            if operator.deadline <= due:  # an operator that does not move on would hold everybody up
+                operator.deadline = math.nextafter(due, math.inf)
