@@ -12,7 +12,7 @@ from typing import Any
 
 from jacaros.bdi.mind import Mind
 from jacaros.bdi.object_table import Reader, Writer
-from jacaros.bdi.rules import urgency, waits
+from jacaros.bdi.rules import deriving, urgency, waits
 from jacaros.bdi.rules.belief_update import look_again
 from jacaros.bdi.rules.plan_changes import look_at_plans
 from jacaros.bdi.state.act import Completion
@@ -114,6 +114,7 @@ def restore(mind: Mind, data: dict[str, Any], *, same_host: bool = False) -> Non
     _wait_again(mind, held)
     for name, (refusals, losses) in held["refused"].items():
         mind.budgets[name].refusals, mind.budgets[name].losses = refusals, losses
+    deriving.begin_anew(mind, mind.program.derived)
     mind.trail.serial = held["serial"]
     version, state, gauss = data["random"]
     mind.architecture.random.setstate((version, tuple(state), gauss))
@@ -213,6 +214,7 @@ def copy_mind(original: Mind, clone: Mind) -> None:
         clone.counts.intentions += 1
         intention.id = clone.counts.intentions
         clone.alive[intention.id] = intention
+    deriving.begin_anew(clone, clone.program.derived)
     clone.architecture.ready()
 
 
