@@ -153,7 +153,7 @@ def faults(operator: str, sources: Sequence[str], options: Mapping[str, object])
         yield Fault(
             "",
             f"`{operator}` needs two streams or more",
-            f"write them as a list: [{operator}_1, {operator}_2]",
+            "write them as a list, such as [press, release]",
         )
     if operator in ("all", "together") and len(set(sources)) < len(sources):
         yield Fault("", f"`{operator}` names a stream twice", "name each stream once")

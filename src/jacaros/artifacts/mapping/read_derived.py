@@ -18,6 +18,9 @@ _EXAMPLE = "write one, such as {count: bump, within: 5, at_least: 3}"
 def read_derived(name: Node, node: Node) -> DerivedPart:
     """One derived property or signal."""
     place = place_of(name)
+    if not isinstance(node.value, dict):
+        node.wrong(f"`{name.value}` names no operator", _EXAMPLE)
+        return DerivedPart(belief_name(name), place, None, ())
     entries = node.mapping()
     operator = _operator(name, node, entries)
     if operator is None:
@@ -53,12 +56,12 @@ def _operator(name: Node, node: Node, entries: dict[str, Node]) -> str | None:
         entries[named[1]].wrong(
             f"`{named[1]}` stands beside `{named[0]}`", "derive one name for each operator"
         )
-    elif isinstance(node.value, dict) and entries:
+    elif entries:
         first = next(iter(entries))
         fault = unknown(first)
         help_ = fault.help if fault.help.startswith("did") else f"{_EXAMPLE}; {fault.help}"
         _at_key(node, first).wrong(f"`{name.value}` names no operator", help_)
-    elif node.value is None or isinstance(node.value, dict):
+    else:
         name.wrong(f"`{name.value}` names no operator", _EXAMPLE)
     return None
 

@@ -171,7 +171,7 @@ def _named_alike(term: nodes.Term) -> nodes.Term:
 
 def _as_written(text: str) -> str:
     """A message about an option under the name that it has in programs."""
-    return text.replace("`for`", "`lasting`")
+    return text.replace("`for`", "`lasting`").replace("options: for", "options: lasting").replace(", equals", "")
 
 
 def streams_of(derived: nodes.Derivation) -> tuple[str, ...]:

@@ -1,0 +1,160 @@
+"""Derived beliefs of programs: end to end on the virtual clock, by the rules and by generated code; wrong directives."""
+
+from pathlib import Path
+
+import pytest
+
+from jacaros.asl.checks.beliefs import beliefs_of
+from jacaros.asl.diagnostics import AslError
+from jacaros.asl.loader import load_program
+from jacaros.bdi.actions.internal_action import STANDARD
+from jacaros.testing.run import run_project
+
+
+@pytest.fixture(params=["0", "1"], ids=["fast", "plain"], autouse=True)
+def engine(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("JACAROS_PLAIN", request.param)
+
+
+def run(folder: Path, derived: str, body: str, plans: str = "") -> list[str]:
+    """What an agent prints that does *body* and reacts to ``+d`` and ``-d``."""
+    file = folder / "a.asl"
+    file.write_text(
+        f"{{ derive(d, {derived}) }}\n!start.\n+!start <- {body}.\n"
+        f"+d[source(S)] <- .print(on, S).\n-d <- .print(off).\n+d(X) <- .print(X).\n{plans}"
+    )
+    result = run_project(file, until_idle=True)
+    assert result.errors == []
+    return [line.removeprefix("[a] ") for line in result.lines]
+
+
+@pytest.mark.parametrize(
+    ("derived", "body", "printed"),
+    [
+        ("count(e(_), within(1000), at_least(2))", "+e(1); .wait(100); +e(2)", ["onderived", "off"]),
+        ("count(e(_), within(1000), at_least(2))", "+e(1); .wait(1100); +e(2)", []),
+        ("count(e(1), within(1000))", "+e(1); +e(2)", ["1"]),
+        ("mean(e(X), within(1000))", "+e(1); .wait(10); +e(4)", ["1", "2.5"]),
+        ("max(e(_,X), within(1000))", "+e(1,7); .wait(10); +e(4,3)", ["7"]),
+        ("slope(e(X), within(5000), above(1.5))", "+e(1); .wait(1000); +e(4)", ["onderived", "off"]),
+        ("share(on, within(1000), at_least(0.5))", "+on; .wait(100); -on; .wait(300)", ["onderived", "off"]),
+        (
+            "hysteresis(b(X), on_below(20), off_above(30))",
+            "-+b(10); .wait(1); -+b(25); .wait(1); -+b(31)",
+            ["onderived", "off"],
+        ),
+        (
+            "held(b(X), below(5), lasting(100))",
+            "-+b(1); .wait(60); -+b(2); .wait(60); -+b(7)",
+            ["onderived", "off"],
+        ),
+        ("held(door(open), lasting(100))", "+door(open); .wait(60); -door(open); .wait(60)", []),
+        (
+            "debounce(b(X), lasting(100))",
+            "-+b(1); .wait(20); -+b(2); .wait(120); -+b(3); .wait(20)",
+            ["2", "3"],
+        ),
+        (
+            "absent(e(_), lasting(100))",
+            ".wait(50); +e(1); .wait(120); +e(2)",
+            ["onderived", "off", "onderived"],
+        ),
+        (
+            "missing(r(_), after(q), within(100))",
+            "+q; .wait(50); +r(1); .wait(100); -q; +q; .wait(120)",
+            ["onderived"],
+        ),
+        ("sequence([p, r], within(100))", "+p; .wait(50); +r; -p; -r; +p; .wait(150); +r", ["onderived"]),
+        ("all([p, r], within(100))", "+p; .wait(50); +r", ["onderived", "off"]),
+        (
+            "inside(pose(X, Y, _), circle(0, 0, 1), margin(0.5))",
+            "-+pose(0,0,9); .wait(1); -+pose(1.3,0,9); .wait(1); -+pose(2,0,9)",
+            ["onderived", "off"],
+        ),
+        (
+            "inside(pose(X, Y, _), rectangle(-1, -1, 1, 1))",
+            "-+pose(0,0,9); .wait(1); -+pose(1.3,0,9)",
+            ["onderived", "off"],
+        ),
+    ],
+)
+def test_derived_beliefs_come_and_go(tmp_path: Path, derived: str, body: str, printed: list[str]) -> None:
+    assert run(tmp_path, derived, body) == printed
+
+
+def test_samples_come_together(tmp_path: Path) -> None:
+    plans = "+d(X,Y,Z) <- .print(X, Y, Z)."
+    body = "-+scan(1); .wait(30); -+odom(2,3); .wait(500); -+scan(4); .wait(100); -+odom(5,6)"
+    assert run(tmp_path, "together([scan(R), odom(X, Y)], within(50))", body, plans) == ["123"]
+
+
+def test_derived_beliefs_may_be_derived_of_others(tmp_path: Path) -> None:
+    plans = "{ derive(both, all([d, x], within(1000))) }\n+both <- .print(both)."
+    assert run(tmp_path, "count(e(_), within(50), at_least(2))", "+x; +e(1); +e(2)", plans) == [
+        "onderived",
+        "both",
+        "off",
+    ]
+
+
+def test_contexts_and_waits_see_derived_beliefs(tmp_path: Path) -> None:
+    body = "+e(1); .wait(d, 500); .print(seen); .wait(not d, 2000); .print(gone)"
+    printed = run(tmp_path, "count(e(_), within(1000), at_least(1))", body)
+    assert (printed[:2], sorted(printed[2:])) == (["onderived", "seen"], ["gone", "off"])
+
+
+def test_an_agent_without_declarations_listens_to_nothing(tmp_path: Path) -> None:
+    program, _ = load_program("a.asl", "!s. +!s.")
+    assert program.derived == ()
+
+
+@pytest.mark.parametrize(
+    ("derived", "message", "help_"),
+    [
+        ("cuont(e(_), within(1))", "unknown operator `cuont`", "did you mean `count`?"),
+        ("count(e(_), within(-1))", "`within` must be above zero", "write a positive time"),
+        (
+            "count(e(_))",
+            "`count` needs `within`",
+            "give the length of the window, so that its memory is bounded",
+        ),
+        (
+            "count(e(_), within(1), at_least(1.5))",
+            "`at_least` must be a whole number",
+            "write a number such as 3",
+        ),
+        (
+            "mean(e(_), within(1))",
+            "`mean` needs 1 named variable in its belief",
+            "make one argument a variable, and the others _",
+        ),
+        ("held(e, lastin(1))", "`held` has no option `lastin`", "options: lasting, above, below"),
+        (
+            "held(e, lasting(1), equals(2))",
+            "`equals` is for mapping files",
+            "write the value into the belief, as in door(open)",
+        ),
+        ("count(e[source(self)], within(1))", "annotations are not looked at here", "leave them out"),
+        ("count(e(f(X)), within(1))", "a variable within a term", "write _ for the whole argument"),
+        ("count(d, within(1))", "`d` is derived from itself", "derive it from other beliefs"),
+        ("d", "unknown operator `d`", None),
+    ],
+)
+def test_wrong_patterns_are_told_with_help(derived: str, message: str, help_: str | None) -> None:
+    with pytest.raises(AslError) as caught:
+        load_program("a.asl", f"{{ derive(d, {derived}) }}\n!s. +!s.")
+    told = {each.message: each.hint for each in caught.value.diagnostics}
+    assert message in told, told
+    assert help_ is None or told[message] == help_
+
+
+def test_circles_over_several_declarations_are_told() -> None:
+    with pytest.raises(AslError, match="`b` is derived from itself"):
+        load_program("a.asl", "{ derive(a, count(b, within(1))) } { derive(b, count(a, within(1))) }")
+
+
+def test_derived_names_are_made() -> None:
+    program, _ = load_program("a.asl", "{ derive(stuck, held(moving(no), lasting(10))) } +stuck <- true.")
+    found = beliefs_of(program, STANDARD)
+    assert "stuck" in found.made
+    assert "moving" in found.asked
