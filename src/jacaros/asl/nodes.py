@@ -368,7 +368,8 @@ class RegisteredFunction(Node):
 class Derivation(Node):
     """``{ derive(name, operator(streams, options)) }``: a belief or event composed of changes of beliefs.
 
-    ``options`` are pairs of a name and a number (or a tuple of numbers), times in seconds.
+    ``options`` are pairs of a name and a number (or a tuple of numbers), times in seconds;
+    ``turns`` are the whole turns of values that are angles, for `interpolated`.
     """
 
     name: str
@@ -376,6 +377,7 @@ class Derivation(Node):
     operator: str
     streams: tuple[Literal, ...]
     options: tuple[tuple[str, Any], ...]
+    turns: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

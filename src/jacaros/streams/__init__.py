@@ -10,7 +10,8 @@ file                                           what it holds
 `operator`, `condition`                        what operators share
 `counting`, `aggregates`, `share`              sliding windows
 `states`, `area`                               hysteresis, debounce, held, inside an area
-`order`, `together`                            sequence, absence; samples with nearby stamps
+`order`                                        sequence, absence
+`together`, `interpolated`                     samples with nearby stamps; values at the stamps of another stream
 ============================================== =======================================================================
 
 The package knows no clock: the host passes times, and asks `Pattern.deadline` when to call `Pattern.advance` next.

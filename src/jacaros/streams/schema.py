@@ -14,6 +14,7 @@ from jacaros.streams.aggregates import Extreme, Mean, Slope
 from jacaros.streams.area import Circle, Inside, Rectangle
 from jacaros.streams.condition import ANYTHING, Condition
 from jacaros.streams.counting import All, Count
+from jacaros.streams.interpolated import Interpolated
 from jacaros.streams.operator import Emit, Operator
 from jacaros.streams.order import Absent, Chain, Missing
 from jacaros.streams.share import Share
@@ -37,6 +38,7 @@ class Spec:
         options: times in seconds.
         place: which of an event's values counts, from 0.
         lateness: seconds for which the evaluation waits for late events.
+        turns: for `interpolated`, which values of the streams behind the first are angles: their whole turn, or 0.
     """
 
     operator: str
@@ -44,6 +46,7 @@ class Spec:
     options: Mapping[str, Any] = field(default_factory=dict)
     place: int = 0
     lateness: float = 0.0
+    turns: tuple[float, ...] = ()
 
     @property
     def streams(self) -> tuple[str, ...]:
@@ -126,8 +129,12 @@ OPERATORS: Final[dict[str, Shape]] = {
     "sequence": Shape("events one after the other", OCCURRENCE, ("within",), several=True),
     "all": Shape("an event of each stream in a window", STATE, ("within",), several=True),
     "together": Shape("samples with stamps near each other", VALUE, ("within",), several=True),
+    "interpolated": Shape("values at the stamps of the first stream", VALUE, ("within",), several=True),
 }
 """All operators by name."""
+
+_ONCE: Final = ("all", "together", "interpolated")
+"""Operators that may not name a stream twice."""
 
 VALUED: Final = frozenset({"mean", "min", "max", "slope", "share", "hysteresis", "held", "inside"})
 """Operators for which it matters which of an event's values counts."""
@@ -155,7 +162,7 @@ def faults(operator: str, sources: Sequence[str], options: Mapping[str, object])
             f"`{operator}` needs two streams or more",
             "write them as a list, such as [press, release]",
         )
-    if operator in ("all", "together") and len(set(sources)) < len(sources):
+    if operator in _ONCE and len(set(sources)) < len(sources):
         yield Fault("", f"`{operator}` names a stream twice", "name each stream once")
     known = (*shape.required, *shape.optional)
     for name in shape.required:
@@ -377,5 +384,8 @@ _MAKERS: Final[dict[str, Callable[[Spec, Emit], Operator]]] = {
     "missing": lambda spec, emit: Missing(emit, _within(spec)),
     "sequence": _make_chain,
     "all": lambda spec, emit: All(emit, len(spec.sources), _within(spec)),
+    "interpolated": lambda spec, emit: Interpolated(
+        emit, len(spec.sources), _within(spec), spec.lateness, spec.turns
+    ),
     "together": lambda spec, emit: Together(emit, len(spec.sources), _within(spec), spec.lateness),
 }

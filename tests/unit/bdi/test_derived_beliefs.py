@@ -88,6 +88,14 @@ def test_samples_come_together(tmp_path: Path) -> None:
     assert run(tmp_path, "together([scan(R), odom(X, Y)], within(50))", body, plans) == ["123"]
 
 
+def test_values_are_interpolated(tmp_path: Path) -> None:
+    plans = '+d(R,X,A) <- .print(R, " ", X, " ", A).'
+    body = "-+pose(0,350); .wait(50); -+scan(1); .wait(50); -+pose(2,10)"
+    derived = "interpolated([scan(R), pose(X, A)], within(80), degrees(A))"
+    [printed] = run(tmp_path, derived, body, plans)
+    assert [round(float(each), 3) for each in printed.split()] == [1.0, 1.0, 0.0]
+
+
 def test_derived_beliefs_may_be_derived_of_others(tmp_path: Path) -> None:
     plans = "{ derive(both, all([d, x], within(1000))) }\n+both <- .print(both)."
     assert run(tmp_path, "count(e(_), within(50), at_least(2))", "+x; +e(1); +e(2)", plans) == [

@@ -187,7 +187,12 @@ def _size(thing: object, seen: set[int]) -> int:
     )
 
 
-EVERYTHING = [*STATES, *MOMENTS, Spec("together", ("a", "b"), {"within": 0.1}, lateness=1.0)]
+EVERYTHING = [
+    *STATES,
+    *MOMENTS,
+    Spec("together", ("a", "b"), {"within": 0.1}, lateness=1.0),
+    Spec("interpolated", ("a", "b"), {"within": 0.1}, lateness=1.0),
+]
 
 
 @pytest.mark.parametrize("spec", EVERYTHING, ids=lambda spec: f"{spec.operator}-{len(spec.options)}")
@@ -244,3 +249,48 @@ def test_running_sums_do_not_drift(operator: str) -> None:
     expected = 0.02 * (49_999 - 49.5) if operator == "mean" else 2.0
     assert pattern.shown is not None
     assert pattern.shown[0] == pytest.approx(expected, rel=1e-5)
+
+
+def test_values_are_interpolated_at_the_times_of_the_first_stream() -> None:
+    made: list[Values] = []
+    spec = Spec("interpolated", ("scan", "pose"), {"within": 0.1}, lateness=0.3, turns=(0.0, 360.0))
+    pattern = Pattern(spec, 50.0, lambda kind, values: made.append(values))
+    pattern.take(1, 50.00, (0.0, 170.0, "a"))
+    pattern.take(0, 50.05, ("s0",))
+    assert made == []
+    pattern.take(1, 50.10, (1.0, -170.0, "b"))
+    name, x, yaw, word = made.pop()
+    assert (name, abs(float(yaw)), word) == ("s0", pytest.approx(180.0), "a")  # type: ignore[arg-type]
+    assert x == pytest.approx(0.5)
+    pattern.take(0, 50.10, ("s1",))  # there is a pose at its very time
+    assert made.pop() == ("s1", 1.0, -170.0, "b")
+    pattern.take(0, 50.15, ("s2",))
+    pattern.take(1, 50.30, (2.0, 0.0, "c"))  # too far behind s2
+    assert made == []
+    pattern.take(1, 50.19, (1.9, -152.0, "d"))  # late, and in time
+    name, x, yaw, word = made.pop()
+    assert (name, word) == ("s2", "b")
+    assert (x, yaw) == pytest.approx((1.5, -160.0))
+    pattern.take(0, 50.12, ("old",))
+    assert pattern.dropped == 1
+
+
+@given(st.lists(st.tuples(st.integers(0, 1), st.integers(0, 30)), max_size=40, unique=True))
+@settings(max_examples=50, deadline=None)
+def test_interpolation_is_that_of_the_naive_evaluator(events: list[tuple[int, int]]) -> None:
+    made: list[Values] = []
+    spec = Spec("interpolated", ("a", "b"), {"within": 2 * STEP}, lateness=100.0)
+    pattern = Pattern(spec, 0.0, lambda kind, values: made.append(values))
+    expected: list[tuple[float, float]] = []
+    waiting: set[int] = set()
+    line: set[int] = set()
+    until = -1
+    for stream, tick in events:
+        pattern.take(stream, tick * STEP, (3.0 * tick,) if stream else (float(tick),))
+        (line if stream else waiting).add(tick)
+        for each in sorted(waiting):
+            near = [other for other in line if abs(other - each) <= 2]
+            if each > until and any(t <= each for t in near) and any(t >= each for t in near):
+                expected.append((float(each), 3.0 * each))
+                until = each
+    assert made == [pytest.approx(each) for each in expected]

@@ -1,11 +1,14 @@
 """Derived properties and signals: messages of other properties go through a pattern of `jacaros.streams`."""
 
+import dataclasses
+import math
 from collections import deque
 from functools import partial
 
 from jacaros.artifacts.kit.reading import Values
-from jacaros.artifacts.mapping.declared import DerivedPart
+from jacaros.artifacts.mapping.declared import ArtifactPart, DerivedPart, FieldPart
 from jacaros.artifacts.mapping.host import Host
+from jacaros.artifacts.mapping.read_fields import ANGLES
 from jacaros.clock import Timer
 from jacaros.ros.message import to_seconds
 from jacaros.streams.operator import HIDE, OCCUR, SHOW
@@ -125,6 +128,29 @@ class Derivation:
         if self._timer is not None:
             self._timer.cancel()
             self._timer = None
+
+
+def with_angles(spec: Spec, part: ArtifactPart) -> Spec:
+    """The pattern, with the values that are headings: their numbers begin again after a turn."""
+    if spec.operator != "interpolated":
+        return spec
+    fields = {each.name: each.fields or () for each in part.topics} | {
+        each.name: each.fields for each in part.frames
+    }
+    turns = [
+        _turn(field)
+        for name in spec.sources[1:]
+        for field in fields.get(name, ())
+        for _ in range(field.count)
+    ]
+    return dataclasses.replace(spec, turns=tuple(turns))
+
+
+def _turn(field: FieldPart) -> float:
+    """The whole turn of an angle in the unit of the agent; 0 for what is not one."""
+    if field.conversion.kind not in ANGLES and field.path.text not in ANGLES:
+        return 0.0
+    return 360.0 if field.conversion.unit == "degrees" else math.tau
 
 
 def stamp_of(message: object, latched: bool) -> float:

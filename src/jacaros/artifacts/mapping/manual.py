@@ -121,7 +121,11 @@ def _derived(part: DerivedPart, spec: Spec) -> str:
     shape = OPERATORS[spec.operator]
     told = part.description or f"{shape.meaning}, of {' and '.join(spec.sources)}"
     values = (
-        "" if spec.gives != VALUE else "(Values)" if spec.operator in ("debounce", "together") else "(Value)"
+        ""
+        if spec.gives != VALUE
+        else "(Values)"
+        if spec.operator in ("debounce", "together", "interpolated")
+        else "(Value)"
     )
     return f"{part.name}{values}: {told.rstrip('.')}."
 

@@ -1,5 +1,6 @@
 """``{ derive(name, pattern) }``: a belief or event composed of changes of beliefs."""
 
+import math
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, Final
 
@@ -10,6 +11,9 @@ from jacaros.streams.schema import OPERATORS, VALUED, Fault, faults, unknown
 EXAMPLE: Final = "as in { derive(bumped_often, count(bump(_), within(5000), at_least(3))) }"
 _TIMES: Final = {"within": "within", "lasting": "for"}
 """Options that are milliseconds here, and their names in the schema, where they are seconds (`for` is a keyword)."""
+
+_TURNS: Final = {"degrees": 360.0, "radians": math.tau}
+"""Options of `interpolated` that name angles, and their whole turns."""
 
 Report = Callable[[str, Span | None, str], None]
 """Takes a message, its place and the help."""
@@ -57,16 +61,25 @@ class _Reader:
         first, *rest = pattern.arguments
         streams = list(self._streams(first, OPERATORS[operator].several, operator))
         options, places = self._options(rest)
-        checked: dict[str, object] = dict(options)
+        checked = {
+            name: value for name, value in options.items() if operator != "interpolated" or name not in _TURNS
+        }
         for fault in list(faults(operator, [_key(each) for each in streams], checked)):
             self._say(_as_written(fault.message), places.get(fault.option, pattern), _as_written(fault.help))
         if "after" in options and isinstance(options["after"], nodes.Literal):
             streams += list(self._streams(options.pop("after"), False, operator))
+        angles = self._angles(streams, options) if operator == "interpolated" else ()
         if operator in VALUED and streams:
             self._check_values(operator, streams[0], options)
         return nodes.Derivation(
-            name.functor, namespace, operator, tuple(streams), tuple(options.items()), span=span
+            name.functor, namespace, operator, tuple(streams), tuple(options.items()), angles, span=span
         )
+
+    def _angles(self, streams: list[nodes.Literal], options: dict[str, Any]) -> tuple[float, ...]:
+        """The whole turns of the values behind the first stream, 0 for those that are not angles."""
+        turns = {each: turn for name, turn in _TURNS.items() for each in options.pop(name, ())}
+        named = [each.arguments[place] for each in streams[1:] for place in values_of(each)]
+        return tuple(turns.get(each.name, 0.0) if isinstance(each, nodes.Variable) else 0.0 for each in named)
 
     def _streams(self, term: nodes.Term, several: bool, operator: str) -> Iterator[nodes.Literal]:
         terms = term.items if several and isinstance(term, nodes.ListTerm) else (term,)
@@ -101,6 +114,9 @@ class _Reader:
                 continue
             name = _TIMES.get(term.functor, term.functor)
             places[name] = term
+            if name in _TURNS:
+                found[name] = [each.name for each in term.arguments if isinstance(each, nodes.Variable)]
+                continue
             values = [_constant(each) for each in term.arguments]
             if name == "after":
                 found[name] = term.arguments[0]
@@ -171,7 +187,9 @@ def _named_alike(term: nodes.Term) -> nodes.Term:
 
 def _as_written(text: str) -> str:
     """A message about an option under the name that it has in programs."""
-    return text.replace("`for`", "`lasting`").replace("options: for", "options: lasting").replace(", equals", "")
+    return (
+        text.replace("`for`", "`lasting`").replace("options: for", "options: lasting").replace(", equals", "")
+    )
 
 
 def streams_of(derived: nodes.Derivation) -> tuple[str, ...]:

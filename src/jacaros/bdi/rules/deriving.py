@@ -85,7 +85,7 @@ class Derived:
 
     def __init__(self, owner: "DerivedBeliefs", declared: nodes.Derivation, start: float) -> None:
         self.owner, self.name, self.namespace = owner, declared.name, declared.namespace
-        spec = Spec(declared.operator, streams_of(declared), dict(declared.options))
+        spec = Spec(declared.operator, streams_of(declared), dict(declared.options), turns=declared.turns)
         self.pattern = Pattern(spec, start, self._emit)
         self.scheduled = math.inf
         self.row: tuple[Functor, Row] | None = None
@@ -197,6 +197,8 @@ class DerivedBeliefs:
 
     def ring(self, due: float) -> None:
         """The moment *due* has come."""
+        if self._alarm is None or due != self._due:
+            return  # of a mind that was stored: it has alarms of its own now
         self._alarm = None
         self._latest = max(self._latest, due)
         self.agent.do_soon(settle)

@@ -140,6 +140,18 @@ def test_topics_come_together_by_their_stamps() -> None:
     derived("joined: {together: [a, b], within: 0.05, lateness: 0.5}", body)
 
 
+def test_values_are_interpolated_at_a_stamp() -> None:
+    async def body(s: Sender) -> None:
+        await s.lab.sleep(1.0)
+        await s.send("b", 10.0)
+        await s.lab.sleep(0.1)
+        await s.send("b", 20.0)
+        await s.send("a", 1.0, ago=0.025)
+        assert s.watcher.values("exact") == [(1.0, pytest.approx(17.5))]
+
+    derived("exact: {interpolated: [a, b], within: 0.1}", body)
+
+
 def test_entries_may_be_derived_of_those_above() -> None:
     async def body(s: Sender) -> None:
         for x in (5.0, 50.0, 5.0):
