@@ -134,9 +134,7 @@ class Recorder:
         """A message of ROS that had an effect."""
         if self.takes_messages:
             kind = type_of(message)
-            self._write(
-                {"kind": "message", "t": round(t, 3), "topic": topic, "type": kind, "message": message}
-            )
+            self._write({"kind": "message", "t": round(t, 3), "topic": topic, "type": kind, "message": message})
 
     def close(self) -> None:
         """Write the last frame and close the file; closing twice does no harm."""

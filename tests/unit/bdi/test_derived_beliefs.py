@@ -1,13 +1,19 @@
 """Derived beliefs of programs: end to end on the virtual clock, by the rules and by generated code; wrong directives."""
 
+import json
 from pathlib import Path
 
 import pytest
+from recording_host import mind
 
 from jacaros.asl.checks.beliefs import beliefs_of
 from jacaros.asl.diagnostics import AslError
 from jacaros.asl.loader import load_program
 from jacaros.bdi.actions.internal_action import STANDARD
+from jacaros.bdi.mind import Mind
+from jacaros.bdi.rules import deriving
+from jacaros.bdi.snapshot import restore, stored
+from jacaros.terms.values import functor
 from jacaros.testing.run import run_project
 
 
@@ -103,6 +109,40 @@ def test_derived_beliefs_may_be_derived_of_others(tmp_path: Path) -> None:
         "both",
         "off",
     ]
+
+
+def test_a_block_of_a_namespace_has_beliefs_and_derived_ones_of_its_own(tmp_path: Path) -> None:
+    plans = """{ begin namespace(ns) }
+        { derive(c, all([g, h::i(_)], within(100))) }
+        +c <- .print(c).
+        { end }"""
+    assert run(tmp_path, "count(g, within(50))", "+ns::g; +h::i(1)", plans) == ["c"]
+
+
+def test_a_restored_mind_begins_with_empty_windows() -> None:
+    text = "{ derive(d, count(e(_), within(1000), at_least(2))) } { derive(q, absent(e(_), lasting(500))) }"
+    host = mind(f"{text} !s. +!s <- +e(1); +e(2).")
+    host.agent.run(100)
+    assert len(host.agent.beliefs[functor("d", 0)]) == 1
+    old, host.agent = host.agent, Mind("a", host.agent.program, host)
+    restore(host.agent, json.loads(json.dumps(stored(old))))
+    host.agent.run(100)
+    assert len(host.agent.beliefs[functor("d", 0)]) == 0
+    while host.ring_next(host.time + 10):
+        host.agent.run(100)
+    assert len(host.agent.beliefs[functor("q", 0)]) == 1
+
+
+def test_a_changed_program_replaces_the_declarations() -> None:
+    host = mind("{ derive(d, count(e(_), within(1000), at_least(1))) } !s. +!s <- +e(1).")
+    host.agent.run(100)
+    assert len(host.agent.beliefs[functor("d", 0)]) == 1
+    program, _ = load_program("a.asl", "{ derive(f, count(e(_), within(1000), at_least(1))) }")
+    deriving.replace(host.agent, program.derived)
+    assert len(host.agent.beliefs[functor("d", 0)]) == 0
+    host.agent.add_belief(functor("e", 1), (2.0,), ())
+    host.agent.run(100)
+    assert len(host.agent.beliefs[functor("f", 0)]) == 1
 
 
 def test_contexts_and_waits_see_derived_beliefs(tmp_path: Path) -> None:

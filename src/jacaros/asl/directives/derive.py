@@ -19,8 +19,12 @@ Report = Callable[[str, Span | None, str], None]
 """Takes a message, its place and the help."""
 
 
+Placed = Callable[[nodes.Term], nodes.Term]
+"""Puts a literal without a namespace into that of its block."""
+
+
 def read_derivation(
-    directive: nodes.Literal, namespace: str | None, report: Report
+    directive: nodes.Literal, namespace: str | None, placed: Placed, report: Report
 ) -> nodes.Derivation | None:
     """Return what the directive declares; None after a mistake, which is reported."""
     match directive.arguments:
@@ -28,7 +32,7 @@ def read_derivation(
             nodes.Literal(arguments=(), negated=False, annotations=None) as name,
             nodes.Literal() as pattern,
         ):
-            reader = _Reader(report)
+            reader = _Reader(report, placed)
             made = reader.read(name, pattern, namespace, directive.span)
             return None if reader.wrong else made
     report("'derive' needs a name and a pattern", directive.span, EXAMPLE)
@@ -38,8 +42,9 @@ def read_derivation(
 class _Reader:
     """Reads one pattern, and notes whether something is wrong with it."""
 
-    def __init__(self, report: Report) -> None:
+    def __init__(self, report: Report, placed: Placed) -> None:
         self.wrong = False
+        self._placed = placed
         self._report = report
 
     def _say(self, message: str, place: nodes.Node, help_: str) -> None:
@@ -96,7 +101,9 @@ class _Reader:
                     continue
                 if any(isinstance(part, nodes.Variable) for part in _inside(argument)):
                     self._say("a variable within a term", argument, "write _ for the whole argument")
-            yield each
+            found = self._placed(each)
+            assert isinstance(found, nodes.Literal)
+            yield found
 
     def _options(self, terms: list[nodes.Term]) -> tuple[dict[str, Any], dict[str, nodes.Node]]:
         found: dict[str, Any] = {}
@@ -199,12 +206,16 @@ def streams_of(derived: nodes.Derivation) -> tuple[str, ...]:
 
 def circle(derived: list[nodes.Derivation]) -> nodes.Derivation | None:
     """The last declaration, if it is made of itself."""
-    made_of = {each.name: [stream.functor for stream in each.streams] for each in derived}
+    made_of: dict[tuple[object, str], list[tuple[object, str]]] = {
+        (each.namespace, each.name): [(stream.namespace, stream.functor) for stream in each.streams]
+        for each in derived
+    }
     last = derived[-1]
-    todo, seen = list(made_of[last.name]), set[str]()
+    begin: tuple[object, str] = (last.namespace, last.name)
+    todo, seen = list(made_of[begin]), set[object]()
     while todo:
         name = todo.pop()
-        if name == last.name:
+        if name == begin:
             return last
         if name not in seen:
             seen.add(name)

@@ -277,7 +277,10 @@ class DirectiveProcessor:
         def report(message: str, span: Span | None, hint: str) -> None:
             parser.report("wrong-directive", message, span or directive.span, hint)
 
-        made = read_derivation(directive, parser.namespaces.current, report)
+        def placed(term: nodes.Term) -> nodes.Term:
+            return self._placed(parser.namespaces, term)
+
+        made = read_derivation(directive, parser.namespaces.current, placed, report)
         if made is None:
             return
         self._derived.append(made)
