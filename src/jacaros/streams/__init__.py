@@ -9,7 +9,7 @@ file                                           what it holds
 `pattern`                                      one derived event: puts late events in order, drives an operator
 `operator`, `condition`                        what operators share
 `counting`, `aggregates`, `share`              sliding windows
-`states`, `area`                               hysteresis, debounce, held, inside an area
+`states`, `area`                               hysteresis, debounce, held, delayed; inside an area
 `order`                                        sequence, absence
 `together`, `interpolated`                     samples with nearby stamps; values at the stamps of another stream
 ============================================== =======================================================================

@@ -18,7 +18,7 @@ from jacaros.streams.interpolated import Interpolated
 from jacaros.streams.operator import Emit, Operator
 from jacaros.streams.order import Absent, Chain, Missing
 from jacaros.streams.share import Share
-from jacaros.streams.states import Debounce, Held, Hysteresis
+from jacaros.streams.states import Debounce, Delayed, Held, Hysteresis
 from jacaros.streams.together import Together
 
 LONGEST: Final = 86_400.0
@@ -123,6 +123,7 @@ OPERATORS: Final[dict[str, Shape]] = {
     ),
     "held": Shape("a condition has held for a while", STATE, ("for",), _CONDITION),
     "debounce": Shape("values that stay the same for a while", VALUE, ("for",)),
+    "delayed": Shape("values as they were some time ago", VALUE, ("by",)),
     "inside": Shape("a pose is in an area", STATE, (), ("circle", "rectangle", "margin")),
     "absent": Shape("no event for a while", STATE, ("for",)),
     "missing": Shape("an event did not follow another", OCCURRENCE, ("after", "within")),
@@ -181,6 +182,7 @@ def faults(operator: str, sources: Sequence[str], options: Mapping[str, object])
 _NEEDED: Final = {
     "within": "give the length of the window, so that its memory is bounded",
     "for": "give the time that must pass",
+    "by": "give the time that the values are to be old",
     "after": "name the stream after which the event is expected",
 }
 
@@ -238,6 +240,7 @@ def _any(name: str, value: object) -> Fault | None:
 _KINDS: Final[dict[str, Callable[[str, object], Fault | None]]] = {
     "within": _seconds,
     "for": _seconds,
+    "by": _seconds,
     "above": _number,
     "below": _number,
     "equals": _any,
@@ -380,6 +383,7 @@ _MAKERS: Final[dict[str, Callable[[Spec, Emit], Operator]]] = {
     "held": lambda spec, emit: Held(emit, float(spec.options["for"]), spec.place, _condition(spec)),
     "debounce": lambda spec, emit: Debounce(emit, float(spec.options["for"])),
     "inside": _make_inside,
+    "delayed": lambda spec, emit: Delayed(emit, float(spec.options["by"])),
     "absent": lambda spec, emit: Absent(emit, float(spec.options["for"])),
     "missing": lambda spec, emit: Missing(emit, _within(spec)),
     "sequence": _make_chain,

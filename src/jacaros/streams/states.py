@@ -1,6 +1,7 @@
-"""States of one stream: hysteresis, a condition that has held for a while, debouncing."""
+"""States of one stream: hysteresis, a condition that has held for a while, debouncing, values of some time ago."""
 
 import math
+from collections import deque
 
 from jacaros.streams.condition import Condition
 from jacaros.streams.operator import Emit, Operator, Values, number_at
@@ -82,6 +83,32 @@ class Debounce(Operator):
             self.hide()
         else:
             self.show(self._candidate)
+
+
+class Delayed(Operator):
+    """Shows what the stream showed *by* seconds ago."""
+
+    __slots__ = ("_by", "_past")
+
+    def __init__(self, emit: Emit, by: float) -> None:
+        super().__init__(emit)
+        self._by = by
+        self._past: deque[tuple[float, Values | None]] = deque()
+
+    def take(self, source: int, time: float, values: Values | None) -> None:
+        self._past.append((time, values))
+        self.deadline = self._past[0][0] + self._by
+
+    def advance(self, time: float) -> None:
+        past = self._past
+        while past and past[0][0] + self._by <= time:
+            _, values = past.popleft()
+            if not past or past[0][0] + self._by > time:  # of events at one time the last counts
+                if values is None:
+                    self.hide()
+                else:
+                    self.show(values)
+        self.deadline = past[0][0] + self._by if past else math.inf
 
 
 def _satisfies(values: Values | None, place: int, condition: Condition) -> bool:

@@ -60,6 +60,7 @@ def run(folder: Path, derived: str, body: str, plans: str = "") -> list[str]:
             "-+b(1); .wait(20); -+b(2); .wait(120); -+b(3); .wait(20)",
             ["2", "3"],
         ),
+        ("delayed(b(X), by(100))", "-+b(1); .wait(50); -+b(2); .wait(200)", ["1", "2"]),
         (
             "absent(e(_), lasting(100))",
             ".wait(50); +e(1); .wait(120); +e(2)",

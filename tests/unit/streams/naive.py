@@ -179,6 +179,10 @@ def _debounce(spec: Spec, past: Sequence[Event], now: float) -> Values | None:
     return candidate if since + spec.options["for"] <= now else stable
 
 
+def _delayed(spec: Spec, past: Sequence[Event], now: float) -> Values | None:
+    return next((values for _, time, values in reversed(past) if time + spec.options["by"] <= now), None)
+
+
 def _absent(spec: Spec, past: Sequence[Event], now: float) -> Values | None:
     newest = max((time for _, time, values in past if values is not None), default=0.0)
     return () if newest + spec.options["for"] <= now else None
@@ -208,5 +212,6 @@ _STATES = {
     "held": _held,
     "debounce": _debounce,
     "absent": _absent,
+    "delayed": _delayed,
     "inside": _inside,
 }

@@ -33,6 +33,7 @@ STATES = [
     Spec("held", ("a",), {"for": 1.5, "above": 1.0}),
     Spec("held", ("a",), {"for": 1.5}),
     Spec("debounce", ("a",), {"for": 1.0}),
+    Spec("delayed", ("a",), {"by": 1.5}),
     Spec("absent", ("a",), {"for": 1.5}),
     Spec("inside", ("a",), {"circle": (1.0, 1.0, 1.0), "margin": 0.5}),
     Spec("all", ("a", "b", "c"), {"within": 2.0}),

@@ -124,7 +124,7 @@ def _derived(part: DerivedPart, spec: Spec) -> str:
         ""
         if spec.gives != VALUE
         else "(Values)"
-        if spec.operator in ("debounce", "together", "interpolated")
+        if spec.operator in ("debounce", "delayed", "together", "interpolated")
         else "(Value)"
     )
     return f"{part.name}{values}: {told.rstrip('.')}."

@@ -9,7 +9,7 @@ from jacaros.asl.source import Span
 from jacaros.streams.schema import OPERATORS, VALUED, Fault, faults, unknown
 
 EXAMPLE: Final = "as in { derive(bumped_often, count(bump(_), within(5000), at_least(3))) }"
-_TIMES: Final = {"within": "within", "lasting": "for"}
+_TIMES: Final = {"within": "within", "lasting": "for", "by": "by"}
 """Options that are milliseconds here, and their names in the schema, where they are seconds (`for` is a keyword)."""
 
 _TURNS: Final = {"degrees": 360.0, "radians": math.tau}

@@ -69,7 +69,7 @@ class Stream:
     def believed(self, agent: Circumstance) -> bool:
         """Whether such a belief is held."""
         rows = (entry for entry, _ in agent.beliefs[self.symbol].entries())
-        return any(entry.__class__ is tuple and self.matches(entry) for entry in rows)
+        return any(isinstance(entry, tuple) and self.matches(entry) for entry in rows)
 
 
 class Derived:
@@ -99,7 +99,7 @@ class Derived:
             return
         self.forget()
         if kind != HIDE:
-            row = tuple([float(value) if value.__class__ is int else value for value in values])
+            row = tuple([float(value) if isinstance(value, int) else value for value in values])
             self.row = self._symbol(len(row)), row
             belief_update.believe(agent, *self.row, _ANNOTATIONS, cause)
 
