@@ -65,6 +65,7 @@ def stored(mind: Mind) -> dict[str, Any]:
     held["condition_waits"] = (list(conditions.values()), list(conditions.due), list(conditions.restless))
     held["refused"] = {name: (each.refusals, each.losses) for name, each in mind.budgets.items()}
     held["percepts"] = list(mind.incoming.percepts)
+    held["derived"] = deriving.stored(mind)
     held["serial"] = mind.trail.serial
     held["time"] = mind.architecture.now()
     writer = Writer(mind)
@@ -114,7 +115,7 @@ def restore(mind: Mind, data: dict[str, Any], *, same_host: bool = False) -> Non
     _wait_again(mind, held)
     for name, (refusals, losses) in held["refused"].items():
         mind.budgets[name].refusals, mind.budgets[name].losses = refusals, losses
-    deriving.begin_anew(mind, mind.program.derived)
+    deriving.resume(mind, mind.program.derived, held.get("derived"))
     mind.trail.serial = held["serial"]
     version, state, gauss = data["random"]
     mind.architecture.random.setstate((version, tuple(state), gauss))

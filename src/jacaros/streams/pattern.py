@@ -3,9 +3,13 @@
 import heapq
 import itertools
 import math
+from collections import deque
+from typing import Any
 
-from jacaros.streams.operator import Emit, Values
+from jacaros.streams.operator import Emit, Operator, Values
 from jacaros.streams.schema import Spec, make
+
+_DATA = (bool, int, float, str, tuple, list, deque, type(None))
 
 
 class Pattern:
@@ -78,6 +82,21 @@ class Pattern:
             self._mark = time
             operator.take(source, time, values)
 
+    def state(self) -> dict[str, Any]:
+        """Return all that the past has left, as numbers, tuples, lists and dictionaries."""
+        early = [tuple(each) for each in self._early]
+        own = {"start": self._start, "mark": self._mark, "early": early, "dropped": self._dropped}
+        return {**own, "operator": {name: _plain(value) for name, value in _kept(self._operator)}}
+
+    def resume(self, state: dict[str, Any]) -> None:
+        """Continue from the `state` of a pattern with the same declaration."""
+        self._start, self._mark, self._dropped = state["start"], state["mark"], state["dropped"]
+        self._early = [tuple(each) for each in state["early"]]
+        self._numbers = itertools.count(1 + max((each[1] for each in self._early), default=-1))
+        for name, value in state["operator"].items():
+            before = getattr(self._operator, name)
+            setattr(self._operator, name, deque(value) if isinstance(before, deque) else value)
+
     def advance(self, now: float) -> None:
         """Let time pass until *now* on the clock of the event times."""
         mark = now - self._start - self._lateness
@@ -101,3 +120,15 @@ class Pattern:
             operator.advance(due)
             if operator.deadline <= due:  # an operator that does not move on would hold everybody up
                 operator.deadline = math.nextafter(due, math.inf)
+
+
+def _kept(operator: Operator) -> list[tuple[str, Any]]:
+    """The attributes of an operator that are data."""
+    names = [name for kind in type(operator).__mro__ for name in getattr(kind, "__slots__", ())]
+    found = [(name, getattr(operator, name)) for name in names]
+    return [(name, value) for name, value in found if isinstance(value, _DATA)]
+
+
+def _plain(value: Any) -> Any:
+    """Data with lists in the place of deques."""
+    return list(value) if isinstance(value, deque) else value

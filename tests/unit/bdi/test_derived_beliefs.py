@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 
 import pytest
-from recording_host import mind
+from recording_host import RecordingHost, mind
 
 from jacaros.asl.checks.beliefs import beliefs_of
 from jacaros.asl.diagnostics import AslError
@@ -120,18 +120,46 @@ def test_a_block_of_a_namespace_has_beliefs_and_derived_ones_of_its_own(tmp_path
     assert run(tmp_path, "count(g, within(50))", "+ns::g; +h::i(1)", plans) == ["c"]
 
 
-def test_a_restored_mind_begins_with_empty_windows() -> None:
-    text = "{ derive(d, count(e(_), within(1000), at_least(2))) } { derive(q, absent(e(_), lasting(500))) }"
-    host = mind(f"{text} !s. +!s <- +e(1); +e(2).")
+@pytest.mark.parametrize(
+    ("derived", "body"),
+    [
+        ("count(e(_), within(1000), at_least(2))", "+e(1); .wait(700); +e(2); .wait(200); +e(3)"),
+        ("mean(e(X), within(1000))", "+e(1); .wait(700); +e(2); .wait(200); +e(6)"),
+        ("slope(e(X), within(1000))", "+e(1); .wait(700); +e(2); .wait(200); +e(6)"),
+        ("max(e(X), within(1000))", "+e(5); .wait(700); +e(2); .wait(500); +e(3)"),
+        ("share(e, within(1000), at_least(0.5))", "+e; .wait(700); -e; .wait(900); +e; .wait(900)"),
+        ("held(e(X), above(1), lasting(300))", "+e(2); .wait(700); -e(2)"),
+        ("debounce(e(X), lasting(300))", "+e(2); .wait(700); -+e(3); .wait(100); -+e(4)"),
+        ("sequence([e, f, g], within(300))", "+e; .wait(100); +f; .wait(100); +g"),
+        ("missing(f, after(e), within(300))", "+e; .wait(100); +f; .wait(100); -+e; -e; +e"),
+        ("together([e(X), f(Y)], within(50))", "+e(1); .wait(10); +f(2)"),
+        ("absent(e, lasting(300))", ".wait(100); +e"),
+    ],
+)
+def test_a_mind_that_is_restored_after_each_cycle_derives_the_same(derived: str, body: str) -> None:
+    found = []
+    for exchanged in (False, True):
+        host = mind(
+            f"{{ derive(d, {derived}) }} !s. +!s <- {body}; .wait(2000); .print(end)."
+            "+d <- .print(on). -d <- .print(off). +d(X) <- .print(X). +d(X,Y) <- .print(X, Y)."
+        )
+        more = True
+        while more:
+            more = host.agent.run(1)
+            if exchanged:
+                restored(host)
+            more = more or host.ring_next(host.time + 10)
+        found.append(host.printed)
+    assert len(found[0]) > 1
+    assert found[0] == found[1]
+
+
+def test_beliefs_of_declarations_of_before_are_given_up() -> None:
+    host = mind("{ derive(d, count(e(_), within(1000), at_least(2))) } !s. +!s <- +e(1); +e(2).")
     host.agent.run(100)
     assert len(host.agent.beliefs[functor("d", 0)]) == 1
-    old, host.agent = host.agent, Mind("a", host.agent.program, host)
-    restore(host.agent, json.loads(json.dumps(stored(old))))
-    host.agent.run(100)
+    deriving.resume(host.agent, (), None)
     assert len(host.agent.beliefs[functor("d", 0)]) == 0
-    while host.ring_next(host.time + 10):
-        host.agent.run(100)
-    assert len(host.agent.beliefs[functor("q", 0)]) == 1
 
 
 def test_a_changed_program_replaces_the_declarations() -> None:
@@ -150,6 +178,16 @@ def test_contexts_and_waits_see_derived_beliefs(tmp_path: Path) -> None:
     body = "+e(1); .wait(d, 500); .print(seen); .wait(not d, 2000); .print(gone)"
     printed = run(tmp_path, "count(e(_), within(1000), at_least(1))", body)
     assert (printed[:2], sorted(printed[2:])) == (["onderived", "seen"], ["gone", "off"])
+
+
+def restored(host: RecordingHost) -> None:
+    """Put a restored mind in the place of that of the host."""
+    old = host.agent
+    data = json.dumps(stored(old))
+    for alarm in old.waits.alarms.values():
+        alarm.timer.cancel()
+    host.agent = Mind(old.name, old.program, host, old.options, old.engine.actions)
+    restore(host.agent, json.loads(data), same_host=True)
 
 
 def test_an_agent_without_declarations_listens_to_nothing(tmp_path: Path) -> None:

@@ -31,6 +31,7 @@ class Stream:
     """The beliefs that one literal of a declaration matches.
 
     Attributes:
+        name: how the declarations that share it write it.
         symbol: their functor.
         known: places and values of the arguments that are given.
         values: places of the arguments that are the values of an event; None for all, in order.
@@ -38,13 +39,13 @@ class Stream:
         last: place of its newest change among those that wait.
     """
 
-    __slots__ = ("known", "last", "listeners", "symbol", "values")
+    __slots__ = ("known", "last", "listeners", "name", "symbol", "values")
 
-    def __init__(self, literal: nodes.Literal) -> None:
+    def __init__(self, name: str, literal: nodes.Literal) -> None:
         term = lower_value(literal)
         symbol = functor_of(term)
         assert symbol is not None
-        self.symbol = symbol
+        self.name, self.symbol = name, symbol
         self.known = [
             (place, value)
             for place, (node, value) in enumerate(zip(literal.arguments, arguments_of(term), strict=True))
@@ -149,7 +150,7 @@ class DerivedBeliefs:
             self._all.append(derived)
             streams = dict(zip(streams_of(each), each.streams, strict=True))
             for number, name in enumerate(derived.pattern.spec.streams):
-                stream = Stream(streams[name])
+                stream = Stream(name, streams[name])
                 stream = self._streams.setdefault(stream.symbol, {}).setdefault(name, stream)
                 stream.listeners.append((derived, number))
             self._schedule(derived)
@@ -160,6 +161,37 @@ class DerivedBeliefs:
         for derived in self._all:
             derived.forget()
         self._declared, self._all, self._streams, self._pending, self._queue = [], [], {}, [], []
+        self._wait()
+
+    def stored(self) -> dict[str, Any]:
+        """Return what the past has left, as data."""
+        return {
+            "latest": self._latest,
+            "patterns": [
+                (each.pattern.state(), None if each.row is None else (*each.row,)) for each in self._all
+            ],
+            "pending": [(stream.symbol, stream.name, values) for stream, values, _ in self._pending],
+        }
+
+    def resume(self, held: dict[str, Any]) -> None:
+        """Continue from what was `stored` of an agent with the same program."""
+        self._latest = held["latest"]
+        for derived, (state, row) in zip(self._all, held["patterns"], strict=True):
+            derived.pattern.resume(state)
+            derived.row = row
+        for symbol, name, values in held["pending"]:
+            stream = self._streams[symbol][name]
+            stream.last = len(self._pending)
+            self._pending.append((stream, values, None))
+        if self._alarm is not None:
+            waits.cancel_alarm(self.agent, self._alarm)
+        kept = [each for each in self.agent.waits.alarms.values() if each.function is ring]
+        self._alarm = kept[0] if kept else None
+        self._due = kept[0].arguments[0] if kept else math.inf
+        self._queue = []
+        for derived in self._all:
+            derived.scheduled = math.inf
+            self._schedule(derived)
         self._wait()
 
     def heard(self, operator: str, symbol: Functor, row: Row, cause: Cause | None) -> None:
@@ -260,6 +292,20 @@ def begin_anew(agent: Circumstance, declared: Iterable[nodes.Derivation]) -> Non
             if SOURCE_DERIVED in annotations:
                 take_away(table, entry, annotations, _ANNOTATIONS)
     declare(agent, declared)
+
+
+def stored(agent: Circumstance) -> dict[str, Any] | None:
+    """Return what the declarations of an agent hold, as data; None without declarations."""
+    return None if agent.observers.derived is None else _derived(agent).stored()
+
+
+def resume(agent: Circumstance, declared: tuple[nodes.Derivation, ...], held: dict[str, Any] | None) -> None:
+    """Continue from what was `stored`; begin anew if there are other declarations now."""
+    if held is None or len(held["patterns"]) != len(set(declared)):
+        begin_anew(agent, declared)
+        return
+    declare(agent, declared)
+    _derived(agent).resume(held)
 
 
 def replace(agent: Circumstance, declared: Iterable[nodes.Derivation]) -> None:
