@@ -52,6 +52,8 @@ class Pattern:
     @property
     def deadline(self) -> float:
         """When `advance` is to be called, if no event comes before; infinite for never."""
+        if not self._early:
+            return self._start + self._operator.deadline + self._lateness
         return self._start + self._due() + self._lateness
 
     def _due(self) -> float:

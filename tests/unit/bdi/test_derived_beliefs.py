@@ -13,7 +13,8 @@ from jacaros.bdi.actions.internal_action import STANDARD
 from jacaros.bdi.mind import Mind
 from jacaros.bdi.rules import deriving
 from jacaros.bdi.snapshot import restore, stored
-from jacaros.terms.values import functor
+from jacaros.bdi.state.act import Percept
+from jacaros.terms.values import SOURCE_PERCEPT, functor
 from jacaros.testing.run import run_project
 
 
@@ -178,6 +179,40 @@ def test_contexts_and_waits_see_derived_beliefs(tmp_path: Path) -> None:
     body = "+e(1); .wait(d, 500); .print(seen); .wait(not d, 2000); .print(gone)"
     printed = run(tmp_path, "count(e(_), within(1000), at_least(1))", body)
     assert (printed[:2], sorted(printed[2:])) == (["onderived", "seen"], ["gone", "off"])
+
+
+def run_until(host: RecordingHost, end: float) -> None:
+    """Let the agent run, and its timers ring, until a moment."""
+    more = True
+    while more:
+        while host.agent.run(10):
+            pass
+        more = host.ring_next(end)
+    host.time = end
+
+
+def test_a_property_with_a_new_value_has_not_ended_in_between() -> None:
+    host = mind(
+        "{ derive(held, held(p(X), above(1), lasting(100))) } { derive(many, count(p(_), within(1000), at_least(3))) }"
+        "+held <- .print(held). -held <- .print(over). +many <- .print(many). -many <- .print(few)."
+    )
+    symbol, about = functor("p", 1), (SOURCE_PERCEPT,)
+    old: list[Percept] = []
+    for value in (2.0, 3.0, 4.0, 0.5):
+        host.agent.perceive([*old, Percept("add", (symbol, value), about)])
+        old = [Percept("remove", (symbol, value), about)]
+        run_until(host, host.time + 0.06)
+    run_until(host, host.time + 10)
+    assert host.printed == ["held", "many", "over", "few"]
+
+
+def test_signals_are_events() -> None:
+    host = mind("{ derive(twice, count(bump(_), within(1000), at_least(2))) } +twice <- .print(twice).")
+    for value in (1.0, 2.0):
+        host.agent.perceive([Percept("signal", (functor("bump", 1), value), (SOURCE_PERCEPT,))])
+    while host.agent.run(10):
+        pass
+    assert host.printed == ["twice"]
 
 
 def restored(host: RecordingHost) -> None:

@@ -100,11 +100,13 @@ def _is_keyed(row: Row) -> bool:
 
 def take_in(agent: Circumstance, percepts: list[Percept]) -> None:
     """Take in what was noticed in one step, where its events go into the queue as they are."""
+    observers = agent.observers
     if (
         agent.waits.events
         or agent.waits.conditions
         or agent.features.subplans
-        or agent.observers.hear_beliefs
+        or observers.mind is not None
+        or observers.step is not None
         or not _has_room(agent, len(percepts))
     ):
         perceiving.take_in(agent, percepts)
@@ -115,6 +117,7 @@ def take_in(agent: Circumstance, percepts: list[Percept]) -> None:
         agent.library.selects,
         agent.events,
     )
+    derived = observers.derived
     for percept in percepts:
         kept = percept.kept or _keep(agent, percept)
         symbol, row, change, event = kept
@@ -135,6 +138,8 @@ def take_in(agent: Circumstance, percepts: list[Percept]) -> None:
                 continue
             discard(rows, row)
             del holders[literal]
+        if derived is not None:
+            derived.heard("-" if percept.kind == "remove" else "+", symbol, row, percept.cause)
         if selects[change] is not None:
             if event is None:
                 event = kept[3] = ((change, *row), None, annotations, percept.cause)

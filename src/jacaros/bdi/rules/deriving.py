@@ -200,7 +200,7 @@ class DerivedBeliefs:
         if streams is None:
             return
         for stream in streams.values():
-            if stream.matches(row):
+            if not stream.known or stream.matches(row):
                 pending = self._pending
                 if not pending and not self._settling:
                     self.agent.do_soon(settle)
@@ -222,7 +222,8 @@ class DerivedBeliefs:
                     self.cause = cause
                     for derived, number in stream.listeners:
                         derived.pattern.take(number, now, values)
-                        self._schedule(derived)
+                        if derived.pattern.deadline < derived.scheduled:
+                            self._schedule(derived)
         finally:
             self._settling, self.cause = False, None
         self._wait()

@@ -164,6 +164,30 @@ def test_entries_may_be_derived_of_those_above() -> None:
     )
 
 
+def test_frames_are_streams_and_areas_are_entered_and_left() -> None:
+    text = """
+frames:
+  pose: {target: map, source: base_link}
+derived:
+  at_dock: {inside: pose, circle: [1, 0, 0.5], margin: 0.2}
+"""
+
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        watcher, seen = lab.watch(artifact), []
+        for x in (0.0, 0.8, 1.6, 1.8):  # outside, inside, within the margin, outside
+            header = {"stamp": lab.clock.now(), "frame_id": "map"}
+            transform = {"translation": {"x": x}}
+            lab.backend.tf_broadcast(
+                {"header": header, "child_frame_id": "base_link", "transform": transform}
+            )
+            await settle()
+            await lab.sleep(0.5)
+            seen.append(watcher.holds("at_dock") == [()])
+        assert seen == [False, True, True, False]
+
+    with_mapped(text, body)
+
+
 def _problems(entry: str) -> list[str]:
     with pytest.raises(MappingError) as caught:
         read_mapping(f"{MAPPING}derived:\n  {entry}\n", "m.yaml")
