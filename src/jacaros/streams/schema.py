@@ -134,6 +134,12 @@ OPERATORS: Final[dict[str, Shape]] = {
 }
 """All operators by name."""
 
+PARTNERS_WAIT: Final = 0.5
+"""Seconds of lateness, unless given, where samples of several topics are joined: each topic has a delay of its own."""
+
+JOINING: Final = ("together", "interpolated")
+"""Operators that join samples by their stamps."""
+
 _ONCE: Final = ("all", "together", "interpolated")
 """Operators that may not name a stream twice."""
 

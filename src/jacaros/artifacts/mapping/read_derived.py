@@ -6,7 +6,17 @@ from jacaros.artifacts.mapping.declared import ArtifactPart, DerivedPart, Place,
 from jacaros.artifacts.mapping.read_fields import place_of
 from jacaros.artifacts.mapping.read_names import belief_name
 from jacaros.artifacts.mapping.read_topics import plain_constant
-from jacaros.streams.schema import LONGEST, OPERATORS, VALUED, Fault, Spec, faults, unknown
+from jacaros.streams.schema import (
+    JOINING,
+    LONGEST,
+    OPERATORS,
+    PARTNERS_WAIT,
+    VALUED,
+    Fault,
+    Spec,
+    faults,
+    unknown,
+)
 from jacaros.yaml_nodes import Node, Problem
 
 _COMMON = ("value", "lateness", "description")
@@ -41,10 +51,16 @@ def read_derived(name: Node, node: Node) -> DerivedPart:
         tuple(each.text for each in sources),
         options,
         entries["value"].whole(1, 1) - 1 if "value" in entries else 0,
-        entries["lateness"].number(0.0, LONGEST) if "lateness" in entries else 0.0,
+        _lateness(entries, operator),
     )
     told = entries["description"].text() if "description" in entries else ""
     return DerivedPart(belief_name(name), place, None if wrong else spec, sources, told)
+
+
+def _lateness(entries: dict[str, Node], operator: str) -> float:
+    if "lateness" in entries:
+        return entries["lateness"].number(0.0, LONGEST)
+    return PARTNERS_WAIT if operator in JOINING else 0.0
 
 
 def _operator(name: Node, node: Node, entries: dict[str, Node]) -> str | None:

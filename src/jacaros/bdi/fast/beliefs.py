@@ -100,15 +100,7 @@ def _is_keyed(row: Row) -> bool:
 
 def take_in(agent: Circumstance, percepts: list[Percept]) -> None:
     """Take in what was noticed in one step, where its events go into the queue as they are."""
-    observers = agent.observers
-    if (
-        agent.waits.events
-        or agent.waits.conditions
-        or agent.features.subplans
-        or observers.mind is not None
-        or observers.step is not None
-        or not _has_room(agent, len(percepts))
-    ):
+    if not _is_usual(agent, len(percepts)):
         perceiving.take_in(agent, percepts)
         return
     beliefs, holders, selects, events = (
@@ -117,7 +109,7 @@ def take_in(agent: Circumstance, percepts: list[Percept]) -> None:
         agent.library.selects,
         agent.events,
     )
-    derived = observers.derived
+    derived = agent.observers.derived
     for percept in percepts:
         kept = percept.kept or _keep(agent, percept)
         symbol, row, change, event = kept
@@ -146,10 +138,15 @@ def take_in(agent: Circumstance, percepts: list[Percept]) -> None:
             events.append(event)
 
 
-def _has_room(agent: Circumstance, count: int) -> bool:
-    """Whether that number of events need only be put into the queue."""
+def _is_usual(agent: Circumstance, count: int) -> bool:
+    """Whether that number of events need only be put into the queue, and nobody but derived beliefs hears of them."""
     return (
-        agent.options.events == "discard"
+        not agent.waits.events
+        and not agent.waits.conditions
+        and not agent.features.subplans
+        and agent.observers.mind is None
+        and agent.observers.step is None
+        and agent.options.events == "discard"
         and agent.selections.urgencies is None
         and len(agent.events) + count <= agent.options.event_limit
         and len(agent.alive) < agent.options.intention_limit

@@ -137,7 +137,7 @@ def test_topics_come_together_by_their_stamps() -> None:
         await s.send("a", 2.0)
         assert s.watcher.values("joined") == [(1.0, 10.0)]
 
-    derived("joined: {together: [a, b], within: 0.05, lateness: 0.5}", body)
+    derived("joined: {together: [a, b], within: 0.05}", body)
 
 
 def test_values_are_interpolated_at_a_stamp() -> None:
