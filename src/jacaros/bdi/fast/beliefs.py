@@ -98,7 +98,7 @@ def _is_keyed(row: Row) -> bool:
 # --- percepts ----------------------------------------------------------------------------------------------------
 
 
-def take_in(agent: Circumstance, percepts: list[Percept]) -> None:
+def take_in(agent: Circumstance, percepts: list[Percept]) -> None:  # noqa: C901 - written out for speed
     """Take in what was noticed in one step, where its events go into the queue as they are."""
     if not _is_usual(agent, len(percepts)):
         perceiving.take_in(agent, percepts)
