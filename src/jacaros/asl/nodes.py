@@ -365,6 +365,21 @@ class RegisteredFunction(Node):
     implementation: str
 
 
+class Derivation(Node):
+    """``{ derive(name, operator(streams, options)) }``: a belief or event composed of changes of beliefs.
+
+    ``options`` are pairs of a name and a number (or a tuple of numbers), times in seconds;
+    ``turns`` are the whole turns of values that are angles, for `interpolated`.
+    """
+
+    name: str
+    namespace: str | None
+    operator: str
+    streams: tuple[Literal, ...]
+    options: tuple[tuple[str, Any], ...]
+    turns: tuple[float, ...] = ()
+
+
 @dataclass(frozen=True, slots=True)
 class Program:
     """One agent program with its includes already in place, in source order per kind."""
@@ -373,6 +388,7 @@ class Program:
     goals: tuple[Literal, ...] = ()
     plans: tuple[Plan, ...] = ()
     functions: tuple[RegisteredFunction, ...] = ()
+    derived: tuple[Derivation, ...] = ()
 
 
 @dataclass
@@ -383,6 +399,7 @@ class Section:
     goals: list[Literal] = field(default_factory=list)
     plans: list[Plan] = field(default_factory=list)
     functions: list[RegisteredFunction] = field(default_factory=list)
+    derived: list[Derivation] = field(default_factory=list)
 
     def extend(self, other: Section) -> None:
         """Put the clauses of *other* behind those of this one."""
@@ -390,7 +407,14 @@ class Section:
         self.goals.extend(other.goals)
         self.plans.extend(other.plans)
         self.functions.extend(other.functions)
+        self.derived.extend(other.derived)
 
     def program(self) -> Program:
         """The finished program."""
-        return Program(tuple(self.beliefs), tuple(self.goals), tuple(self.plans), tuple(self.functions))
+        return Program(
+            tuple(self.beliefs),
+            tuple(self.goals),
+            tuple(self.plans),
+            tuple(self.functions),
+            tuple(self.derived),
+        )

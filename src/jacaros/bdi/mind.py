@@ -11,6 +11,7 @@ from jacaros.bdi.architecture import Architecture
 from jacaros.bdi.engines import new_engine
 from jacaros.bdi.rules import (
     belief_update,
+    deriving,
     forks,
     functions,
     goals,
@@ -109,6 +110,7 @@ class Mind(Circumstance):
     def start(self) -> None:
         """Take up the initial beliefs and goals."""
         self.engine.begin(self)
+        deriving.declare(self, self.program.derived)
         with functions.evaluating(self):
             self.take_up(self.program)
 
@@ -154,6 +156,7 @@ class Mind(Circumstance):
             path, self.architecture.read_program, functions.known_names(self), self.engine.actions, namespace
         )
         self.register_functions(program.functions)
+        deriving.declare(self, program.derived)
         plan_changes.include_plans(self, program.plans)
         self.take_up(program)
 

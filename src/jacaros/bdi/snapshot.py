@@ -12,7 +12,7 @@ from typing import Any
 
 from jacaros.bdi.mind import Mind
 from jacaros.bdi.object_table import Reader, Writer
-from jacaros.bdi.rules import urgency
+from jacaros.bdi.rules import deriving, urgency
 from jacaros.bdi.rules.alarms import start_alarm
 from jacaros.bdi.rules.belief_update import look_again
 from jacaros.bdi.rules.plan_changes import look_at_plans
@@ -67,6 +67,7 @@ def stored(mind: Mind) -> dict[str, Any]:
     held["condition_waits"] = (list(conditions.values()), list(conditions.due), list(conditions.restless))
     held["refused"] = {name: (each.refusals, each.losses) for name, each in mind.budgets.items()}
     held["percepts"] = list(mind.incoming.percepts)
+    held["derived"] = deriving.stored(mind)
     held["serial"] = mind.trail.serial
     held["time"] = mind.architecture.now()
     writer = Writer(mind)
@@ -116,6 +117,7 @@ def restore(mind: Mind, data: dict[str, Any], *, same_host: bool = False) -> Non
     _wait_again(mind, held)
     for name, (refusals, losses) in held["refused"].items():
         mind.budgets[name].refusals, mind.budgets[name].losses = refusals, losses
+    deriving.resume(mind, mind.program.derived, held.get("derived"))
     mind.trail.serial = held["serial"]
     version, state, gauss = data["random"]
     mind.architecture.random.setstate((version, tuple(state), gauss))
@@ -224,6 +226,7 @@ def copy_mind(original: Mind, clone: Mind) -> None:
         clone.counts.intentions += 1
         intention.id = clone.counts.intentions
         clone.alive[intention.id] = intention
+    deriving.begin_anew(clone, clone.program.derived)
     clone.architecture.ready()
 
 

@@ -12,10 +12,11 @@ from jacaros.artifacts.kit.reading import Reading, ReadingPolicy, Values
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.artifacts.mapping.checking import type_problems
 from jacaros.artifacts.mapping.declared import ArtifactPart, MappingError, MappingFile, Place
+from jacaros.artifacts.mapping.deriving import Derivation, with_angles
 from jacaros.artifacts.mapping.feeds import Feed, Topic
 from jacaros.artifacts.mapping.file import find_mapping, load_mapping, shipped_mappings
 from jacaros.artifacts.mapping.frames import FrameFeed
-from jacaros.artifacts.mapping.host import Elements
+from jacaros.artifacts.mapping.host import Elements, Tap
 from jacaros.artifacts.mapping.manual import Documentation, parameter_words
 from jacaros.artifacts.mapping.operating import Operations
 from jacaros.artifacts.mapping.operation_methods import methods
@@ -61,6 +62,12 @@ class MappedArtifact(RosArtifact):
         self.readings: dict[str, Reading] = {}
         self.elements: dict[str, Elements] = {}
         self.own_parameters = self._declare_parameters()
+        self.taps: dict[str, list[Tap]] = {}
+        self.derivations = {
+            each.name: Derivation(self, each, with_angles(each.spec, self.part))
+            for each in self.part.derived
+            if each.spec is not None
+        }
         search = TypeSearch(self)
         self.operating = Operations(self)
         topics: dict[object, Topic] = {}
@@ -151,6 +158,11 @@ class MappedArtifact(RosArtifact):
     def show_rows(self, name: str) -> None:
         """Bring the properties of the elements *name* up to date."""
         self.elements[name].show()
+
+    @internal_operation
+    def show_derived(self, name: str) -> None:
+        """Bring the derived property *name* up to date."""
+        self.derivations[name].show()
 
     @internal_operation
     def send_signals(self, name: str, rows: object) -> None:

@@ -10,6 +10,7 @@ from jacaros.artifacts.mapping.paths import Path
 from jacaros.artifacts.mapping.units import Line
 from jacaros.ros.parameter import Declaration
 from jacaros.ros.qos import QoS
+from jacaros.streams.schema import OCCURRENCE, Spec
 from jacaros.yaml_nodes import Problem, YamlFileError
 
 ALWAYS = ReadingPolicy()
@@ -192,6 +193,27 @@ class ParameterPart:
     description: str = ""
 
 
+@dataclass(frozen=True, slots=True)
+class DerivedPart:
+    """A property or signal composed of events of others.
+
+    Attributes:
+        spec: the pattern; None after a mistake.
+        sources: the properties and signals, as written.
+    """
+
+    name: str
+    place: Place
+    spec: Spec | None
+    sources: tuple[Written, ...]
+    description: str = ""
+
+    @property
+    def signal(self) -> bool:
+        """Whether it is a signal."""
+        return self.spec is not None and self.spec.gives == OCCURRENCE
+
+
 class Source(StrEnum):
     """Where a value for a message comes from."""
 
@@ -306,6 +328,7 @@ class ArtifactPart:
         tf_prefix: None: the namespace.
         connected: whether it is shown that topics are connected; seconds: they are not when no message came for so long.
         topics: properties and signals from topics.
+        derived: properties and signals composed of events of others.
         interfaces: folders with definitions of types.
     """
 
@@ -320,6 +343,7 @@ class ArtifactPart:
     parameters: tuple[ParameterPart, ...] = ()
     operations: tuple[OperationPart, ...] = ()
     interfaces: tuple[FilePath, ...] = ()
+    derived: tuple[DerivedPart, ...] = ()
 
     @property
     def properties(self) -> tuple[TopicPart, ...]:

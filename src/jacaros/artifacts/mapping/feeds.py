@@ -12,6 +12,7 @@ from jacaros.artifacts.kit.reading import Outlet, Reading
 from jacaros.artifacts.kit.sensing_artifact import RangeOfView
 from jacaros.artifacts.mapping.declared import TopicPart, Written
 from jacaros.artifacts.mapping.decoding import Unshowable
+from jacaros.artifacts.mapping.deriving import stamp_of
 from jacaros.artifacts.mapping.host import Host
 from jacaros.artifacts.mapping.rows import Extract, Row, extractor
 from jacaros.artifacts.mapping.type_search import TypeSearch
@@ -99,6 +100,8 @@ class Feed:
         self._sent: dict[object, tuple[object, ...]] = {}
         self._held: tuple[list[Row], Cause | None] | None = None
         self._pause: Timer | None = None
+        self._taps = host.taps.get(part.name, ())
+        self._latched = part.qos is not None and part.qos.durability == "transient_local"
         host.at_dispose(self._end_pause)
         if part.each is not None and not part.signal:
             host.elements[part.name] = Elements(host, part)
@@ -158,10 +161,18 @@ class Feed:
         except Unshowable as error:
             self._refuse(error, topic)
             return
+        if self._taps:
+            self._tell_taps(message, rows, cause)
         if self._view is not None:
             self._view.take([(*row.place, row) for row in rows], cause)
         else:
             self._show(rows, cause)
+
+    def _tell_taps(self, message: object, rows: list[Row], cause: Cause | None) -> None:
+        stamp = stamp_of(message, self._latched)
+        for tap in self._taps:
+            for row in rows:
+                tap(stamp, row.values, cause)
 
     def _show(self, rows: list[Row], cause: Cause | None) -> None:
         if self.part.signal:

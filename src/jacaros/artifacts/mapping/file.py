@@ -15,6 +15,7 @@ from jacaros.artifacts.mapping.declared import (
     TopicPart,
 )
 from jacaros.artifacts.mapping.operation_methods import arity, is_switch
+from jacaros.artifacts.mapping.read_derived import derived_problems, read_derived
 from jacaros.artifacts.mapping.read_fields import place_of
 from jacaros.artifacts.mapping.read_names import UNNAMED, namespace
 from jacaros.artifacts.mapping.read_operations import read_operation
@@ -40,6 +41,7 @@ _KEYS = (
     "signals",
     "frames",
     "parameters",
+    "derived",
     "operations",
 )
 
@@ -172,10 +174,12 @@ def _artifact(
         tuple(read_parameter(*pair) for pair in _pairs(entries, "parameters")),
         tuple(read_operation(*pair) for pair in _variants(entries)),
         (*shared, *(_interfaces(entries["interfaces"], folder) if "interfaces" in entries else ())),
+        tuple(read_derived(*pair) for pair in _pairs(entries, "derived")),
     )
     node.problems += _names(part)
     node.problems += _arities(part)
     node.problems += _references(part)
+    node.problems += derived_problems(part)
     node.problems += _switches(part)
     node.problems += _own_parameters(part)
     return part
@@ -210,7 +214,11 @@ def _observable(part: ArtifactPart) -> Iterator[tuple[str, str, Place]]:
     """Kind, name and place of all that agents come to believe."""
     for topic in part.topics:
         yield ("signal" if topic.signal else "property"), topic.name, topic.place
-    for kind, parts in (("frame", part.frames), ("parameter", part.parameters)):
+    for kind, parts in (
+        ("frame", part.frames),
+        ("parameter", part.parameters),
+        ("derived entry", part.derived),
+    ):
         for each in parts:
             yield kind, each.name, each.place
     for operation in part.operations:

@@ -26,6 +26,8 @@ class FrameFeed:
         self._reading = host.reading_of(part.name, part.policy)
         self._values = [(field.path.text, converted(field.conversion)) for field in part.fields]
         self._notes = [(note.name, note.path.text, converted(note.conversion)) for note in part.annotations]
+        self._taps = host.taps.get(part.name, ())
+        self._told = -1.0
         self._began = host.clock.elapsed
         try:
             host.ros.tf_listen()
@@ -47,7 +49,12 @@ class FrameFeed:
             self._part.name,
             tuple(Structure(name, (convert(_part(transform, what)),)) for name, what, convert in self._notes),
         )
-        self._reading.take(tuple([convert(_part(transform, what)) for what, convert in self._values]))
+        values = tuple([convert(_part(transform, what)) for what, convert in self._values])
+        self._reading.take(values)
+        if self._taps and (transform.stamp != self._told or not transform.stamp):
+            self._told = transform.stamp
+            for tap in self._taps:
+                tap(transform.stamp, values, None)
 
     def _lose(self, error: TransformUnavailable) -> None:
         self._withdraw()
@@ -67,6 +74,8 @@ class FrameFeed:
     def _withdraw(self) -> None:
         if self._reading.newest is not None:
             self._reading.withdraw()
+            for tap in self._taps:
+                tap(0.0, None, None)
 
     def close(self) -> None:
         """Look no more."""

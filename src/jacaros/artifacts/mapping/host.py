@@ -18,6 +18,9 @@ from jacaros.yaml_nodes import Problem
 
 T = TypeVar("T")
 
+Tap = Callable[[float, Values | None, Cause | None], None]
+"""Hears of the messages of a property or signal: stamp (0 for none), values (None when it ended), cause."""
+
 
 class Elements(Protocol):
     """The properties of the elements of an array."""
@@ -39,11 +42,14 @@ class Host(Protocol):
     clock: Clock
     readings: dict[str, Reading]
     elements: dict[str, Elements]
+    taps: dict[str, list[Tap]]
     mapping: ClassVar[MappingFile]
     part: ClassVar[ArtifactPart]
 
     @property
     def show_rows(self) -> Callable[..., object]: ...
+    @property
+    def show_derived(self) -> Callable[..., object]: ...
     @property
     def send_signals(self) -> Callable[..., object]: ...
     @property

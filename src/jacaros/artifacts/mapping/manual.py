@@ -11,6 +11,7 @@ from jacaros.artifacts.mapping.checking import message_types
 from jacaros.artifacts.mapping.declared import (
     ArtifactPart,
     Conversion,
+    DerivedPart,
     FieldPart,
     MappingFile,
     OperationKind,
@@ -40,6 +41,7 @@ from jacaros.ros.fields import FLOATS, INTEGER_RANGES, FieldType
 from jacaros.ros.guarded import VELOCITIES
 from jacaros.ros.message import TIMES
 from jacaros.ros.parameter_store import kind_of
+from jacaros.streams.schema import OPERATORS, VALUE, Spec
 from jacaros.yaml_nodes import Problem
 
 _TRANSFORM = {"x": "metres", "y": "metres", "z": "metres", "stamp": "seconds"}
@@ -78,6 +80,9 @@ def _properties(part: ArtifactPart, interfaces: Interfaces) -> Iterator[str]:
         yield f"{usage(frame.name, frame.fields)}: {_told(told, frame.fields, words)}."
     for parameter in part.parameters:
         yield f"{parameter.name}(Value): {_of_parameter(parameter)}."
+    for derived in part.derived:
+        if derived.spec is not None and not derived.signal:
+            yield _derived(derived, derived.spec)
     for operation in part.operations:
         for feedback in operation.feedback:
             told = feedback.description or f"feedback of {operation.name}"
@@ -106,6 +111,23 @@ def _of_parameter(part: ParameterPart) -> str:
 def _signals(part: ArtifactPart, interfaces: Interfaces) -> Iterator[str]:
     for topic in part.signals:
         yield _from_topic(topic, interfaces)
+    for derived in part.derived:
+        if derived.spec is not None and derived.signal:
+            yield _derived(derived, derived.spec)
+
+
+def _derived(part: DerivedPart, spec: Spec) -> str:
+    """The entry of a derived property or signal."""
+    shape = OPERATORS[spec.operator]
+    told = part.description or f"{shape.meaning}, of {' and '.join(spec.sources)}"
+    values = (
+        ""
+        if spec.gives != VALUE
+        else "(Values)"
+        if spec.operator in ("debounce", "delayed", "together", "interpolated")
+        else "(Value)"
+    )
+    return f"{part.name}{values}: {told.rstrip('.')}."
 
 
 def _from_topic(topic: TopicPart, interfaces: Interfaces) -> str:

@@ -72,6 +72,7 @@ def beliefs_of(program: nodes.Program, actions: Mapping[str, Declaration]) -> Be
             found.facts.setdefault(_name(belief), []).append(belief)
             _note(belief, found)
     asked: set[int] = set()
+    _derive(program.derived, asked, found)
     for clause in clauses(program):
         for node, is_asked in in_order(clause):
             if isinstance(node, nodes.InternalAction):
@@ -97,6 +98,16 @@ def beliefs_of(program: nodes.Program, actions: Mapping[str, Declaration]) -> Be
             if id(node) not in printed:
                 found.said.update(words)
     return found
+
+
+def _derive(declared: tuple[nodes.Derivation, ...], asked: set[int], found: Beliefs) -> None:
+    """Note the beliefs and events that are derived, whatever their arguments, and the beliefs that they are made of."""
+    for derived in declared:
+        if derived.namespace is None:
+            found.made.add(derived.name)
+            found.said.add(derived.name)
+        for stream in derived.streams:
+            _ask(stream, asked, found)
 
 
 def _react(plan: nodes.Plan, found: Beliefs) -> None:

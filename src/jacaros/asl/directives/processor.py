@@ -7,6 +7,7 @@ from typing import Final, TypeVar
 from jacaros.asl import nodes
 from jacaros.asl.cursor import Names, SyntaxPanic
 from jacaros.asl.diagnostics import Diagnostic
+from jacaros.asl.directives.derive import circle, read_derivation
 from jacaros.asl.directives.goal_patterns import (
     backtracking,
     blind,
@@ -41,7 +42,7 @@ PATTERNS: Final[dict[str, Callable[[PatternCall, nodes.Section], nodes.Section]]
     "sga": sequenced,
 }
 _Result = TypeVar("_Result")
-_SIMPLE: Final = ("include", "namespace", "register_function")
+_SIMPLE: Final = ("derive", "include", "namespace", "register_function")
 _DEEPEST: Final = 40
 """Files within each other, so that reading them does not exhaust Python's stack."""
 _MOST_INCLUDES: Final = 10_000
@@ -59,6 +60,7 @@ class DirectiveProcessor:
         self._pattern_numbers = count(1)
         self._told_of_organisations = False
         self._included = 0
+        self._derived: list[nodes.Derivation] = []
 
     def read_file(
         self, file: SourceFile, namespaces: Namespaces | None = None, last_dot_optional: bool = False
@@ -83,6 +85,8 @@ class DirectiveProcessor:
             function = self._function(parser, directive)
             if function is not None:
                 section.functions.append(function)
+        elif name == "derive":
+            self._derive(parser, directive, section)
         elif name in PATTERNS:
             parser.report(
                 "wrong-directive",
@@ -268,6 +272,23 @@ class DirectiveProcessor:
             '{ register_function("my.sum", 2, "sum") }',
         )
         return None
+
+    def _derive(self, parser: ProgramParser, directive: nodes.Literal, section: nodes.Section) -> None:
+        def report(message: str, span: Span | None, hint: str) -> None:
+            parser.report("wrong-directive", message, span or directive.span, hint)
+
+        def placed(term: nodes.Term) -> nodes.Term:
+            return self._placed(parser.namespaces, term)
+
+        made = read_derivation(directive, parser.namespaces.current, placed, report)
+        if made is None:
+            return
+        self._derived.append(made)
+        if circle(self._derived) is not None:
+            report(f"`{made.name}` is derived from itself", directive.span, "derive it from other beliefs")
+            self._derived.pop()
+            return
+        section.derived.append(made)
 
     # patterns
 

@@ -98,15 +98,9 @@ def _is_keyed(row: Row) -> bool:
 # --- percepts ----------------------------------------------------------------------------------------------------
 
 
-def take_in(agent: Circumstance, percepts: list[Percept]) -> None:
+def take_in(agent: Circumstance, percepts: list[Percept]) -> None:  # noqa: C901 - written out for speed
     """Take in what was noticed in one step, where its events go into the queue as they are."""
-    if (
-        agent.waits.events
-        or agent.waits.conditions
-        or agent.features.subplans
-        or agent.observers.hear_beliefs
-        or not _has_room(agent, len(percepts))
-    ):
+    if not _is_usual(agent, len(percepts)):
         perceiving.take_in(agent, percepts)
         return
     beliefs, holders, selects, events = (
@@ -115,6 +109,7 @@ def take_in(agent: Circumstance, percepts: list[Percept]) -> None:
         agent.library.selects,
         agent.events,
     )
+    derived = agent.observers.derived
     for percept in percepts:
         kept = percept.kept or _keep(agent, percept)
         symbol, row, change, event = kept
@@ -135,16 +130,23 @@ def take_in(agent: Circumstance, percepts: list[Percept]) -> None:
                 continue
             discard(rows, row)
             del holders[literal]
+        if derived is not None:
+            derived.heard("-" if percept.kind == "remove" else "+", symbol, row, percept.cause)
         if selects[change] is not None:
             if event is None:
                 event = kept[3] = ((change, *row), None, annotations, percept.cause)
             events.append(event)
 
 
-def _has_room(agent: Circumstance, count: int) -> bool:
-    """Whether that number of events need only be put into the queue."""
+def _is_usual(agent: Circumstance, count: int) -> bool:
+    """Whether that number of events need only be put into the queue, and nobody but derived beliefs hears of them."""
     return (
-        agent.options.events == "discard"
+        not agent.waits.events
+        and not agent.waits.conditions
+        and not agent.features.subplans
+        and agent.observers.mind is None
+        and agent.observers.step is None
+        and agent.options.events == "discard"
         and agent.selections.urgencies is None
         and len(agent.events) + count <= agent.options.event_limit
         and len(agent.alive) < agent.options.intention_limit

@@ -139,7 +139,8 @@ def observe_mind(agent: Circumstance, observer: MindObserver | None) -> None:
     All of it is done as the rules say then: what is written out for speed has no room for an observer.
     """
     agent.observers.mind = observer
-    agent.observers.hear_beliefs = observer is not None or agent.observers.step is not None
+    observers = agent.observers
+    observers.hear_beliefs = any(each is not None for each in (observer, observers.step, observers.derived))
     agent.features.special = agent.incoming.called = True
     agent.features.usual_events = False
 

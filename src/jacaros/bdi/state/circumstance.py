@@ -22,7 +22,7 @@ from jacaros.bdi.state.triggers import Goal, Trigger
 from jacaros.bdi.state.waiting import ActWait, Alarm, AnswerWait, EventWaits, TimedWait, Waiting
 from jacaros.terms.text import text
 from jacaros.terms.unifier import Trail
-from jacaros.terms.values import Term
+from jacaros.terms.values import Functor, Term
 from jacaros.trace import Cause
 
 INTERVAL = 1_000
@@ -115,6 +115,13 @@ class StepObserver(Protocol):
         """Hear of a belief change or signal for which *agent* has no plan, so that it need not become an event."""
 
 
+class BeliefObserver(Protocol):
+    """What derives beliefs from others."""
+
+    def heard(self, operator: str, symbol: Functor, row: tuple[Term, ...], cause: Cause | None) -> None:
+        """Hear of a belief that was added (``+``) or deleted (``-``), or of a signal."""
+
+
 class HeldEvent(NamedTuple):
     """The event before which an agent is held.
 
@@ -135,17 +142,19 @@ class Observers:
         lost: called with what people are told of each lost goal (first line, further lines, place), or None.
         step: may hold the agent before an event or a step, or None, see `jacaros.bdi.rules.holding.observe_steps`.
         mind: told of plans, beliefs and messages, or None; see `jacaros.bdi.rules.meta_events.observe_mind`.
-        hear_beliefs: whether there is one of the last two.
+        derived: derives beliefs from others, or None; see `jacaros.bdi.rules.deriving`.
+        hear_beliefs: whether there is one of the last three.
         usual_events: what the feature of this name was before `step` was there.
     """
 
-    __slots__ = ("goal", "hear_beliefs", "lost", "mind", "step", "usual_events")
+    __slots__ = ("derived", "goal", "hear_beliefs", "lost", "mind", "step", "usual_events")
 
     def __init__(self) -> None:
         self.goal: Callable[[str, str, int, int, str], None] | None = None
         self.lost: Callable[[str, Sequence[str], Span | None], None] | None = None
         self.step: StepObserver | None = None
         self.mind: MindObserver | None = None
+        self.derived: BeliefObserver | None = None
         self.hear_beliefs = self.usual_events = False
 
 

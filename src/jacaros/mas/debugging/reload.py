@@ -6,6 +6,7 @@ from jacaros.asl import nodes
 from jacaros.asl.formatter import format_term
 from jacaros.asl.walk import shape
 from jacaros.bdi.mind import Mind
+from jacaros.bdi.rules import deriving
 from jacaros.bdi.rules.reloading import outdated_plans, replace_plans, replace_rules
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.directory import Directory
@@ -58,6 +59,7 @@ def _replace_soon(mind: Mind, program: nodes.Program, population: Population) ->
 def _replace(mind: Mind, program: nodes.Program, population: Population) -> None:
     mind.register_functions(program.functions)
     replace_rules(mind, mind.program.beliefs, program.beliefs)
+    deriving.replace(mind, program.derived)
     mind.program = program
     replace_plans(mind, population.plans_of(program))
 

@@ -1,0 +1,320 @@
+"""What share of a core 100 patterns cost at 1,000 percepts a second, beside reactivex and a filter written by hand.
+
+    patterns.py [--seconds S] [--turns N]
+
+Twenty properties change fifty times a second each, and five patterns look at each: a count in a window, a mean, a maximum,
+a hysteresis and a condition that has held for a while. Times are simulated; what is measured is the processor's time, as a
+share of the simulated time. All systems run in turns within one run, and the medians are printed. reactivex
+(``pip install reactivex``) is left out if it is not installed.
+
+``agent`` is a whole mind that takes the percepts in, with declarations (``derive``); ``percepts alone`` is the same mind
+without them; ``patterns`` are the operators alone.
+"""
+
+import argparse
+import gc
+import heapq
+import importlib.util
+import itertools
+import random
+import time
+from collections import deque
+from collections.abc import Callable
+from typing import Any
+
+PROPERTIES = 20
+RATE = 1000
+"""Percepts a second, of all properties together."""
+WITHIN, ENOUGH, LIMIT, ON, OFF, LASTING = 1.0, 40, 8.0, 7.0, 3.0, 0.2
+
+Sample = tuple[float, int, float]
+"""Time, number of the property, value."""
+
+Go = Callable[[], int]
+"""Takes all samples; what is measured. Gives the number of outputs."""
+
+
+def main() -> None:
+    """Measure in turns, and print the medians."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--seconds", type=float, default=5.0, help="simulated seconds of each turn")
+    parser.add_argument("--turns", type=int, default=5)
+    arguments = parser.parse_args()
+    samples = made(arguments.seconds)
+    systems: dict[str, Callable[[list[Sample]], Go]] = {
+        "agent": lambda given: agent(given, True),
+        "percepts alone": lambda given: agent(given, False),
+        "patterns": patterns,
+        "by hand": by_hand,
+    }
+    if importlib.util.find_spec("reactivex") is not None:
+        systems["reactivex"] = reactive
+    else:
+        print("reactivex is not installed: it is left out")
+    found: dict[str, list[float]] = {name: [] for name in systems}
+    outputs = {}
+    for _ in range(arguments.turns):
+        for name, run in systems.items():
+            go = run(samples)  # to begin with: loading programs, making patterns
+            gc.collect()
+            began = time.process_time()
+            outputs[name] = go()
+            found[name].append((time.process_time() - began) / arguments.seconds)
+    print(f"{5 * PROPERTIES} patterns, {RATE} percepts a second, median of {arguments.turns} turns:")
+    for name, shares in found.items():
+        told = f"{outputs[name]} {'states hold at the end' if name in ('agent', 'percepts alone') else 'outputs'}"
+        print(f"  {name:<15} {100 * median(shares):5.1f} % of a core  ({told})")
+
+
+def median(figures: list[float]) -> float:
+    """The middle one."""
+    return sorted(figures)[len(figures) // 2]
+
+
+def made(seconds: float) -> list[Sample]:
+    """Random walks, the same in every run."""
+    chance = random.Random(1)
+    values = [5.0] * PROPERTIES
+    found = []
+    for number in range(int(seconds * RATE)):
+        which = number % PROPERTIES
+        values[which] = min(10.0, max(0.0, values[which] + chance.uniform(-1.0, 1.0)))
+        found.append((number / RATE, which, values[which]))
+    return found
+
+
+# --- ours ------------------------------------------------------------------------------------------------------
+
+
+def declarations() -> str:
+    """The directives of the agent."""
+    told = []
+    for which in range(PROPERTIES):
+        p = f"p{which}(X)"
+        told += [
+            f"{{ derive(count{which}, count(p{which}(_), within({WITHIN * 1000}), at_least({ENOUGH}))) }}",
+            f"{{ derive(mean{which}, mean({p}, within({WITHIN * 1000}), above({LIMIT}))) }}",
+            f"{{ derive(max{which}, max({p}, within({WITHIN * 1000}), above({LIMIT}))) }}",
+            f"{{ derive(hyst{which}, hysteresis({p}, on_above({ON}), off_below({OFF}))) }}",
+            f"{{ derive(held{which}, held({p}, above({ON}), lasting({LASTING * 1000}))) }}",
+        ]
+    return "\n".join(told)
+
+
+class Port:
+    """As much of an agent's host as a mind needs here: a clock, and timers that ring when time passes."""
+
+    def __init__(self) -> None:
+        self.time, self.timers, self.numbers = 0.0, list[Any](), itertools.count()
+
+    def now(self) -> float:
+        return 1e9 + self.time
+
+    def ready(self) -> None:
+        pass
+
+    def set_timer(self, delay: float, callback: Callable[[], None]) -> "Port.Timer":
+        timer = Port.Timer(self.time + delay, callback)
+        heapq.heappush(self.timers, (timer.due, next(self.numbers), timer))
+        return timer
+
+    def pass_until(self, at: float, run: Callable[[int], bool]) -> None:
+        """Let timers ring until a moment."""
+        while self.timers and self.timers[0][0] <= at:
+            self.time, _, timer = heapq.heappop(self.timers)
+            if not timer.cancelled:
+                timer.callback()
+                run(10)
+        self.time = at
+
+    class Timer:
+        """A call to come."""
+
+        def __init__(self, due: float, callback: Callable[[], None]) -> None:
+            self.due, self.callback, self.cancelled = due, callback, False
+
+        def cancel(self) -> None:
+            self.cancelled = True
+
+
+def agent(samples: list[Sample], derives: bool) -> Go:
+    """A mind that takes percepts in; how many derived beliefs hold at the end."""
+    from jacaros.asl.loader import load_program
+    from jacaros.bdi.mind import Mind
+    from jacaros.bdi.state.act import Percept
+    from jacaros.terms.values import SOURCE_PERCEPT, functor
+
+    port = Port()
+    program, _ = load_program("patterns.asl", declarations() if derives else "")
+    mind = Mind("robot", program, port)  # type: ignore[arg-type]
+    mind.start()
+    mind.run(100)
+    symbols = [functor(f"p{which}", 1) for which in range(PROPERTIES)]
+    about = (SOURCE_PERCEPT,)
+    old: list[Any] = [None] * PROPERTIES
+
+    def go() -> int:
+        for at, which, value in samples:
+            port.pass_until(at, mind.run)
+            new = (symbols[which], value)
+            percepts = [Percept("add", new, about, None)]
+            if old[which] is not None:
+                percepts.insert(0, Percept("remove", old[which], about, None))
+            old[which] = new
+            mind.perceive(percepts)
+            mind.run(10)
+        derived = [
+            name
+            for each in ("count", "mean", "max", "hyst", "held")
+            for name in (f"{each}{n}" for n in range(PROPERTIES))
+        ]
+        return sum(len(mind.beliefs[functor(name, 0)]) for name in derived)
+
+    return go
+
+
+def patterns(samples: list[Sample]) -> Go:
+    """The operators alone."""
+    from jacaros.streams.pattern import Pattern
+    from jacaros.streams.schema import Spec
+
+    outputs = 0
+
+    def count(kind: str, values: object) -> None:
+        nonlocal outputs
+        outputs += 1
+
+    specs = [
+        Spec("count", ("p",), {"within": WITHIN, "at_least": ENOUGH}),
+        Spec("mean", ("p",), {"within": WITHIN, "above": LIMIT}),
+        Spec("max", ("p",), {"within": WITHIN, "above": LIMIT}),
+        Spec("hysteresis", ("p",), {"on_above": ON, "off_below": OFF}),
+        Spec("held", ("p",), {"above": ON, "for": LASTING}),
+    ]
+    all_ = [[Pattern(spec, 0.0, count) for spec in specs] for _ in range(PROPERTIES)]
+
+    def go() -> int:
+        for at, which, value in samples:
+            values = (value,)
+            for each in all_[which]:
+                each.take(0, at, values)
+        return outputs
+
+    return go
+
+
+# --- by hand ---------------------------------------------------------------------------------------------------
+
+
+class ByHand:
+    """The five patterns of one property, as one would write them for it."""
+
+    def __init__(self) -> None:
+        self.times: deque[float] = deque()
+        self.window: deque[tuple[float, float]] = deque()
+        self.highest: deque[tuple[float, float]] = deque()
+        self.sum = 0.0
+        self.since: float | None = None
+        self.states = [False] * 5
+        self.outputs = 0
+
+    def take(self, at: float, value: float) -> None:
+        """Take a sample."""
+        old = at - WITHIN
+        self.times.append(at)
+        while self.times[0] <= old:
+            self.times.popleft()
+        self.window.append((at, value))
+        self.sum += value
+        while self.window[0][0] <= old:
+            self.sum -= self.window.popleft()[1]
+        while self.highest and self.highest[-1][1] <= value:
+            self.highest.pop()
+        self.highest.append((at, value))
+        while self.highest[0][0] <= old:
+            self.highest.popleft()
+        if value <= ON:
+            self.since = None
+        elif self.since is None:
+            self.since = at
+        states = [
+            len(self.times) >= ENOUGH,
+            self.sum / len(self.window) > LIMIT,
+            self.highest[0][1] > LIMIT,
+            value > ON or (self.states[3] and value >= OFF),
+            self.since is not None and at >= self.since + LASTING,
+        ]
+        if states != self.states:
+            self.outputs += sum(one != other for one, other in zip(states, self.states, strict=True))
+            self.states = states
+
+
+def by_hand(samples: list[Sample]) -> Go:
+    """The filter written by hand."""
+    filters = [ByHand() for _ in range(PROPERTIES)]
+
+    def go() -> int:
+        for at, which, value in samples:
+            filters[which].take(at, value)
+        return sum(each.outputs for each in filters)
+
+    return go
+
+
+# --- reactivex -------------------------------------------------------------------------------------------------
+
+
+def reactive(samples: list[Sample]) -> Go:
+    """The same with operators of reactivex, on its virtual clock."""
+    from reactivex import operators as ops
+    from reactivex.scheduler import VirtualTimeScheduler
+    from reactivex.subject import Subject
+
+    scheduler = VirtualTimeScheduler()
+    outputs = 0
+
+    def count(value: object) -> None:
+        nonlocal outputs
+        outputs += 1
+
+    def windowed(
+        window: deque[tuple[float, float]], sample: tuple[float, float]
+    ) -> deque[tuple[float, float]]:
+        window.append(sample)
+        while window[0][0] <= sample[0] - WITHIN:
+            window.popleft()
+        return window
+
+    def switched(state: bool, sample: tuple[float, float]) -> bool:
+        return sample[1] > ON or (state and sample[1] >= OFF)
+
+    subjects: list[Any] = []
+    for _ in range(PROPERTIES):
+        subject: Any = Subject()
+        subjects.append(subject)
+        window = lambda: subject.pipe(ops.scan(windowed, deque()))  # noqa: B023, E731 - used at once
+        pipes = [
+            window().pipe(ops.map(lambda each: len(each) >= ENOUGH)),
+            window().pipe(ops.map(lambda each: sum(v for _, v in each) / len(each) > LIMIT)),
+            window().pipe(ops.map(lambda each: max(v for _, v in each) > LIMIT)),
+            subject.pipe(ops.scan(switched, False)),
+            subject.pipe(
+                ops.map(lambda each: each[1] > ON),
+                ops.distinct_until_changed(),
+                ops.debounce(LASTING, scheduler=scheduler),
+            ),
+        ]
+        for pipe in pipes:
+            pipe.pipe(ops.distinct_until_changed()).subscribe(count)
+
+    def go() -> int:
+        for at, which, value in samples:
+            scheduler.advance_to(at)
+            subjects[which].on_next((at, value))
+        return outputs
+
+    return go
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,159 @@
+"""Derived properties and signals: messages of other properties go through a pattern of `jacaros.streams`."""
+
+import dataclasses
+import math
+from collections import deque
+from functools import partial
+
+from jacaros.artifacts.kit.reading import Values
+from jacaros.artifacts.mapping.declared import ArtifactPart, DerivedPart, FieldPart
+from jacaros.artifacts.mapping.host import Host
+from jacaros.artifacts.mapping.read_fields import ANGLES
+from jacaros.clock import Timer
+from jacaros.ros.message import to_seconds
+from jacaros.streams.operator import HIDE, OCCUR, SHOW
+from jacaros.streams.pattern import Pattern
+from jacaros.streams.schema import Spec
+from jacaros.trace import Cause
+
+JUMP = 0.1
+"""Seconds by which the clock must go back to mean that time begins again."""
+
+
+class Derivation:
+    """A derived property or signal.
+
+    It hears of every message of its streams, before dead bands, rates and the range of view.
+
+    Args:
+        host: the artifact.
+        part: what the mapping says.
+        spec: of the pattern.
+    """
+
+    def __init__(self, host: Host, part: DerivedPart, spec: Spec) -> None:
+        self._host, self._part, self._spec = host, part, spec
+        self._pending: deque[Values | None] = deque()
+        self._shown: Values | None = None
+        self._cause: Cause | None = None
+        self._timer: Timer | None = None
+        self._due = 0.0
+        self._latest = host.clock.now()
+        self._told_dropped = 0
+        self._pattern = Pattern(spec, self._latest, self._emit)
+        for number, name in enumerate(spec.streams):
+            host.taps.setdefault(name, []).append(partial(self.hear, number))
+        host.at_dispose(self.close)
+        self._wait()
+
+    def hear(self, stream: int, stamp: float, values: Values | None, cause: Cause | None) -> None:
+        """Take an event of one of the streams.
+
+        Args:
+            stream: its number.
+            stamp: of the message; 0 for none. One in the future counts as the present.
+            values: of the event; None when the property ended.
+            cause: what led to it.
+        """
+        now = self._host.clock.now()
+        if now < self._latest - JUMP:
+            self._restart(now)
+        self._latest, self._cause = now, cause
+        self._pattern.take(stream, min(stamp, now) if stamp > 0.0 else now, values)
+        if self._pattern.dropped != self._told_dropped:
+            self._tell_dropped()
+        self._wait()
+
+    def _restart(self, now: float) -> None:
+        if self._pattern.shown is not None:
+            self._emit(HIDE, ())
+        self._pattern = Pattern(self._spec, now, self._emit)
+        self._told_dropped = 0
+        self.close()
+
+    def _tell_dropped(self) -> None:
+        self._told_dropped = self._pattern.dropped
+        if self._told_dropped in (1, 10, 100):
+            part = self._part
+            message = f"{part.name}: {self._told_dropped} late messages dropped"
+            help_ = "give it more time: lateness: 0.2"
+            self._host.tell_once((part.name, self._told_dropped), part.place, message, help_)
+
+    def _emit(self, kind: str, values: Values) -> None:
+        host, name = self._host, self._part.name
+        if kind == OCCUR:
+            host.start(host.send_signals, name, [values], cause=self._cause)
+        else:
+            self._pending.append(values if kind == SHOW else None)
+            if len(self._pending) == 1:
+                host.start(host.show_derived, name, cause=self._cause)
+        for tap in host.taps.get(name, ()):
+            tap(self._latest, None if kind == HIDE else values, self._cause)
+
+    def show(self) -> None:
+        """Bring the property up to date, within an operation."""
+        host, name = self._host, self._part.name
+        while self._pending:
+            before, self._shown = self._shown, self._pending.popleft()
+            if self._shown is None:
+                if before is not None:
+                    host.remove_property(name, *before)
+            elif before is None:
+                host.define_property(name, *self._shown)
+            else:
+                host.update_property(name, *self._shown)
+
+    def _wait(self) -> None:
+        """Ring when the pattern wants to be looked at; a timer that rings earlier serves as well."""
+        due = self._pattern.deadline
+        if self._timer is not None:
+            if self._due <= due:
+                return
+            self._timer.cancel()
+            self._timer = None
+        if due != float("inf"):
+            self._due = due
+            self._timer = self._host.clock.call_later(max(0.0, due - self._host.clock.now()), self._ring)
+
+    def _ring(self) -> None:
+        self._timer = None
+        now = max(self._host.clock.now(), self._due)
+        if self._pattern.deadline <= now:
+            self._latest, self._cause = now, None
+            self._pattern.advance(now)
+        self._wait()
+
+    def close(self) -> None:
+        """Ring no more."""
+        if self._timer is not None:
+            self._timer.cancel()
+            self._timer = None
+
+
+def with_angles(spec: Spec, part: ArtifactPart) -> Spec:
+    """The pattern, with the values that are headings: their numbers begin again after a turn."""
+    if spec.operator != "interpolated":
+        return spec
+    fields = {each.name: each.fields or () for each in part.topics} | {
+        each.name: each.fields for each in part.frames
+    }
+    turns = [
+        _turn(field)
+        for name in spec.sources[1:]
+        for field in fields.get(name, ())
+        for _ in range(field.count)
+    ]
+    return dataclasses.replace(spec, turns=tuple(turns))
+
+
+def _turn(field: FieldPart) -> float:
+    """The whole turn of an angle in the unit of the agent; 0 for what is not one."""
+    if field.conversion.kind not in ANGLES and field.path.text not in ANGLES:
+        return 0.0
+    return 360.0 if field.conversion.unit == "degrees" else math.tau
+
+
+def stamp_of(message: object, latched: bool) -> float:
+    """The stamp of a message, in seconds; 0 if it has none, or is latched: kept for those who come late, it is old."""
+    header = None if latched else getattr(message, "header", None)
+    return to_seconds(header.stamp) if header is not None else 0.0

@@ -1,0 +1,223 @@
+"""``{ derive(name, pattern) }``: a belief or event composed of changes of beliefs."""
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any, Final
+
+from jacaros.asl import nodes
+from jacaros.asl.source import Span
+from jacaros.streams.schema import OPERATORS, VALUED, Fault, faults, unknown
+
+EXAMPLE: Final = "as in { derive(bumped_often, count(bump(_), within(5000), at_least(3))) }"
+_TIMES: Final = {"within": "within", "lasting": "for", "by": "by"}
+"""Options that are milliseconds here, and their names in the schema, where they are seconds (`for` is a keyword)."""
+
+_TURNS: Final = {"degrees": 360.0, "radians": math.tau}
+"""Options of `interpolated` that name angles, and their whole turns."""
+
+Report = Callable[[str, Span | None, str], None]
+"""Takes a message, its place and the help."""
+
+
+Placed = Callable[[nodes.Term], nodes.Term]
+"""Puts a literal without a namespace into that of its block."""
+
+
+def read_derivation(
+    directive: nodes.Literal, namespace: str | None, placed: Placed, report: Report
+) -> nodes.Derivation | None:
+    """Return what the directive declares; None after a mistake, which is reported."""
+    match directive.arguments:
+        case (
+            nodes.Literal(arguments=(), negated=False, annotations=None) as name,
+            nodes.Literal() as pattern,
+        ):
+            reader = _Reader(report, placed)
+            made = reader.read(name, pattern, namespace, directive.span)
+            return None if reader.wrong else made
+    report("'derive' needs a name and a pattern", directive.span, EXAMPLE)
+    return None
+
+
+class _Reader:
+    """Reads one pattern, and notes whether something is wrong with it."""
+
+    def __init__(self, report: Report, placed: Placed) -> None:
+        self.wrong = False
+        self._placed = placed
+        self._report = report
+
+    def _say(self, message: str, place: nodes.Node, help_: str) -> None:
+        self.wrong = True
+        self._report(message, place.span, help_)
+
+    def read(
+        self, name: nodes.Literal, pattern: nodes.Literal, namespace: str | None, span: Span | None
+    ) -> nodes.Derivation | None:
+        operator = pattern.functor
+        if operator not in OPERATORS or not pattern.arguments:
+            fault = (
+                unknown(operator)
+                if operator not in OPERATORS
+                else Fault("", f"`{operator}` needs a belief", EXAMPLE)
+            )
+            self._say(fault.message, pattern, fault.help)
+            return None
+        first, *rest = pattern.arguments
+        streams = list(self._streams(first, OPERATORS[operator].several, operator))
+        options, places = self._options(rest)
+        checked = {
+            name: value for name, value in options.items() if operator != "interpolated" or name not in _TURNS
+        }
+        for fault in list(faults(operator, [_key(each) for each in streams], checked)):
+            self._say(_as_written(fault.message), places.get(fault.option, pattern), _as_written(fault.help))
+        if "after" in options and isinstance(options["after"], nodes.Literal):
+            streams += list(self._streams(options.pop("after"), False, operator))
+        angles = self._angles(streams, options) if operator == "interpolated" else ()
+        if operator in VALUED and streams:
+            self._check_values(operator, streams[0], options)
+        return nodes.Derivation(
+            name.functor, namespace, operator, tuple(streams), tuple(options.items()), angles, span=span
+        )
+
+    def _angles(self, streams: list[nodes.Literal], options: dict[str, Any]) -> tuple[float, ...]:
+        """The whole turns of the values behind the first stream, 0 for those that are not angles."""
+        turns = {each: turn for name, turn in _TURNS.items() for each in options.pop(name, ())}
+        named = [each.arguments[place] for each in streams[1:] for place in values_of(each)]
+        return tuple(turns.get(each.name, 0.0) if isinstance(each, nodes.Variable) else 0.0 for each in named)
+
+    def _streams(self, term: nodes.Term, several: bool, operator: str) -> Iterator[nodes.Literal]:
+        terms = term.items if several and isinstance(term, nodes.ListTerm) else (term,)
+        for each in terms:
+            if not isinstance(each, nodes.Literal):
+                self._say(
+                    f"`{operator}` needs a belief", each, "write its name and arguments, such as bump(_)"
+                )
+                continue
+            if each.annotations is not None:
+                self._say("annotations are not looked at here", each, "leave them out")
+            for argument in each.arguments:
+                if isinstance(argument, nodes.Variable):
+                    continue
+                if any(isinstance(part, nodes.Variable) for part in _inside(argument)):
+                    self._say("a variable within a term", argument, "write _ for the whole argument")
+            found = self._placed(each)
+            assert isinstance(found, nodes.Literal)
+            yield found
+
+    def _options(self, terms: list[nodes.Term]) -> tuple[dict[str, Any], dict[str, nodes.Node]]:
+        found: dict[str, Any] = {}
+        places: dict[str, nodes.Node] = {}
+        for term in terms:
+            if not isinstance(term, nodes.Literal) or not term.arguments:
+                self._say(
+                    "an option is expected", term, "write options behind the belief, such as within(5000)"
+                )
+                continue
+            if term.functor == "equals":
+                self._say(
+                    "`equals` is for mapping files", term, "write the value into the belief, as in door(open)"
+                )
+                continue
+            name = _TIMES.get(term.functor, term.functor)
+            places[name] = term
+            if name in _TURNS:
+                found[name] = [each.name for each in term.arguments if isinstance(each, nodes.Variable)]
+                continue
+            values = [_constant(each) for each in term.arguments]
+            if name == "after":
+                found[name] = term.arguments[0]
+            elif len(values) > 1:
+                found[name] = tuple(values)
+            elif term.functor in _TIMES and isinstance(values[0], float):
+                found[name] = values[0] / 1000.0
+            else:
+                found[name] = values[0]
+        return found, places
+
+    def _check_values(self, operator: str, stream: nodes.Literal, options: Mapping[str, object]) -> None:
+        count = len(values_of(stream))
+        needed = {"inside": 2}.get(operator, 1)
+        if operator in ("share", "held") and not {"above", "below", "equals"} & options.keys():
+            needed = 0
+        if count < needed or (count > needed and operator != "inside"):
+            told = (
+                "the two coordinates variables: inside(pose(X, Y, _), ...)"
+                if needed == 2
+                else "one argument a variable"
+            )
+            help_ = (
+                f"make {told}, and the others _" if needed else "write _ for the arguments that do not matter"
+            )
+            self._say(
+                f"`{operator}` needs {needed or 'no'} named variable{'s' if needed != 1 else ''} in its belief",
+                stream,
+                help_,
+            )
+
+
+def values_of(stream: nodes.Literal) -> list[int]:
+    """The places of the arguments that are named variables: the values of an event."""
+    return [
+        place
+        for place, argument in enumerate(stream.arguments)
+        if isinstance(argument, nodes.Variable) and not argument.unnamed
+    ]
+
+
+def _inside(term: nodes.Node) -> Iterator[nodes.Node]:
+    from jacaros.asl.walk import walk
+
+    return walk(term)
+
+
+def _constant(term: nodes.Term) -> object:
+    """The number that a term is; another term stands for itself, and is wrong."""
+    if isinstance(term, nodes.Number):
+        return term.value
+    if isinstance(term, nodes.Arithmetic) and term.operator == "-" and len(term.operands) == 1:
+        value = _constant(term.operands[0])
+        return -value if isinstance(value, float) else term
+    return term
+
+
+def _key(stream: nodes.Literal) -> str:
+    """A name for a stream, the same for equal ones."""
+    from jacaros.asl.formatter import format_term
+
+    return format_term(nodes.replace(stream, arguments=tuple(map(_named_alike, stream.arguments))))
+
+
+def _named_alike(term: nodes.Term) -> nodes.Term:
+    return nodes.replace(term, name="_") if isinstance(term, nodes.Variable) and term.unnamed else term
+
+
+def _as_written(text: str) -> str:
+    """A message about an option under the name that it has in programs."""
+    return (
+        text.replace("`for`", "`lasting`").replace("options: for", "options: lasting").replace(", equals", "")
+    )
+
+
+def streams_of(derived: nodes.Derivation) -> tuple[str, ...]:
+    """Names for the streams of a declaration, in its order; the same for equal ones."""
+    return tuple(map(_key, derived.streams))
+
+
+def circle(derived: list[nodes.Derivation]) -> nodes.Derivation | None:
+    """The last declaration, if it is made of itself."""
+    made_of: dict[tuple[object, str], list[tuple[object, str]]] = {
+        (each.namespace, each.name): [(stream.namespace, stream.functor) for stream in each.streams]
+        for each in derived
+    }
+    last = derived[-1]
+    begin: tuple[object, str] = (last.namespace, last.name)
+    todo, seen = list(made_of[begin]), set[object]()
+    while todo:
+        name = todo.pop()
+        if name == begin:
+            return last
+        if name not in seen:
+            seen.add(name)
+            todo += made_of.get(name, ())
+    return None

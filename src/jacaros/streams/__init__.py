@@ -1,0 +1,18 @@
+"""Events composed of events: incremental operators over timestamped streams.
+
+docs/reference/derived_events.md defines them.
+
+============================================== =======================================================================
+file                                           what it holds
+============================================== =======================================================================
+`schema`                                       operators with their options; what is wrong with a declaration
+`pattern`                                      one derived event: puts late events in order, drives an operator
+`operator`, `condition`                        what operators share
+`counting`, `aggregates`, `share`              sliding windows
+`states`, `area`                               hysteresis, debounce, held, delayed; inside an area
+`order`                                        sequence, absence
+`together`, `interpolated`                     samples with nearby stamps; values at the stamps of another stream
+============================================== =======================================================================
+
+The package knows no clock: the host passes times, and asks `Pattern.deadline` when to call `Pattern.advance` next.
+"""

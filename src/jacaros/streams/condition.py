@@ -1,0 +1,40 @@
+"""Conditions on one value."""
+
+from dataclasses import dataclass
+from typing import Final
+
+
+class _Anything:
+    """Stands for "no value is required"."""
+
+
+ANYTHING: Final = _Anything()
+
+
+@dataclass(frozen=True, slots=True)
+class Condition:
+    """What a value must satisfy; every part that is given must hold.
+
+    Attributes:
+        above, below: limits that the number must exceed, or stay under; None for no limit.
+        equals: the value itself.
+    """
+
+    above: float | None = None
+    below: float | None = None
+    equals: object = ANYTHING
+
+    @property
+    def is_open(self) -> bool:
+        """Whether every value satisfies it."""
+        return self.above is None and self.below is None and self.equals is ANYTHING
+
+    def holds(self, value: object) -> bool:
+        """Whether *value* satisfies the condition; values that are not numbers never exceed a limit."""
+        if self.equals is not ANYTHING and value != self.equals:
+            return False
+        if self.above is None and self.below is None:
+            return True
+        if not isinstance(value, int | float):
+            return False
+        return (self.above is None or value > self.above) and (self.below is None or value < self.below)

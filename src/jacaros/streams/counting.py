@@ -1,0 +1,73 @@
+"""How many events are in a sliding window; whether each of several streams has one there."""
+
+import math
+from collections import deque
+
+from jacaros.streams.operator import Emit, Operator, Values
+
+
+class Count(Operator):
+    """The number of events in the window.
+
+    Args:
+        within: seconds of the window.
+        at_least: show a state while there are that many; None: show the number.
+    """
+
+    __slots__ = ("_at_least", "_times", "_within")
+
+    def __init__(self, emit: Emit, within: float, at_least: int | None) -> None:
+        super().__init__(emit)
+        self._within, self._at_least = within, at_least
+        self._times: deque[float] = deque()
+
+    def take(self, source: int, time: float, values: Values | None) -> None:
+        if values is None:
+            return
+        times = self._times
+        times.append(time)
+        if self._at_least is not None and len(times) > self._at_least:
+            times.popleft()  # whether there are enough depends on the newest ones alone
+        self._look(time)
+
+    def advance(self, time: float) -> None:
+        self._look(time)
+
+    def _look(self, time: float) -> None:
+        times, within = self._times, self._within
+        while times and times[0] + within <= time:
+            times.popleft()
+        self.deadline = times[0] + within if times else math.inf
+        if self._at_least is not None:
+            self.hold(len(times) >= self._at_least)
+        elif times:
+            self.show((len(times),))
+        else:
+            self.hide()
+
+
+class All(Operator):
+    """Whether each stream has an event in the window.
+
+    Args:
+        count: number of streams.
+        within: seconds of the window.
+    """
+
+    __slots__ = ("_newest", "_within")
+
+    def __init__(self, emit: Emit, count: int, within: float) -> None:
+        super().__init__(emit)
+        self._within = within
+        self._newest = [-math.inf] * count
+
+    def take(self, source: int, time: float, values: Values | None) -> None:
+        if values is not None:
+            self._newest[source] = time
+            self.advance(time)
+
+    def advance(self, time: float) -> None:
+        end = min(self._newest) + self._within
+        holds = end > time
+        self.hold(holds)
+        self.deadline = end if holds else math.inf

@@ -1,0 +1,114 @@
+"""The values of streams at the times of another one: a pose at the stamp of a scan."""
+
+import math
+from bisect import bisect_left, bisect_right
+from collections.abc import Sequence
+
+from jacaros.streams.operator import Emit, Operator, Values, number_at
+
+
+class Interpolated(Operator):
+    """Shows, for samples of the first stream, their values and those of the other streams at the same time.
+
+    Numbers are interpolated linearly between the samples before and after, of which neither may be further away than
+    *within*; other values are those of the sample before.  A sample waits until those after it have come.  Samples of the
+    first stream that are older than one that was shown are dropped.
+
+    Args:
+        count: number of streams.
+        within: seconds to the samples before and after, at most.
+        lateness: seconds for which a sample waits beyond that.
+        turns: of each value of the others, one stream behind the other, the whole turn of an angle in its unit; 0, or
+            nothing, for values that are not angles.
+    """
+
+    ordered = False
+
+    __slots__ = ("_newest", "_retention", "_shown_at", "_times", "_turns", "_values", "_within", "dropped")
+
+    def __init__(
+        self, emit: Emit, count: int, within: float, lateness: float, turns: Sequence[float] = ()
+    ) -> None:
+        super().__init__(emit)
+        self._within, self._retention, self._turns = within, within + lateness, tuple(turns)
+        self._times: list[list[float]] = [[] for _ in range(count)]
+        self._values: list[list[Values]] = [[] for _ in range(count)]
+        self._newest = self._shown_at = -math.inf
+        self.dropped = 0
+
+    def take(self, source: int, time: float, values: Values | None) -> None:
+        if values is None:
+            self._times[source].clear()
+            self._values[source].clear()
+            self.hide()
+            return
+        kept_for = self._retention + (self._within if source else 0.0)
+        if time < self._newest - kept_for or (source == 0 and time <= self._shown_at):
+            self.dropped += 1
+            return
+        times = self._times[source]
+        place = bisect_right(times, time)
+        times.insert(place, time)
+        self._values[source].insert(place, values)
+        if time > self._newest:
+            self._newest = time
+            self._forget()
+        self._look()
+
+    def advance(self, time: float) -> None:
+        self.deadline = math.inf
+
+    def _forget(self) -> None:
+        for source, times in enumerate(self._times):
+            oldest = self._newest - self._retention - (self._within if source else 0.0)
+            if times and times[0] < oldest:
+                count = bisect_left(times, oldest)
+                del times[:count], self._values[source][:count]
+
+    def _look(self) -> None:
+        """Show the samples of the first stream for which all that is needed has come, in their order."""
+        for time, values in list(zip(self._times[0], self._values[0], strict=True)):
+            made = self._made(time, values)
+            if made is not None:
+                self._shown_at = time
+                count = bisect_right(self._times[0], time)
+                del self._times[0][:count], self._values[0][:count]
+                self.show(made)
+
+    def _made(self, time: float, values: Values) -> Values | None:
+        made = list(values)
+        offset = 0
+        for times, samples in zip(self._times[1:], self._values[1:], strict=True):
+            place = bisect_left(times, time)
+            if place < len(times) and times[place] == time:
+                found = samples[place]
+            elif not 0 < place < len(times):
+                return None
+            else:
+                before, after = times[place - 1], times[place]
+                if time - before > self._within or after - time > self._within:
+                    return None
+                part = (time - before) / (after - before)
+                found = self._between(samples[place - 1], samples[place], part, offset)
+            offset += len(found)
+            made += found
+        return tuple(made)
+
+    def _between(self, one: Values, other: Values, part: float, offset: int) -> Values:
+        made = []
+        for place, value in enumerate(one):
+            first, last = number_at(one, place), number_at(other, place)
+            if first is None or last is None or isinstance(value, bool):
+                made.append(value)
+                continue
+            turn = self._turns[offset + place] if offset + place < len(self._turns) else 0.0
+            made.append(_on_the_way(first, last, part, turn))
+        return tuple(made)
+
+
+def _on_the_way(first: float, last: float, part: float, turn: float) -> float:
+    """The number between two; of angles on the shorter way, within half a turn of zero."""
+    if not turn:
+        return first + part * (last - first)
+    way = math.remainder(last - first, turn)
+    return math.remainder(first + part * way, turn)

@@ -1,0 +1,85 @@
+"""Events one after the other, and events that do not come."""
+
+import math
+from collections import deque
+from collections.abc import Sequence
+
+from jacaros.streams.operator import Emit, Operator, Values
+
+
+class Chain(Operator):
+    """One event after the other; occurs with the last one, if the first was less than *within* seconds before.
+
+    Of all chains that end with an event, the one that began last counts; no event is used up.  For that, the latest
+    beginning of each part of the chain is all that must be kept.
+
+    Args:
+        steps: the numbers of the streams, in the order of the chain.
+        within: seconds.
+    """
+
+    __slots__ = ("_begun", "_steps", "_within")
+
+    def __init__(self, emit: Emit, steps: Sequence[int], within: float) -> None:
+        super().__init__(emit)
+        self._steps, self._within = tuple(steps), within
+        self._begun = [-math.inf] * len(self._steps)
+
+    def take(self, source: int, time: float, values: Values | None) -> None:
+        if values is None:
+            return
+        begun, last = self._begun, len(self._steps) - 1
+        for step in range(last, -1, -1):  # from the end, so that an event does not follow itself
+            if self._steps[step] == source:
+                begun[step] = begun[step - 1] if step else time
+                if step == last and begun[step] + self._within > time:
+                    self.occur()
+
+    def advance(self, time: float) -> None:
+        self.deadline = math.inf
+
+
+class Absent(Operator):
+    """Holds while the newest event, or the beginning of the pattern, is *lasting* seconds or longer ago."""
+
+    __slots__ = ("_lasting",)
+
+    def __init__(self, emit: Emit, lasting: float) -> None:
+        super().__init__(emit)
+        self._lasting = lasting
+        self.deadline = lasting
+
+    def take(self, source: int, time: float, values: Values | None) -> None:
+        if values is not None:
+            self.deadline = time + self._lasting
+            self.hide()
+
+    def advance(self, time: float) -> None:
+        self.deadline = math.inf
+        self.show(())
+
+
+class Missing(Operator):
+    """Occurs when an event of stream 1 was not followed by one of stream 0 for *within* seconds."""
+
+    __slots__ = ("_open", "_within")
+
+    def __init__(self, emit: Emit, within: float) -> None:
+        super().__init__(emit)
+        self._within = within
+        self._open: deque[float] = deque()
+
+    def take(self, source: int, time: float, values: Values | None) -> None:
+        if values is None:
+            return
+        if source == 0:
+            self._open.clear()
+        else:
+            self._open.append(time)
+        self.deadline = self._open[0] + self._within if self._open else math.inf
+
+    def advance(self, time: float) -> None:
+        while self._open and self._open[0] + self._within <= time:
+            self._open.popleft()
+            self.occur()
+        self.deadline = self._open[0] + self._within if self._open else math.inf

@@ -1,0 +1,401 @@
+"""The operators by name: what each needs, what is wrong with a declaration, and the making of an operator.
+
+Mapping files and programs declare the same operators with the same options, and both are checked here.
+"""
+
+import difflib
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from typing import Any, Final, NamedTuple
+
+from jacaros.streams.aggregates import Extreme, Mean, Slope
+from jacaros.streams.area import Circle, Inside, Rectangle
+from jacaros.streams.condition import ANYTHING, Condition
+from jacaros.streams.counting import All, Count
+from jacaros.streams.interpolated import Interpolated
+from jacaros.streams.operator import Emit, Operator
+from jacaros.streams.order import Absent, Chain, Missing
+from jacaros.streams.share import Share
+from jacaros.streams.states import Debounce, Delayed, Held, Hysteresis
+from jacaros.streams.together import Together
+
+LONGEST: Final = 86_400.0
+"""Seconds that a window, or a wait for late events, may last: memory is bounded by the window."""
+
+STATE, VALUE, OCCURRENCE = "state", "value", "occurrence"
+"""What an operator gives: a state without values, one with values, or something that happens at a moment."""
+
+
+@dataclass(frozen=True, slots=True)
+class Spec:
+    """A declaration.
+
+    Attributes:
+        operator: its name, of `OPERATORS`.
+        sources: the streams by name, in the order of the declaration; a chain may name one several times.
+        options: times in seconds.
+        place: which of an event's values counts, from 0.
+        lateness: seconds for which the evaluation waits for late events.
+        turns: for `interpolated`, which values of the streams behind the first are angles: their whole turn, or 0.
+    """
+
+    operator: str
+    sources: tuple[str, ...]
+    options: Mapping[str, Any] = field(default_factory=dict)
+    place: int = 0
+    lateness: float = 0.0
+    turns: tuple[float, ...] = ()
+
+    @property
+    def streams(self) -> tuple[str, ...]:
+        """The streams, each once; events are passed with the number of their stream here."""
+        return tuple(dict.fromkeys(self.sources))
+
+    @property
+    def gives(self) -> str:
+        """What it gives: `STATE`, `VALUE` or `OCCURRENCE`."""
+        shape = OPERATORS[self.operator]
+        return STATE if shape.gives == VALUE and shape.limits & self.options.keys() else shape.gives
+
+
+class Fault(NamedTuple):
+    """What is wrong with a declaration.
+
+    Attributes:
+        option: the option that is wrong; empty for the whole.
+        message: what is wrong.
+        help: what to do about it.
+    """
+
+    option: str
+    message: str
+    help: str
+
+
+@dataclass(frozen=True, slots=True)
+class Shape:
+    """What an operator needs.
+
+    Attributes:
+        meaning: in a few words.
+        gives: `STATE`, `VALUE` or `OCCURRENCE`.
+        required, optional: names of options.
+        several: whether it takes a list of two streams or more.
+        limits: options that make a state of the value.
+    """
+
+    meaning: str
+    gives: str
+    required: tuple[str, ...] = ()
+    optional: tuple[str, ...] = ()
+    several: bool = False
+    limits: frozenset[str] = frozenset()
+
+
+_LIMITS = ("above", "below")
+_CONDITION = ("above", "below", "equals")
+
+
+def _aggregate(meaning: str) -> Shape:
+    return Shape(meaning, VALUE, ("within",), _LIMITS, limits=frozenset(_LIMITS))
+
+
+OPERATORS: Final[dict[str, Shape]] = {
+    "count": Shape("events in a window", VALUE, ("within",), ("at_least",), limits=frozenset({"at_least"})),
+    "mean": _aggregate("mean in a window"),
+    "min": _aggregate("minimum in a window"),
+    "max": _aggregate("maximum in a window"),
+    "slope": _aggregate("slope in a window, per second"),
+    "share": Shape(
+        "share of time that a condition holds",
+        VALUE,
+        ("within",),
+        ("at_least", *_CONDITION),
+        limits=frozenset({"at_least"}),
+    ),
+    "hysteresis": Shape(
+        "on beyond one limit, off beyond another",
+        STATE,
+        (),
+        ("on_above", "off_below", "on_below", "off_above"),
+    ),
+    "held": Shape("a condition has held for a while", STATE, ("for",), _CONDITION),
+    "debounce": Shape("values that stay the same for a while", VALUE, ("for",)),
+    "delayed": Shape("values as they were some time ago", VALUE, ("by",)),
+    "inside": Shape("a pose is in an area", STATE, (), ("circle", "rectangle", "margin")),
+    "absent": Shape("no event for a while", STATE, ("for",)),
+    "missing": Shape("an event did not follow another", OCCURRENCE, ("after", "within")),
+    "sequence": Shape("events one after the other", OCCURRENCE, ("within",), several=True),
+    "all": Shape("an event of each stream in a window", STATE, ("within",), several=True),
+    "together": Shape("samples with stamps near each other", VALUE, ("within",), several=True),
+    "interpolated": Shape("values at the stamps of the first stream", VALUE, ("within",), several=True),
+}
+"""All operators by name."""
+
+PARTNERS_WAIT: Final = 0.5
+"""Seconds of lateness, unless given, where samples of several topics are joined: each topic has a delay of its own."""
+
+JOINING: Final = ("together", "interpolated")
+"""Operators that join samples by their stamps."""
+
+_ONCE: Final = ("all", "together", "interpolated")
+"""Operators that may not name a stream twice."""
+
+VALUED: Final = frozenset({"mean", "min", "max", "slope", "share", "hysteresis", "held", "inside"})
+"""Operators for which it matters which of an event's values counts."""
+
+
+def unknown(operator: str) -> Fault:
+    """Return the fault of an operator that does not exist."""
+    near = difflib.get_close_matches(operator, OPERATORS, 1)
+    told = f"did you mean `{near[0]}`?" if near else f"operators: {', '.join(OPERATORS)}"
+    return Fault("", f"unknown operator `{operator}`", told)
+
+
+def faults(operator: str, sources: Sequence[str], options: Mapping[str, object]) -> Iterator[Fault]:
+    """Yield all that is wrong with a declaration.
+
+    Args:
+        operator: a name of `OPERATORS`.
+        sources: as in `Spec`, without the stream of ``after``.
+        options: as they are written, times in seconds.
+    """
+    shape = OPERATORS[operator]
+    if shape.several and len(sources) < 2:
+        yield Fault(
+            "",
+            f"`{operator}` needs two streams or more",
+            "write them as a list, such as [press, release]",
+        )
+    if operator in _ONCE and len(set(sources)) < len(sources):
+        yield Fault("", f"`{operator}` names a stream twice", "name each stream once")
+    known = (*shape.required, *shape.optional)
+    for name in shape.required:
+        if name not in options:
+            yield Fault("", f"`{operator}` needs `{name}`", _NEEDED[name])
+    for name, value in options.items():
+        if name not in known:
+            near = difflib.get_close_matches(name, known, 1)
+            told = f"did you mean `{near[0]}`?" if near else f"options: {', '.join(known)}"
+            yield Fault(name, f"`{operator}` has no option `{name}`", told)
+        elif (fault := _KINDS[name](name, value)) is not None:
+            yield fault
+    yield from _CHECKS.get(operator, _none)(options)
+
+
+_NEEDED: Final = {
+    "within": "give the length of the window, so that its memory is bounded",
+    "for": "give the time that must pass",
+    "by": "give the time that the values are to be old",
+    "after": "name the stream after which the event is expected",
+}
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+
+
+def _seconds(name: str, value: object) -> Fault | None:
+    if isinstance(value, float) and value == math.inf:
+        return Fault(name, f"`{name}` is unbounded", "give a finite time: memory is bounded by the window")
+    if not _is_number(value):
+        return Fault(name, f"`{name}` must be a time", "write a number above zero")
+    assert isinstance(value, int | float)
+    if value <= 0.0:
+        return Fault(name, f"`{name}` must be above zero", "write a positive time")
+    if value > LONGEST:
+        return Fault(
+            name, f"`{name}` is longer than a day", "give a shorter time: memory is bounded by the window"
+        )
+    return None
+
+
+def _number(name: str, value: object) -> Fault | None:
+    return (
+        None if _is_number(value) else Fault(name, f"`{name}` must be a number", "write a number such as 0.5")
+    )
+
+
+def _distance(name: str, value: object) -> Fault | None:
+    if _is_number(value) and isinstance(value, int | float) and value >= 0.0:
+        return None
+    return Fault(name, f"`{name}` must be a distance in metres, zero or more", "write a number such as 0.1")
+
+
+def _positive(name: str, value: object) -> Fault | None:
+    if _is_number(value) and isinstance(value, int | float) and value > 0.0:
+        return None
+    return Fault(name, f"`{name}` must be above zero", "write a positive number")
+
+
+def _numbers(count: int, words: str) -> Callable[[str, object], Fault | None]:
+    def check(name: str, value: object) -> Fault | None:
+        if isinstance(value, Sequence) and len(value) == count and all(map(_is_number, value)):
+            return None
+        return Fault(name, f"`{name}` must be {count} numbers: {words}", f"write [{words}], in metres")
+
+    return check
+
+
+def _any(name: str, value: object) -> Fault | None:
+    return None
+
+
+_KINDS: Final[dict[str, Callable[[str, object], Fault | None]]] = {
+    "within": _seconds,
+    "for": _seconds,
+    "by": _seconds,
+    "above": _number,
+    "below": _number,
+    "equals": _any,
+    "after": _any,
+    "at_least": _positive,
+    "on_above": _number,
+    "off_below": _number,
+    "on_below": _number,
+    "off_above": _number,
+    "margin": _distance,
+    "circle": _numbers(3, "x, y, radius"),
+    "rectangle": _numbers(4, "left, bottom, right, top"),
+}
+
+
+def _none(options: Mapping[str, object]) -> Iterator[Fault]:
+    yield from ()
+
+
+def _check_count(options: Mapping[str, object]) -> Iterator[Fault]:
+    wanted = options.get("at_least")
+    if _is_number(wanted) and isinstance(wanted, int | float) and (wanted < 1 or wanted != int(wanted)):
+        yield Fault("at_least", "`at_least` must be a whole number", "write a number such as 3")
+
+
+def _check_share(options: Mapping[str, object]) -> Iterator[Fault]:
+    wanted = options.get("at_least")
+    if _is_number(wanted) and isinstance(wanted, int | float) and wanted > 1.0:
+        yield Fault("at_least", "`at_least` must be at most 1", "write a share such as 0.8")
+
+
+def _check_hysteresis(options: Mapping[str, object]) -> Iterator[Fault]:
+    pairs = [("on_above", "off_below"), ("on_below", "off_above")]
+    given = [pair for pair in pairs if pair[0] in options and pair[1] in options]
+    used = [name for pair in pairs for name in pair if name in options]
+    if len(given) != 1 or len(used) != 2:
+        yield Fault(
+            "",
+            "`hysteresis` needs two limits",
+            "give `on_above` and `off_below`, or `on_below` and `off_above`",
+        )
+        return
+    on, off = (options[name] for name in given[0])
+    if not (_is_number(on) and _is_number(off)):
+        return
+    assert isinstance(on, int | float)
+    assert isinstance(off, int | float)
+    if (on < off) if given[0][0] == "on_above" else (on > off):
+        name = given[0][1]
+        side = "at most" if name == "off_below" else "at least"
+        yield Fault(name, f"`{name}` must be {side} `{given[0][0]}`", "swap the two limits")
+
+
+def _check_inside(options: Mapping[str, object]) -> Iterator[Fault]:
+    if ("circle" in options) == ("rectangle" in options):
+        yield Fault(
+            "",
+            "`inside` needs one area",
+            "give `circle` (x, y, radius) or `rectangle` (left, bottom, right, top), in metres",
+        )
+        return
+    name = "circle" if "circle" in options else "rectangle"
+    area = options[name]
+    if _KINDS[name](name, area) is not None:
+        return
+    assert isinstance(area, Sequence)
+    if name == "circle" and area[2] <= 0.0:
+        yield Fault(name, "the radius must be above zero", "write a radius such as 0.5")
+    if name == "rectangle" and not (area[0] < area[2] and area[1] < area[3]):
+        yield Fault(
+            name, "the rectangle is empty", "write its lower left corner first: left, bottom, right, top"
+        )
+
+
+_CHECKS: Final[dict[str, Callable[[Mapping[str, object]], Iterator[Fault]]]] = {
+    "count": _check_count,
+    "share": _check_share,
+    "hysteresis": _check_hysteresis,
+    "inside": _check_inside,
+}
+
+
+def make(spec: Spec, emit: Emit) -> Operator:
+    """Make the operator of a declaration without mistakes."""
+    return _MAKERS[spec.operator](spec, emit)
+
+
+def _condition(spec: Spec) -> Condition:
+    options = spec.options
+    return Condition(options.get("above"), options.get("below"), options.get("equals", ANYTHING))
+
+
+def _within(spec: Spec) -> float:
+    return float(spec.options["within"])
+
+
+def _make_count(spec: Spec, emit: Emit) -> Operator:
+    wanted = spec.options.get("at_least")
+    return Count(emit, _within(spec), int(wanted) if wanted is not None else None)
+
+
+def _make_aggregate(kind: Callable[..., Operator], spec: Spec, emit: Emit) -> Operator:
+    return kind(emit, _within(spec), spec.place, _condition(spec))
+
+
+def _make_extreme(sign: float, spec: Spec, emit: Emit) -> Operator:
+    return Extreme(emit, _within(spec), spec.place, _condition(spec), sign)
+
+
+def _make_share(spec: Spec, emit: Emit) -> Operator:
+    return Share(emit, _within(spec), spec.place, _condition(spec), spec.options.get("at_least"))
+
+
+def _make_hysteresis(spec: Spec, emit: Emit) -> Operator:
+    options = spec.options
+    if "on_above" in options:
+        return Hysteresis(emit, spec.place, options["on_above"], options["off_below"], True)
+    return Hysteresis(emit, spec.place, options["on_below"], options["off_above"], False)
+
+
+def _make_inside(spec: Spec, emit: Emit) -> Operator:
+    options = spec.options
+    area = Circle(*options["circle"]) if "circle" in options else Rectangle(*options["rectangle"])
+    return Inside(emit, area, float(options.get("margin", 0.0)), spec.place)
+
+
+def _make_chain(spec: Spec, emit: Emit) -> Operator:
+    streams = spec.streams
+    return Chain(emit, [streams.index(each) for each in spec.sources], _within(spec))
+
+
+_MAKERS: Final[dict[str, Callable[[Spec, Emit], Operator]]] = {
+    "count": _make_count,
+    "mean": partial(_make_aggregate, Mean),
+    "slope": partial(_make_aggregate, Slope),
+    "min": partial(_make_extreme, -1.0),
+    "max": partial(_make_extreme, 1.0),
+    "share": _make_share,
+    "hysteresis": _make_hysteresis,
+    "held": lambda spec, emit: Held(emit, float(spec.options["for"]), spec.place, _condition(spec)),
+    "debounce": lambda spec, emit: Debounce(emit, float(spec.options["for"])),
+    "inside": _make_inside,
+    "delayed": lambda spec, emit: Delayed(emit, float(spec.options["by"])),
+    "absent": lambda spec, emit: Absent(emit, float(spec.options["for"])),
+    "missing": lambda spec, emit: Missing(emit, _within(spec)),
+    "sequence": _make_chain,
+    "all": lambda spec, emit: All(emit, len(spec.sources), _within(spec)),
+    "interpolated": lambda spec, emit: Interpolated(
+        emit, len(spec.sources), _within(spec), spec.lateness, spec.turns
+    ),
+    "together": lambda spec, emit: Together(emit, len(spec.sources), _within(spec), spec.lateness),
+}

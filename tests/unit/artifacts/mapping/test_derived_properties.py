@@ -1,0 +1,218 @@
+"""Derived properties and signals of mapping files: end to end on the virtual clock, and what is wrong with declarations."""
+
+from typing import Any
+
+import pytest
+from mapped_lab import settle, with_mapped
+from robot_lab import Lab, Watcher
+
+from jacaros.artifacts.mapping.declared import MappingError
+from jacaros.artifacts.mapping.file import read_mapping
+from jacaros.env import ArtifactId
+
+POINT = "geometry_msgs/msg/PointStamped"
+MAPPING = f"""
+properties:
+  a: {{topic: a, type: {POINT}, fields: [point.x], dead_band: 100}}
+  b: {{topic: b, type: {POINT}, fields: [point.x]}}
+signals:
+  hit: {{topic: hit, type: {POINT}, fields: [point.x]}}
+"""
+
+
+class Sender:
+    """A mapped artifact that somebody watches, and publishers beside it."""
+
+    def __init__(self, lab: Lab, watcher: Watcher) -> None:
+        self.lab, self.watcher = lab, watcher
+        self.publishers: dict[str, Any] = {}
+
+    def signals(self, name: str) -> list[str]:
+        """The signals of that name, so far."""
+        return [each for each in map(str, self.watcher.signals) if name in each]
+
+    async def send(self, topic: str, x: float, ago: float = 0.0) -> None:
+        """Publish a value whose stamp is *ago* seconds old."""
+        if topic not in self.publishers:
+            self.publishers[topic] = self.lab.backend.publisher(topic, POINT)
+            await settle()
+        publisher = self.publishers[topic]
+        now = self.lab.clock.now() - ago
+        stamp = {"sec": int(now), "nanosec": round(now % 1 * 1e9)}
+        publisher.publish(publisher.message(header={"stamp": stamp}, point={"x": x}))
+        await settle()
+
+
+def derived(entry: str, body: Any) -> Lab:
+    """Run *body* with a mapping that derives *entry*."""
+
+    async def in_it(lab: Lab, artifact: ArtifactId) -> None:
+        await body(Sender(lab, lab.watch(artifact)))
+
+    return with_mapped(f"{MAPPING}derived:\n  {entry}\n", in_it)
+
+
+def test_a_count_of_signals_comes_and_goes_with_the_window() -> None:
+    async def body(s: Sender) -> None:
+        for _ in range(3):
+            await s.send("hit", 1.0)
+            await s.lab.sleep(0.5)
+        assert s.watcher.holds("often") == [()]
+        await s.lab.sleep(0.9)
+        assert s.watcher.holds("often") == [()]
+        await s.lab.sleep(0.2)
+        await settle()
+        assert s.watcher.holds("often") == []
+
+    derived("often: {count: hit, within: 2.5, at_least: 3}", body)
+
+
+def test_messages_count_that_a_dead_band_drops() -> None:
+    async def body(s: Sender) -> None:
+        for x in (1.0, 2.0, 6.0):
+            await s.send("a", x)
+        assert s.watcher.values("average") == [(1.0,), (1.5,), (3.0,)]
+        await s.lab.sleep(10.1)
+        await settle()
+        assert s.watcher.holds("average") == []
+
+    derived("average: {mean: a, within: 10}", body)
+
+
+def test_stamps_count_and_not_arrivals() -> None:
+    async def body(s: Sender) -> None:
+        await s.send("a", 1.0)
+        await s.lab.sleep(2.0)
+        await s.send("a", 3.0, ago=1.0)  # the slope is over one second
+        assert s.watcher.values("trend") == [(pytest.approx(2.0),)]
+
+    derived("trend: {slope: a, within: 10}", body)
+
+
+def test_late_messages_within_the_lateness_are_put_in_order() -> None:
+    async def body(s: Sender) -> None:
+        await s.lab.sleep(1.0)
+        await s.send("b", 1.0)
+        await s.send("a", 1.0, ago=0.1)
+        await s.lab.sleep(0.3)
+        await settle()
+        assert len(s.signals("both")) == 1
+
+    derived("both: {sequence: [a, b], within: 1, lateness: 0.2}", body)
+
+
+def test_late_messages_beyond_it_are_dropped_and_logged() -> None:
+    async def body(s: Sender) -> None:
+        await s.lab.sleep(1.0)
+        await s.send("b", 1.0)
+        await s.send("a", 1.0, ago=0.1)
+        await s.lab.sleep(0.3)
+        assert s.signals("both") == []
+        assert any("1 late messages dropped" in line for line in s.lab.logged)
+
+    derived("both: {sequence: [a, b], within: 1}", body)
+
+
+def test_an_event_that_does_not_follow_is_a_signal() -> None:
+    async def body(s: Sender) -> None:
+        await s.send("a", 1.0)
+        await s.lab.sleep(0.5)
+        await s.send("hit", 1.0)
+        await s.lab.sleep(2.0)
+        assert s.signals("unanswered") == []
+        await s.send("a", 1.0)
+        await s.lab.sleep(1.1)
+        await settle()
+        assert len(s.signals("unanswered")) == 1
+
+    derived("unanswered: {missing: hit, after: a, within: 1}", body)
+
+
+def test_topics_come_together_by_their_stamps() -> None:
+    async def body(s: Sender) -> None:
+        await s.lab.sleep(1.0)
+        await s.send("b", 10.0)
+        await s.lab.sleep(0.1)
+        await s.send("a", 1.0, ago=0.08)
+        await s.send("a", 2.0)
+        assert s.watcher.values("joined") == [(1.0, 10.0)]
+
+    derived("joined: {together: [a, b], within: 0.05}", body)
+
+
+def test_values_are_interpolated_at_a_stamp() -> None:
+    async def body(s: Sender) -> None:
+        await s.lab.sleep(1.0)
+        await s.send("b", 10.0)
+        await s.lab.sleep(0.1)
+        await s.send("b", 20.0)
+        await s.send("a", 1.0, ago=0.025)
+        assert s.watcher.values("exact") == [(1.0, pytest.approx(17.5))]
+
+    derived("exact: {interpolated: [a, b], within: 0.1}", body)
+
+
+def test_entries_may_be_derived_of_those_above() -> None:
+    async def body(s: Sender) -> None:
+        for x in (5.0, 50.0, 5.0):
+            await s.send("a", x)
+        assert s.watcher.holds("unsteady") == [()]
+
+    derived(
+        "low: {hysteresis: a, on_below: 10, off_above: 20}\n  unsteady: {count: low, within: 5, at_least: 2}",
+        body,
+    )
+
+
+def test_frames_are_streams_and_areas_are_entered_and_left() -> None:
+    text = """
+frames:
+  pose: {target: map, source: base_link}
+derived:
+  at_dock: {inside: pose, circle: [1, 0, 0.5], margin: 0.2}
+"""
+
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        watcher, seen = lab.watch(artifact), []
+        for x in (0.0, 0.8, 1.6, 1.8):  # outside, inside, within the margin, outside
+            header = {"stamp": lab.clock.now(), "frame_id": "map"}
+            transform = {"translation": {"x": x}}
+            lab.backend.tf_broadcast(
+                {"header": header, "child_frame_id": "base_link", "transform": transform}
+            )
+            await settle()
+            await lab.sleep(0.5)
+            seen.append(watcher.holds("at_dock") == [()])
+        assert seen == [False, True, True, False]
+
+    with_mapped(text, body)
+
+
+def _problems(entry: str) -> list[str]:
+    with pytest.raises(MappingError) as caught:
+        read_mapping(f"{MAPPING}derived:\n  {entry}\n", "m.yaml")
+    return [f"{p.column}: {p.message} | {p.cure}" for p in caught.value.problems]
+
+
+@pytest.mark.parametrize(
+    ("entry", "told"),
+    [
+        ("x: {count: hitt, within: 1}", "14: unknown property `hitt` | did you mean `hit`?"),
+        ("x: {count: hit, within: -1}", "27: `within` must be above zero | write a positive time"),
+        (
+            "x: {count: hit, within: .inf}",
+            "27: `within` is unbounded | give a finite time: memory is bounded by",
+        ),
+        ("x: {count: hit}", "6: `count` needs `within` | give the length of the window"),
+        ("x: {cuont: hit, within: 1}", "7: `x` names no operator | did you mean `count`?"),
+        ("x: {mean: a, count: a, within: 1}", "23: `count` stands beside `mean` | derive one name"),
+        ("x: {mean: a, within: 1, value: 2}", "13: `a` has 1 values, not 2 | give a smaller `value`"),
+        ("x: {absent: hit, for: 1, wait: 2}", "28: `absent` has no option `wait` | options: for"),
+        ("x: {inside: a, circle: [0, 0, 1]}", "15: `a` has 1 values, not 2"),
+        ("x: {all: [a], within: 1}", "6: `all` needs two streams or more | write them as a list"),
+        ("x: hit", "6: `x` names no operator | write one, such as"),
+        ("a: {count: hit, within: 1}", "3: the derived entry 'a' has the name of the property of line 3"),
+    ],
+)
+def test_what_is_wrong_is_told_with_its_place_and_help(entry: str, told: str) -> None:
+    assert any(each.startswith(told) for each in _problems(entry)), _problems(entry)

@@ -1,0 +1,217 @@
+"""What derived events mean, worked out from all events anew for each moment: slow, and so simple that it can be read."""
+
+import math
+from collections.abc import Sequence
+
+from jacaros.streams.operator import Values
+from jacaros.streams.schema import Spec
+
+Event = tuple[int, float, Values | None]
+"""Number of the stream, time, values."""
+
+
+def shown(spec: Spec, events: Sequence[Event], now: float) -> Values | None:
+    """The values that a pattern begun at 0 shows at *now*, after the events (in order) of this time."""
+    past = [event for event in events if event[1] <= now]
+    return _STATES[spec.operator](spec, past, now)
+
+
+def occurrences(spec: Spec, events: Sequence[Event], end: float) -> list[float]:
+    """The times at which something occurred until *end*."""
+    within = spec.options["within"]
+    if spec.operator == "missing":
+        return sorted(
+            time + within
+            for place, (stream, time, values) in enumerate(events)
+            if stream == 1
+            and values is not None
+            and time + within <= end
+            and not any(s == 0 and v is not None and t < time + within for s, t, v in events[place + 1 :])
+        )
+    steps = [spec.streams.index(each) for each in spec.sources]
+    found = []
+    for place, (stream, time, values) in enumerate(events):
+        if stream == steps[-1] and values is not None:
+            start = _latest_start(steps[:-1], events[:place], time)
+            if start + within > time:
+                found.append(time)
+    return found
+
+
+def _latest_start(steps: list[int], events: Sequence[Event], time: float) -> float:
+    if not steps:
+        return time
+    starts = [
+        _latest_start(steps[:-1], events[:place], at)
+        for place, (stream, at, values) in enumerate(events)
+        if stream == steps[-1] and values is not None
+    ]
+    return max(starts, default=-math.inf)
+
+
+def _window(spec: Spec, past: Sequence[Event], end: float) -> list[tuple[float, float]]:
+    within = spec.options["within"]
+    return [
+        (time, float(values[spec.place]))  # type: ignore[arg-type]
+        for _, time, values in past
+        if values is not None and end - within < time <= end
+    ]
+
+
+def _limited(spec: Spec, value: float | None) -> Values | None:
+    if value is None:
+        return None
+    above, below = spec.options.get("above"), spec.options.get("below")
+    if above is None and below is None:
+        return (value,)
+    return () if (above is None or value > above) and (below is None or value < below) else None
+
+
+def _aggregate(spec: Spec, past: Sequence[Event], now: float) -> Values | None:
+    newest = max((time for _, time, values in past if values is not None), default=-math.inf)
+    if newest + spec.options["within"] <= now:
+        return None
+    window = _window(spec, past, newest)
+    numbers = [value for _, value in window]
+    if spec.operator == "slope":
+        return _limited(spec, _slope(window))
+    made = {
+        "mean": lambda: sum(numbers) / len(numbers),
+        "min": lambda: min(numbers),
+        "max": lambda: max(numbers),
+    }
+    return _limited(spec, made[spec.operator]())
+
+
+def _slope(window: list[tuple[float, float]]) -> float | None:
+    t_mean = sum(t for t, _ in window) / len(window)
+    v_mean = sum(v for _, v in window) / len(window)
+    spread = sum((t - t_mean) ** 2 for t, _ in window)
+    return sum((t - t_mean) * (v - v_mean) for t, v in window) / spread if spread > 1e-9 else None
+
+
+def _count(spec: Spec, past: Sequence[Event], now: float) -> Values | None:
+    count = len(_window(spec, past, now))
+    wanted = spec.options.get("at_least")
+    if wanted is not None:
+        return () if count >= wanted else None
+    return (count,) if count else None
+
+
+def _all(spec: Spec, past: Sequence[Event], now: float) -> Values | None:
+    within = spec.options["within"]
+    seen = {stream for stream, time, values in past if values is not None and time + within > now}
+    return () if len(seen) == len(spec.sources) else None
+
+
+def _satisfied(spec: Spec, values: Values | None) -> bool:
+    if values is None:
+        return False
+    above, below, equals = (spec.options.get(each) for each in ("above", "below", "equals"))
+    value = values[spec.place]
+    assert isinstance(value, float)
+    return (
+        (above is None or value > above)
+        and (below is None or value < below)
+        and (equals is None or value == equals)
+    )
+
+
+def _segments(spec: Spec, past: Sequence[Event], now: float) -> list[tuple[float, float, bool]]:
+    ends = [time for _, time, _ in past[1:]] + [now]
+    return [(time, end, _satisfied(spec, values)) for (_, time, values), end in zip(past, ends, strict=True)]
+
+
+def share_margin(spec: Spec, past: Sequence[Event], now: float) -> float:
+    """Seconds of the window that the condition held beyond the share that is wanted."""
+    start = now - spec.options["within"]
+    held = sum(max(0.0, end - max(start, begun)) for begun, end, holds in _segments(spec, past, now) if holds)
+    return held - spec.options.get("at_least", 0.0) * min(spec.options["within"], now - past[0][1])
+
+
+def _share(spec: Spec, past: Sequence[Event], now: float) -> Values | None:
+    if not past:
+        return None
+    if "at_least" in spec.options:
+        if past[0][1] == now:
+            return () if _satisfied(spec, past[-1][2]) else None
+        return () if share_margin(spec, past, now) >= -1e-9 else None
+    end = past[-1][1]
+    known = min(spec.options["within"], end - past[0][1])
+    return (share_margin(spec, past, end) / known if known else float(_satisfied(spec, past[-1][2])),)
+
+
+def _hysteresis(spec: Spec, past: Sequence[Event], now: float) -> Values | None:
+    on = False
+    options = spec.options
+    for _, _, values in past:
+        if values is None:
+            on = False
+            continue
+        value = values[spec.place]
+        assert isinstance(value, float)
+        if "on_above" in options:
+            on = value > options["on_above"] or (on and value >= options["off_below"])
+        else:
+            on = value < options["on_below"] or (on and value <= options["off_above"])
+    return () if on else None
+
+
+def _held(spec: Spec, past: Sequence[Event], now: float) -> Values | None:
+    since = None
+    for _, time, values in past:
+        if not _satisfied(spec, values):
+            since = None
+        elif since is None:
+            since = time
+    return () if since is not None and since + spec.options["for"] <= now else None
+
+
+def _debounce(spec: Spec, past: Sequence[Event], now: float) -> Values | None:
+    stable: Values | None = None
+    candidate: Values | None = None
+    since = 0.0
+    for _, time, values in past:
+        if values != candidate:
+            if since + spec.options["for"] <= time:
+                stable = candidate
+            candidate, since = values, time
+    return candidate if since + spec.options["for"] <= now else stable
+
+
+def _delayed(spec: Spec, past: Sequence[Event], now: float) -> Values | None:
+    return next((values for _, time, values in reversed(past) if time + spec.options["by"] <= now), None)
+
+
+def _absent(spec: Spec, past: Sequence[Event], now: float) -> Values | None:
+    newest = max((time for _, time, values in past if values is not None), default=0.0)
+    return () if newest + spec.options["for"] <= now else None
+
+
+def _inside(spec: Spec, past: Sequence[Event], now: float) -> Values | None:
+    inside = False
+    x0, y0, radius = spec.options["circle"]
+    for _, _, values in past:
+        if values is None:
+            inside = False
+            continue
+        x, y = values[0], values[1]
+        assert isinstance(x, float)
+        assert isinstance(y, float)
+        distance = math.hypot(x - x0, y - y0) - radius
+        inside = distance <= 0.0 or (inside and distance <= spec.options["margin"])
+    return () if inside else None
+
+
+_STATES = {
+    **dict.fromkeys(("mean", "min", "max", "slope"), _aggregate),
+    "count": _count,
+    "all": _all,
+    "share": _share,
+    "hysteresis": _hysteresis,
+    "held": _held,
+    "debounce": _debounce,
+    "absent": _absent,
+    "delayed": _delayed,
+    "inside": _inside,
+}
