@@ -11,6 +11,7 @@ from jacaros.env.kernel.holding import Holding
 from jacaros.env.kernel.unawaited import AskedFor
 from jacaros.env.operation import OperationOutcome, OperationRequest
 from jacaros.env.resources.claim import Claim
+from jacaros.env.resources.resource import Use
 from jacaros.trace import Cause
 
 
@@ -27,6 +28,9 @@ class Turns(Protocol):
 
     def complain(self, what: str, error: BaseException) -> None:
         """Log an error of the artifact's code that harms nobody."""
+
+    def hold(self, execution: "OperationExecution", uses: tuple[Use, ...]) -> Holding:
+        """Let an operation use something; it has to enter and to leave."""
 
 
 class OperationExecution:
@@ -161,6 +165,14 @@ class OperationExecution:
     def active(self) -> bool:
         """True once its code has begun, or its task has been made."""
         return self.begun or self.task is not None
+
+    def hold(self, uses: tuple[Use, ...]) -> Holding:
+        """What it holds; of *uses* if it has not declared any, and then it has to enter and to leave itself."""
+        if self.holding is None:
+            assert self._turns is not None
+            self._turns.hold(self, uses)
+        assert self.holding is not None
+        return self.holding
 
     @property
     def claims(self) -> tuple[Claim, ...]:

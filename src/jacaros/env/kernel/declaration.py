@@ -141,7 +141,9 @@ def _uses(mark: Mark, source: Callable[..., Any]) -> tuple[tuple[Use, ...], When
     if wanted == "pause" and not mark.pausable:
         raise InvalidArtifact(f'{name_of(source)}: when_preempted="pause" needs pausable=True')
     if wanted == "cancel" and mark.threaded:
-        raise InvalidArtifact(f'{name_of(source)} runs in a thread, which cannot be cancelled: write when_preempted="finish"')
+        raise InvalidArtifact(
+            f'{name_of(source)} runs in a thread, which cannot be cancelled: write when_preempted="finish"'
+        )
     return uses, wanted
 
 

@@ -66,7 +66,7 @@ class Holding:
         agent = f"[{request.agent}] " if request.agent is not None else ""
         who = f"{agent}{request.operation}"
         self.claim = Claim(uses, who, self, request.urgency, request.policy, request.within)
-        self.entered = self.resting = False
+        self.entered = self.resting = self._entering = False
         self._told = False
         self._watchers: list[Callable[[], None]] = []
 
@@ -80,17 +80,22 @@ class Holding:
         """Whether nobody else may have it; also while the operation gives way."""
         return self.claim.holds
 
-    def watch(self, callback: Callable[[], None]) -> None:
-        """Call *callback* whenever the claim is granted or preempted, or the operation is paused by its caller."""
+    def watch(self, callback: Callable[[], None]) -> Callable[[], None]:
+        """Call *callback* whenever the claim is granted later or preempted, or its caller pauses or resumes the operation.
+
+        What this gives ends that.
+        """
         self._watchers.append(callback)
+        return lambda: self._watchers.remove(callback)
 
     def enter(self) -> None:
         """Ask for what the operation uses, if that has not been done."""
         if self.entered:
             return
-        self.entered = True
+        self.entered = self._entering = True
         if not self._operation.suspended:
             self._arbiter.enter(self.claim)
+        self._entering = False
         self._operation.adapt()
 
     def leave(self) -> None:
@@ -115,6 +120,7 @@ class Holding:
         """The caller has ended the pause: the operation asks again for what it has given back."""
         if self.entered and self.claim.state is State.OUT:
             self._arbiter.enter(self.claim)
+        self._changed()
 
     def rest(self) -> None:
         """Nothing moves: the operation gives way."""
@@ -134,7 +140,8 @@ class Holding:
         """Continue, or begin."""
         self._operation.adapt()
         self._tell(None)
-        self._changed()
+        if not self._entering:
+            self._changed()
 
     def preempted(self, claim: Claim, resource: str) -> None:
         """Give way: at once what has not begun, after braking what runs."""
