@@ -1,6 +1,6 @@
 """An event is taken up: rule SelEv, and the intention that it begins or goes on with."""
 
-from jacaros.bdi.rules import failure, meta_events, subplans
+from jacaros.bdi.rules import failure, meta_events, needs, subplans
 from jacaros.bdi.rules.add_im import log_inapplicable, push, select_for_reasons
 from jacaros.bdi.rules.clr_int import remove_event
 from jacaros.bdi.rules.goal_failure import unplanned
@@ -126,6 +126,8 @@ def begin_with(agent: Circumstance, event: Event, frame: Frame | None, reacted: 
         agent.atomic, agent.atomic_over = intention, False
     if agent.features.meta:
         meta_events.frame_state(agent, intention, frame, "executing")
+    if agent.features.needs and not needs.acquire(agent, intention):
+        return True
     if len(agent.intentions) >= CROWD and annotations is BY_SELF and trigger.kind:
         agent.line_up(intention)
     else:

@@ -134,7 +134,9 @@ class Holding:
     @property
     def can_yield(self) -> bool:
         """Whether it may be preempted now."""
-        return self._when_preempted != "finish" or not self._operation.active
+        if not self._operation.active:
+            return True
+        return self._when_preempted != "finish" and self._operation.request.yields
 
     def granted(self, claim: Claim) -> None:
         """Continue, or begin."""
