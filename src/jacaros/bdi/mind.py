@@ -34,13 +34,13 @@ from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.event import Posted, Raised
 from jacaros.bdi.state.intention import Frame, Intention, NextStep
 from jacaros.bdi.state.literals import EventAnnotations, apart, own_annotations
+from jacaros.bdi.state.need import Need, Wanted
 from jacaros.bdi.state.options import Options
 from jacaros.bdi.state.plan import FAILED, SUSPENDED, Fail, Failure
 from jacaros.bdi.state.plan_library import ProgramPlans
 from jacaros.bdi.state.rule import OpenFact, Rule
 from jacaros.bdi.state.speech_act import SpeechAct, message_id
 from jacaros.bdi.state.triggers import Goal, trigger
-from jacaros.bdi.state.need import Need, Wanted
 from jacaros.bdi.state.waiting import ACTION, ActWait, Waiting
 from jacaros.terms import functions as _functions  # noqa: F401 - fills the table of arithmetic functions
 from jacaros.terms.operators import ArithmeticFault

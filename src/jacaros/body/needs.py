@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 from dataclasses import replace
-from typing import Protocol, cast
+from typing import Protocol
 
 from jacaros.bdi.state.act import Act
 from jacaros.env.errors import OperationFailed
@@ -184,4 +184,4 @@ def _policy(term: object) -> Policy:
         raise OperationFailed(
             f"{name} is not a policy: write {', '.join(POLICIES)}", Structure("wrong_policy", (Atom(name),))
         )
-    return cast("Policy", name)
+    return name

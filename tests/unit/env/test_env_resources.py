@@ -203,7 +203,7 @@ def test_a_death_frees_what_was_held_and_what_was_waited_for() -> None:
         arbiter = lab.environment.arbiter
         assert not arbiter.waiting()
         assert not arbiter.holders("wheels")
-        assert lab.outcomes["fifth"] == "artifact_disposed(\"robot\")"
+        assert lab.outcomes["fifth"] == 'artifact_disposed("robot")'
 
     in_lab(body)
 

@@ -86,7 +86,9 @@ def _uses(node: Node) -> tuple[Use, ...]:
     found: dict[str, Use] = {}
     for item in node.sequence() if isinstance(node.value, list) else (node,):
         if not isinstance(item.value, str):
-            item.wrong(f"{item.what} must be the name of a resource, not {item.value!r}", "write uses: wheels")
+            item.wrong(
+                f"{item.what} must be the name of a resource, not {item.value!r}", "write uses: wheels"
+            )
             continue
         try:
             use = read_use(item.value)

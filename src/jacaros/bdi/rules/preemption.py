@@ -54,4 +54,3 @@ def _owners(agent: Circumstance, number: int) -> list[Intention]:
         return [waiting.intention]
     need = agent.waits.needs.get(number)
     return [] if need is None else [each for each in agent.alive.values() if need.is_on(each)]
-

@@ -13,13 +13,13 @@ from jacaros.bdi.state.budget import SearchBudget, budgets
 from jacaros.bdi.state.condition_waits import ConditionWaits
 from jacaros.bdi.state.event import EVENT_GOAL, EVENT_INTENTION, Annotations, Event
 from jacaros.bdi.state.intention import Frame, Intention
+from jacaros.bdi.state.need import Need, Wanted
 from jacaros.bdi.state.observing import MindObserver
 from jacaros.bdi.state.options import Options
 from jacaros.bdi.state.plan_library import PlanLibrary, ProgramPlans
 from jacaros.bdi.state.selections import Selections
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.bdi.state.triggers import Goal, Trigger
-from jacaros.bdi.state.need import Need, Wanted
 from jacaros.bdi.state.waiting import ActWait, Alarm, AnswerWait, EventWaits, Waiting
 from jacaros.terms.text import text
 from jacaros.terms.unifier import Trail
@@ -228,7 +228,16 @@ class Features:
             intentions that made them, and no agent class is asked about these changes.
     """
 
-    __slots__ = ("edges", "goal_conditions", "meta", "meta_plans", "needs", "special", "subplans", "usual_events")
+    __slots__ = (
+        "edges",
+        "goal_conditions",
+        "meta",
+        "meta_plans",
+        "needs",
+        "special",
+        "subplans",
+        "usual_events",
+    )
 
     def __init__(self, options: Options) -> None:
         self.needs = False

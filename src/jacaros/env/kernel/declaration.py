@@ -137,7 +137,9 @@ def _uses(mark: Mark, source: Callable[..., Any]) -> tuple[tuple[Use, ...], When
     if wanted is None:
         return uses, "pause" if mark.pausable else "finish"
     if wanted not in ("pause", "cancel", "finish"):
-        raise InvalidArtifact(f"{name_of(source)}: when_preempted is {wanted!r}: write pause, cancel or finish")
+        raise InvalidArtifact(
+            f"{name_of(source)}: when_preempted is {wanted!r}: write pause, cancel or finish"
+        )
     if wanted == "pause" and not mark.pausable:
         raise InvalidArtifact(f'{name_of(source)}: when_preempted="pause" needs pausable=True')
     if wanted == "cancel" and mark.threaded:

@@ -109,9 +109,7 @@ class Holding:
 
     def suspended(self) -> None:
         """The caller has paused the operation: others have its turn, as soon as nothing moves."""
-        if self.entered and (
-            self.resting or self.claim.state is State.WAITING or not self._operation.active
-        ):
+        if self.entered and (self.resting or self.claim.state is State.WAITING or not self._operation.active):
             self._arbiter.leave(self.claim)
         self._tell(None)
         self._changed()

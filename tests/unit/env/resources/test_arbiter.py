@@ -258,7 +258,11 @@ def test_a_long_wait_is_reported_once_and_moves_a_claim_forward(table: Table) ->
 
 def test_uses_are_read_from_text() -> None:
     assert read_uses("wheels") == (Use("wheels"),)
-    assert read_uses(("base", "lift(2)", "map(shared)")) == (Use("base"), Use("lift", 2), Use("map", None, True))
+    assert read_uses(("base", "lift(2)", "map(shared)")) == (
+        Use("base"),
+        Use("lift", 2),
+        Use("map", None, True),
+    )
     assert read_uses(("lift(2)", "lift")) == (Use("lift", 2, units=2),)
     assert scoped(read_uses("wheels"), "/r1") == (Use("/r1/wheels"),)
     assert [str(each) for each in read_uses(("a", "b(2)", "c(shared)"))] == ["a", "b(2)", "c(shared)"]
