@@ -197,6 +197,7 @@ class Mind(Circumstance):
             raise ActionError("a goal must be a literal")
         kind = trigger("+", "!", symbol)
         event = ((kind, *arguments), None, own_annotations(annotations), goal_cause)
+        needs.note(self, event[2])
         meta_events.post_new_goal(self, event)
         self.architecture.ready()
 
