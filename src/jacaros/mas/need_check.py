@@ -16,9 +16,7 @@ if TYPE_CHECKING:
     from jacaros.env.artifact import Artifact
 
 
-def check_needs(
-    programs: Sequence[nodes.Program], types: "Iterable[type[Artifact]]"
-) -> Iterator[Diagnostic]:
+def check_needs(programs: Sequence[nodes.Program], types: "Iterable[type[Artifact]]") -> Iterator[Diagnostic]:
     """Warnings about resources that nothing but one plan names.
 
     Plans may share a resource that no artifact knows, so one that several plans need is taken for such a one unless

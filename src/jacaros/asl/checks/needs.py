@@ -52,7 +52,11 @@ def _never_met(need: nodes.Literal) -> Iterator[Diagnostic]:
     for argument in need.arguments:
         name, capacity = _read(argument)
         if name is None or (capacity is not None and capacity < 1):
-            yield _wrong(need, "this is not a resource", "write a name, lift(2) for one that two may use, or map(shared)")
+            yield _wrong(
+                need,
+                "this is not a resource",
+                "write a name, lift(2) for one that two may use, or map(shared)",
+            )
             return
         units[name] += 1
         if capacity is not None:
@@ -92,7 +96,9 @@ def _wrong_policies(items: Sequence[nodes.Literal]) -> Iterator[Diagnostic]:
         if name not in _POLICIES:
             close = close_matches(name, _POLICIES, 0.6)
             yield _wrong(
-                item, f"unknown policy `{name}`", f"did you mean {close[0]}?" if close else f"write {', '.join(_POLICIES)}"
+                item,
+                f"unknown policy `{name}`",
+                f"did you mean {close[0]}?" if close else f"write {', '.join(_POLICIES)}",
             )
 
 

@@ -133,9 +133,7 @@ def begin_with(agent: Circumstance, event: Event, frame: Frame | None, reacted: 
     return True
 
 
-def _take_place(
-    agent: Circumstance, intention: Intention, goal: Goal, annotations: EventAnnotations
-) -> None:
+def _take_place(agent: Circumstance, intention: Intention, goal: Goal, annotations: EventAnnotations) -> None:
     """A new intention waits for its first turn."""
     if len(agent.intentions) >= CROWD and annotations is BY_SELF and goal[0].kind:
         agent.line_up(intention)
