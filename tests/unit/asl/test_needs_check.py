@@ -8,7 +8,7 @@ from jacaros.asl.walk import walk
 
 
 def told(program: str) -> list[tuple[str, str | None]]:
-    read = load_program("test.asl", program)
+    read, _ = load_program("test.asl", program)
     return [(each.message, each.hint) for each in wrong_needs(list(walk(*read.plans)))]
 
 
