@@ -10,6 +10,7 @@ from jacaros.env import Artifact, InvalidArtifact, operation
 from jacaros.env.environment import Environment
 from jacaros.env.execution import OperationExecution
 from jacaros.env.operation import OperationOutcome, OperationRequest
+from jacaros.env.session.session import Session
 from jacaros.env.values import text
 
 
@@ -259,5 +260,17 @@ def test_two_environments_share_nothing() -> None:
         await asyncio.sleep(0)
         await lab.clock.sleep(1.5)
         assert other.lines == ["0 two begins", "1 two ends"]
+
+    in_lab(body)
+
+
+def test_operations_of_a_session_take_part_with_their_urgency() -> None:
+    async def body(lab: Lab) -> None:
+        session = Session(lab.environment, "script")
+        tour = session.begin("drive", "tour", 2)
+        await lab.clock.sleep(1.05)
+        await session.act("drive", "flee", 1, urgency=5)
+        await tour
+        assert lab.lines[2:] == ["1.6 flee begins", "2.6 flee ends", "2.6 tour continues", "3.5 tour ends"]
 
     in_lab(body)
