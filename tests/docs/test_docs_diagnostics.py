@@ -20,6 +20,7 @@ OF_FILES = {
     "unknown-artifact-type",
     "unknown-message-type",
     "unknown-operation",
+    "unknown-resource",
     "unreadable-file",
     "wrong-mapping",
     "wrong-world",

@@ -185,6 +185,7 @@ KINDS: Final[dict[str, Kind]] = {
     "unknown-message-type": Kind("warning", "a message type that only the robot's middleware may know"),
     "unknown-operation": Kind("warning", "an action that no artifact of the project offers"),
     "unknown-performative": Kind("warning", "nearly a performative"),
+    "unknown-resource": Kind("warning", "a resource that no artifact of the project uses"),
     "unopened-bracket": Kind("error", "a closing bracket without an opening one"),
     "unreadable-file": Kind("error", "a file that is not there or no text"),
     "upper-case-functor": Kind("error", "a name with arguments that begins with an upper-case letter"),
@@ -202,6 +203,7 @@ KINDS: Final[dict[str, Kind]] = {
     "wrong-supervision": Kind("warning", "an invalid or misplaced annotation such as `within` or `retry`"),
     "wrong-tail": Kind("error", "the tail of a list or of annotations is no variable"),
     "wrong-trigger": Kind("error", "something that cannot trigger a plan"),
+    "wrong-needs": Kind("warning", "needs of a plan or goal that can never be met"),
     "wrong-urgency": Kind("warning", "an urgency of a plan that is no whole number from 0 on"),
 }
 """All kinds, by code.  docs/reference/diagnostics.md shows an example of each.

@@ -16,9 +16,11 @@ from jacaros.bdi.rules import (
     functions,
     goals,
     meta_events,
+    needs,
     perceiving,
     plan_changes,
     plan_terms,
+    preemption,
     pursuits,
     query,
     supervision,
@@ -32,8 +34,9 @@ from jacaros.bdi.state.act import Act, Completion, Percept
 from jacaros.bdi.state.belief_base import parts
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.event import Posted, Raised
-from jacaros.bdi.state.intention import Frame, NextStep
+from jacaros.bdi.state.intention import Frame, Intention, NextStep
 from jacaros.bdi.state.literals import EventAnnotations, apart, own_annotations
+from jacaros.bdi.state.need import Need, Wanted
 from jacaros.bdi.state.options import Options
 from jacaros.bdi.state.plan import FAILED, SUSPENDED, Fail, Failure
 from jacaros.bdi.state.plan_library import ProgramPlans
@@ -198,12 +201,16 @@ class Mind(Circumstance):
             raise ActionError("a goal must be a literal")
         kind = trigger("+", "!", symbol)
         event = ((kind, *arguments), None, own_annotations(annotations), goal_cause)
+        needs.note(self, event[2])
         pursuits.adopt(self, event)
         self.architecture.ready()
 
     def run(self, fuel: int) -> bool:
         """Make at most *fuel* reasoning cycles; True when there is more to do."""
-        return self.engine.run(self, fuel)
+        more = self.engine.run(self, fuel)
+        if self.waits.needs:
+            needs.sweep(self)
+        return more
 
     # --- from outside --------------------------------------------------------------------------------------
 
@@ -250,6 +257,7 @@ class Mind(Circumstance):
         if waiting is None:
             return
         if not completion.success:
+            self.waits.needs.pop(act_id, None)
             waits.fail(
                 self, waiting, "the action failed", (ERROR, atom("action_failed")), *completion.annotations
             )
@@ -323,6 +331,7 @@ class Mind(Circumstance):
     ) -> Posted:
         """A goal that is posted with annotations."""
         annotations = own_annotations(items, tail)
+        needs.note(self, annotations)
         return Posted(goal, annotations) if separate else pursuits.posted(self, goal, annotations)
 
     def goal_from(self, operator: str, kind: str, term: Term, separate: bool = False) -> Goal | Posted:
@@ -339,9 +348,10 @@ class Mind(Circumstance):
         if not annotations_of(term):
             return goal
         annotations = own_annotations(annotations_of(term))
-        return (
-            Posted(goal, annotations) if separate or kind != "!" else pursuits.posted(self, goal, annotations)
-        )
+        if kind != "!":
+            return Posted(goal, annotations)
+        needs.note(self, annotations)
+        return Posted(goal, annotations) if separate else pursuits.posted(self, goal, annotations)
 
     def test_goal_from(self, term: Term) -> Goal | Posted:
         """The test goal for a query known only at run time; fails without plans for it."""
@@ -370,6 +380,7 @@ class Mind(Circumstance):
         self._acts += 1
         number = self._beginning = self._acts
         act = Act(number, symbol, arguments, annotations, intention.id, intention.cause)
+        needs.claim(self, intention, act)
         if self.observers.mind is not None:
             act.cause, act.place = self.cause_now() or act.cause, self.observers.mind.place(intention)
         try:
@@ -392,6 +403,32 @@ class Mind(Circumstance):
         if completion is not None:
             self.complete(number, completion)
         return SUSPENDED
+
+    def begin_need(self, intention: Intention, frame: Frame, wanted: Wanted) -> bool:
+        """Ask for what a plan or goal needs; False when the intention waits for it, or has failed."""
+        self._acts += 1
+        number = self._beginning = self._acts
+        act = needs.act_for(self, number, intention, frame, wanted)
+        self.waits.needs[number] = Need(number, intention, len(intention.frames) - 1)
+        try:
+            self.architecture.act(act)
+        finally:
+            self._beginning = 0
+            completion, self._ended_at_once = self._ended_at_once, None
+        if completion is not None and completion.success:
+            return True
+        needs.wait(self, intention, frame, number, wanted)
+        if completion is not None:
+            self.complete(number, completion)
+        return False
+
+    def preempted(self, act_id: int, resource: str) -> None:
+        """A more urgent claim takes a resource away from an act, or from a plan that needs it."""
+        preemption.preempted(self, act_id, resource)
+
+    def regained(self, act_id: int) -> None:
+        """The act, or the plan, has the resource again, or no longer waits for it."""
+        preemption.regained(self, act_id)
 
     def finish_call(self, result: Any, frame: Frame, next_step: NextStep) -> Any:
         """What an internal action that may suspend gave: go on, fail, or wait."""

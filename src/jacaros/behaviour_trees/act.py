@@ -41,6 +41,7 @@ class Act(ArtifactBehaviour):
         arguments: values; `FromBlackboard` for what is known only later, `ToBlackboard` for output parameters.
         artifact: which one is to do it; without it the one that `Session.act` chooses.
         timeout: seconds of the run's clock that it may take.
+        urgency: decides who gets the resources that it uses; the greater one first.
         failure_key: where the `Failure` goes, None for nowhere.
         name: of the behaviour; the call, such as ``moveForward(1)``, unless given.
 
@@ -54,12 +55,13 @@ class Act(ArtifactBehaviour):
         *arguments: object,
         artifact: ArtifactId | str | None = None,
         timeout: float | None = None,
+        urgency: int = 0,
         failure_key: str | None = "failure",
         name: str | None = None,
     ) -> None:
         super().__init__(name or _written(operation, arguments))
         self.operation, self.arguments = operation, arguments
-        self.artifact, self.timeout = artifact, timeout
+        self.artifact, self.timeout, self.urgency = artifact, timeout, urgency
         self.failure_key = failure_key
         self.outcome: OperationOutcome | None = None
         self._handle: SessionOperation | None = None
@@ -81,7 +83,7 @@ class Act(ArtifactBehaviour):
             self.outcome = OperationOutcome(False, failure.message, failure.reason)
             return
         self._handle = self.session.begin(
-            self.operation, *arguments, artifact=self.artifact, timeout=self.timeout
+            self.operation, *arguments, artifact=self.artifact, timeout=self.timeout, urgency=self.urgency
         )
         self._handle.on_end(self._ended)
 

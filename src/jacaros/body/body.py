@@ -4,11 +4,12 @@ from collections.abc import Callable
 from functools import partial
 from typing import Protocol
 
-from jacaros.bdi.state.act import Act, Completion, Percept
+from jacaros.bdi.state.act import NEEDS, Act, Completion, Percept
 from jacaros.body.actions import ACTIONS, Action, Situation, keys
 from jacaros.body.call import Call, Direction, read
 from jacaros.body.completion import SUCCEEDED, Deadline, of_operation, refused, succeeded
 from jacaros.body.focus import FocusedArtifacts
+from jacaros.body.needs import Needs
 from jacaros.body.percepts import ADD, REMOVE, PerceptWriter
 from jacaros.body.personal import AgentBodyArtifact, AgentSessionArtifact
 from jacaros.body.selection import JoinedWorkspaces, Selection
@@ -36,6 +37,12 @@ class ServedMind(Protocol):
 
     def complete(self, act_id: int, completion: Completion) -> None:
         """Be told the end of an act."""
+
+    def preempted(self, act_id: int, resource: str) -> None:
+        """Be told that an act has lost a resource."""
+
+    def regained(self, act_id: int) -> None:
+        """Be told that an act has its resource again, or no longer waits for it."""
 
 
 class Activity(Protocol):
@@ -85,6 +92,7 @@ class AgentBody:
         self._activity = activity
         # Acts under way; without a handle while the call that begins them has not returned.
         self._pending: dict[int, UnderWay | None] = {}
+        self._needs = Needs(agent, environment, self)
         self._entered = False
         self._session: ArtifactId | None = None
         self._workspaces = JoinedWorkspaces(environment, home)
@@ -147,6 +155,9 @@ class AgentBody:
             self.enter()
         self._pending[act.id] = None
         self._activity.begin()
+        if act.functor is NEEDS:
+            self._need(act)
+            return
         try:
             handle = self._begin(read(act))
         except OperationFailed as failure:
@@ -156,7 +167,8 @@ class AgentBody:
             self._pending[act.id] = handle
 
     def cancel_act(self, act_id: int) -> None:
-        """Give an action up: its operation is cancelled, its end is not told."""
+        """Give an action up: its operation is cancelled, its end is not told; or give back what a plan needs."""
+        self._needs.forget(act_id)
         if act_id not in self._pending:
             return
         handle = self._pending.pop(act_id)
@@ -165,13 +177,17 @@ class AgentBody:
             handle.cancel()
 
     def suspend_act(self, act_id: int) -> None:
-        """Pause the operation of an action, if it can be paused."""
+        """Pause the operation of an action, if it can be paused; or let others have what a plan needs."""
+        if act_id in self._needs:
+            self._needs[act_id].pause()
         handle = self._pending.get(act_id)
         if handle is not None:
             handle.pause()
 
     def resume_act(self, act_id: int) -> None:
-        """Let the operation of an action go on."""
+        """Let the operation of an action go on; or ask again for what a plan needs."""
+        if act_id in self._needs:
+            self._needs[act_id].resume()
         handle = self._pending.get(act_id)
         if handle is not None:
             handle.resume()
@@ -181,6 +197,7 @@ class AgentBody:
         self._situation.focused.fall_silent()
         for act_id in self.pending:
             self.cancel_act(act_id)
+        self._needs.close()
         if self._session is None:
             return
         focused = self._situation.focused
@@ -188,6 +205,39 @@ class AgentBody:
             focused.end_all(workspace)
             self._withdraw(workspace, focused.body_in(workspace))
         self._withdraw(self._workspaces.home, self._session)
+
+    # ---- what plans need
+
+    def _need(self, act: Act) -> None:
+        focused = self._situation.focused.in_order()
+        near = [each for workspace in self._workspaces.joined() for each in workspace.artifacts()]
+        try:
+            self._needs.ask(act, focused, near)
+        except OperationFailed as failure:
+            self._finish(act.id, refused(failure, self._references))
+
+    def acquired(self, number: int) -> None:
+        """A plan has what it needs."""
+        self._finish(number, SUCCEEDED)
+
+    def unavailable(self, number: int, failure: OperationFailed) -> None:
+        """A plan does not get what it needs; one that has begun fails when it asks for it the next time."""
+        self._needs.forget(number)
+        self._finish(number, refused(failure, self._references))
+
+    def preempted(self, number: int, resource: str) -> None:
+        """A plan has lost what it needs."""
+        self._mind.preempted(number, resource)
+
+    def regained(self, number: int) -> None:
+        """A plan has it again, or no longer waits for it."""
+        self._mind.regained(number)
+
+    def _on_preempted(self, number: int, resource: str | None) -> None:
+        if resource is None:
+            self._mind.regained(number)
+        else:
+            self._mind.preempted(number, resource)
 
     def _begin(self, call: Call) -> UnderWay | None:
         action = ACTIONS.get((call.name, len(call.arguments)))
@@ -237,6 +287,9 @@ class AgentBody:
         if tracer is not None:
             why = tracer.link("act", f"{self._agent} {call.key}", why, (self._agent, act))
         request = OperationRequest(artifact, call.name, tuple(arguments), self._agent, why, done, timeout)
+        request.urgency, request.yields = act.urgency, act.yields
+        request.within = self._needs.claims(act.within)
+        request.on_preempted = partial(self._on_preempted, act.id)
         return self._environment.execute(request)
 
     def _done(self, act_id: int, outputs: Outputs, outcome: OperationOutcome) -> None:

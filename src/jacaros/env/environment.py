@@ -13,6 +13,8 @@ from jacaros.env.kernel.setting import Setting, log_to_stderr
 from jacaros.env.listener import EnvironmentListener
 from jacaros.env.operation import OPERATION, OperationRequest
 from jacaros.env.ports import UnderWay
+from jacaros.env.resources.arbiter import Arbiter
+from jacaros.env.resources.resource import Use
 from jacaros.env.standard_artifacts import furnish
 from jacaros.env.tree import WorkspaceTree
 from jacaros.env.values import Structure
@@ -64,6 +66,16 @@ class Environment:
     def resources(self) -> Mapping[str, object]:
         """What the host lends to artifacts, by name."""
         return self._setting.resources
+
+    @property
+    def arbiter(self) -> Arbiter:
+        """Decides who has what operations and plans use."""
+        return self._setting.arbiter
+
+    def used_by(self, artifact_id: ArtifactId) -> tuple[Use, ...]:
+        """What the operations of an artifact use, with the name of its robot; nothing if it is gone or lives elsewhere."""
+        steps = self._registry.made(artifact_id)
+        return () if steps is None else steps.used()
 
     @property
     def tracer(self) -> Tracer | None:

@@ -7,8 +7,11 @@ from typing import Protocol
 from jacaros.clock import Clock, Timer
 from jacaros.env.kernel.declaration import DeclaredOperation
 from jacaros.env.kernel.faults import is_interruption
+from jacaros.env.kernel.holding import Holding
 from jacaros.env.kernel.unawaited import AskedFor
 from jacaros.env.operation import OperationOutcome, OperationRequest
+from jacaros.env.resources.claim import Claim
+from jacaros.env.resources.resource import Use
 from jacaros.trace import Cause
 
 
@@ -25,6 +28,9 @@ class Turns(Protocol):
 
     def complain(self, what: str, error: BaseException) -> None:
         """Log an error of the artifact's code that harms nobody."""
+
+    def hold(self, execution: "OperationExecution", uses: tuple[Use, ...]) -> Holding:
+        """Let an operation use something; it has to enter and to leave."""
 
 
 class OperationExecution:
@@ -44,6 +50,8 @@ class OperationExecution:
         limit: rings when its time is up, None without a limit.
         thread: the thread in which it runs, None when that is the loop's.
         ended: True when all is over, code in ``finally`` included.
+        holding: what it holds of the resources that it uses, None when it uses none.
+        suspended: its caller has paused it; it may be paused without that, because it waits for a resource.
         task: the task of a coroutine that has been given its first turn.
         linked: executions in other artifacts that it waits for now.
     """
@@ -58,9 +66,11 @@ class OperationExecution:
         "cause",
         "declared",
         "ended",
+        "holding",
         "limit",
         "linked",
         "request",
+        "suspended",
         "task",
         "thread",
         "told",
@@ -77,7 +87,8 @@ class OperationExecution:
     ) -> None:
         self._turns = turns
         self.request, self.declared, self.arguments, self.cause = request, declared, arguments, cause
-        self.begun = self.cancelled = self.told = False
+        self.begun = self.cancelled = self.told = self.suspended = False
+        self.holding: Holding | None = None
         self.asked_for: Sequence[AskedFor] = ()
         self.ended = declared is None
         self.verdict: OperationOutcome | None = None
@@ -108,12 +119,27 @@ class OperationExecution:
         """
         for each in self.linked:
             each.pause()
-        if not self.pausable or self.ended or self.paused or self._turns is None:
+        waits = self.holding is not None and not self.active
+        if self.suspended or self.ended or not (self.pausable or waits):
             return
-        pause = self._pauses(self._turns)
-        pause.since = self._turns.clock.elapsed
-        self._call(pause.callbacks, self._turns)
-        self._turns.reconsider()
+        self.suspended = True
+        self.adapt()
+        if self.holding is not None:
+            self.holding.suspended()
+
+    def adapt(self) -> None:
+        """Pause or continue, as its caller and the resources that it uses allow."""
+        if self._turns is None:
+            return
+        barred = self.suspended or (self.holding is not None and self.holding.barred)
+        if barred and not self.paused and not self.ended:
+            pause = self._pauses(self._turns)
+            pause.since = self._turns.clock.elapsed
+            self._call(pause.callbacks, self._turns)
+            self._turns.reconsider()
+        elif not barred and self._pause is not None and self._pause.end():
+            self._call(self._pause.resumers, self._turns)
+            self._turns.reconsider()
 
     def _call(self, callbacks: list[Callable[[], None]], turns: Turns) -> None:
         for callback in list(callbacks):
@@ -128,9 +154,37 @@ class OperationExecution:
         """Let it go on after `pause`."""
         for each in self.linked:
             each.resume()
-        if self._pause is not None and self._turns is not None and self._pause.end():
-            self._call(self._pause.resumers, self._turns)
-            self._turns.reconsider()
+        if not self.suspended:
+            return
+        self.suspended = False
+        if self.holding is not None:
+            self.holding.resumed()
+        self.adapt()
+
+    @property
+    def active(self) -> bool:
+        """True once its code has begun, or its task has been made."""
+        return self.begun or self.task is not None
+
+    def hold(self, uses: tuple[Use, ...]) -> Holding:
+        """What it holds; of *uses* if it has not declared any, and then it has to enter and to leave itself."""
+        if self.holding is None:
+            assert self._turns is not None
+            self._turns.hold(self, uses)
+        assert self.holding is not None
+        return self.holding
+
+    @property
+    def claims(self) -> tuple[Claim, ...]:
+        """What operations are within that it asks for."""
+        if self.holding is None or not self.holding.entered:
+            return self.request.within
+        return (*self.request.within, self.holding.claim)
+
+    @property
+    def waits_for_others(self) -> bool:
+        """True while it waits for linked operations."""
+        return bool(self.linked)
 
     @property
     def pausable(self) -> bool:
@@ -164,7 +218,20 @@ class OperationExecution:
     async def resumed(self) -> None:
         """Wait until it is not paused; to be awaited through `Artifact.pause_point` or `Artifact.step`."""
         while self._pause is not None and self._pause.since is not None:
-            await self._pause.wait()
+            await self._rest(self._pause)
+
+    async def _rest(self, pause: "Pause") -> None:
+        """Wait for the end of the pause; nothing moves, so others may have what it holds."""
+        if self.holding is None:
+            await pause.wait()
+            return
+        self.holding.resting = True
+        try:
+            self.holding.rest()
+            if pause.since is not None:
+                await pause.wait()
+        finally:
+            self.holding.resting = False
 
     def take_paused_time(self) -> float:
         """Seconds that it has been paused since this was last asked."""

@@ -2,13 +2,20 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, TypeVar, overload
+from typing import Any, Literal, TypeVar, overload
 
 from jacaros.env.ids import ArtifactId
+from jacaros.env.resources.claim import Claim, Policy
+from jacaros.env.resources.resource import Use
 from jacaros.env.values import Atom, Structure
 from jacaros.trace import Cause
 
 F = TypeVar("F", bound=Callable[..., Any])
+
+WhenPreempted = Literal["pause", "cancel", "finish"]
+"""What an operation does when a more urgent claim takes away what it uses."""
+Uses = str | Use | tuple[str | Use, ...]
+"""What an operation uses, such as ``"wheels"``, ``("base", "arm")`` or ``"lift(2)"``."""
 
 OPERATION = "operation"
 LINK = "linked operation"
@@ -39,6 +46,10 @@ def ignore_outcome(outcome: OperationOutcome) -> None:
     """Take an outcome that nobody waits for."""
 
 
+def ignore_preemption(resource: str | None) -> None:
+    """Take a preemption that nobody asks about."""
+
+
 @dataclass(slots=True)
 class OperationRequest:
     """What somebody asks of an artifact.
@@ -53,6 +64,12 @@ class OperationRequest:
         timeout: seconds that the operation may take, waiting for its turn, its guard and its pauses included; then
             it is stopped like one that is cancelled, and fails with ``operation_timeout(Operation,Milliseconds)``.
             None: no limit.
+        urgency: decides who gets what the operation uses; the greater one first.
+        policy: what happens when it cannot have that at once.
+        yields: the resources may be taken away from it.
+        within: claims of the caller that the operation is a part of, outermost first.
+        on_preempted: called with the resource that a more urgent claim takes away from the running operation, and with
+            None when it continues.
     """
 
     artifact: ArtifactId
@@ -62,6 +79,11 @@ class OperationRequest:
     cause: Cause | None = None
     on_done: Callable[[OperationOutcome], None] = ignore_outcome
     timeout: float | None = None
+    urgency: int = 0
+    policy: Policy = "wait"
+    yields: bool = True
+    within: tuple[Claim, ...] = ()
+    on_preempted: Callable[[str | None], None] = ignore_preemption
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,6 +96,8 @@ class Mark:
     pausable: bool = False
     threaded: bool = False
     common: bool = False
+    uses: Uses = ()
+    when_preempted: WhenPreempted | None = None
 
 
 _MARKS = "__jacaros_operations__"
@@ -97,7 +121,13 @@ def _marked(function: F | None, mark: Mark) -> F | Callable[[F], F]:
 def operation(function: F, /) -> F: ...
 @overload
 def operation(
-    *, name: str | None = None, guard: str | None = None, pausable: bool = False, threaded: bool = False
+    *,
+    name: str | None = None,
+    guard: str | None = None,
+    pausable: bool = False,
+    threaded: bool = False,
+    uses: Uses = (),
+    when_preempted: WhenPreempted | None = None,
 ) -> Callable[[F], F]: ...
 def operation(
     function: F | None = None,
@@ -107,6 +137,8 @@ def operation(
     guard: str | None = None,
     pausable: bool = False,
     threaded: bool = False,
+    uses: Uses = (),
+    when_preempted: WhenPreempted | None = None,
 ) -> F | Callable[[F], F]:
     """Make a method an operation that agents can call.
 
@@ -118,8 +150,13 @@ def operation(
         pausable: the operation obeys pauses (see `Artifact.pause_point`), because it stops what it does.
         threaded: the method blocks, so it runs in a worker thread; a plain ``def`` whose changes and
             signals are published together when it ends.
+        uses: resources that no other operation may use meanwhile: a name, such as ``"wheels"``; several; ``"lift(2)"`` for
+            one that two may use, ``"map(shared)"`` for one that only readers share.  Those of an artifact with a
+            `robot_prefix` belong to this robot, all others to the run.
+        when_preempted: what it does when a more urgent claim takes them away: ``pause`` and continue later (the default if
+            it is pausable), ``cancel`` (it fails with ``preempted(Resource)``), or ``finish`` first (the default else).
     """
-    return _marked(function, Mark(OPERATION, name, guard, pausable, threaded))
+    return _marked(function, Mark(OPERATION, name, guard, pausable, threaded, False, uses, when_preempted))
 
 
 def initializer(function: F, /) -> F:
@@ -142,7 +179,13 @@ def common_operation(name: str) -> Callable[[F], F]:
 def link(function: F, /) -> F: ...
 @overload
 def link(
-    *, name: str | None = None, guard: str | None = None, pausable: bool = False, threaded: bool = False
+    *,
+    name: str | None = None,
+    guard: str | None = None,
+    pausable: bool = False,
+    threaded: bool = False,
+    uses: Uses = (),
+    when_preempted: WhenPreempted | None = None,
 ) -> Callable[[F], F]: ...
 def link(
     function: F | None = None,
@@ -152,12 +195,14 @@ def link(
     guard: str | None = None,
     pausable: bool = False,
     threaded: bool = False,
+    uses: Uses = (),
+    when_preempted: WhenPreempted | None = None,
 ) -> F | Callable[[F], F]:
     """Make a method a linked operation: other artifacts call it through their ports, agents cannot.
 
     The arguments are those of `operation`; a method may be both.
     """
-    return _marked(function, Mark(LINK, name, guard, pausable, threaded))
+    return _marked(function, Mark(LINK, name, guard, pausable, threaded, False, uses, when_preempted))
 
 
 @overload

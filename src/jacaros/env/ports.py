@@ -18,6 +18,8 @@ from jacaros.env.errors import OperationFailed
 from jacaros.env.ids import ArtifactId
 from jacaros.env.observation import Observer
 from jacaros.env.operation import OperationOutcome, OperationRequest, ignore_outcome
+from jacaros.env.resources.arbiter import Arbiter
+from jacaros.env.resources.resource import Use
 from jacaros.trace import Cause, Tracer
 
 Told = Callable[[OperationOutcome], None]
@@ -168,6 +170,13 @@ class Environment(Protocol):
     @property
     def tracer(self) -> Tracer | None:
         """Told of every cause that arises, None while nobody watches."""
+
+    @property
+    def arbiter(self) -> Arbiter:
+        """Decides who has what operations and plans use."""
+
+    def used_by(self, artifact_id: ArtifactId) -> Sequence[Use]:
+        """What the operations of an artifact use; nothing if it lives elsewhere."""
 
     @property
     def clock(self) -> Clock:

@@ -204,6 +204,7 @@ class PythonAgent:
         artifact: ArtifactId | str | None = None,
         workspace: str | None = None,
         timeout: float | None = None,
+        urgency: int = 0,
     ) -> Any:
         """Do an operation, wait for its end, and give the values of its `Out` arguments; see `Session.act`.
 
@@ -211,7 +212,7 @@ class PythonAgent:
             OperationFailed: with the message and the reason.
         """
         result = await self.begin(
-            operation, *arguments, artifact=artifact, workspace=workspace, timeout=timeout
+            operation, *arguments, artifact=artifact, workspace=workspace, timeout=timeout, urgency=urgency
         )
         # An operation may end at once; who does nothing else must not keep the others from their turns.
         await self._host.turn()

@@ -58,6 +58,12 @@ class HostedMind(Protocol):
     def complete(self, act_id: int, completion: Completion) -> None:
         """Be told the end of an action."""
 
+    def preempted(self, act_id: int, resource: str) -> None:
+        """An act, or a plan that needs it, has lost a resource."""
+
+    def regained(self, act_id: int) -> None:
+        """It has the resource again, or no longer waits for it."""
+
     def shut_down_in(self, milliseconds: float) -> None:
         """Be told that the end comes after so many milliseconds."""
 

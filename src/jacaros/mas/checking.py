@@ -222,8 +222,9 @@ def _of_artifacts(
     """What is wrong with the artifacts of a project, and with what its agents do with them."""
     # Imported here: programs without artifacts are checked without them.
     from jacaros.artifacts.registry import type_finder
-    from jacaros.mas.action_check import check_actions
+    from jacaros.mas.action_check import check_actions, made_types
     from jacaros.mas.environment import types_of
+    from jacaros.mas.need_check import check_needs
 
     artifacts = [
         artifact
@@ -239,6 +240,10 @@ def _of_artifacts(
     except ProjectError as error:
         return [_of_project(each) for each in error.diagnostics]
     told = check_actions(deployment, programs, find_type)
+    trees = [program for _, program in programs]
+    types = made_types(deployment, trees, find_type)
+    if types is not None:
+        told += check_needs(trees, types)
     return [each for each in told if not _is_of_wrong_mapping(each, folders)]
 
 

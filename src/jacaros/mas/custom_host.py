@@ -6,7 +6,7 @@ from inspect import isawaitable
 from typing import Any
 
 from jacaros.bdi.architecture import Timer
-from jacaros.bdi.state.act import Act
+from jacaros.bdi.state.act import NEEDS, Act
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.extension.agent import Action, AgentArch, Perception
 from jacaros.extension.calling import FAULTS, crash_text
@@ -63,7 +63,7 @@ class CustomHost(AgentHost):
 
     def act(self, act: Act) -> None:
         """Do an external action."""
-        if not self._chain:
+        if not self._chain or act.functor is NEEDS:
             super().act(act)
             return
         action = Action(act)

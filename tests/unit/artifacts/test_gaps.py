@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 from robot_lab import STANDSTILL, Lab, assert_at, in_lab
 
-from jacaros.artifacts.robots.motion_queue import GUARD_TRIPPED
+from jacaros.artifacts.robots.motion_claim import GUARD_TRIPPED
 from jacaros.artifacts.robots.velocity import ArtCmdVel
 from jacaros.clock import VirtualClock
 from jacaros.env.values import Structure

@@ -19,7 +19,7 @@ from jacaros.artifacts.mapping.frames import FrameFeed
 from jacaros.artifacts.mapping.host import Elements, Tap
 from jacaros.artifacts.mapping.manual import Documentation, parameter_words
 from jacaros.artifacts.mapping.operating import Operations
-from jacaros.artifacts.mapping.operation_methods import methods
+from jacaros.artifacts.mapping.operation_methods import methods, motion_uses
 from jacaros.artifacts.mapping.parameters import NodeParameter, OwnParameter, kept_by_master
 from jacaros.artifacts.mapping.type_search import TypeSearch
 from jacaros.env.artifact import internal_operation
@@ -222,6 +222,7 @@ def mapped_type(mapping: MappingFile, name: str) -> type[MappedArtifact]:
         "__module__": __name__,
         "mapping": mapping,
         "part": part,
+        "further_uses": motion_uses(part),
         **methods(part, parameter_words),
     }
     tuned = any(each.declaration is not None for each in part.parameters)

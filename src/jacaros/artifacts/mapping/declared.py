@@ -8,6 +8,7 @@ from typing import NamedTuple
 from jacaros.artifacts.kit.reading import ReadingPolicy
 from jacaros.artifacts.mapping.paths import Path
 from jacaros.artifacts.mapping.units import Line
+from jacaros.env.resources.resource import Use
 from jacaros.ros.parameter import Declaration
 from jacaros.ros.qos import QoS
 from jacaros.streams.schema import OCCURRENCE, Spec
@@ -289,6 +290,7 @@ class OperationPart:
         aborted: fields of the result that follow Code and Text.
         suspend: what a suspended intention means for the goal: ``go_on``, ``cancel``, or ``pause`` by two operations.
         pause, resume: names of these operations.
+        uses: resources that it holds meanwhile; empty: those of a motion, if it is one.
     """
 
     name: str
@@ -318,6 +320,7 @@ class OperationPart:
     node: str = ""
     properties: tuple[Written, ...] = ()
     description: str = ""
+    uses: tuple[Use, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

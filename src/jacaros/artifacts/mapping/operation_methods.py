@@ -6,6 +6,8 @@ from typing import Any
 
 from jacaros.artifacts.mapping.declared import ArtifactPart, FieldPart, OperationKind, OperationPart
 from jacaros.env.artifact import Out, operation
+from jacaros.env.resources.resource import WHEELS
+from jacaros.ros.guarded import VELOCITIES
 
 Words = Callable[[ArtifactPart, OperationPart], dict[str, str]]
 """Tells what the parameters of an operation take, for manuals."""
@@ -33,7 +35,7 @@ def _method(artifact: ArtifactPart, number: int, words: Words) -> Callable[..., 
     run.__qualname__ = run.__name__ = part.name
     run.__doc__ = description(part)
     run.parameter_words = lambda: words(artifact, part)  # type: ignore[attr-defined]  # for manuals
-    return operation(name=part.name, pausable=is_pausable(part))(run)
+    return operation(name=part.name, pausable=is_pausable(part), uses=part.uses)(run)
 
 
 def is_pausable(part: OperationPart) -> bool:
@@ -41,6 +43,18 @@ def is_pausable(part: OperationPart) -> bool:
     return part.kind is OperationKind.PUBLISH or (
         part.kind is OperationKind.ACTION and part.suspend != "go_on"
     )
+
+
+def motion_uses(artifact: ArtifactPart) -> tuple[str, ...]:
+    """What operations use that are motions and do not say so: repeated velocities."""
+    moves = any(
+        part.kind is OperationKind.PUBLISH
+        and part.rate is not None
+        and not part.uses
+        and (part.type_name is None or part.type_name.text in VELOCITIES)
+        for part in artifact.operations
+    )
+    return (WHEELS,) if moves else ()
 
 
 def is_switch(part: OperationPart) -> bool:

@@ -10,8 +10,11 @@ from jacaros.artifacts.mapping.declared import OperationPart, Source, ValuePart
 from jacaros.artifacts.mapping.encoding import Fill, WrongValue, filler, fitting
 from jacaros.artifacts.mapping.host import Host
 from jacaros.artifacts.mapping.type_search import ask_type
-from jacaros.artifacts.robots.motion_queue import GUARD_TRIPPED, Claim, MotionQueue, motion_queue_of
+from jacaros.artifacts.robots.motion_claim import GUARD_TRIPPED, Claim, Motions, motions_of
 from jacaros.env.artifact import Out
+from jacaros.env.execution import OperationExecution
+from jacaros.env.kernel.holding import Holding
+from jacaros.env.resources.resource import WHEELS, Use
 from jacaros.ros.backend import Publisher
 from jacaros.ros.errors import MessageMismatch
 from jacaros.ros.guarded import VELOCITIES, guarded_by
@@ -33,7 +36,7 @@ class Publishing:
         self._matching: Matching | None = None
         self._fill: Fill | None = None
         self._fill_end: Fill | None = None
-        self._motions = MotionQueue()
+        self._motions = Motions()
         self._drives = self._moves = self._moved = False
         self._arguments: Sequence[object] = ()
         if part.type_name is not None:
@@ -55,7 +58,7 @@ class Publishing:
         )
         self._drives = type_name in VELOCITIES
         if self._drives:
-            self._motions = motion_queue_of(host.ros, host.robot_prefix)
+            self._motions = motions_of(host.ros, host.robot_prefix)
             host.at_dispose(host.ros.add_exit_hook(self._stand))
             host.at_dispose(guarded_by(host.ros).on_standstill(self._stand))
             host.at_dispose(self._halt)
@@ -115,26 +118,28 @@ class Publishing:
 
     async def _repeat(self, inputs: Sequence[object], seconds: float, period: float) -> None:
         """Publish until the time is over; pauses do not count, and one motion of a robot waits for another."""
-        host, motions = self._host, self._motions
+        host, motions, execution = self._host, self._motions, self._host.current
+        holding = execution.hold((self._use(execution),))
+        claims_itself = not holding.entered
 
         def stop() -> None:
             halt()
-            motions.leave(claim)
             claim.wake()
 
         def halt() -> None:
-            if motions.holder is claim:  # else another motion drives the robot, if any
+            if holding.holds:  # else another motion drives the robot, if any
                 self._end(inputs)
 
         claim = Claim(halt)
-        host.current.on_pause(stop)
+        execution.on_pause(stop)
+        unwatch = holding.watch(claim.wake)
         ignore = guarded_by(host.ros).on_interruption(lambda: claim.interrupt(GUARD_TRIPPED))
         left = seconds
         pauses = self._pauses(inputs) if seconds > 0.0 else iter(())
         try:
+            holding.enter()
             while left > 1e-9:
-                await host.pause_point()
-                if not motions.enter(claim):
+                if not self._may_go(execution, holding, claim):
                     await host.step(claim.wait(host.clock, None))
                 elif not claim.aborted and (pause := next(pauses, None)) is not None:
                     await host.step(claim.wait(host.clock, pause))
@@ -150,8 +155,27 @@ class Publishing:
                     host.fail(f"{self._part.name} was aborted", "aborted", round(seconds - left, 3))
         finally:
             ignore()
+            unwatch()
             halt()
-            motions.leave(claim)
+            motions.claims.pop(claim, None)
+            if claims_itself:
+                holding.leave()
+
+    def _use(self, execution: OperationExecution) -> Use:
+        """The wheels, or what two calls of the same operation exclude each other by."""
+        if self._drives:
+            return Use(WHEELS)
+        return Use(f"{execution.request.artifact.path}.{self._part.name}")
+
+    def _may_go(self, execution: OperationExecution, holding: Holding, claim: Claim) -> bool:
+        """Whether to publish now; if not, others may have the robot."""
+        if execution.suspended:
+            self._motions.claims.pop(claim, None)
+        else:
+            self._motions.claims[claim] = None
+        if execution.paused:
+            holding.rest()
+        return not execution.paused
 
     def _warn_unmatched(self, message: str, cure: str) -> None:
         """Warn once of a topic without subscribers: its name or type may be wrong."""

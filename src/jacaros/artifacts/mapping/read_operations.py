@@ -28,9 +28,10 @@ from jacaros.artifacts.mapping.read_fields import (
 )
 from jacaros.artifacts.mapping.read_names import UNNAMED, belief_name, ros_name, type_written
 from jacaros.artifacts.mapping.read_topics import is_misplaced, read_feedback, read_qos
+from jacaros.env.resources.resource import Use, read_use
 from jacaros.yaml_nodes import Node, Problem
 
-_COMMON = ("parameters", "description")
+_COMMON = ("parameters", "description", "uses")
 KEYS: dict[str, tuple[str, ...]] = {
     "publish": ("type", "fields", "qos", "rate", "duration", "at_end", "match_timeout", "unmatched"),
     "service": ("type", "request", "outputs", "success", "timeout"),
@@ -73,10 +74,31 @@ def read_operation(name: Node, node: Node) -> OperationPart:
         kind=kind,
         parameters=_parameters(entries["parameters"]) if "parameters" in entries else (),
         description=entries["description"].text() if "description" in entries else "",
+        uses=_uses(entries["uses"]) if "uses" in entries else (),
     )
     part = _READERS[kind](part, entries)
     node.problems += _forgotten(part)
     return part
+
+
+def _uses(node: Node) -> tuple[Use, ...]:
+    """The resources that an operation holds."""
+    found: dict[str, Use] = {}
+    for item in node.sequence() if isinstance(node.value, list) else (node,):
+        if not isinstance(item.value, str):
+            item.wrong(
+                f"{item.what} must be the name of a resource, not {item.value!r}", "write uses: wheels"
+            )
+            continue
+        try:
+            use = read_use(item.value)
+        except ValueError as wrong:
+            item.wrong(str(wrong), "write uses: wheels, or uses: [base, arm]")
+            continue
+        if use.name in found:
+            item.wrong(f"duplicate resource `{use.name}`", "leave one of them out")
+        found[use.name] = use
+    return tuple(found.values())
 
 
 def _forgotten(part: OperationPart) -> Iterator[Problem]:

@@ -11,8 +11,9 @@ from typing import Any, Protocol
 from jacaros.artifacts.kit.connection import Matching
 from jacaros.artifacts.robots.control import STANDSTILL, Limits, Pose, Velocity, distance
 from jacaros.artifacts.robots.maneuver import Maneuver
-from jacaros.artifacts.robots.motion_queue import GUARD_TRIPPED, Claim, MotionQueue
+from jacaros.artifacts.robots.motion_claim import GUARD_TRIPPED, Claim, Motions
 from jacaros.artifacts.robots.odometry import NO_TRANSFORM, Odometer
+from jacaros.env.resources.resource import WHEELS, Use
 from jacaros.env.values import Atom, Structure
 
 STALE = 0.5
@@ -70,7 +71,7 @@ class Wheels(Protocol):
     """The artifact that drives, as a motion sees it."""
 
     clock: Any
-    motions: MotionQueue
+    motions: Motions
     matching: Matching
     odometer: Odometer
     settings: MotionSettings
@@ -107,6 +108,8 @@ class Motion:
         self._wheels = wheels
         self._maneuver = maneuver
         self._execution = wheels.current
+        self._holding = self._execution.hold((Use(WHEELS),))
+        self._claims_itself = not self._holding.entered
         self._claim = Claim(self.halt)
         self._before = STANDSTILL
         self._begun = False
@@ -122,13 +125,15 @@ class Motion:
     def halt(self) -> None:
         """Command zero velocity here and now, if it is this motion that drives."""
         self._before = STANDSTILL
-        if self._wheels.motions.holder is self._claim:
+        if self._holding.holds:
             self._wheels.command(STANDSTILL)
 
     def end(self) -> None:
         """Stop, and let the next motion have the robot; again is harmless."""
         self.halt()
-        self._wheels.motions.leave(self._claim)
+        self._wheels.motions.claims.pop(self._claim, None)
+        if self._claims_itself:
+            self._holding.leave()
         self._wheels.show(self, None)
 
     async def run(self) -> None:
@@ -138,12 +143,14 @@ class Motion:
             MotionFailed: ``aborted``, ``no_odometry``, ``no_transform``, ``blocked``, ``interrupted`` or ``timeout``.
         """
         forget = self._execution.on_pause(self._on_pause)
+        unwatch = self._holding.watch(self._claim.wake)
         ignore = self._wheels.on_interruption(lambda: self._claim.interrupt(GUARD_TRIPPED))
         try:
             await self._enter_lane()
             await self._drive()
         finally:
             forget()
+            unwatch()
             ignore()
             self.end()
 
@@ -172,15 +179,21 @@ class Motion:
             ready = await self._stand()
 
     async def _enter_lane(self) -> None:
-        motions, claim = self._wheels.motions, self._claim
-        while self._execution.paused or not motions.enter(claim):
-            if self._execution.paused:
-                motions.leave(claim)
-                self._wheels.show(self, "paused")
-                await self._wheels.step(self._execution.resumed())
+        """Have the wheels; a motion that is suspended meanwhile is not among those that `Motions.abort` ends."""
+        execution, claims = self._execution, self._wheels.motions.claims
+        self._holding.enter()
+        claims[self._claim] = None
+        while execution.paused:
+            suspended = execution.suspended
+            if suspended:
+                claims.pop(self._claim, None)
             else:
-                self._wheels.show(self, "waiting")
+                claims[self._claim] = None
+            self._wheels.show(self, "paused" if suspended else "waiting")
+            self._holding.rest()
+            if execution.paused:
                 await self._wait(None)
+        claims[self._claim] = None
 
     async def _stand(self) -> bool:
         """Bring a robot that receives commands to a stand; False when the agent suspends the motion meanwhile."""

@@ -17,9 +17,10 @@ from jacaros.artifacts.robots.driving_frame import DrivingFrame
 from jacaros.artifacts.robots.journey import DriveTo, TurnTo, go_to
 from jacaros.artifacts.robots.maneuver import Maneuver, Straight, Timed, Turn
 from jacaros.artifacts.robots.motion import Motion, MotionFailed, MotionSettings
-from jacaros.artifacts.robots.motion_queue import MotionQueue, motion_queue_of
+from jacaros.artifacts.robots.motion_claim import Motions, motions_of
 from jacaros.artifacts.robots.odometry import ODOMETRY, Odometer, Odometry, pose_values
 from jacaros.env.artifact import Out, operation
+from jacaros.env.resources.resource import WHEELS
 from jacaros.env.values import Atom, Structure
 from jacaros.ros.errors import CapabilityMissing
 from jacaros.ros.guarded import guarded_by
@@ -68,7 +69,8 @@ class WheeledArtifact(RosArtifact):
             (the process was frozen or stuck), ``no_odometry(Seconds)``, ``clock_jumped(Seconds)`` or ``guard_tripped``.
 
     Attributes:
-        motions: who drives the robot; shared with all artifacts of the same robot.
+        further_uses: what the motions use.
+        motions: those that drive the robot or wait for it; shared with all artifacts of the same robot.
         matching: lets motions wait until the robot's base receives commands.
         odometer: the newest odometry.
         settings: speeds and time-outs.
@@ -92,8 +94,9 @@ class WheeledArtifact(RosArtifact):
     }
     robot_in_properties = True
     command_topic: ClassVar[str] = "cmd_vel"
+    further_uses: ClassVar[tuple[str, ...]] = (WHEELS,)
 
-    motions: MotionQueue
+    motions: Motions
     matching: Matching
     odometer: Odometer
     settings: MotionSettings
@@ -108,7 +111,7 @@ class WheeledArtifact(RosArtifact):
         self.settings = self._settings()
         self._motions: dict[Motion, str] = {}
         self.define_property(self.robot_property("moving"), Atom("stopped"))
-        self.motions = motion_queue_of(self.ros, self.robot_prefix)
+        self.motions = motions_of(self.ros, self.robot_prefix)
         self.newest_pose = Reading(ReadingPolicy(on_demand=True), self.clock)
         self._commands = self.publisher(str(self.options.get("command_topic", self.command_topic)), TWIST)
         self.matching = self.matching_of(self._commands)

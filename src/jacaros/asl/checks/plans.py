@@ -10,7 +10,7 @@ from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.slips import is_slip_of
 from jacaros.asl.walk import walk
 
-_LABEL_WORDS: Final = ("atomic", "breakpoint", "all_unifs", "urgency", "within", "cleanup")
+_LABEL_WORDS: Final = ("atomic", "breakpoint", "all_unifs", "urgency", "needs", "policy", "within", "cleanup")
 
 
 def never_selected(

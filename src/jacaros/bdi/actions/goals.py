@@ -272,7 +272,8 @@ def suspended(ctx: Context, goal: Term, reason: Term) -> Iterator[None]:
     for candidate in goals.intentions_for(ctx.agent, _goal(goal)):
         why = candidate.suspended
         waiting = candidate.waiting
-        if waiting is not None and waiting.reason is not OWN_SUSPENSION:
+        lost = goals.is_preempted(candidate)
+        if waiting is not None and waiting.reason is not OWN_SUSPENSION and not lost:
             # As in Jason: one that is suspended while it waits for something is told with that.
             why = atom("act") if is_action(waiting.reason) else waiting.reason
         found = goals.goal_of(ctx.agent, candidate, goal)

@@ -1,7 +1,7 @@
 """A plan for a goal or event of an intention becomes part of it: rule AddIM."""
 
 from jacaros.bdi.explaining import lost_goals
-from jacaros.bdi.rules import meta_events, subplans
+from jacaros.bdi.rules import meta_events, needs, subplans
 from jacaros.bdi.rules.goal_failure import has_room, too_deep, unplanned
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.event import Event
@@ -46,9 +46,9 @@ def select_for_reasons(
 def push(agent: Circumstance, intention: Intention, goal: Goal, annotations: EventAnnotations) -> bool:
     """Rule AddIM: put a plan for the goal on the intention; False when the intention goes no further now."""
     frame, _ = select_for_reasons(agent, goal, annotations, intention, None)
-    return (frame is not None and add_frame(agent, intention, frame)) or go_without(
-        agent, intention, goal, annotations, frame
-    )
+    if frame is None or not add_frame(agent, intention, frame):
+        return go_without(agent, intention, goal, annotations, frame)
+    return not agent.features.needs or needs.acquire(agent, intention)
 
 
 def add_frame(agent: Circumstance, intention: Intention, frame: Frame) -> bool:
@@ -65,6 +65,7 @@ def add_frame(agent: Circumstance, intention: Intention, frame: Frame) -> bool:
         and trigger.on_fail is not None
         and agent.options.tail_calls
         and caller[PLAN].replaceable
+        and not (agent.waits.needs and needs.is_of(agent, intention, len(frames) - 1))
     ):
         frames[-1] = frame
         if agent.features.meta:

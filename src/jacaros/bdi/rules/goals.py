@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from jacaros.bdi.explaining.failure_reason import FailureReason, nowhere
-from jacaros.bdi.rules import goal_failure, meta_events, waits
+from jacaros.bdi.rules import goal_failure, meta_events, needs, waits
 from jacaros.bdi.rules.alarms import cancel_alarm
 from jacaros.bdi.rules.clr_int import achieve, cut, pending_event, pop_finished, remove_event
 from jacaros.bdi.rules.failure import release_bindings
@@ -21,12 +21,14 @@ from jacaros.bdi.state.event import (
 from jacaros.bdi.state.intention import ANNOTATIONS, GOAL, SERIAL, Intention
 from jacaros.bdi.state.literals import literal_of, own_annotations
 from jacaros.bdi.state.triggers import Trigger
-from jacaros.bdi.state.waiting import HeldEnd
+from jacaros.bdi.state.waiting import ActWait, HeldEnd, Waiting
 from jacaros.terms.substitution import rename
 from jacaros.terms.unifier import undo, unify
-from jacaros.terms.values import Term, atom
+from jacaros.terms.values import Term, atom, functor
 
 _BY_SUSPEND, _BY_RESUME = atom("suspend_ia"), atom("resume_ia")
+PREEMPTED = functor("preempted", 1)
+"""Functor of the reason of intentions that have lost a resource; they are resumed when they have it again."""
 
 
 def goal_literals(intention: Intention) -> list[Term]:
@@ -221,21 +223,40 @@ def suspend_goal(agent: Circumstance, goal: Term, reason: Term) -> None:
         suspend_intention(agent, intention, reason)
 
 
-def suspend_intention(agent: Circumstance, intention: Intention, reason: Term) -> None:
-    """One intention stops; an external action that can pause is paused."""
-    if intention.suspended is not None:
+def is_preempted(intention: Intention) -> bool:
+    """Whether an intention is suspended because it has lost a resource."""
+    reason = intention.suspended
+    return reason.__class__ is tuple and reason[0] is PREEMPTED
+
+
+def suspend_intention(
+    agent: Circumstance, intention: Intention, reason: Term, by: Term = _BY_SUSPEND
+) -> None:
+    """One intention stops; an external action that can pause is paused, and resources are given back.
+
+    One that has lost a resource is suspended for the program's reason from now on: it waits for ``.resume``.
+    """
+    if intention.suspended is not None and not is_preempted(intention):
         return
     intention.suspended = reason
     agent.incoming.called = True
     if agent.features.meta:
         for frame in intention.frames:
-            meta_events.frame_state(agent, intention, frame, "suspended", _BY_SUSPEND)
+            meta_events.frame_state(agent, intention, frame, "suspended", by)
+    if by is _BY_SUSPEND:
+        for need in needs.of(agent, intention):
+            agent.architecture.suspend_act(need.number)
     event = pending_event(agent, intention)
     if event is not None and event in agent.events:
         agent.events.remove(event)
         agent.waits.suspended_events.append(event)
-    if intention.waiting is not None:
+    if intention.waiting is not None and (by is _BY_SUSPEND or not _lost(agent, intention.waiting)):
         waits.suspend(agent, intention.waiting)
+
+
+def _lost(agent: Circumstance, waiting: Waiting) -> bool:
+    """Whether what is waited for is an action that has lost a resource: it is paused, and continues when it has it."""
+    return isinstance(waiting, ActWait) and waiting.number in agent.waits.preempted
 
 
 def resume_goal(agent: Circumstance, goal: Term) -> None:
@@ -250,14 +271,17 @@ def resume_goal(agent: Circumstance, goal: Term) -> None:
         resume_intention(agent, intention)
 
 
-def resume_intention(agent: Circumstance, intention: Intention) -> None:
-    """A suspended intention goes on where it is."""
-    if intention.suspended is None:
+def resume_intention(agent: Circumstance, intention: Intention, by: Term = _BY_RESUME) -> None:
+    """A suspended intention goes on where it is; ``.resume`` does nothing to one that has lost a resource."""
+    if intention.suspended is None or (by is _BY_RESUME and is_preempted(intention)):
         return
     intention.suspended = None
     if agent.features.meta:
         for frame in intention.frames:
-            meta_events.frame_state(agent, intention, frame, "resumed", _BY_RESUME)
+            meta_events.frame_state(agent, intention, frame, "resumed", by)
+    if by is _BY_RESUME:
+        for need in needs.of(agent, intention):
+            agent.architecture.resume_act(need.number)
     held = next((e for e in agent.waits.suspended_events if e[EVENT_INTENTION] is intention), None)
     if held is not None:
         agent.waits.suspended_events.remove(held)

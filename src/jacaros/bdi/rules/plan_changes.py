@@ -47,8 +47,10 @@ def look_at_plans(agent: Circumstance) -> None:
     agent.features.meta = agent.observers.goal is not None or agent.features.meta_plans
     agent.features.subplans = agent.features.subplans or agent.library.has_subplans()
     agent.features.goal_conditions = agent.features.goal_conditions or agent.library.has_goal_conditions()
+    agent.features.needs = agent.features.needs or any(plan.needs for plan in agent.library.plans)
     agent.features.special = (
         agent.features.meta
+        or agent.features.needs
         or agent.features.subplans
         or agent.features.goal_conditions
         or agent.observers.step is not None

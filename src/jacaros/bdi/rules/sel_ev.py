@@ -1,6 +1,6 @@
 """An event is taken up: rule SelEv, and the intention that it begins or goes on with."""
 
-from jacaros.bdi.rules import failure, meta_events, subplans
+from jacaros.bdi.rules import failure, meta_events, needs, subplans
 from jacaros.bdi.rules.add_im import log_inapplicable, push, select_for_reasons
 from jacaros.bdi.rules.clr_int import remove_event
 from jacaros.bdi.rules.goal_failure import unplanned
@@ -8,6 +8,8 @@ from jacaros.bdi.rules.holding import is_held_before_event
 from jacaros.bdi.state.circumstance import CROWD, Circumstance
 from jacaros.bdi.state.event import EVENT_CAUSE, EVENT_INTENTION, Event
 from jacaros.bdi.state.intention import PLAN, Frame, Intention
+from jacaros.bdi.state.literals import EventAnnotations
+from jacaros.bdi.state.triggers import Goal
 from jacaros.errors import InternalError
 from jacaros.terms.values import BY_SELF
 
@@ -126,11 +128,17 @@ def begin_with(agent: Circumstance, event: Event, frame: Frame | None, reacted: 
         agent.atomic, agent.atomic_over = intention, False
     if agent.features.meta:
         meta_events.frame_state(agent, intention, frame, "executing")
-    if len(agent.intentions) >= CROWD and annotations is BY_SELF and trigger.kind:
+    if not agent.features.needs or needs.acquire(agent, intention):
+        _take_place(agent, intention, goal, annotations)
+    return True
+
+
+def _take_place(agent: Circumstance, intention: Intention, goal: Goal, annotations: EventAnnotations) -> None:
+    """A new intention waits for its first turn."""
+    if len(agent.intentions) >= CROWD and annotations is BY_SELF and goal[0].kind:
         agent.line_up(intention)
     else:
         agent.make_ready(intention)
-    return True
 
 
 def _react(agent: Circumstance, event: Event) -> bool:

@@ -34,6 +34,11 @@ class Fair:
         self.refused = False
         self.urgencies: Mapping[Trigger, int] | None = None
 
+    def urgency_of(self, intention: Intention) -> int:
+        """No intention is more urgent than others."""
+        del intention
+        return 0
+
     def select_messages(self) -> Sequence[SpeechAct]:
         """The oldest one."""
         return (self.agent.incoming.messages.popleft(),)

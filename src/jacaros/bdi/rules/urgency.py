@@ -90,7 +90,7 @@ class Urgent(Fair):
 
     def note_intention(self, intention: Intention) -> None:
         """An intention that waited, was suspended or is new is about to be queued."""
-        if not self._ranked and self._of_intention(intention):
+        if not self._ranked and self.urgency_of(intention):
             self.rank()
 
     def note_message(self, message: SpeechAct) -> None:
@@ -119,7 +119,7 @@ class Urgent(Fair):
             and intentions
             and isinstance(events, UrgentQueue)
             and isinstance(intentions, UrgentQueue)
-            and self._of_event(events[0]) < self._of_intention(intentions[0])
+            and self._of_event(events[0]) < self.urgency_of(intentions[0])
         ):
             return None
         return super().select_event()
@@ -139,7 +139,7 @@ class Urgent(Fair):
             if self._orders_events:
                 agent.events = UrgentQueue(self._of_event, agent.events)
             if self._orders_intentions:
-                agent.intentions = UrgentQueue(self._of_intention, agent.intentions)
+                agent.intentions = UrgentQueue(self.urgency_of, agent.intentions)
         return agent.events, agent.intentions
 
     def _calm_down(self) -> None:
@@ -150,7 +150,7 @@ class Urgent(Fair):
 
     def may_line_up(self, intention: Intention) -> bool:
         """Whether a new intention may have to wait until there are few."""
-        return not self._of_intention(intention)
+        return not self.urgency_of(intention)
 
     # --- how urgent something is ---------------------------------------------------------------------------
 
@@ -165,9 +165,9 @@ class Urgent(Fair):
     def _of_event(self, event: Event) -> int:
         urgency = self._of_kinds[event[EVENT_GOAL][0]]
         intention = event[EVENT_INTENTION]
-        return urgency if intention is None else max(urgency, self._of_intention(intention))
+        return urgency if intention is None else max(urgency, self.urgency_of(intention))
 
-    def _of_intention(self, intention: Intention) -> int:
+    def urgency_of(self, intention: Intention) -> int:
         """The urgency of the most urgent plan on the stack of an intention.
 
         What was found is noted for each frame with those below it, so that a deep stack is gone through once.

@@ -4,8 +4,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from jacaros.terms.values import Functor, Term
+from jacaros.terms.values import Functor, Term, functor
 from jacaros.trace import Cause
+
+NEEDS = functor(".needs", 3)
+"""Functor of the act by which a plan or goal asks for resources: their names, the policy, the goal.  It ends when they
+are granted; they are held until it is cancelled."""
 
 # Not frozen: that would make each of them three times as dear.  Nobody changes them.
 
@@ -22,6 +26,9 @@ class Act:
         intention: id of the intention, so that the environment can keep a current workspace for each.
         cause: why it is done.
         place: plan, file and line of the step, when somebody watches.
+        urgency: of the intention; decides who gets resources.
+        within: acts by which plans of the intention have asked for resources, outermost first.
+        yields: its resources may be taken away from it.
     """
 
     id: int
@@ -31,6 +38,9 @@ class Act:
     intention: int
     cause: Cause | None = None
     place: Mapping[str, Any] | None = None
+    urgency: int = 0
+    within: tuple[int, ...] = ()
+    yields: bool = True
 
 
 @dataclass(frozen=True, slots=True)

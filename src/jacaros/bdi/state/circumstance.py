@@ -12,7 +12,8 @@ from jacaros.bdi.state.belief_base import BeliefTables
 from jacaros.bdi.state.budget import SearchBudget, budgets
 from jacaros.bdi.state.condition_waits import ConditionWaits
 from jacaros.bdi.state.event import EVENT_GOAL, EVENT_INTENTION, Annotations, Event
-from jacaros.bdi.state.intention import Intention
+from jacaros.bdi.state.intention import Frame, Intention
+from jacaros.bdi.state.need import Need, Wanted
 from jacaros.bdi.state.observing import MindObserver
 from jacaros.bdi.state.options import Options
 from jacaros.bdi.state.plan_library import PlanLibrary, ProgramPlans
@@ -188,6 +189,8 @@ class Waits:
         alarms: calls that are due at a moment, by number.
         alarms_made: number of alarms so far.
         suspended_events: goal events whose goal was suspended before it became an intention.
+        needs: the resources that plans and goals have asked for, by the number of the act.
+        preempted: the acts that have lost a resource: why, and the intentions that are suspended for it.
         requeued: external events without plan that are to be tried again (``events=requeue``).
     """
 
@@ -198,6 +201,8 @@ class Waits:
         "alarms_made",
         "conditions",
         "events",
+        "needs",
+        "preempted",
         "questions",
         "requeued",
         "suspended_events",
@@ -207,6 +212,8 @@ class Waits:
         self.events = EventWaits()
         self.conditions = ConditionWaits()
         self.acts: dict[int, ActWait] = {}
+        self.needs: dict[int, Need] = {}
+        self.preempted: dict[int, tuple[Term, list[Intention]]] = {}
         self.questions: dict[str, AnswerWait] = {}
         self.abandoned: set[str | None] = set()
         self.alarms: dict[int, Alarm] = {}
@@ -223,15 +230,26 @@ class Features:
         meta_plans: plans want to.
         goal_conditions: plans have goal conditions, which are tested in every cycle.
         subplans: plans have plans of their own.
-        special: meta, goal_conditions or subplans, or an observer hears of its reasons or may hold the agent.
+        needs: plans or goals need resources.
+        special: meta, goal_conditions, subplans or needs, or an observer hears of its reasons or may hold the agent.
         edges: there may be plans for falling asleep and awaking.
         usual_events: external events without a plan are passed over, events of belief changes in plans belong to the
             intentions that made them, and no agent class is asked about these changes.
     """
 
-    __slots__ = ("edges", "goal_conditions", "meta", "meta_plans", "special", "subplans", "usual_events")
+    __slots__ = (
+        "edges",
+        "goal_conditions",
+        "meta",
+        "meta_plans",
+        "needs",
+        "special",
+        "subplans",
+        "usual_events",
+    )
 
     def __init__(self, options: Options) -> None:
+        self.needs = False
         self.meta = self.meta_plans = self.goal_conditions = self.subplans = self.special = self.edges = False
         self.usual_events = options.events == "discard" and not options.new_focus
 
@@ -310,6 +328,7 @@ class Circumstance:
     drop_wait: Callable[[Waiting], None]
     end_above: Callable[[Intention, int], None]
     end_wait: Callable[[TimedWait], None]
+    begin_need: Callable[[Intention, Frame, Wanted], bool]
     notify_event_waits: Callable[[Event], None]
 
     def __init__(

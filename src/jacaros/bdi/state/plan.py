@@ -9,6 +9,7 @@ from jacaros.asl.lowering import lower_value
 from jacaros.asl.source import TEXT
 from jacaros.asl.walk import names_in, nodes_in, occurrences
 from jacaros.bdi.state.intention import FIRST_SLOT
+from jacaros.bdi.state.need import Wanted, wanted_in
 from jacaros.bdi.state.triggers import Trigger
 from jacaros.terms.order import annotation_set
 from jacaros.terms.values import (
@@ -56,13 +57,14 @@ class Plan:
         by_name: internal actions that reach variables by their names: all variables of the plan are kept for them.
         of_program: whether it stands in the program, so that the next run has it too.
         urgency: the number of ``urgency(N)`` in the label, 0 without.
+        needs: the resources of ``needs(R1, R2)`` in the label, None without.
         first: the first step, None for an empty body; set when the plan is first needed.
         size: number of places of a frame behind the fixed ones.
         steps: what is known of each step, by its name.
         interpreted: its steps as the rules of the language carry them out, once they have been needed.
         scope: the plan that this one is a sub-plan of, or None.
         replaceable: nothing is left to do once its last formula has called a goal: it has neither goal condition nor
-            sub-plans.
+            sub-plans, and it holds no resources.
         guards: what its label says of the time while it runs: ``while(Condition)``, ``within(Ms)``, ``cleanup(Goal)``.
         goal_condition: tells of a frame whether its goal is achieved though the body has not ended; or None.
         subplans: plans for what happens while this one is pursued.
@@ -80,6 +82,7 @@ class Plan:
         "guards",
         "interpreted",
         "label",
+        "needs",
         "node",
         "of_program",
         "replaceable",
@@ -99,9 +102,10 @@ class Plan:
         self.atomic = ATOMIC_LABEL in self.annotations
         self.urgency = _urgency(self.annotations) if self.annotations else 0
         self.guards = guards_of(node) if self.annotations else ()
+        self.needs: Wanted | None = wanted_in(self.annotations) if self.annotations else None
         self.of_program = False
         self.body_term: Term = None
-        self.replaceable = node.goal_condition is None and not node.subplans
+        self.replaceable = node.goal_condition is None and not node.subplans and self.needs is None
         self._slots: dict[str, int] | None = None
         self.interpreted: Any = None
         self.size = 0

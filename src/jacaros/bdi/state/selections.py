@@ -31,6 +31,9 @@ class Selections(Protocol):
     urgencies: Mapping[Trigger, int] | None
     refused: bool
 
+    def urgency_of(self, intention: Intention) -> int:
+        """How urgent an intention is."""
+
     def select_messages(self) -> Sequence[SpeechAct]:
         """Those that are read in this cycle, of a mailbox that is not empty."""
 

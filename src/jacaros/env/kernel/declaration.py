@@ -8,7 +8,8 @@ from typing import Any
 
 from jacaros.env.errors import InvalidArtifact, spelling_hint
 from jacaros.env.kernel.signature import Signature, signature_of
-from jacaros.env.operation import Mark
+from jacaros.env.operation import Mark, WhenPreempted
+from jacaros.env.resources.resource import Use, read_uses
 
 FOR_ONE_ARTIFACT = 1_000_000
 """Depth of operations that one artifact defines for itself: they replace those of all its classes."""
@@ -30,6 +31,8 @@ class DeclaredOperation:
         coroutine: True when it runs as a task: it may have several steps, or a thread.
         common: True when every artifact has it.
         depth: depth of its class in the hierarchy; a deeper class replaces what is above it.
+        uses: resources that it holds while it runs, without the name of the robot.
+        when_preempted: what it does when these are taken away.
     """
 
     name: str
@@ -43,6 +46,8 @@ class DeclaredOperation:
     coroutine: bool
     depth: int
     common: bool = False
+    uses: tuple[Use, ...] = ()
+    when_preempted: WhenPreempted = "finish"
 
 
 def declare_method(
@@ -104,6 +109,7 @@ def _declare(
     coroutine = inspect.iscoroutinefunction(source)
     if mark.threaded and coroutine:
         raise InvalidArtifact(f"{name_of(source)} runs in a thread: make it a plain def, without async")
+    uses, when_preempted = _uses(mark, source)
     return DeclaredOperation(
         name,
         mark.kind,
@@ -116,7 +122,31 @@ def _declare(
         coroutine or mark.threaded,
         depth,
         mark.common,
+        uses,
+        when_preempted,
     )
+
+
+def _uses(mark: Mark, source: Callable[..., Any]) -> tuple[tuple[Use, ...], WhenPreempted]:
+    """What an operation uses, and what it does when it is preempted."""
+    try:
+        uses = read_uses(mark.uses)
+    except ValueError as wrong:
+        raise InvalidArtifact(f"{name_of(source)}: {wrong}") from None
+    wanted = mark.when_preempted
+    if wanted is None:
+        return uses, "pause" if mark.pausable else "finish"
+    if wanted not in ("pause", "cancel", "finish"):
+        raise InvalidArtifact(
+            f"{name_of(source)}: when_preempted is {wanted!r}: write pause, cancel or finish"
+        )
+    if wanted == "pause" and not mark.pausable:
+        raise InvalidArtifact(f'{name_of(source)}: when_preempted="pause" needs pausable=True')
+    if wanted == "cancel" and mark.threaded:
+        raise InvalidArtifact(
+            f'{name_of(source)} runs in a thread, which cannot be cancelled: write when_preempted="finish"'
+        )
+    return uses, wanted
 
 
 def _suited(

@@ -13,7 +13,7 @@ from jacaros.env.ids import ArtifactId
 from jacaros.env.kernel.interface import Interface
 from jacaros.env.kernel.signature import WrongArguments
 from jacaros.env.operation import INTERNAL, LINK, OPERATION, OperationOutcome, OperationRequest
-from jacaros.env.values import Structure
+from jacaros.env.values import Atom, Structure
 from jacaros.errors import InternalError
 
 _SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP", "SIGALRM")
@@ -99,6 +99,20 @@ def timed_out(request: OperationRequest, seconds: float) -> OperationOutcome:
     shown = f"{milliseconds:g} ms" if milliseconds < 1000 else f"{seconds:g} s"
     message = f"operation {key(request)} of artifact {request.artifact.name} did not end within {shown}"
     return OperationOutcome(False, message, Structure("operation_timeout", (key(request), milliseconds)))
+
+
+def without_resource(request: OperationRequest, reason: Structure | Atom) -> str:
+    """Words for an operation that cannot have what it uses, or has lost it."""
+    said = {
+        "preempted": "a more urgent claim took {} away",
+        "resource_busy": "{} is in use",
+        "deadlock": "it waited for {} in a circle with others",
+        "resource_exceeded": "it asks for more units of {} than there are",
+    }
+    functor = reason.functor if isinstance(reason, Structure) else str(reason)
+    name = reason.arguments[0] if isinstance(reason, Structure) else ""
+    why = said.get(functor, "{}").format(name)
+    return f"operation {key(request)} of artifact {request.artifact.name}: {why}"
 
 
 def failed(request: OperationRequest, error: BaseException) -> OperationOutcome:

@@ -38,6 +38,8 @@ async def call_all(
     agent, cause = execution.request.agent, execution.cause
     for index, target in enumerate(listed):
         request = OperationRequest(target, operation, arguments, agent, cause, partial(done, index))
+        request.urgency, request.on_preempted = execution.request.urgency, execution.request.on_preempted
+        request.within, request.yields = execution.claims, execution.request.yields
         linked = execute(request)
         execution.linked.append(linked)
         if execution.paused:

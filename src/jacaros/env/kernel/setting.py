@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from jacaros.clock import Clock
+from jacaros.env.resources.arbiter import Arbiter
 from jacaros.errors import InternalError
 from jacaros.trace import Cause, Tracer
 
@@ -30,6 +31,7 @@ class Setting:
         tracer: told of every cause, None while nobody watches.
         listener: a `jacaros.env.listener.EnvironmentListener`, None while nobody watches.
         told: what authors have been told once.
+        arbiter: decides who has what operations and plans use.
         loop: where the operations run, None before the first one.
         on_internal_error: told of defects of JaCaROS itself; None lets them escape.
     """
@@ -41,8 +43,12 @@ class Setting:
     on_internal_error: Callable[[BaseException], None] | None = None
     listener: Any = None
     told: set[object] = field(default_factory=set, init=False)
+    arbiter: Arbiter = field(init=False)
     loop: asyncio.AbstractEventLoop | None = field(default=None, init=False)
     _loop_thread: int = field(default=0, init=False)
+
+    def __post_init__(self) -> None:
+        self.arbiter = Arbiter(self.clock, lambda text: self.log(f"warning: {text}"))
 
     def know_loop(self) -> None:
         """Learn from the caller which loop runs the operations."""

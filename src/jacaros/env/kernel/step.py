@@ -51,6 +51,10 @@ class StepInProgress(ABC):
     def _guard(self, execution: OperationExecution) -> Guard | None:
         """What must be true before an operation begins."""
 
+    @abstractmethod
+    def _claim(self, execution: OperationExecution) -> None:
+        """Ask for what an operation uses."""
+
     def inside(self) -> bool:
         """True when called by the operation that has the turn, or by its guard."""
         holder = self.turns.holder
@@ -96,6 +100,8 @@ class StepInProgress(ABC):
         if self._started:
             started, self._started = self._started, []
             if not self.disposed:
+                for each in started:
+                    self._claim(each)
                 self.turns.line_up(started, self._guard)
 
     def _publish_delayed(self) -> None:

@@ -18,6 +18,7 @@ from jacaros.env.kernel import faults
 from jacaros.env.kernel.declaration import DeclaredOperation
 from jacaros.env.kernel.ending import Ending
 from jacaros.env.kernel.faults import is_interruption
+from jacaros.env.kernel.holding import Holding
 from jacaros.env.kernel.interface import Interface
 from jacaros.env.kernel.setting import Setting
 from jacaros.env.kernel.signature import WrongArguments
@@ -33,6 +34,8 @@ from jacaros.env.operation import (
     OperationRequest,
     ignore_outcome,
 )
+from jacaros.env.resources.resource import Use, read_uses, scoped
+from jacaros.env.values import Atom, Structure
 from jacaros.errors import InternalError
 from jacaros.trace import CURRENT, Cause
 
@@ -105,7 +108,9 @@ class Steps(StepInProgress):
         execution = OperationExecution(self, request, declared, arguments, cause)
         if self.setting.listener is not None:
             self.setting.listener.began(execution)
-        self.turns.enter(execution, None if declared.guard is None else self._guard(execution))
+        self._claim(execution)
+        if not execution.ended:
+            self.turns.enter(execution, None if declared.guard is None else self._guard(execution))
         if request.timeout is not None and not execution.ended:
             execution.limit = self.clock.call_later(request.timeout, partial(self._time_is_up, execution))
         return execution
@@ -134,6 +139,7 @@ class Steps(StepInProgress):
         elif self.disposed:
             return None
         else:
+            self._claim(execution)
             self.turns.enter(execution, None if declared.guard is None else self._guard(execution))
         return execution
 
@@ -205,6 +211,42 @@ class Steps(StepInProgress):
     def leave_task(self, execution: OperationExecution, error: BaseException | None) -> None:
         """End what `enter_task` began; with an *error* it is undone."""
         self._end(execution, error)
+
+    # ---- what operations use
+
+    def used(self) -> tuple[Use, ...]:
+        """What the operations of the artifact use, with the name of its robot."""
+        tables = (self.interface.operations, self.interface.links)
+        declared = [use for table in tables for each in table for use in each.uses]
+        declared += read_uses(getattr(self._artifact, "further_uses", ()))
+        return self._of_robot(tuple(dict.fromkeys(declared)))
+
+    def _of_robot(self, uses: tuple[Use, ...]) -> tuple[Use, ...]:
+        scope = getattr(self._artifact, "robot_prefix", "")
+        return scoped(uses, scope if isinstance(scope, str) else "")
+
+    def hold(self, execution: OperationExecution, uses: tuple[Use, ...]) -> Holding:
+        """Let an operation say itself when it uses something; it has to enter and to leave."""
+        declared = execution.declared
+        mode = "finish" if declared is None else declared.when_preempted
+        stop = partial(self._lose, execution)
+        execution.holding = Holding(execution, self.setting.arbiter, self._of_robot(uses), mode, stop)
+        return execution.holding
+
+    def _claim(self, execution: OperationExecution) -> None:
+        """Ask for what an operation uses; it begins when it has that."""
+        if execution.declared is not None and execution.declared.uses:
+            self.hold(execution, execution.declared.uses).enter()
+
+    def _lose(self, execution: OperationExecution, reason: Structure | Atom) -> None:
+        """Fail an operation that cannot have what it uses, or has lost it."""
+        message = faults.without_resource(execution.request, reason)
+        outcome = OperationOutcome(False, message, reason)
+        if execution.active or execution in self.turns.waiting_to_begin():
+            self._stop(execution, outcome)
+        elif not execution.ended:
+            execution.verdict = outcome
+            self._tell(execution, outcome)
 
     def _guard(self, execution: OperationExecution) -> Guard | None:
         declared = execution.declared
@@ -345,6 +387,8 @@ class Steps(StepInProgress):
 
     def _tell(self, execution: OperationExecution, outcome: OperationOutcome) -> None:
         execution.ended = True
+        if execution.holding is not None:
+            execution.holding.leave()
         if self.setting.listener is not None:
             self.setting.listener.ended(execution, None if execution.cancelled else outcome)
         if execution.limit is not None:
@@ -395,6 +439,8 @@ class Steps(StepInProgress):
             self._interrupt(execution)
         elif self.turns.withdraw(execution):
             execution.ended = True
+            if execution.holding is not None:
+                execution.holding.leave()
             if self.setting.listener is not None:
                 self.setting.listener.ended(execution, None)
             if execution.limit is not None:

@@ -55,7 +55,7 @@ class TurnQueue:
 
     def enter(self, execution: OperationExecution, guard: Guard | None) -> None:
         """Let an operation begin as soon as its turn comes, which may be at once."""
-        if self.holder is not None or self.serving:
+        if self.holder is not None or self.serving or execution.paused:
             self.places.append(Place(execution, guard))
             return
         self.serving = True

@@ -241,6 +241,7 @@ class Session(Perceiving):
         artifact: ArtifactId | str | None = None,
         workspace: str | None = None,
         timeout: float | None = None,
+        urgency: int = 0,
     ) -> Any:
         """Do an operation, and wait for its end.
 
@@ -254,6 +255,7 @@ class Session(Perceiving):
                 comes before one that it focuses, and that before others.
             workspace: path or name of the workspace of the artifact.
             timeout: seconds that it may take; then it fails with ``operation_timeout(Operation,Milliseconds)``.
+            urgency: decides who gets the resources that it uses, such as the wheels of a robot; the greater one first.
 
         Returns:
             The values of the `Out` arguments: None without any, the value of the one, a tuple of several.
@@ -262,7 +264,7 @@ class Session(Perceiving):
             OperationFailed: with the message and the reason.
         """
         return await self.begin(
-            operation, *arguments, artifact=artifact, workspace=workspace, timeout=timeout
+            operation, *arguments, artifact=artifact, workspace=workspace, timeout=timeout, urgency=urgency
         )
 
     def begin(
@@ -272,6 +274,7 @@ class Session(Perceiving):
         artifact: ArtifactId | str | None = None,
         workspace: str | None = None,
         timeout: float | None = None,
+        urgency: int = 0,
     ) -> SessionOperation:
         """Begin an operation; the arguments are those of `act`.
 
@@ -296,6 +299,7 @@ class Session(Perceiving):
             handle.end(OperationOutcome(False, failure.message, failure.reason))
             return handle
         request = OperationRequest(target, operation, given, self.name, None, handle.end, timeout)
+        request.urgency = urgency
         handle.began(self.environment.execute(request))
         return handle
 

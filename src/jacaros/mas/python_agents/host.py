@@ -295,5 +295,11 @@ class _Task:
     def complete(self, act_id: int, completion: Completion) -> None:
         """Nothing: it acts by its session."""
 
+    def preempted(self, act_id: int, resource: str) -> None:
+        """Nothing: its operations pause by themselves."""
+
+    def regained(self, act_id: int) -> None:
+        """Nothing: its operations continue by themselves."""
+
     def shut_down_in(self, milliseconds: float) -> None:
         """Nothing: it is cancelled when the time has come."""

@@ -9,7 +9,7 @@ from robot_lab import STANDSTILL, Lab, in_lab
 
 from jacaros.artifacts.mapping.declared import MappingError
 from jacaros.artifacts.mapping.file import read_mapping
-from jacaros.artifacts.robots.motion_queue import motion_queue_of
+from jacaros.artifacts.robots.motion_claim import motions_of
 from jacaros.env import ArtifactId, Atom, Out, Structure
 from jacaros.ros.backend import DISCOVERY
 from jacaros.ros.guarded import guarded_by
@@ -349,7 +349,7 @@ def test_a_velocity_that_waits_for_its_base_is_not_sent_after(end: str) -> None:
             elif end == "suspend":
                 run.execution.pause()
         if end == "abort":
-            motion_queue_of(lab.backend, "").abort()
+            motions_of(lab.backend, "").abort()
         lab.record()
         await lab.sleep(5.0)
         assert all(tuple(command) == STANDSTILL for _, *command in lab.commands)

@@ -289,8 +289,8 @@ WRONG = {
     "key of another kind": (
         "operations: {go: {publish: t, request: {}}}",
         (
-            "1:31: 'go' has no key 'request' | known keys: publish, parameters, description, type, fields, qos, rate, "
-            "duration, at_end"
+            "1:31: 'go' has no key 'request' | known keys: publish, parameters, description, uses, type, fields, qos, "
+            "rate, duration, at_end"
         ),
     ),
     "parameter": (

@@ -1,11 +1,9 @@
-"""The queue of a robot's motions: its wheels obey one motion at a time, whichever artifact asks.
+"""The motions of a robot, to abort them, and to wake the one that waits or drives.
 
-Artifacts that drive the same robot share its queue.  Motions pass in the order of their requests; one that
-is suspended leaves the queue, and stands at its end when its agent resumes it.
+Which of them drives is decided by the arbiter of resources (`jacaros.env.resources.arbiter`): all use ``wheels``.
 """
 
 import asyncio
-from collections import deque
 from collections.abc import Callable
 from weakref import WeakKeyDictionary
 
@@ -22,7 +20,7 @@ GUARD_TRIPPED = Atom("guard_tripped")
 
 
 class Claim:
-    """One motion's claim to the wheels.
+    """One motion, as long as it waits or drives.
 
     Args:
         stop: commands zero velocity at once.
@@ -86,47 +84,28 @@ class Claim:
         self.stop()
 
 
-class MotionQueue:
-    """Who drives, and who waits to drive.
+class Motions:
+    """The motions of one robot that drive or wait to drive, whichever artifact they belong to.
 
     Attributes:
-        holder: whose motion drives, None while nobody's does.
         stops: how often the robot was told to stop, for a command that waits to be sent and must not follow.
+        claims: of those that are neither suspended nor over.
     """
 
     def __init__(self) -> None:
         self.stops = 0
-        self.holder: Claim | None = None
-        self._queue: deque[Claim] = deque()
-
-    def enter(self, claim: Claim) -> bool:
-        """Ask for the wheels; False: wait (`Claim.wait`) until it is the `holder`."""
-        if self.holder is None:
-            self.holder = claim
-        elif self.holder is not claim and claim not in self._queue:
-            self._queue.append(claim)
-        return self.holder is claim
-
-    def leave(self, claim: Claim) -> None:
-        """Give the wheels, or the place in the queue, back."""
-        if claim in self._queue:
-            self._queue.remove(claim)
-        if self.holder is claim:
-            self.holder = self._queue.popleft() if self._queue else None
-            if self.holder is not None:
-                self.holder.wake()
+        self.claims: dict[Claim, None] = {}
 
     def abort(self) -> None:
-        """Abort the motion that drives and all that wait; those that left the queue are not concerned."""
+        """Abort the motion that drives and all that wait; those that are suspended are not concerned."""
         self.stops += 1
-        concerned = [*self._queue] if self.holder is None else [self.holder, *self._queue]
-        for claim in concerned:
+        for claim in list(self.claims):
             claim.abort()
 
 
-_queues: WeakKeyDictionary[Backend, dict[str, MotionQueue]] = WeakKeyDictionary()
+_motions: WeakKeyDictionary[Backend, dict[str, Motions]] = WeakKeyDictionary()
 
 
-def motion_queue_of(backend: Backend, robot: str) -> MotionQueue:
-    """The queue of the robot with the topic prefix *robot*: always the same for the same backend."""
-    return _queues.setdefault(backend, {}).setdefault(robot, MotionQueue())
+def motions_of(backend: Backend, robot: str) -> Motions:
+    """The motions of the robot with the topic prefix *robot*: always the same for the same backend."""
+    return _motions.setdefault(backend, {}).setdefault(robot, Motions())

@@ -1,0 +1,96 @@
+"""Plans and goals that need resources: acquired before the first step, given back when their frame is gone."""
+
+from jacaros.bdi.state.act import NEEDS, Act
+from jacaros.bdi.state.circumstance import Circumstance
+from jacaros.bdi.state.intention import ANNOTATIONS, GOAL, PLAN, STEP, Frame, Intention
+from jacaros.bdi.state.literals import EventAnnotations
+from jacaros.bdi.state.need import Need, Wanted, wanted_in
+from jacaros.bdi.state.waiting import ActWait
+from jacaros.terms.values import String, Term, atom, make_list, structure
+
+
+def note(agent: Circumstance, annotations: EventAnnotations) -> None:
+    """A goal is about to be posted: from the next cycle on its needs are looked at."""
+    if not agent.features.needs and annotations.__class__ is tuple and wanted_in(annotations) is not None:
+        agent.features.needs = agent.features.special = agent.incoming.called = True
+
+
+def acquire(agent: Circumstance, intention: Intention) -> bool:
+    """Ask for what the plan or goal on top of an intention needs; False when the intention waits for it."""
+    frame = intention.frames[-1]
+    wanted = _wanted(frame)
+    if wanted is None or frame[STEP] is None:
+        return True
+    return agent.begin_need(intention, frame, wanted)
+
+
+def _wanted(frame: Frame) -> Wanted | None:
+    own: Wanted | None = frame[PLAN].needs
+    trigger = frame[GOAL][0]
+    given = frame[ANNOTATIONS]
+    if trigger.kind != "!" or trigger.operator != "+" or given.__class__ is not tuple:
+        return own
+    asked = wanted_in(given)
+    if own is None or asked is None:
+        return own or asked
+    return Wanted(tuple(dict.fromkeys((*own.names, *asked.names))), asked.policy)
+
+
+def act_for(agent: Circumstance, number: int, intention: Intention, frame: Frame, wanted: Wanted) -> Act:
+    """The act by which an intention asks for resources; its end says that it has them."""
+    trigger = frame[GOAL][0]
+    arguments = (
+        make_list([String(name) for name in wanted.names]),
+        atom(wanted.policy),
+        String(f"{trigger.operator if trigger.kind == '' else ''}{trigger.kind}{trigger.functor.name}"),
+    )
+    act = Act(number, NEEDS, arguments, (), intention.id, intention.cause)
+    claim(agent, intention, act)
+    return act
+
+
+def claim(agent: Circumstance, intention: Intention, act: Act) -> None:
+    """Say in an act what counts among claims: how urgent it is, and what it is a part of."""
+    act.urgency = agent.selections.urgency_of(intention)
+    if agent.atomic is intention:
+        act.yields = False
+    if agent.waits.needs:
+        act.within = tuple(each.number for each in of(agent, intention))
+
+
+def wait(agent: Circumstance, intention: Intention, frame: Frame, number: int, wanted: Wanted) -> ActWait:
+    """Let an intention wait for what it has asked for."""
+    reason = structure("needs", *(atom(name) for name in wanted.names))
+    waiting = ActWait(intention, reason, number)
+    waiting.attach(frame, frame[STEP])
+    agent.waits.acts[number] = waiting
+    return waiting
+
+
+def of(agent: Circumstance, intention: Intention) -> list[Need]:
+    """What an intention needs, the lowest on its stack first."""
+    return [need for need in agent.waits.needs.values() if need.is_on(intention)]
+
+
+def is_of(agent: Circumstance, intention: Intention, index: int) -> bool:
+    """Whether the frame at *index* holds resources."""
+    return any(need.index == index and need.is_on(intention) for need in agent.waits.needs.values())
+
+
+def sweep(agent: Circumstance) -> None:
+    """Give back what frames held that are gone, however they ended."""
+    for need in list(agent.waits.needs.values()):
+        if not need.intention.dropped and need.is_on(need.intention):
+            continue
+        heir = next((each for each in agent.alive.values() if need.is_on(each)), None)
+        if heir is not None:
+            need.intention = heir
+            continue
+        del agent.waits.needs[need.number]
+        agent.waits.preempted.pop(need.number, None)
+        agent.architecture.cancel_act(need.number)
+
+
+def reason_of(resource: str) -> Term:
+    """Why an intention is suspended that has lost a resource."""
+    return structure("preempted", atom(resource))

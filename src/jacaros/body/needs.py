@@ -1,0 +1,187 @@
+"""Resources that plans of an agent need: asked for, lost, had again, and given back."""
+
+from collections.abc import Iterable
+from dataclasses import replace
+from typing import Protocol
+
+from jacaros.bdi.state.act import Act
+from jacaros.env.errors import OperationFailed
+from jacaros.env.ids import ArtifactId
+from jacaros.env.ports import Environment
+from jacaros.env.resources.arbiter import Arbiter
+from jacaros.env.resources.claim import POLICIES, Claim, Policy
+from jacaros.env.resources.resource import Use, local_name, read_uses, together
+from jacaros.env.values import Atom, Structure
+from jacaros.terms.values import functor_of, list_items
+
+
+class Teller(Protocol):
+    """Who is told what becomes of what a plan needs."""
+
+    def acquired(self, number: int) -> None:
+        """The plan has what it needs, for the first time."""
+
+    def unavailable(self, number: int, failure: OperationFailed) -> None:
+        """It does not get that."""
+
+    def preempted(self, number: int, resource: str) -> None:
+        """It has lost it."""
+
+    def regained(self, number: int) -> None:
+        """It has it again, or no longer waits for it."""
+
+
+class HeldNeed:
+    """What one plan or goal needs; a claimant of the arbiter.
+
+    Args:
+        number: of the act that asks for it.
+        arbiter: of the environment.
+        teller: is told what becomes of it.
+        yields: it may be taken away.
+    """
+
+    def __init__(self, number: int, arbiter: Arbiter, teller: Teller, yields: bool) -> None:
+        self._number, self._arbiter, self._teller = number, arbiter, teller
+        self.can_yield = yields
+        self._begun = self._lost = False
+        self.claim: Claim
+
+    def ask(self, claim: Claim) -> None:
+        """Ask for it."""
+        self.claim = claim
+        self._arbiter.enter(claim)
+
+    def granted(self, claim: Claim) -> None:
+        """The plan begins, or continues."""
+        if not self._begun:
+            self._begun = True
+            self._teller.acquired(self._number)
+        self._found()
+
+    def preempted(self, claim: Claim, resource: str) -> None:
+        """The intention is suspended; its operations give way by themselves."""
+        self._lose(resource)
+        self._arbiter.gave_way(claim)
+
+    def refused(self, claim: Claim, reason: Structure | Atom) -> None:
+        """The plan fails, or what it had lost is lost for good."""
+        name = reason.arguments[0] if isinstance(reason, Structure) else ""
+        self._teller.unavailable(self._number, OperationFailed(f"{claim.who} cannot have {name}", reason))
+
+    def pause(self) -> None:
+        """The program has suspended the intention: others may have it."""
+        self._arbiter.leave(self.claim)
+        self._found()
+
+    def resume(self) -> None:
+        """The program has resumed the intention: it continues when it has it again."""
+        if not self._arbiter.enter(self.claim) and self._begun:
+            self._lose(self.claim.uses[0].name)
+
+    def end(self) -> None:
+        """Give it back."""
+        self._arbiter.leave(self.claim)
+
+    def _lose(self, resource: str) -> None:
+        if not self._lost:
+            self._lost = True
+            self._teller.preempted(self._number, local_name(resource))
+
+    def _found(self) -> None:
+        if self._lost:
+            self._lost = False
+            self._teller.regained(self._number)
+
+
+class Needs:
+    """All that the plans of one agent need.
+
+    Args:
+        agent: name of the agent.
+        environment: where the resources are.
+        teller: is told what becomes of them.
+    """
+
+    def __init__(self, agent: str, environment: Environment, teller: Teller) -> None:
+        self._agent, self._environment, self._teller = agent, environment, teller
+        self._held: dict[int, HeldNeed] = {}
+
+    def __contains__(self, number: object) -> bool:
+        return number in self._held
+
+    def __getitem__(self, number: int) -> HeldNeed:
+        return self._held[number]
+
+    def claims(self, numbers: Iterable[int]) -> tuple[Claim, ...]:
+        """The claims of what acts are within."""
+        return tuple(self._held[number].claim for number in numbers if number in self._held)
+
+    def ask(self, act: Act, focused: Iterable[ArtifactId], near: Iterable[ArtifactId]) -> None:
+        """Ask for what an act names.
+
+        Args:
+            act: names resources, a policy and a goal.
+            focused: artifacts whose resources are meant before others.
+            near: artifacts in the workspaces that the agent has joined.
+
+        Raises:
+            OperationFailed: ``wrong_resource(Name)`` or ``ambiguous_resource(Name)``.
+        """
+        names, policy, goal = act.arguments
+        uses = together(
+            self._resolved(use, focused, near) for use in _read(str(each) for each in list_items(names))
+        )
+        need = HeldNeed(act.id, self._environment.arbiter, self._teller, act.yields)
+        self._held[act.id] = need
+        who = f"[{self._agent}] {goal}"
+        need.ask(Claim(uses, who, need, act.urgency, _policy(policy), self.claims(act.within)))
+
+    def forget(self, number: int) -> None:
+        """Give back what an act has asked for."""
+        need = self._held.pop(number, None)
+        if need is not None:
+            need.end()
+
+    def close(self) -> None:
+        """Give everything back."""
+        for number in reversed(tuple(self._held)):
+            self.forget(number)
+
+    def _resolved(self, use: Use, focused: Iterable[ArtifactId], near: Iterable[ArtifactId]) -> Use:
+        """The resource of the robot that is meant: of a focused artifact, else of a near one, else of the run."""
+        if "/" in use.name:
+            return use
+        for artifacts in (focused, near):
+            meant: dict[str, Use] = {}
+            for artifact in artifacts:
+                for each in self._environment.used_by(artifact):
+                    if local_name(each.name) == use.name:
+                        meant.setdefault(each.name, each)
+            if len(meant) > 1:
+                listed = ", ".join(meant)
+                raise OperationFailed(
+                    f"{use.name} may be one of {listed}: write the whole name as a string",
+                    Structure("ambiguous_resource", (Atom(use.name),)),
+                )
+            for name, found in meant.items():
+                return replace(use, name=name, capacity=use.capacity or found.capacity)
+        return use
+
+
+def _read(names: Iterable[str]) -> tuple[Use, ...]:
+    listed = tuple(names)
+    try:
+        return read_uses(listed)
+    except ValueError as wrong:
+        raise OperationFailed(str(wrong), Structure("wrong_resource", listed)) from None
+
+
+def _policy(term: object) -> Policy:
+    symbol = functor_of(term)
+    name = symbol.name if symbol is not None else ""
+    if name not in POLICIES:
+        raise OperationFailed(
+            f"{name} is not a policy: write {', '.join(POLICIES)}", Structure("wrong_policy", (Atom(name),))
+        )
+    return name

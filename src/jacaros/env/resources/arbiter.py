@@ -1,0 +1,334 @@
+"""Who has which resource: the most urgent claim, and of equals the earliest.
+
+A claim is granted all that it asks for, or nothing.  The rules:
+
+* A claim waits behind those before it in the order that want one of its resources, and while others hold too much.
+* A more urgent claim preempts: holders that are less urgent are asked to give way, the least urgent and newest first, and
+  only when that is enough.  A holder keeps what it holds until it has given way (a robot brakes), then it waits again.
+* A claim within others (an operation of a plan that holds the resource) is granted only while these are, and what they
+  hold does not stand in its way.
+* A holder that cannot give way inherits the urgency of what it blocks.
+* A claim that waits rises by 1 for each `PATIENCE`; that moves it forward in the order and protects what it gets by that,
+  but takes nothing away from a holder.
+"""
+
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+
+from jacaros.clock import Clock, Timer
+from jacaros.env.resources.claim import Claim, State
+from jacaros.env.resources.deadlock import victim_of
+from jacaros.env.resources.resource import Use, local_name
+from jacaros.env.values import Atom, Structure
+
+PATIENCE = 30.0
+"""Seconds of waiting that are reported, and after each of which a claim rises."""
+
+
+class Arbiter:
+    """The resources of one environment.
+
+    Args:
+        clock: measures how long claims wait.
+        warn: takes a line for people.
+    """
+
+    def __init__(self, clock: Clock, warn: Callable[[str], None] = lambda text: None) -> None:
+        self._clock, self._warn = clock, warn
+        self._capacities: dict[str, int] = {}
+        self._waiting: list[Claim] = []
+        self._holders: dict[str, list[Claim]] = {}
+        self._arrivals = 0
+        self._settling = self._again = False
+        self._timer: Timer | None = None
+
+    # ---- what there is
+
+    def declare(self, uses: Iterable[Use]) -> None:
+        """Take note of capacities; of several for one resource the least counts."""
+        for each in uses:
+            if each.capacity is not None:
+                self._capacities[each.name] = min(
+                    each.capacity, self._capacities.get(each.name, each.capacity)
+                )
+
+    def capacity(self, name: str) -> int:
+        """Number of units of a resource; 1 unless declared."""
+        return self._capacities.get(name, 1)
+
+    def holders(self, name: str) -> tuple[Claim, ...]:
+        """Who holds a resource."""
+        return tuple(self._holders.get(name, ()))
+
+    def waiting(self) -> tuple[Claim, ...]:
+        """Who waits, the first in the order first."""
+        return tuple(self._in_order())
+
+    # ---- claims come and go
+
+    def enter(self, claim: Claim) -> bool:
+        """Ask for what a claim uses; False when its claimant is told later."""
+        if claim.state is State.OUT:
+            self.declare(claim.uses)
+            self._arrivals += 1
+            claim.order = self._arrivals
+            self._wait(claim)
+            self._settle()
+        return claim.state is State.HELD
+
+    def gave_way(self, claim: Claim) -> None:
+        """A claim that was asked to give way has done so: it waits to have it all again."""
+        if claim.state is State.YIELDING:
+            self._let_go(claim)
+            self._wait(claim)
+            self._settle()
+
+    def leave(self, claim: Claim) -> None:
+        """Give back what a claim holds, or its place in the order; again is harmless."""
+        if claim.state is State.OUT:
+            return
+        if claim.state is State.WAITING:
+            self._waiting.remove(claim)
+        else:
+            self._let_go(claim)
+        claim.state = State.OUT
+        claim.inherited = 0
+        claim.waited = 0.0
+        self._settle()
+
+    def _wait(self, claim: Claim) -> None:
+        claim.state, claim.since = State.WAITING, self._clock.elapsed
+        self._waiting.append(claim)
+
+    def _let_go(self, claim: Claim) -> None:
+        for use in claim.uses:
+            held = self._holders[use.name]
+            held.remove(claim)
+            if not held:
+                del self._holders[use.name]
+
+    # ---- who is next
+
+    def _settle(self) -> None:
+        """Grant, preempt and refuse until nothing changes; claimants may call the arbiter meanwhile."""
+        self._again = True
+        if self._settling:
+            return
+        self._settling = True
+        try:
+            while self._again:
+                self._again = False
+                if self._change_one():
+                    self._again = True
+        finally:
+            self._settling = False
+        self._set_timer()
+
+    def _change_one(self) -> bool:
+        """Change the state of one claim; False when all are as they should be."""
+        self._inherit()
+        reserved: set[str] = set()
+        for claim in self._in_order():
+            if any(outer.state is not State.HELD for outer in claim.within):
+                continue
+            blockers = self._blockers(claim)
+            wanted = {use.name for use in claim.uses}
+            ahead = not claim.within and bool(wanted & reserved)
+            exceeded = self._exceeded(claim)
+            if exceeded is not None:
+                self._fail(claim, Structure("resource_exceeded", (Atom(local_name(exceeded)),)))
+                return True
+            if not blockers and not ahead:
+                self._grant(claim)
+                return True
+            if self._preempt(claim, blockers) or self._refuse(claim, blockers, ahead):
+                return True
+            reserved |= wanted
+        return self._break_deadlock()
+
+    def _in_order(self) -> list[Claim]:
+        return sorted(self._waiting, key=lambda each: (-self._rank(each), not _takes(each), each.order))
+
+    def _grant(self, claim: Claim) -> None:
+        self._waiting.remove(claim)
+        claim.waited += self._clock.elapsed - claim.since
+        claim.state, claim.fresh = State.HELD, False
+        for use in claim.uses:
+            self._holders.setdefault(use.name, []).append(claim)
+        claim.claimant.granted(claim)
+
+    def _preempt(self, claim: Claim, blockers: list[tuple[Claim, str]]) -> bool:
+        """Ask one holder to give way; False when there is none to be asked."""
+        chosen = self._chosen(claim, blockers)
+        for holder, resource in chosen:
+            if holder.state is State.HELD and holder.claimant.can_yield:
+                holder.state = State.YIELDING
+                holder.claimant.preempted(holder, resource)
+                return True
+        return False
+
+    def _chosen(self, claim: Claim, blockers: list[tuple[Claim, str]]) -> list[tuple[Claim, str]]:
+        """The holders that have to go for a claim; none when those that may be asked are not enough."""
+        chosen: list[tuple[Claim, str]] = []
+        going: set[Claim] = set()
+        for use in claim.uses:
+            mine = [each for each in blockers if each[1] == use.name]
+            # Whoever gives way already is not asked in vain.
+            mine.sort(key=lambda each: (each[0].state is State.HELD, self._rank(each[0]), -each[0].order))
+            for holder, name in mine:
+                if self._lack(claim, use, going) <= 0:
+                    break
+                if holder.state is State.HELD and not self._outranks(claim, holder):
+                    return []
+                chosen.append((holder, name))
+                going.add(holder)
+            if self._lack(claim, use, going) > 0:
+                return []
+        return chosen
+
+    def _outranks(self, claim: Claim, holder: Claim) -> bool:
+        rank = self._rank(holder)
+        return claim.base > rank or (_takes(claim) and claim.base == rank)
+
+    def _refuse(self, claim: Claim, blockers: list[tuple[Claim, str]], ahead: bool) -> bool:
+        """Refuse a claim that does not want to wait, unless holders give way to it already."""
+        if claim.policy != "refuse" or not claim.fresh:
+            return False
+        if not ahead and self._chosen(claim, blockers):
+            return False
+        name = blockers[0][1] if blockers else claim.uses[0].name
+        self._fail(claim, Structure("resource_busy", (Atom(local_name(name)),)))
+        return True
+
+    def _break_deadlock(self) -> bool:
+        """Fail one claim of a circle of those that wait for each other; False without a circle."""
+        found = victim_of(self._waiting, self._waits_for, self._rank)
+        if found is None:
+            return False
+        claim, resource = found
+        self._warn(f"deadlock: {claim.who} waits for {resource}; its claim fails")
+        self._fail(claim, Structure("deadlock", (Atom(local_name(resource)),)))
+        return True
+
+    def _fail(self, claim: Claim, reason: Structure) -> None:
+        self._waiting.remove(claim)
+        claim.state = State.OUT
+        claim.claimant.refused(claim, reason)
+
+    # ---- what stands in the way
+
+    def _blockers(self, claim: Claim) -> list[tuple[Claim, str]]:
+        """The holders of which some must go before a claim can be granted, each with the resource."""
+        return [
+            (holder, use.name)
+            for use in claim.uses
+            if self._lack(claim, use) > 0
+            for holder in self._others(claim, use)
+        ]
+
+    def _waits_for(self, claim: Claim) -> Iterator[tuple[Claim, str]]:
+        return ((holder, name) for holder, name in self._blockers(claim) if holder.state is State.HELD)
+
+    def _others(self, claim: Claim, use: Use) -> list[Claim]:
+        """The holders that a use does not go together with as it likes."""
+        return [
+            each
+            for each in self._holders.get(use.name, ())
+            if each not in claim.within
+            and claim not in each.within
+            and not (use.shared and _use_of(each, use.name).shared)
+        ]
+
+    def _lack(self, claim: Claim, use: Use, without: Collection[Claim] = ()) -> int:
+        """Units that others have to give back before a claim can have what it uses."""
+        others = [each for each in self._others(claim, use) if each not in without]
+        taken = _taken(use.name, others)
+        if use.shared or any(_use_of(holder, use.name).shared for holder in others):
+            return taken
+        return taken + use.units - self.capacity(use.name)
+
+    def _exceeded(self, claim: Claim) -> str | None:
+        """The resource of which a claim asks for more than there is."""
+        names = (u.name for u in claim.uses if not u.shared and u.units > self.capacity(u.name))
+        return next(names, None)
+
+    # ---- urgency
+
+    def _rank(self, claim: Claim) -> int:
+        """Urgency by which a claim is in order and is protected."""
+        return max(claim.base, claim.urgency + int(self._has_waited(claim) / PATIENCE))
+
+    def _has_waited(self, claim: Claim) -> float:
+        if claim.state is State.WAITING:
+            return claim.waited + self._clock.elapsed - claim.since
+        return claim.waited
+
+    def _inherit(self) -> None:
+        """Lend the urgency of those who wait to the holders that cannot give way to them."""
+        claims = self._all()
+        for each in claims:
+            each.inherited = 0
+        changed = True
+        while changed:
+            changed = False
+            for claim in self._waiting:
+                for holder, _ in self._blockers(claim):
+                    if holder.base >= claim.base or (
+                        holder.state is State.YIELDING or holder.claimant.can_yield
+                    ):
+                        continue
+                    for each in claims:
+                        if each.root is holder.root and each.inherited < claim.base:
+                            each.inherited = claim.base
+                            changed = True
+
+    def _all(self) -> list[Claim]:
+        held = (each for holders in self._holders.values() for each in holders)
+        return list(dict.fromkeys((*held, *self._waiting)))
+
+    # ---- patience
+
+    def _set_timer(self) -> None:
+        """Be called when the next claim has waited too long, as long as that changes something."""
+        if self._timer is not None:
+            self._timer.cancel()
+            self._timer = None
+        if not self._waiting:
+            return
+        highest = max(map(self._rank, self._all()))
+        due = [
+            PATIENCE - self._has_waited(each) % PATIENCE
+            for each in self._waiting
+            if not each.warned or self._rank(each) < highest
+        ]
+        if due:
+            self._timer = self._clock.call_later(max(min(due), 1e-3), self._grow_old)
+
+    def _grow_old(self) -> None:
+        self._timer = None
+        for claim in self._in_order():
+            if not claim.warned and self._has_waited(claim) >= PATIENCE - 1e-6:
+                claim.warned = True
+                holders = dict.fromkeys(holder.who for holder, _ in self._blockers(claim))
+                names = ", ".join(local_name(use.name) for use in claim.uses)
+                held = f", held by {', '.join(holders)}" if holders else ""
+                self._warn(f"{claim.who} has waited {PATIENCE:g} s for {names}{held}")
+        self._settle()
+
+
+def _takes(claim: Claim) -> bool:
+    """Whether a claim takes from an equal: only until it has had its turn, or two would take for ever."""
+    return claim.policy == "take" and claim.fresh
+
+
+def _use_of(claim: Claim, name: str) -> Use:
+    return next(use for use in claim.uses if use.name == name)
+
+
+def _taken(name: str, holders: Sequence[Claim]) -> int:
+    """Units that holders take together: those within another one use its units first."""
+    total = 0
+    for holder in holders:
+        if not any(outer in holders for outer in holder.within):
+            within = _taken(name, [each for each in holders if holder in each.within])
+            total += max(_use_of(holder, name).units, within)
+    return total

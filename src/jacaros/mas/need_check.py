@@ -1,0 +1,49 @@
+"""Resources that plans need and that no artifact of the project uses: probably misspelt."""
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING
+
+from jacaros.asl import nodes
+from jacaros.asl.checks.formulas import clauses as clauses_of
+from jacaros.asl.checks.needs import needs_of
+from jacaros.asl.diagnostics import Diagnostic
+from jacaros.asl.slips import close_matches
+from jacaros.asl.walk import walk
+from jacaros.env.resources.resource import local_name, read_uses
+
+if TYPE_CHECKING:
+    from jacaros.env.artifact import Artifact
+
+
+def check_needs(programs: Sequence[nodes.Program], types: "Iterable[type[Artifact]]") -> Iterator[Diagnostic]:
+    """Warnings about resources that nothing but one plan names.
+
+    Plans may share a resource that no artifact knows, so one that several plans need is taken for such a one unless
+    its name is nearly that of a resource of an artifact.
+    """
+    known = sorted(set(_used_by(types)))
+    if not known:
+        return
+    found = [each for program in programs for each in needs_of(list(walk(*clauses_of(program))))]
+    counts = Counter(name for name, _ in found)
+    for name, item in found:
+        if local_name(name) in known:
+            continue
+        close = close_matches(name, known, 0.7)
+        if close or counts[name] == 1:
+            listed = f"the artifacts of the project use {', '.join(known)}"
+            yield Diagnostic(
+                "warning",
+                f"no artifact of the project uses `{name}`",
+                item.span,
+                f"did you mean {close[0]}?" if close else listed,
+                "unknown-resource",
+            )
+
+
+def _used_by(types: "Iterable[type[Artifact]]") -> Iterator[str]:
+    for each in types:
+        for table in (each.interface.operations, each.interface.links):
+            yield from (use.name for declared in table for use in declared.uses)
+        yield from (use.name for use in read_uses(getattr(each, "further_uses", ())))

@@ -1,0 +1,34 @@
+"""Needs that no run can meet are reported before it."""
+
+import pytest
+
+from jacaros.asl.checks.needs import wrong_needs
+from jacaros.asl.loader import load_program
+from jacaros.asl.walk import walk
+
+
+def told(program: str) -> list[tuple[str, str | None]]:
+    read, _ = load_program("test.asl", program)
+    return [(each.message, each.hint) for each in wrong_needs(list(walk(*read.plans)))]
+
+
+@pytest.mark.parametrize(
+    ("needs", "message", "hint"),
+    [
+        ("needs(arm,arm)", "2 units of `arm` are needed, and there is 1", "name `arm` once"),
+        ("needs(lift(2),lift,lift)", "3 units of `lift` are needed, and there are 2", "lift(3)"),
+        ("needs(lift(0))", "this is not a resource", "write a name"),
+        ("needs(arm), policy(refusse)", "unknown policy `refusse`", "did you mean refuse?"),
+    ],
+)
+def test_what_can_never_be_met_is_told_of_plans_and_goals(needs: str, message: str, hint: str) -> None:
+    for program in (f"@a[{needs}] +!g <- b.", f"+!f <- !g[{needs}]."):
+        ((found, cure),) = told(program)
+        assert message in found
+        assert cure is not None
+        assert hint in cure
+
+
+def test_what_can_be_met_is_not_told() -> None:
+    for needs in ("needs(arm,base)", "needs(lift(2),lift)", "needs(map(shared))", 'needs("/r1/wheels")'):
+        assert not told(f"@a[{needs}, policy(take)] +!g <- b.")

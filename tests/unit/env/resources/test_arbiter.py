@@ -1,0 +1,271 @@
+"""The arbiter of resources: who holds them, who waits, and what a more urgent claim does."""
+
+from dataclasses import dataclass, field
+
+import pytest
+
+from jacaros.clock import VirtualClock, run
+from jacaros.env.resources.arbiter import PATIENCE, Arbiter
+from jacaros.env.resources.claim import Claim, Policy, State
+from jacaros.env.resources.resource import Use, read_use, read_uses, scoped
+from jacaros.env.values import Atom, Structure, text
+
+
+@dataclass
+class Party:
+    """A claimant that writes down what it is told, and gives way at once unless told otherwise."""
+
+    arbiter: Arbiter
+    can_yield: bool = True
+    brakes: bool = False
+    told: list[str] = field(default_factory=list)
+
+    def granted(self, claim: Claim) -> None:
+        self.told.append("granted")
+
+    def preempted(self, claim: Claim, resource: str) -> None:
+        self.told.append(f"preempted({resource})")
+        if not self.brakes:
+            self.arbiter.gave_way(claim)
+
+    def refused(self, claim: Claim, reason: Structure | Atom) -> None:
+        self.told.append(text(reason, True))
+
+
+class Table:
+    """An arbiter, and claims that are made in one line."""
+
+    def __init__(self) -> None:
+        self.clock = VirtualClock()
+        self.warnings: list[str] = []
+        self.arbiter = Arbiter(self.clock, self.warnings.append)
+
+    def claim(
+        self,
+        *uses: str,
+        urgency: int = 0,
+        policy: Policy = "wait",
+        within: tuple[Claim, ...] = (),
+        can_yield: bool = True,
+        brakes: bool = False,
+        enter: bool = True,
+        who: str = "somebody",
+    ) -> Claim:
+        party = Party(self.arbiter, can_yield, brakes)
+        made = Claim(read_uses(uses), who, party, urgency, policy, within)
+        if enter:
+            self.arbiter.enter(made)
+        return made
+
+
+def told(claim: Claim) -> list[str]:
+    party = claim.claimant
+    assert isinstance(party, Party)
+    return party.told
+
+
+@pytest.fixture
+def table() -> Table:
+    return Table()
+
+
+def test_equals_have_a_resource_in_the_order_of_asking(table: Table) -> None:
+    a, b, c = (table.claim("wheels") for _ in range(3))
+    assert [each.state for each in (a, b, c)] == [State.HELD, State.WAITING, State.WAITING]
+    table.arbiter.leave(b)
+    table.arbiter.leave(a)
+    assert c.state is State.HELD
+    table.arbiter.leave(a)
+    assert table.arbiter.holders("wheels") == (c,)
+    table.arbiter.enter(b)
+    table.arbiter.leave(c)
+    assert b.state is State.HELD
+
+
+def test_several_resources_are_granted_together_or_not_at_all(table: Table) -> None:
+    arm = table.claim("arm")
+    both = table.claim("base", "arm")
+    assert not table.arbiter.holders("base")
+    later = table.claim("base")
+    assert later.state is State.WAITING, "or the claim to both would starve"
+    table.arbiter.leave(arm)
+    assert both.holds
+    table.arbiter.leave(both)
+    assert later.holds
+
+
+def test_a_more_urgent_claim_preempts_and_the_preempted_one_has_it_back(table: Table) -> None:
+    patrol, other = table.claim("wheels"), table.claim("wheels")
+    flee = table.claim("wheels", urgency=10)
+    assert flee.holds
+    assert told(patrol) == ["granted", "preempted(wheels)"]
+    table.arbiter.leave(flee)
+    assert patrol.holds
+    assert other.state is State.WAITING
+
+
+def test_a_holder_keeps_the_resource_until_it_has_given_way(table: Table) -> None:
+    patrol = table.claim("wheels", brakes=True)
+    flee = table.claim("wheels", urgency=10)
+    assert (patrol.state, flee.state) == (State.YIELDING, State.WAITING)
+    table.arbiter.gave_way(patrol)
+    assert flee.holds
+
+
+def test_a_preempting_claim_that_goes_away_leaves_the_resource_to_the_holder(table: Table) -> None:
+    patrol = table.claim("wheels", brakes=True)
+    flee = table.claim("wheels", urgency=10)
+    table.arbiter.leave(flee)
+    table.arbiter.gave_way(patrol)
+    assert told(patrol) == ["granted", "preempted(wheels)", "granted"]
+
+
+def test_the_more_urgent_of_the_preempted_goes_first(table: Table) -> None:
+    low = table.claim("wheels")
+    middle = table.claim("wheels", urgency=5)
+    high = table.claim("wheels", urgency=9)
+    table.arbiter.leave(high)
+    assert middle.holds
+    table.arbiter.leave(middle)
+    assert low.holds
+
+
+def test_a_claim_within_another_does_not_wait_for_it(table: Table) -> None:
+    plan = table.claim("base", "arm")
+    drive = table.claim("base", within=(plan,))
+    assert drive.holds
+    turn = table.claim("base", within=(plan,))
+    assert turn.state is State.WAITING, "two motions of one plan exclude each other"
+    table.arbiter.leave(drive)
+    assert turn.holds
+
+
+def test_preempting_a_plan_preempts_its_operation_and_both_come_back(table: Table) -> None:
+    plan = table.claim("base", "arm")
+    drive = table.claim("base", within=(plan,), brakes=True)
+    flee = table.claim("base", urgency=1)
+    assert (plan.state, drive.state, flee.state) == (State.WAITING, State.YIELDING, State.WAITING)
+    table.arbiter.gave_way(drive)
+    assert flee.holds
+    table.arbiter.leave(flee)
+    assert plan.holds
+    assert drive.holds
+
+
+def test_refuse_fails_at_once_and_waits_for_a_holder_that_gives_way(table: Table) -> None:
+    holder = table.claim("wheels", urgency=5, brakes=True)
+    assert told(table.claim("wheels", policy="refuse")) == ["resource_busy(wheels)"]
+    urgent = table.claim("wheels", urgency=6, policy="refuse")
+    assert told(urgent) == []
+    table.arbiter.gave_way(holder)
+    assert urgent.holds
+
+
+def test_take_takes_from_an_equal_once(table: Table) -> None:
+    a, b = table.claim("wheels"), table.claim("wheels")
+    c = table.claim("wheels", policy="take")
+    assert c.holds
+    d = table.claim("wheels", policy="take")
+    assert d.holds
+    table.arbiter.leave(d)
+    assert a.holds
+    table.arbiter.leave(a)
+    assert b.holds
+    assert told(table.claim("wheels", policy="take", urgency=0)) == ["granted"]
+
+
+def test_a_counted_resource_has_so_many_holders(table: Table) -> None:
+    first, second = table.claim("lift(2)"), table.claim("lift")
+    third = table.claim("lift")
+    assert first.holds
+    assert second.holds
+    assert not third.holds
+    urgent = table.claim("lift", urgency=1)
+    assert urgent.holds
+    assert first.holds
+    assert told(second) == ["granted", "preempted(lift)"], "the newest gives way"
+    assert told(table.claim("lift", "lift", "lift")) == ["resource_exceeded(lift)"]
+
+
+def test_readers_go_together_and_a_writer_waits_for_all(table: Table) -> None:
+    a, b = table.claim("map(shared)"), table.claim("map(shared)")
+    writer = table.claim("map")
+    assert a.holds
+    assert b.holds
+    late = table.claim("map(shared)")
+    assert not late.holds, "or the writer would starve"
+    table.arbiter.leave(a)
+    assert not writer.holds
+    table.arbiter.leave(b)
+    assert writer.holds
+    table.arbiter.leave(writer)
+    assert late.holds
+
+
+def test_a_holder_that_cannot_give_way_inherits_the_urgency_of_what_it_blocks(table: Table) -> None:
+    atomic = table.claim("base", can_yield=False)
+    middle = table.claim("arm", urgency=5)
+    urgent = table.claim("base", urgency=10)
+    assert atomic.state is State.HELD
+    inner = table.claim("arm", within=(atomic,))
+    assert inner.holds, "it goes before the one with urgency 5"
+    assert not middle.holds
+    table.arbiter.leave(inner)
+    table.arbiter.leave(atomic)
+    assert urgent.holds
+    assert middle.holds
+
+
+def test_a_circle_of_waiting_plans_ends_with_the_newest_of_the_least_urgent(table: Table) -> None:
+    one, other = table.claim("base", who="[a] !one"), table.claim("arm", who="[a] !other")
+    wants_arm = table.claim("arm", within=(one,), who="[a] !one")
+    assert not told(wants_arm)
+    wants_base = table.claim("base", within=(other,), who="[a] !other")
+    assert told(wants_base) == ["deadlock(base)"]
+    assert table.warnings == ["deadlock: [a] !other waits for base; its claim fails"]
+    table.arbiter.leave(other)
+    assert wants_arm.holds
+
+
+def test_a_circle_in_which_one_is_more_urgent_ends_by_preempting(table: Table) -> None:
+    one, other = table.claim("base", urgency=1), table.claim("arm")
+    wants_base = table.claim("base", within=(other,))
+    wants_arm = table.claim("arm", within=(one,), urgency=1)
+    assert wants_arm.holds
+    assert not told(wants_base)
+    table.arbiter.leave(wants_arm)
+    table.arbiter.leave(one)
+    assert other.holds
+    assert wants_base.holds
+
+
+def test_a_long_wait_is_reported_once_and_moves_a_claim_forward(table: Table) -> None:
+    async def main() -> None:
+        table.claim("wheels", urgency=1, who="[a] !clean")
+        old = table.claim("wheels", who="[a] !scan")
+        await table.clock.sleep(PATIENCE + 1)
+        assert table.warnings == ["[a] !scan has waited 30 s for wheels, held by [a] !clean"]
+        new = table.claim("wheels", urgency=1)
+        assert table.arbiter.waiting() == (old, new)
+        urgent = table.claim("wheels", urgency=2)
+        assert urgent.holds
+        await table.clock.sleep(3 * PATIENCE)
+        assert len(table.warnings) == 3
+        assert urgent.holds, "age takes nothing away"
+
+    run(main, table.clock)
+
+
+def test_uses_are_read_from_text() -> None:
+    assert read_uses("wheels") == (Use("wheels"),)
+    assert read_uses(("base", "lift(2)", "map(shared)")) == (
+        Use("base"),
+        Use("lift", 2),
+        Use("map", None, True),
+    )
+    assert read_uses(("lift(2)", "lift")) == (Use("lift", 2, units=2),)
+    assert scoped(read_uses("wheels"), "/r1") == (Use("/r1/wheels"),)
+    assert [str(each) for each in read_uses(("a", "b(2)", "c(shared)"))] == ["a", "b(2)", "c(shared)"]
+    for wrong in ("", "two words", "lift(0)", "lift(many)"):
+        with pytest.raises(ValueError, match="resource"):
+            read_use(wrong)
