@@ -11,10 +11,10 @@ import asyncio
 import json
 import sys
 import time
+from array import array
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from memory import beats, start
 from pings import Pings
 
@@ -60,7 +60,7 @@ class Robot:
         self._readings = node.publisher("/readings", INT32)
         self._scanner = node.publisher("/scan", SCAN)
         self._scan: Any = self._scanner.message(range_max=10.0)
-        self._scan.ranges = np.linspace(0.5, 2.5, BEAMS, dtype=np.float32)
+        self._scan.ranges = array("f", (0.5 + 2 * beam / BEAMS for beam in range(BEAMS)))
         node.subscription("/cmd_vel", TWIST, lambda s: self._stopped(s.message.angular.x))
         node.subscription("/readings/waiting", INT32, lambda _: self.pings.next())
         node.subscription("/readings/handled", INT32, lambda _: self._rest())
