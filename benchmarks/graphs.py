@@ -21,10 +21,9 @@ def latencies(kinds: list[str], tell: Callable[[str], None]) -> dict[str, Any]:
     figures: list[dict[str, Any]] = []
     notes: list[str] = []
     for kind in kinds:
-        python = HERE.parent / f".venv-{kind}" / "bin" / "python"
+        python = python_of(kind)
         if not python.exists():
-            script = f"tools/install_ros{ENVIRONMENTS[kind]}.sh"
-            notes.append(f"{kind}: not measured; there is no `.venv-{kind}` (`{script}` makes it).")
+            notes.append(missing(kind))
             continue
         tell(f"latency: {kind}")
         done = subprocess.run(
@@ -36,6 +35,17 @@ def latencies(kinds: list[str], tell: Callable[[str], None]) -> dict[str, Any]:
             why = (done.stderr.strip() or "nothing came back").splitlines()[-1]
             notes.append(f"{kind}: not measured; {why}")
     return {"figures": figures, "notes": notes}
+
+
+def python_of(kind: str) -> Path:
+    """The Python of an environment, which may not exist."""
+    return HERE.parent / f".venv-{kind}" / "bin" / "python"
+
+
+def missing(kind: str) -> str:
+    """A note about an environment that does not exist."""
+    script = f"tools/install_ros{ENVIRONMENTS[kind]}.sh"
+    return f"{kind}: not measured; there is no `.venv-{kind}` (`{script}` makes it)."
 
 
 def figures_in(text: str, graph: str) -> list[dict[str, Any]]:

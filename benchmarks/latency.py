@@ -104,6 +104,7 @@ def graph(kind: str, scratch: Path) -> Iterator[dict[str, str]]:
             "ROS_DOMAIN_ID": str(1 + os.getpid() % 100),
             "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
         }
+    if kind != "ros1":
         yield environment
         return
     master = shutil.which("rosmaster", path=f"{os.environ.get('PATH', '')}:/usr/bin")

@@ -1,7 +1,10 @@
-"""The other half of the echo: one operation that publishes one command."""
+"""The artifacts of the agents: the other half of the echo, and the bumper and the load of bumper.asl."""
 
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
-from jacaros.env import operation
+from jacaros.env import internal_operation, operation
+from jacaros.ros.backend import Sample
+
+INT32, TWIST = "std_msgs/msg/Int32", "geometry_msgs/msg/Twist"
 
 
 class Reply(RosArtifact):
@@ -9,7 +12,7 @@ class Reply(RosArtifact):
 
     def open(self) -> None:
         """Open the command topic."""
-        self._commands = self.publisher("cmd_vel", "geometry_msgs/msg/Twist")
+        self._commands = self.publisher("cmd_vel", TWIST)
 
     @operation
     def reply(self, number: float) -> None:
@@ -17,3 +20,52 @@ class Reply(RosArtifact):
         command = self._commands.message()
         command.linear.x = number
         self._commands.publish(command)
+
+
+class Bumper(RosArtifact):
+    """Signals numbered bumps, and stops the wheels."""
+
+    def open(self) -> None:
+        """Listen to the bumper, and open the command topic."""
+        self._commands = self.publisher("cmd_vel", TWIST)
+        self.subscription("bumper", INT32, self._take)
+
+    def _take(self, sample: Sample) -> None:
+        self.start(self.bump, int(sample.message.data), cause=sample.cause)
+
+    @internal_operation
+    def bump(self, number: int) -> None:
+        """Signal a bump."""
+        self.signal("bumped", number)
+
+    @operation
+    def stop(self, number: int) -> None:
+        """Publish a zero velocity; the roll rate, which no robot on wheels has, says which bump it answers."""
+        command = self._commands.message()
+        command.angular.x = float(number)
+        self._commands.publish(command)
+
+
+class Load(RosArtifact):
+    """Signals that number of readings at once, which is acknowledged when they wait, and when all have been handled."""
+
+    def open(self) -> None:
+        """Listen to the order, and open the topics of the acknowledgements."""
+        self._waiting = self.publisher("readings/waiting", INT32)
+        self._handled = self.publisher("readings/handled", INT32)
+        self.subscription("readings", INT32, self._take)
+
+    def _take(self, sample: Sample) -> None:
+        self.start(self.burst, int(sample.message.data), cause=sample.cause)
+
+    @internal_operation
+    def burst(self, count: int) -> None:
+        """Signal the readings, numbered down to 1."""
+        for number in range(count, 0, -1):
+            self.signal("reading", number)
+        self._waiting.publish(self._waiting.message(data=count))
+
+    @operation
+    def handled(self) -> None:
+        """Publish that the last reading has been handled."""
+        self._handled.publish(self._handled.message(data=1))

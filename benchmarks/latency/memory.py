@@ -91,20 +91,7 @@ class InProcess:
     def _alone(self, mas: System, send: Callable[[str, float], None], way: str) -> Pings:
         """Measure one way beside something busy; another process begins the messages."""
         pings = Pings(time.perf_counter, send, (way,))
-        beats = subprocess.Popen([sys.executable, "-c", BEATS % PERIOD], stdout=subprocess.PIPE)
-        assert beats.stdout is not None
-        pipe, loop = beats.stdout.fileno(), asyncio.get_running_loop()
-
-        def beat() -> None:
-            data = os.read(pipe, 4096)
-            if pings.over or not data:
-                loop.remove_reader(pipe)
-                beats.kill()
-                mas.end(0)
-            else:
-                pings.next(*struct.unpack("d", data[-8:]))
-
-        loop.add_reader(pipe, beat)
+        beats(PERIOD, pings.next, lambda: pings.over, mas)
         if way == "bare":
             compute()
         return pings
@@ -118,6 +105,24 @@ class InProcess:
             publisher.publish(command)
 
         node.subscription("/bare/odom", ODOMETRY, reply)
+
+
+def beats(period: float, beat: Callable[[float], None], over: Callable[[], bool], mas: System) -> None:
+    """Have another process call *beat* every *period* seconds, with the moment; the run ends when it is *over*."""
+    caller = subprocess.Popen([sys.executable, "-c", BEATS % period], stdout=subprocess.PIPE)
+    assert caller.stdout is not None
+    pipe, loop = caller.stdout.fileno(), asyncio.get_running_loop()
+
+    def read() -> None:
+        data = os.read(pipe, 4096)
+        if over() or not data:
+            loop.remove_reader(pipe)
+            caller.kill()
+            mas.end(0)
+        else:
+            beat(*struct.unpack("d", data[-8:]))
+
+    loop.add_reader(pipe, read)
 
 
 def start(node: Backend) -> None:

@@ -27,12 +27,22 @@ class Pings:
         now: seconds of a steady clock.
         send: publishes an odometry message with a number on the way's topic.
         ways: the ways to measure.
+        count: messages that count, for each way.
+        warm_up: messages before these, for each way.
+        patience: seconds after which a message counts as lost.
     """
 
     def __init__(
-        self, now: Callable[[], float], send: Callable[[str, float], None], ways: Sequence[str] = WAYS
+        self,
+        now: Callable[[], float],
+        send: Callable[[str, float], None],
+        ways: Sequence[str] = WAYS,
+        count: int = COUNT,
+        warm_up: int = WARM_UP,
+        patience: float = PATIENCE,
     ) -> None:
         self._now, self._send, self._ways = now, send, ways
+        self._count, self._warm_up, self._patience = count, warm_up, patience
         self._sent: dict[str, tuple[float, float]] = {}
         self._number = 0
         self.times: dict[str, list[float]] = {way: [] for way in ways}
@@ -41,7 +51,17 @@ class Pings:
     @property
     def over(self) -> bool:
         """Whether enough messages have been sent."""
-        return self._number >= len(self._ways) * (COUNT + WARM_UP)
+        return self._number >= len(self._ways) * (self._count + self._warm_up)
+
+    @property
+    def under_way(self) -> bool:
+        """Whether a message may still come back; one that does not in time counts as lost."""
+        for way, (_, began) in list(self._sent.items()):
+            if self._now() - began < self._patience:
+                return True
+            self.lost += 1
+            del self._sent[way]
+        return False
 
     def next(self, moment: float | None = None) -> None:
         """Send the next message, unless the last one is still on its way.
@@ -49,11 +69,8 @@ class Pings:
         Args:
             moment: when the message began, in seconds of the clock; now by default.
         """
-        for way, (_, began) in list(self._sent.items()):
-            if self._now() - began < PATIENCE:
-                return
-            self.lost += 1
-            del self._sent[way]
+        if self.under_way:
+            return
         self._number += 1
         way = self._ways[self._number % len(self._ways)]
         self._sent[way] = (float(self._number), self._now() if moment is None else moment)
@@ -65,7 +82,7 @@ class Pings:
         sent = self._sent.get(way)
         if sent is not None and sent[0] == number:
             del self._sent[way]
-            if self._number > len(self._ways) * WARM_UP:
+            if self._number > len(self._ways) * self._warm_up:
                 self.times[way].append(arrived - sent[1])
 
     def report(self, kind: str) -> str:
