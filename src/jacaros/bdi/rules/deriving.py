@@ -13,7 +13,8 @@ from typing import Any
 from jacaros.asl import nodes
 from jacaros.asl.directives.derive import streams_of, values_of
 from jacaros.asl.lowering import lower_value
-from jacaros.bdi.rules import belief_update, waits
+from jacaros.bdi.rules import belief_update
+from jacaros.bdi.rules.alarms import cancel_alarm, set_alarm
 from jacaros.bdi.state.belief_base import Row, take_away
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.waiting import Alarm
@@ -184,7 +185,7 @@ class DerivedBeliefs:
             stream.last = len(self._pending)
             self._pending.append((stream, values, None))
         if self._alarm is not None:
-            waits.cancel_alarm(self.agent, self._alarm)
+            cancel_alarm(self.agent, self._alarm)
         kept = [each for each in self.agent.waits.alarms.values() if each.function is ring]
         self._alarm = kept[0] if kept else None
         self._due = kept[0].arguments[0] if kept else math.inf
@@ -265,11 +266,11 @@ class DerivedBeliefs:
         if self._alarm is not None:
             if self._due <= due:
                 return
-            waits.cancel_alarm(self.agent, self._alarm)
+            cancel_alarm(self.agent, self._alarm)
             self._alarm = None
         if due < math.inf:
             self._due = due
-            self._alarm = waits.set_alarm(self.agent, max(0.0, due - self._latest), ring, due)
+            self._alarm = set_alarm(self.agent, max(0.0, due - self._latest), ring, due)
 
 
 def declare(agent: Circumstance, declared: Iterable[nodes.Derivation]) -> None:

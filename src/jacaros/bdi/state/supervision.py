@@ -4,7 +4,8 @@ It is held by a frame of its own on the stack of the intention, right below the 
 That frame is reached when the goal or plan has ended.
 """
 
-from jacaros.bdi.explaining.failure_reason import FailureReason
+from typing import Any
+
 from jacaros.bdi.state.condition_waits import ConditionWatch
 from jacaros.bdi.state.intention import FIRST_SLOT, GOAL, PLAN, Frame, Intention
 from jacaros.bdi.state.triggers import Trigger, trigger
@@ -84,7 +85,7 @@ class PlanGuard(Supervision):
     Attributes:
         watch: of the condition that must stay true, or None.
         cleanup: the goal that is pursued when the condition does not hold any more, or None.
-        lost: why the plan is about to fail, once the condition does not hold any more.
+        lost: why the plan is about to fail (`FailureReason`), once the condition does not hold any more.
     """
 
     __slots__ = ("cleanup", "lost", "watch")
@@ -93,7 +94,7 @@ class PlanGuard(Supervision):
         super().__init__()
         self.cleanup = cleanup
         self.watch: ConditionWatch | None = None
-        self.lost: FailureReason | None = None
+        self.lost: Any = None
 
 
 def is_supervision(frame: Frame) -> bool:
