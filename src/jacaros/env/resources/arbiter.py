@@ -21,7 +21,9 @@ from jacaros.env.resources.resource import Use, local_name
 from jacaros.env.values import Atom, Structure
 
 PATIENCE = 30.0
-"""Seconds of waiting that are reported, and after each of which a claim rises."""
+"""Seconds of waiting after each of which a claim rises."""
+REPORTED = 300.0
+"""Seconds of waiting that are reported: a robot that charges for a minute is no starvation."""
 
 
 class Arbiter:
@@ -306,12 +308,12 @@ class Arbiter:
     def _grow_old(self) -> None:
         self._timer = None
         for claim in self._in_order():
-            if not claim.warned and self._has_waited(claim) >= PATIENCE - 1e-6:
+            if not claim.warned and self._has_waited(claim) >= REPORTED - 1e-6:
                 claim.warned = True
                 holders = dict.fromkeys(holder.who for holder, _ in self._blockers(claim))
                 names = ", ".join(local_name(use.name) for use in claim.uses)
                 held = f", held by {', '.join(holders)}" if holders else ""
-                self._warn(f"{claim.who} has waited {PATIENCE:g} s for {names}{held}")
+                self._warn(f"{claim.who} has waited {REPORTED:g} s for {names}{held}")
         self._settle()
 
 
