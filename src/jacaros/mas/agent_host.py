@@ -6,7 +6,7 @@ from typing import Any, Protocol
 
 from jacaros.asl.nodes import Literal
 from jacaros.bdi.architecture import Timer
-from jacaros.bdi.state.act import Act, Completion, Percept
+from jacaros.bdi.state.act import NEEDS, Act, Completion, Percept
 from jacaros.bdi.state.options import Options
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.clock import Clock
@@ -261,7 +261,7 @@ class AgentHost:
 
     def act(self, act: Act) -> None:
         """Begin an external action; without an environment it fails at once."""
-        if self.intercept is not None and self.intercept(act):
+        if self.intercept is not None and act.functor is not NEEDS and self.intercept(act):
             return
         body = self.body or self.situated()
         if body is not None:

@@ -12,7 +12,8 @@ AT_ONCE = 0.2
 """Seconds before a stop in which events and changes of goals are named with it."""
 LATEST = 0.7
 """Seconds after which a stop is recorded at the latest: of the commands of one operation only two a second are."""
-_INTERRUPTS = re.compile(r"\.(?=(?:suspend|drop_\w+|fail_goal|succeed_goal)\b)")
+_INTERRUPTS = re.compile(r"(\.)(?=(?:suspend|drop_\w+|fail_goal|succeed_goal)\b)|(?<=[\[, ])(?=needs\()")
+"""Steps that interrupt what a robot does, and goals that take its wheels from less urgent ones."""
 
 Command = tuple[float, Data]
 """When a message was published, and its link."""
@@ -77,7 +78,7 @@ def event_fact(past: Past, t: float, deliberation: Data) -> Fact:
 
 
 def interrupting_step(past: Past, deliberation: Data) -> Iterator[Fact]:
-    """The step of a chosen plan that suspends or drops intentions, if it has exactly one."""
+    """The step of a chosen plan that suspends or drops intentions, or takes resources from them, if it has exactly one."""
     agent = str(deliberation["agent"])
     plan = past.plan(agent, deliberation["chosen"])
     file, first = place_of(plan)
@@ -85,10 +86,11 @@ def interrupting_step(past: Past, deliberation: Data) -> Iterator[Fact]:
     numbered = enumerate(lines[first - 1 : int(plan.get("end") or first)], first)
     code = ((number, line.split("//")[0]) for number, line in numbered)
     found = [
-        (number, f".{literal_at(line, match.end())}")
+        (number, f"{match.group(1) or ''}{literal_at(line, match.end())}")
         for number, line in code
         for match in _INTERRUPTS.finditer(line)
     ]
     if len(found) == 1:
         number, step = found[0]
-        yield Fact("act", f"step `{step}` of {plan_name(plan)}", None, agent, file, number)
+        what = "step " if step[0] == "." else ""
+        yield Fact("act", f"{what}`{step}` of {plan_name(plan)}", None, agent, file, number)
