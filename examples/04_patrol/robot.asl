@@ -50,13 +50,13 @@ lowest(100).  // percent, the least that it ever had in the dock
 
 /* The battery */
 
-// This plan runs beside the patrol: an agent can have several things in mind.
+// An agent can have several things in mind. This plan is more urgent than the patrol, and its goal needs the same wheels:
+// the robot stops immediately, wherever it is, and when the goal has ended, driveTo continues to the same corner.
+@charge[urgency(10)]
 +diagnostics("Low Battery") : next(Corner)
-  <- .suspend(patrol(_));  // the robot stops at once, wherever it is
-     .print("battery low on the way to corner ", Corner);
-     !dock_and_charge;
-     .print("battery full, on to corner ", Corner);
-     .resume(patrol(_)).  // driveTo goes on: from where the robot is now, to the same corner
+  <- .print("battery low on the way to corner ", Corner);
+     !dock_and_charge[needs(wheels)];
+     .print("battery full, on to corner ", Corner).
 
 // The steps of the library's dock_and_charge: into the dock, wait there, and out of it, which needs nothing here.
 +!drive_into_dock

@@ -30,6 +30,8 @@ recharges(0).
   <- .print("The house is clean: ", N, " rounds, the battery charged ", R, " times.");
      .stopMAS.
 
+// A room needs the wheels from the way there to the last swing.
+@room[needs(wheels)]
 +!clean_house
   <- updateWhereAmI;  // the next room is the present one now
      ?atRoom(Number);
@@ -56,13 +58,16 @@ recharges(0).
 
 /* The battery */
 
+// More urgent than the house, and in need of the same wheels: driving and cleaning wait until the robot is back.
+@charge[urgency(10)]
 +diagnostics("Low Battery")
-  <- .suspend(clean_house);  // whatever it does for this goal: driving or cleaning
-     .print("battery low");
-     !recharge;
+  <- .print("battery low");
+     !charge_and_return[needs(wheels)].
+
++!charge_and_return
+  <- !recharge;
      .print("battery full");
-     !return;
-     .resume(clean_house).
+     !return.
 
 +!recharge : dock(X, Y) & recharges(N)
   <- driveTo(X, Y);

@@ -20,6 +20,8 @@ recharges(0).
 
 /* To a room, on behalf of the dispatcher */
 
+// The wheels are needed until the parcels are out and in.
+@visit[needs(wheels)]
 +!visit(Room)[source(Sender)]
   <- -+bound(Room);  // so that it finds its way after a recharge
      ?place(Room, X, Y);
@@ -40,13 +42,15 @@ recharges(0).
 
 /* The battery: more urgent than any parcel */
 
+@charge[urgency(10)]
 +diagnostics("Low Battery")
-  <- .suspend(visit(_));
-     .print("battery low");
-     !recharge;
+  <- .print("battery low");
+     !charge_and_return[needs(wheels)].
+
++!charge_and_return
+  <- !recharge;
      .print("battery full");
-     !return;
-     .resume(visit(_)).
+     !return.
 
 +!recharge : dock(X, Y) & recharges(N)
   <- driveTo(X, Y);

@@ -23,7 +23,7 @@ can_help(Percent) :- percent_left(Percent) & Percent > 40 & not charging & not o
 +!start
   <- !use_robot;
      .wait(pose(_, _, _));
-     !!keep_charged(watch);
+     !!keep_charged;
      !!watch.
 
 // One parameter, the robot's name, stands before all topics, actions and frames.
@@ -119,6 +119,6 @@ can_help(Percent) :- percent_left(Percent) & Percent > 40 & not charging & not o
 
 /* Something went wrong that the library could not help */
 
--!keep_charged(_)[error_msg(Text)]
+-!keep_charged[error_msg(Text)]
   <- .print("I need help: ", Text);
      .stopMAS(0, 1).

@@ -82,7 +82,7 @@ def test_the_program_alone_runs_in_the_world_of_the_command_line() -> None:
 
 @pytest.mark.slow
 def test_the_checker_sees_a_robot_that_does_not_go_back_into_the_room(tmp_path: Path) -> None:
-    project = spoilt(tmp_path, PROJECT, "     !return;\n", "")
+    project = spoilt(tmp_path, PROJECT, "     !return.\n", "     .print(lost).\n")
     world = world_with(tmp_path, HOUSE, "level: 100", "level: 38.1")
     result = run_project(project, world=world, seconds=68)
     complaints = check(result.ground_truth, rounds=1).complaints

@@ -27,7 +27,7 @@ place(b, 2, 2, 90).
 place(c, 0, 2, 180).
 place(d, 0, 0, 270).
 !start.
-+!start <- .wait(pose(_, _, _)); !!keep_charged(patrol(_, _)); !patrol([a, b, c, d], 2); .stopMAS.
++!start <- .wait(pose(_, _, _)); !!keep_charged; !patrol([a, b, c, d], 2); .stopMAS.
 """
 
 
@@ -81,7 +81,7 @@ def test_a_patrol_charges_in_between(tmp_path: Path, beliefs: str, mappings: tup
 )
 def test_a_patrol_that_is_suspended_stops_the_robot(tmp_path: Path, end: str, resumed: bool) -> None:
     program = PATROL.replace(
-        "!!keep_charged(patrol(_, _)); !patrol([a, b, c, d], 2);",
+        "!!keep_charged; !patrol([a, b, c, d], 2);",
         f"!!patrol([a, b]); .wait(3000); .suspend(patrol(_)); .wait(4000); {end} .wait(6000);",
     )
     path = patrol(tmp_path, program, "nav2.yaml").ground_truth.path()
@@ -93,7 +93,7 @@ def test_a_patrol_that_is_suspended_stops_the_robot(tmp_path: Path, end: str, re
 
 def test_a_patrol_that_is_dropped_stops_the_robot(tmp_path: Path) -> None:
     program = PATROL.replace(
-        "!!keep_charged(patrol(_, _)); !patrol([a, b, c, d], 2);",
+        "!!keep_charged; !patrol([a, b, c, d], 2);",
         "!!patrol([a, b]); .wait(3000); .drop_desire(patrol(_)); .wait(4000);",
     )
     path = patrol(tmp_path, program, "nav2.yaml").ground_truth.path()

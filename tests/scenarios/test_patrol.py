@@ -90,7 +90,11 @@ def test_the_agent_gives_up_when_something_stands_in_its_way(tmp_path: Path) -> 
 @pytest.mark.parametrize(
     ("old", "new", "complaint"),
     [
-        ("     .resume(patrol(_)).", "     .print(lost).", "no corner was visited after the last recharge"),
+        (
+            'on to corner ", Corner).',
+            'on to corner ", Corner); .drop_desire(patrol(_)).',
+            "no corner was visited after the last recharge",
+        ),
         ("     operationRecharge; ", "     .wait(1000); ", "before the battery was full"),
         ("!!patrol([1, 2, 3, 4])", "!!patrol([1, 3, 2, 4])", "after corner 1 came corner 3"),
         ('diagnostics("Low Battery")', 'diagnostics("Medium Battery")', "which is not low"),

@@ -46,9 +46,9 @@ def test_the_stop_for_the_battery_is_traced_to_its_message(records: list[Record]
     goal, act, event, prop, sample = answer.because[-5:]
     assert goal.text.startswith("!patrol([1,2,3,4]) with ")
     assert "suspended" in goal.text
-    assert act.text.startswith("step `.suspend(patrol(_))` of")
+    assert act.text.startswith("`needs(wheels)` of")
     assert Path(act.file).name == "robot.asl"
-    assert "suspend" in (EXAMPLE / "robot.asl").read_text(encoding="utf-8").splitlines()[act.line - 1]
+    assert "needs(wheels)" in (EXAMPLE / "robot.asl").read_text(encoding="utf-8").splitlines()[act.line - 1]
     assert event.text.startswith(LOW)
     assert "battery" in prop.text
     assert sample.text.startswith("/battery_state")

@@ -48,6 +48,7 @@
      +diagnostics("Low Battery");
      !assert_did(driveTo(1, 1), 1);
      !assert_did(driveTo(2, 2), 2);
+     .wait(2000);  // it is on its way back
      !assert_did(clean(2), 1).
 
 @stops_after_its_rounds[test]

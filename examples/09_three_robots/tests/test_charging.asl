@@ -30,7 +30,7 @@ watched(north_west).
 +!test_low
   <- !fakes;
      +battery(20, discharging);
-     !!keep_charged(watch);
+     !!keep_charged;
      !!watch;
      .wait(3000);
      !assert_did(dock_at("dock_1"), 1);
@@ -41,7 +41,7 @@ watched(north_west).
      !assert_did(leave_dock, 1);
      !assert_false(charging);
      !assert_true(recharges(1));
-     .drop_desire(keep_charged(_));
+     .drop_desire(keep_charged);
      .drop_desire(watch).
 
 @gives_its_places_to_the_fullest_colleague[test]

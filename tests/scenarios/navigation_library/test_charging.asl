@@ -19,7 +19,7 @@ place(b, 2, 0, 0).
   <- !fakes;
      +battery(50, discharging);
      !!patrol([a, b]);
-     !!keep_charged(patrol(_));
+     !!keep_charged;
      .wait(1500);
      !assert_not_did(dock);
      -+battery(20, discharging);
@@ -37,37 +37,35 @@ place(b, 2, 0, 0).
      !assert_did(navigate_to(1, 0, 0), 2);
      !assert_did(dock, 1);
      .drop_desire(patrol(_));
-     .drop_desire(keep_charged(_)).
+     .drop_desire(keep_charged).
 
 @goes_on_when_the_last_reason_to_rest_has_gone[test]
 +!test_reasons
   <- !fakes;
      +battery(50);
      !!patrol([a, b]);
-     !!keep_charged(patrol(_));
+     !!keep_charged;
      .wait(100);
      -+battery(20);
      .wait(1000);
-     !hold(patrol(_), person);
-     !hold(patrol(_), person);
-     !release(patrol(_), person);
+     !!hold(person);  // the robot charges: it stands for a person afterwards
      .wait(2000);
      !assert_did(navigate_to(_, _, _), 1);
-     !hold(patrol(_), person);
      -+battery(100);
      .wait(2000);
      !assert_did(undock, 1);
+     !assert_true(standing);
      !assert_did(navigate_to(_, _, _), 1);
-     !release(patrol(_), person);
+     !release(person);
      .wait(1500);
      !assert_did(navigate_to(2, 0, 0), 1);
      .drop_desire(patrol(_));
-     .drop_desire(keep_charged(_)).
+     .drop_desire(keep_charged).
 
 @charges_again_and_again[test]
 +!test_again
   <- !fakes;
-     !!keep_charged(patrol(_));
+     !!keep_charged;
      +battery(10);
      .wait(1000);
      -+battery(100);
@@ -75,7 +73,7 @@ place(b, 2, 0, 0).
      -+battery(15);
      .wait(1000);
      !assert_did(dock, 2);
-     .drop_desire(keep_charged(_)).
+     .drop_desire(keep_charged).
 
 @the_program_says_what_is_low_and_what_is_full[test]
 +!test_levels
@@ -83,13 +81,13 @@ place(b, 2, 0, 0).
      +low_at(40);
      +charged_at(60);
      +battery(39);
-     !!keep_charged(patrol(_));
+     !!keep_charged;
      .wait(1000);
      !assert_did(dock, 1);
      -+battery(60);
      .wait(1000);
      !assert_did(undock, 1);
-     .drop_desire(keep_charged(_)).
+     .drop_desire(keep_charged).
 
 @a_driver_that_counts_in_percent_itself_is_understood[test]
 +!test_percent
@@ -147,7 +145,7 @@ place(b, 2, 0, 0).
      .drop_desire(patrol(_)).
 
 +!mind
-  <- !keep_charged(patrol(_)).
+  <- !keep_charged.
 
 -!mind[env_failure_reason(Reason)]
   <- +trouble(Reason).

@@ -146,5 +146,5 @@ place(b, 2, 0, 0).
   <- !fakes;
      +own_charging(all);
      +battery(10);
-     !!hear(keep_charged(patrol(_)));
+     !!hear(keep_charged);
      .wait(heard(test_goal_failed, none), 60000).

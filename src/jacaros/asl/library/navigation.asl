@@ -109,7 +109,8 @@ battery_full :- percent_left(Percent) & not charged_at(_) & Percent >= 95.
   <- !visit(Place);
      !round(Rest).
 
-// Be there, and do there what the program has a plan `arrived` for.
+// Be there, and do there what the program has a plan `arrived` for: less urgent plans drive no robot meanwhile.
+@navigation__visit[needs(wheels)]
 +!visit(Place)
   <- !reach(Place, Reached);
      if (Reached == true) {
@@ -139,30 +140,54 @@ battery_full :- percent_left(Percent) & not charged_at(_) & Percent >= 95.
 
 +!arrived(_).
 
-/* Rest: several plans may want the same goal to rest at the same time, each for a reason of its own */
+/* Rest: the robot stands as long as there is a reason, whatever less urgent plans want of its wheels */
 
-@navigation__hold[atomic]
-+!hold(Goal, Reason)
-  <- +held(Goal, Reason);
-     .suspend(Goal).
++!hold(Reason)
+  <- !stand_for(Reason);
+     .wait(standing).
 
-// It goes on when the last reason has gone.
-@navigation__release[atomic]
-+!release(Goal, Reason)
-  <- .abolish(held(Goal, Reason));
-     if (not held(Goal, _)) {
-        .resume(Goal);
-     }.
++!release(Reason)
+  <- .abolish(held(Reason)).
+
++!stand_for(Reason) : standing | .intend(stand_still)
+  <- +held(Reason).
+
++!stand_for(Reason)
+  <- +held(Reason);
+     !!stand_still.
+
+@navigation__stand[urgency(10), needs(wheels)]
++!stand_still
+  <- +standing;
+     .wait(not held(_));
+     -standing;
+     !stand_longer.
+
++!stand_longer : held(_)
+  <- !stand_still.
+
++!stand_longer.
 
 /* The battery, which is known as battery(Percent, _) or battery(Percent) */
 
-// As long as this goal is pursued, another one, such as patrol(_), rests whenever the battery is low, until it is full.
-+!keep_charged(Goal)
+// As long as this goal is pursued, the robot goes to its dock whenever the battery is low.  Plans that need its wheels wait.
++!keep_charged
   <- .wait(battery_low);
-     !hold(Goal, battery);
-     !dock_and_charge;
-     !release(Goal, battery);
-     !keep_charged(Goal).
+     !charge_first;
+     !keep_charged.
+
+@navigation__charge[urgency(10), needs(wheels)]
++!charge_first
+  <- !dock_and_charge.
+
+// A robot that cannot charge stands, so that its battery lasts until somebody has come.
+-!charge_first[error(Error), error_msg(Text), env_failure_reason(Reason)]
+  <- !stand_for(battery);
+     .fail(error(Error), error_msg(Text), env_failure_reason(Reason)).
+
+-!charge_first[error(Error), error_msg(Text)]
+  <- !stand_for(battery);
+     .fail(error(Error), error_msg(Text)).
 
 // To the dock, wait there until the battery is full, and out again.
 +!dock_and_charge
