@@ -22,7 +22,7 @@ def failed(suites: list[Suite]) -> set[str]:
 
 
 def test_every_example_has_tests() -> None:
-    assert len(FOLDERS) == 8
+    assert len(FOLDERS) == 9
     tests = {folder.name: sum(len(suite.tests) for suite in collect([folder])) for folder in FOLDERS}
     assert [name for name, number in tests.items() if number < 2] == []
 
@@ -46,6 +46,7 @@ def test_the_tests_of_an_example_pass(folder: Path) -> None:
         ("04_patrol", "Percent < Least", "Percent > Least", "remembers_the_lowest_percentage_only"),
         ("05_house_cleaning", "     !return.", "     .print(lost).", "comes_back_to_its_room_after_a_recharge"),
         ("09_three_robots", "     !hand_over;\n", "", "charges_in_its_dock_when_the_battery_is_low"),
+        ("11_narrow_passage", "-+brought(N + 1)", "-+brought(N + 2)", "brings_one_load_and_comes_back"),
         ("07_shared_robot", "     hand_over;\n", "", "takes_the_robot_when_the_battery_is_low_and_gives_it_back_full"),
     ],
 )  # fmt: skip
