@@ -85,7 +85,7 @@ class RecordingFile:
 
     def flush(self) -> None:
         """Write what waits if that was last done half of `FLUSH` ago; to be called several times a second."""
-        if self._pending and self._age() >= 0.5 * FLUSH:
+        if self._pending and time.monotonic() - self._packed >= 0.5 * FLUSH:
             self._pack_pending(0.0)
 
     def close(self) -> None:
@@ -99,13 +99,10 @@ class RecordingFile:
         elif self._warn is not None:
             self._warn(f"{len(self._pending)} records could not be written to {self._path}")
 
-    def _age(self) -> float:
-        return time.monotonic() - self._packed
-
     def _watch_loop(self) -> None:
         """Pack, in the thread, what the loop has not packed in time."""
         while not self._closing.wait(0.5 * FLUSH):
-            if self._pending and self._age() >= 0.75 * FLUSH:
+            if self._pending and time.monotonic() - self._packed >= 0.75 * FLUSH:
                 self._pack_pending(FLUSH)
 
     def _pack_pending(self, patience: float) -> bool:

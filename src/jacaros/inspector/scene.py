@@ -26,15 +26,19 @@ class RobotView(NamedTuple):
 
 def views_of(world: World) -> list[RobotView]:
     """All robots of *world* as they are now."""
+    # Not by RobotView(...), which takes twice as long: a recording calls this several times a second.
     return [
-        RobotView(
-            robot.name,
-            robot.x,
-            robot.y,
-            robot.yaw,
-            robot.battery.level,
-            robot.battery.charging,
-            bool(robot.touching),
+        tuple.__new__(
+            RobotView,
+            (
+                robot.name,
+                robot.x,
+                robot.y,
+                robot.yaw,
+                robot.battery.level,
+                robot.battery.charging,
+                bool(robot.touching),
+            ),
         )
         for robot in world.robots.values()
     ]

@@ -61,7 +61,10 @@ def test_a_context_that_cannot_be_evaluated_is_reported_and_the_next_plan_is_tri
 def test_an_observer_hears_why_a_goal_failed() -> None:
     host = mind('!a. +!a <- !b. +!b <- .fail(error_msg("no way")). -!b.')
     heard: list[tuple[str, str, str]] = []
-    observe_goals(host.agent, lambda state, goal, number, intention, why: heard.append((state, goal, why)))
+    observe_goals(
+        host.agent,
+        lambda state, goal, number, intention, why: heard.append((state, f"!{goal_text(goal)}", why)),
+    )
     host.run()
     assert [(goal, why) for state, goal, why in heard if state == "failed"] == [
         ("!b", "internal_action, no way (tester.asl:1)\nstep: .fail(...)")

@@ -7,6 +7,7 @@ from random import Random
 import pytest
 from recording_host import mind
 
+from jacaros.bdi.explaining.failure_reason import goal_text
 from jacaros.bdi.rules.clr_int import pending_event
 from jacaros.bdi.rules.meta_events import failed_number, observe_goals
 from jacaros.bdi.state.act import Act, Completion
@@ -21,7 +22,9 @@ BEGUN = ("pursued", "suspended", "resumed")
 def test_an_observer_hears_of_every_change_of_a_goal() -> None:
     host = mind("!a. +!a <- !b; .wait(10); .suspend(a); .print(x). +!b <- .fail. -!b.")
     heard: list[tuple[str, str]] = []
-    observe_goals(host.agent, lambda state, goal, number, intention, why: heard.append((state, goal)))
+    observe_goals(
+        host.agent, lambda state, goal, number, intention, why: heard.append((state, f"!{goal_text(goal)}"))
+    )
     host.run()
     states = [state for state, goal in heard if goal == "!a"]
     assert states == ["executing", "waiting", "executing", "suspended"]

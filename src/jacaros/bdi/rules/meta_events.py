@@ -8,19 +8,18 @@ from jacaros.bdi.explaining.failure_reason import FailureReason
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.event import EVENT_ANNOTATIONS, EVENT_GOAL, Event
 from jacaros.bdi.state.intention import ANNOTATIONS, GOAL, SERIAL, Frame, Intention
-from jacaros.bdi.state.literals import EventAnnotations, annotations_of_event, literal_of
+from jacaros.bdi.state.literals import EventAnnotations, annotations_of_event
 from jacaros.bdi.state.observing import MindObserver
 from jacaros.bdi.state.supervision import is_pause
 from jacaros.bdi.state.triggers import Goal, trigger
 from jacaros.terms.order import annotation_set
-from jacaros.terms.text import text
 from jacaros.terms.values import BY_SELF, Annotated, String, Term, atom, functor, structure
 
 _NO_REASON = String("")
 
 
-GoalObserver = Callable[[str, str, int, int, str], None]
-"""Takes a goal's state, the goal as text, its number, that of its intention, and of a failure the reason for people."""
+GoalObserver = Callable[[str, Goal, int, int, str], None]
+"""Takes a goal's state, the goal, its number, that of its intention, and of a failure the reason for people."""
 
 
 def goal_state(
@@ -65,7 +64,7 @@ def observe_goal(
     """Tell the observer only, of a goal that may have no frame."""
     kind = goal[0]
     if agent.observers.goal is not None and kind.kind and kind.operator != "^":
-        agent.observers.goal(state, kind.kind + text(literal_of(goal, ())), number, intention.id, why)
+        agent.observers.goal(state, goal, number, intention.id, why)
 
 
 def _goal_number(frame: Frame) -> int | None:

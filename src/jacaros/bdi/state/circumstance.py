@@ -151,7 +151,7 @@ class Observers:
     __slots__ = ("derived", "goal", "hear_beliefs", "lost", "mind", "step", "usual_events")
 
     def __init__(self) -> None:
-        self.goal: Callable[[str, str, int, int, str], None] | None = None
+        self.goal: Callable[[str, Goal, int, int, str], None] | None = None
         self.lost: Callable[[str, Sequence[str], Span | None], None] | None = None
         self.step: StepObserver | None = None
         self.mind: MindObserver | None = None

@@ -43,18 +43,31 @@ class Traffic:
         outgoing: whether we send them.
         heard: takes each message, None when nobody wants them.
         kept: whether messages are small enough to be remembered.
-        moves: whether messages are velocities: geometry_msgs/Twist, or TwistStamped.
+        moves, plain: whether messages are velocities, and whether geometry_msgs/Twist and not TwistStamped.
         parent, at, stands: of the command recorded last: what led to it (an id), when, and whether it was to stand still.
         held: the newest command that was not recorded: what led to it, when (`elapsed` of the clock), and the message.
     """
 
-    __slots__ = ("at", "count", "heard", "held", "kept", "moves", "outgoing", "parent", "stands", "topic")
+    __slots__ = (
+        "at",
+        "count",
+        "heard",
+        "held",
+        "kept",
+        "moves",
+        "outgoing",
+        "parent",
+        "plain",
+        "stands",
+        "topic",
+    )
 
     def __init__(self, topic: str, outgoing: bool, message: Any) -> None:
         self.topic, self.outgoing, self.count = topic, outgoing, 0
         self.heard: Callable[[str, Any], None] | None = None
         self.kept = _is_small(message)
-        self.moves = hasattr(getattr(message, "twist", message), "linear")
+        self.plain = hasattr(message, "linear")
+        self.moves = self.plain or hasattr(getattr(message, "twist", None), "linear")
         self.parent, self.at, self.stands = 0, 0.0, False
         self.held: tuple[Cause, float, Any] | None = None
 
@@ -154,7 +167,11 @@ class CauseRecords:
         if parent is None:
             return
         now = self._clock.elapsed
-        stands = traffic.moves and _stands(message)
+        stands = False
+        if traffic.moves:
+            velocity = message.linear if traffic.plain else message.twist.linear
+            turn = message.angular if traffic.plain else message.twist.angular
+            stands = not (velocity.x or turn.z or velocity.y)
         if traffic.parent == parent.id and now - traffic.at < COMMAND_PERIOD and stands == traffic.stands:
             traffic.held = parent, now, message
             return
@@ -204,12 +221,6 @@ class CauseRecords:
         for traffic in self.sent.values():
             if traffic.held is not None and (all_of_them or now - traffic.at >= COMMAND_PERIOD):
                 self._record_command(traffic, *traffic.held)
-
-
-def _stands(message: Any) -> bool:
-    velocity = message if hasattr(message, "linear") else message.twist
-    linear = velocity.linear
-    return not (linear.x or linear.y or velocity.angular.z)
 
 
 def _is_small(message: Any) -> bool:

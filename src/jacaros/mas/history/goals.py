@@ -5,10 +5,14 @@ from dataclasses import dataclass
 from functools import partial
 from itertools import count
 
+from jacaros.bdi.explaining.failure_reason import goal_text
 from jacaros.bdi.mind import Mind
 from jacaros.bdi.rules.meta_events import observe_goals
+from jacaros.bdi.state.literals import literal_of
+from jacaros.bdi.state.triggers import Goal
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.history.words import named
+from jacaros.terms.substitution import is_ground
 
 Tell = Callable[[dict[str, object]], None]
 
@@ -23,6 +27,8 @@ class _Goal:
     state: str = ""
     text: str = ""
     intention: int = 0
+    settled: Goal | None = None
+    """The goal, when it holds no variables: its text stays as it is."""
 
 
 class GoalRecords:
@@ -57,10 +63,18 @@ class GoalRecords:
         if isinstance(host, PythonAgentHost):
             host.observe(_Work(self, host.name))
 
-    def __call__(self, agent: str, state: str, goal: str, which: int, intention: int, why: str = "") -> None:
+    def __call__(self, agent: str, state: str, goal: Goal, which: int, intention: int, why: str = "") -> None:
         """Be told by a mind, see `jacaros.bdi.rules.meta_events.observe_goals`."""
-        if goal.startswith("!"):
-            self.take(agent, state, goal, which, intention, why)
+        if goal[0].kind != "!" or state == "waiting":
+            return
+        known = self._goals.get((agent, which))
+        if known is not None and known.settled is goal:
+            self.take(agent, state, known.text, which, intention, why)
+            return
+        self.take(agent, state, f"!{goal_text(goal)}", which, intention, why)
+        known = self._goals.get((agent, which))
+        if known is not None and is_ground(literal_of(goal, ())):
+            known.settled = goal
 
     def take(self, agent: str, state: str, goal: str, which: int, intention: int, why: str = "") -> None:
         """Take what is told of anything that an agent pursues."""

@@ -160,7 +160,7 @@ class History:
         events = self.events
         if len(events) == self._kept:
             self._keep(events[0])
-        events.append(Happening(t, event, data))
+        events.append(tuple.__new__(Happening, (t, event, data)))
         for listener in self._listeners:
             listener(t, event, data)
 

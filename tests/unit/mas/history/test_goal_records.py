@@ -2,7 +2,9 @@
 
 import pytest
 
+from jacaros.bdi.state.triggers import trigger
 from jacaros.mas.history.goals import GoalRecords
+from jacaros.terms.values import functor
 
 
 @pytest.fixture
@@ -15,7 +17,7 @@ def told():
 
     def hear(*states, agent="bob", goal="!patrol", number=139_867):
         for state in states:
-            news(agent, state, goal, number, 1)
+            news.take(agent, state, goal, number, 1)
         return lines
 
     return hear
@@ -42,9 +44,14 @@ def test_goals_are_counted_whatever_numbers_they_have_in_their_minds(told):
     assert told()[-3:] == ["1 bob achieved !patrol", "3 bob pursued !patrol", "4 bob pursued !charge"]
 
 
-def test_what_is_no_goal_of_interest_is_passed_over(told):
-    assert told("executing", goal="+bump") == []
+def test_events_and_waits_are_not_recorded_as_goals(told):
     assert told("waiting") == []
+    heard = []
+    news = GoalRecords(heard.append)
+    news("bob", "executing", (trigger("+", "", functor("bump", 0)),), 1, 1)
+    assert heard == []
+    news("bob", "executing", (trigger("+", "!", functor("bump", 0)),), 2, 1)
+    assert [goal["goal"] for goal in heard] == ["!bump"]
 
 
 def test_a_goal_whose_failure_was_dealt_with_is_over(told):
@@ -66,8 +73,8 @@ def test_the_end_of_a_goal_is_told_once(told):
 def test_why_a_goal_failed_is_told():
     told = []
     news = GoalRecords(told.append)
-    news("bob", "executing", "!patrol", 1, 1)
-    news("bob", "failed", "!patrol", 1, 1, "no way")
+    news.take("bob", "executing", "!patrol", 1, 1)
+    news.take("bob", "failed", "!patrol", 1, 1, "no way")
     assert ["why" in each for each in told] == [False, True]
     assert told[1]["why"] == "no way"
 
