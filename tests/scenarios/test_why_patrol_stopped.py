@@ -69,6 +69,11 @@ def test_what_the_suspended_patrol_waits_for(records: list[Record]) -> None:
     assert any("driveTo" in fact.text and "waits for" in fact.text for fact in answer.facts)
 
 
+def test_the_plan_that_charges_waits_for_the_wheels(records: list[Record]) -> None:
+    answer = explain(records, "waiting", at=low_at(records) + 0.4)
+    assert any("!dock_and_charge, waits for the resource wheels" in fact.text for fact in answer.facts)
+
+
 def test_the_same_program_decides_as_before(records: list[Record]) -> None:
     found = replay_against(records, EXAMPLE / "robot.asl")
     assert (found.decisions, found.only_then, found.only_now) == ((), (), ())

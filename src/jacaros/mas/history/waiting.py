@@ -14,6 +14,7 @@ from jacaros.bdi.state.waiting import (
     OwnSuspension,
     TimedWait,
     Waiting,
+    is_action,
 )
 from jacaros.mas.history.words import shown
 from jacaros.terms.values import Term, annotations_of
@@ -39,6 +40,8 @@ def _time(waiting: Waiting) -> str:
 
 def _act(waiting: Waiting) -> str:
     reason = waiting.reason
+    if reason.__class__ is tuple and not is_action(reason):  # needs(wheels)
+        return f"the resource{'s' if len(reason) > 2 else ''} {', '.join(map(shown, reason[1:]))}"
     return f"the action {shown(reason[1] if reason.__class__ is tuple else reason)}"
 
 
