@@ -203,6 +203,7 @@ KINDS: Final[dict[str, Kind]] = {
     "wrong-supervision": Kind("warning", "an invalid or misplaced annotation such as `within` or `retry`"),
     "wrong-tail": Kind("error", "the tail of a list or of annotations is no variable"),
     "wrong-trigger": Kind("error", "something that cannot trigger a plan"),
+    "no-history": Kind("warning", "a condition asks with `ago` for a history that is not kept"),
     "wrong-needs": Kind("warning", "needs of a plan or goal that can never be met"),
     "wrong-urgency": Kind("warning", "an urgency of a plan that is no whole number from 0 on"),
 }

@@ -380,6 +380,13 @@ class Derivation(Node):
     turns: tuple[float, ...] = ()
 
 
+class History(Node):
+    """``{ history(b(_), within(Ms)) }``: what a belief was is kept for ``window`` seconds."""
+
+    belief: Literal
+    window: float
+
+
 @dataclass(frozen=True, slots=True)
 class Program:
     """One agent program with its includes already in place, in source order per kind."""
@@ -389,6 +396,7 @@ class Program:
     plans: tuple[Plan, ...] = ()
     functions: tuple[RegisteredFunction, ...] = ()
     derived: tuple[Derivation, ...] = ()
+    histories: tuple[History, ...] = ()
 
 
 @dataclass
@@ -400,6 +408,7 @@ class Section:
     plans: list[Plan] = field(default_factory=list)
     functions: list[RegisteredFunction] = field(default_factory=list)
     derived: list[Derivation] = field(default_factory=list)
+    histories: list[History] = field(default_factory=list)
 
     def extend(self, other: Section) -> None:
         """Put the clauses of *other* behind those of this one."""
@@ -408,6 +417,7 @@ class Section:
         self.plans.extend(other.plans)
         self.functions.extend(other.functions)
         self.derived.extend(other.derived)
+        self.histories.extend(other.histories)
 
     def program(self) -> Program:
         """The finished program."""
@@ -417,4 +427,5 @@ class Section:
             tuple(self.plans),
             tuple(self.functions),
             tuple(self.derived),
+            tuple(self.histories),
         )

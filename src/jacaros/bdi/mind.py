@@ -113,7 +113,7 @@ class Mind(Circumstance):
     def start(self) -> None:
         """Take up the initial beliefs and goals."""
         self.engine.begin(self)
-        deriving.declare(self, self.program.derived)
+        deriving.declare(self, self.program)
         with functions.evaluating(self):
             self.take_up(self.program)
 
@@ -159,7 +159,7 @@ class Mind(Circumstance):
             path, self.architecture.read_program, functions.known_names(self), self.engine.actions, namespace
         )
         self.register_functions(program.functions)
-        deriving.declare(self, program.derived)
+        deriving.declare(self, program)
         plan_changes.include_plans(self, program.plans)
         self.take_up(program)
 

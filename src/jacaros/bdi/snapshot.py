@@ -117,7 +117,7 @@ def restore(mind: Mind, data: dict[str, Any], *, same_host: bool = False) -> Non
     _wait_again(mind, held)
     for name, (refusals, losses) in held["refused"].items():
         mind.budgets[name].refusals, mind.budgets[name].losses = refusals, losses
-    deriving.resume(mind, mind.program.derived, held.get("derived"))
+    deriving.resume(mind, mind.program, held.get("derived"))
     mind.trail.serial = held["serial"]
     version, state, gauss = data["random"]
     mind.architecture.random.setstate((version, tuple(state), gauss))
@@ -226,7 +226,7 @@ def copy_mind(original: Mind, clone: Mind) -> None:
         clone.counts.intentions += 1
         intention.id = clone.counts.intentions
         clone.alive[intention.id] = intention
-    deriving.begin_anew(clone, clone.program.derived)
+    deriving.begin_anew(clone, clone.program)
     clone.architecture.ready()
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 from recording_host import RecordingHost, mind
 
+from jacaros.asl import nodes
 from jacaros.asl.checks.beliefs import beliefs_of
 from jacaros.asl.diagnostics import AslError
 from jacaros.asl.loader import load_program
@@ -159,7 +160,7 @@ def test_beliefs_of_declarations_of_before_are_given_up() -> None:
     host = mind("{ derive(d, count(e(_), within(1000), at_least(2))) } !s. +!s <- +e(1); +e(2).")
     host.agent.run(100)
     assert len(host.agent.beliefs[functor("d", 0)]) == 1
-    deriving.resume(host.agent, (), None)
+    deriving.resume(host.agent, nodes.Program(), None)
     assert len(host.agent.beliefs[functor("d", 0)]) == 0
 
 
@@ -168,7 +169,7 @@ def test_a_changed_program_replaces_the_declarations() -> None:
     host.agent.run(100)
     assert len(host.agent.beliefs[functor("d", 0)]) == 1
     program, _ = load_program("a.asl", "{ derive(f, count(e(_), within(1000), at_least(1))) }")
-    deriving.replace(host.agent, program.derived)
+    deriving.replace(host.agent, program)
     assert len(host.agent.beliefs[functor("d", 0)]) == 0
     host.agent.add_belief(functor("e", 1), (2.0,), ())
     host.agent.run(100)

@@ -72,7 +72,7 @@ def beliefs_of(program: nodes.Program, actions: Mapping[str, Declaration]) -> Be
             found.facts.setdefault(_name(belief), []).append(belief)
             _note(belief, found)
     asked: set[int] = set()
-    _derive(program.derived, asked, found)
+    _derive(program, asked, found)
     for clause in clauses(program):
         for node, is_asked in in_order(clause):
             if isinstance(node, nodes.InternalAction):
@@ -100,9 +100,12 @@ def beliefs_of(program: nodes.Program, actions: Mapping[str, Declaration]) -> Be
     return found
 
 
-def _derive(declared: tuple[nodes.Derivation, ...], asked: set[int], found: Beliefs) -> None:
-    """Note the beliefs and events that are derived, whatever their arguments, and the beliefs that they are made of."""
-    for derived in declared:
+def _derive(program: nodes.Program, asked: set[int], found: Beliefs) -> None:
+    """Note the beliefs and events that are derived, whatever their arguments, and the beliefs that
+    they are made of or whose history is kept."""
+    for kept in program.histories:
+        _ask(kept.belief, asked, found)
+    for derived in program.derived:
         if derived.namespace is None:
             found.made.add(derived.name)
             found.said.add(derived.name)

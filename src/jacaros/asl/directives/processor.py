@@ -19,6 +19,7 @@ from jacaros.asl.directives.goal_patterns import (
     sequenced,
     single_minded,
 )
+from jacaros.asl.directives.history import read_history
 from jacaros.asl.directives.libraries import counterpart, is_known_library, is_library, is_of_organisations
 from jacaros.asl.directives.pattern import PatternCall, PatternError
 from jacaros.asl.literal_parser import Namespaces
@@ -42,7 +43,7 @@ PATTERNS: Final[dict[str, Callable[[PatternCall, nodes.Section], nodes.Section]]
     "sga": sequenced,
 }
 _Result = TypeVar("_Result")
-_SIMPLE: Final = ("derive", "include", "namespace", "register_function")
+_SIMPLE: Final = ("derive", "history", "include", "namespace", "register_function")
 _DEEPEST: Final = 40
 """Files within each other, so that reading them does not exhaust Python's stack."""
 _MOST_INCLUDES: Final = 10_000
@@ -87,6 +88,8 @@ class DirectiveProcessor:
                 section.functions.append(function)
         elif name == "derive":
             self._derive(parser, directive, section)
+        elif name == "history":
+            self._keep_history(parser, directive, section)
         elif name in PATTERNS:
             parser.report(
                 "wrong-directive",
@@ -289,6 +292,17 @@ class DirectiveProcessor:
             self._derived.pop()
             return
         section.derived.append(made)
+
+    def _keep_history(self, parser: ProgramParser, directive: nodes.Literal, section: nodes.Section) -> None:
+        def report(message: str, span: Span | None, hint: str) -> None:
+            parser.report("wrong-directive", message, span or directive.span, hint)
+
+        def placed(term: nodes.Term) -> nodes.Term:
+            return self._placed(parser.namespaces, term)
+
+        made = read_history(directive, placed, report)
+        if made is not None:
+            section.histories.append(made)
 
     # patterns
 

@@ -15,7 +15,8 @@ from jacaros.asl.directives.derive import streams_of, values_of
 from jacaros.asl.lowering import lower_value
 from jacaros.bdi.rules import belief_update
 from jacaros.bdi.rules.alarms import cancel_alarm, set_alarm
-from jacaros.bdi.state.belief_base import Row, take_away
+from jacaros.bdi.rules.past import History, is_kept
+from jacaros.bdi.state.belief_base import Item, Row, take_away
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.waiting import Alarm
 from jacaros.streams.operator import HIDE, OCCUR, Values
@@ -133,12 +134,54 @@ class DerivedBeliefs:
         self._all: list[Derived] = []
         self._streams: dict[Functor, dict[str, Stream]] = {}
         self._pending: list[tuple[Stream, Values | None, Cause | None]] = []
+        self._histories: dict[Functor, History] = {}
+        self._changed: list[tuple[History, Row]] = []
         self._settling = False
         self._queue: list[tuple[float, int, Derived]] = []
         self._numbers = itertools.count()
         self._alarm: Alarm | None = None
         self._due = math.inf
         self._latest, self._offset = agent.architecture.now(), 0.0
+
+    def keep(self, declared: Iterable[nodes.History]) -> None:
+        """Begin with histories that are not kept yet; of two for the same beliefs the longer one."""
+        for each in declared:
+            symbol = functor_of(lower_value(each.belief))
+            assert symbol is not None
+            history = self._histories.get(symbol)
+            if history is None:
+                history = self._histories[symbol] = History(symbol, each.window)
+                self._look_at(history)
+            history.window = max(history.window, each.window)
+
+    def _look_at(self, history: History) -> None:
+        """Compare a history with the present beliefs."""
+        for row in history.rows(self.agent.beliefs[history.functor]):
+            self._change(history, row)
+
+    def _change(self, history: History, row: Row) -> None:
+        """Have a belief looked at that may have come or gone."""
+        if not self._changed and not self._settling:
+            self.agent.do_soon(settle)
+        self._changed.append((history, row))
+
+    def _note(self, now: float) -> None:
+        """Write the changes that wait into the histories."""
+        changed, self._changed = self._changed, []
+        for history, row in changed:
+            if is_kept(row):
+                history.note(self.agent.beliefs[history.functor], row, now)
+
+    def past(self, symbol: Functor, milliseconds: Term) -> list[Item] | None:
+        """Return what was believed that time ago, newest first; None if no history of such beliefs is kept."""
+        history = self._histories.get(symbol)
+        if history is None:
+            return None
+        now = self._now()
+        self._note(now)
+        if not isinstance(milliseconds, float) or not 0.0 <= milliseconds <= history.window * 1000.0:
+            return []
+        return history.at(now - milliseconds / 1000.0)
 
     def declare(self, declared: Iterable[nodes.Derivation]) -> None:
         """Begin with declarations that are not there yet."""
@@ -162,11 +205,14 @@ class DerivedBeliefs:
         for derived in self._all:
             derived.forget()
         self._declared, self._all, self._streams, self._pending, self._queue = [], [], {}, [], []
+        self._histories, self._changed = {}, []
         self._wait()
 
     def stored(self) -> dict[str, Any]:
         """Return what the past has left, as data."""
+        self._note(self._now())
         return {
+            "histories": [(symbol, history.state()) for symbol, history in self._histories.items()],
             "latest": self._latest,
             "patterns": [
                 (each.pattern.state(), None if each.row is None else (*each.row,)) for each in self._all
@@ -180,6 +226,11 @@ class DerivedBeliefs:
         for derived, (state, row) in zip(self._all, held["patterns"], strict=True):
             derived.pattern.resume(state)
             derived.row = row
+        for symbol, state in held.get("histories", ()):
+            history = self._histories.get(symbol)
+            if history is not None:
+                history.resume(state)
+                self._look_at(history)
         for symbol, name, values in held["pending"]:
             stream = self._streams[symbol][name]
             stream.last = len(self._pending)
@@ -197,6 +248,8 @@ class DerivedBeliefs:
 
     def heard(self, operator: str, symbol: Functor, row: Row, cause: Cause | None) -> None:
         """Hear of a belief that came or went, or of a signal."""
+        if self._histories and (history := self._histories.get(symbol)) is not None:
+            self._change(history, row)
         streams = self._streams.get(symbol)
         if streams is None:
             return
@@ -227,6 +280,7 @@ class DerivedBeliefs:
                             self._schedule(derived)
         finally:
             self._settling, self.cause = False, None
+            self._note(now)
         self._wait()
 
     def ring(self, due: float) -> None:
@@ -273,10 +327,9 @@ class DerivedBeliefs:
             self._alarm = set_alarm(self.agent, max(0.0, due - self._latest), ring, due)
 
 
-def declare(agent: Circumstance, declared: Iterable[nodes.Derivation]) -> None:
+def declare(agent: Circumstance, program: nodes.Program) -> None:
     """Begin with the declarations of a program; an agent without any has no costs."""
-    declared = tuple(declared)
-    if not declared:
+    if not (program.derived or program.histories):
         return
     observers = agent.observers
     if observers.derived is None:
@@ -284,16 +337,17 @@ def declare(agent: Circumstance, declared: Iterable[nodes.Derivation]) -> None:
         observers.hear_beliefs = True
         # What is written out for speed tells nobody of changes that no plan handles.
         agent.features.usual_events = observers.usual_events = False
-    _derived(agent).declare(declared)
+    _derived(agent).keep(program.histories)
+    _derived(agent).declare(program.derived)
 
 
-def begin_anew(agent: Circumstance, declared: Iterable[nodes.Derivation]) -> None:
+def begin_anew(agent: Circumstance, program: nodes.Program) -> None:
     """Begin with empty windows, after beliefs of before have been taken over: derived ones among them go."""
     for table in list(agent.beliefs.values()):
         for entry, annotations in list(table.entries()):
             if SOURCE_DERIVED in annotations:
                 take_away(table, entry, annotations, _ANNOTATIONS)
-    declare(agent, declared)
+    declare(agent, program)
 
 
 def stored(agent: Circumstance) -> dict[str, Any] | None:
@@ -301,20 +355,21 @@ def stored(agent: Circumstance) -> dict[str, Any] | None:
     return None if agent.observers.derived is None else _derived(agent).stored()
 
 
-def resume(agent: Circumstance, declared: tuple[nodes.Derivation, ...], held: dict[str, Any] | None) -> None:
+def resume(agent: Circumstance, program: nodes.Program, held: dict[str, Any] | None) -> None:
     """Continue from what was `stored`; begin anew if there are other declarations now."""
-    if held is None or len(held["patterns"]) != len(set(declared)):
-        begin_anew(agent, declared)
+    if held is None or len(held["patterns"]) != len(set(program.derived)):
+        begin_anew(agent, program)
         return
-    declare(agent, declared)
-    _derived(agent).resume(held)
+    declare(agent, program)
+    if agent.observers.derived is not None:
+        _derived(agent).resume(held)
 
 
-def replace(agent: Circumstance, declared: Iterable[nodes.Derivation]) -> None:
+def replace(agent: Circumstance, program: nodes.Program) -> None:
     """Have other declarations than before."""
     if agent.observers.derived is not None:
         _derived(agent).end()
-    declare(agent, declared)
+    declare(agent, program)
 
 
 def settle(agent: Circumstance) -> None:

@@ -59,7 +59,7 @@ def _replace_soon(mind: Mind, program: nodes.Program, population: Population) ->
 def _replace(mind: Mind, program: nodes.Program, population: Population) -> None:
     mind.register_functions(program.functions)
     replace_rules(mind, mind.program.beliefs, program.beliefs)
-    deriving.replace(mind, program.derived)
+    deriving.replace(mind, program)
     mind.program = program
     replace_plans(mind, population.plans_of(program))
 

@@ -1,0 +1,56 @@
+"""``{ history(range(_), within(2000)) }``: what a belief was is kept, and asked for with the annotation `ago(Ms)`."""
+
+from typing import Final
+
+from jacaros.asl import nodes
+from jacaros.asl.directives.derive import Placed, Report
+from jacaros.streams.schema import LONGEST
+
+EXAMPLE: Final = "as in { history(range(_), within(2000)) }"
+_DAY: Final = LONGEST * 1000.0
+
+
+def read_history(directive: nodes.Literal, placed: Placed, report: Report) -> nodes.History | None:
+    """Return what the directive declares; None after a mistake, which is reported."""
+    match directive.arguments:
+        case (
+            nodes.Literal() as belief,
+            nodes.Literal(functor="within", arguments=(nodes.Number(value=window),), annotations=None),
+        ):
+            pass
+        case (nodes.Literal(), nodes.Literal(functor="within", arguments=(_,)) as within):
+            report("`within` must be above zero", within.span, "write a positive number of milliseconds")
+            return None
+        case _:
+            report("'history' needs a belief and `within`", directive.span, EXAMPLE)
+            return None
+    if not 0.0 < window <= _DAY:
+        message = "`within` must be above zero" if window <= 0.0 else "`within` is longer than a day"
+        report(message, directive.arguments[1].span, "write a positive number of milliseconds, at most a day")
+        return None
+    if belief.annotations is not None:
+        report("annotations are not looked at here", belief.span, "leave them out")
+        return None
+    for argument in belief.arguments:
+        if not isinstance(argument, nodes.Variable) or not argument.unnamed:
+            report("a history is of all values of a belief", argument.span, "write _ for each argument")
+            return None
+    found = placed(belief)
+    assert isinstance(found, nodes.Literal)
+    return nodes.History(found, window / 1000.0, span=directive.span)
+
+
+def asks_for_past(literal: nodes.Literal) -> bool:
+    """Whether `ago(Ms)` is written among the annotations of a literal."""
+    items = () if literal.annotations is None else literal.annotations.items
+    return any(map(_is_ago, items))
+
+
+def _is_ago(item: nodes.Node) -> bool:
+    return (
+        isinstance(item, nodes.Literal)
+        and item.functor == "ago"
+        and len(item.arguments) == 1
+        and item.namespace is None
+        and not item.negated
+    )
