@@ -45,6 +45,7 @@ CACHES = {
     "body.values.symbol_of": "of a name",
     "mas.code_folder._own_build": "of files of the package",
     "mas.mappings.stored_interfaces": "of files of the package",
+    "mas.history.values._field_names": "of a class of messages",
 }
 CONTAINERS = (dict, list, set, deque, bytearray, WeakKeyDictionary, WeakSet, WeakValueDictionary)
 
