@@ -11,7 +11,7 @@ from jacaros.terms.values import String, Term, atom, make_list, structure
 
 def note(agent: Circumstance, annotations: EventAnnotations) -> None:
     """A goal is about to be posted: from the next cycle on its needs are looked at."""
-    if not agent.features.needs and annotations.__class__ is tuple and wanted_in(annotations) is not None:
+    if not agent.features.needs and isinstance(annotations, tuple) and wanted_in(annotations) is not None:
         agent.features.needs = agent.features.special = agent.incoming.called = True
 
 

@@ -36,7 +36,7 @@ def begin_guarded(agent: Circumstance, frame: Frame) -> object:
     guard = PlanGuard(words.get("cleanup"))
     intention.frames.insert(len(intention.frames) - 1, supervising(agent, guard, plan_ended))
     within = words.get("within")
-    if within.__class__ is float:
+    if isinstance(within, float):
         set_deadline(agent, guard, within / 1000, deadline_terms(within / 1000))
     condition = words.get("while")
     if condition is None:

@@ -124,7 +124,7 @@ class CauseRecords:
         made = Cause(number, 0 if parent is None else parent.id, kind, what)
         if kind in RECORDED:
             return made
-        if parent.__class__ is _Received:
+        if isinstance(parent, _Received):
             self._keep_sample(parent)
         self._young[number] = made, self._clock.now(), about
         if len(self._young) > _GENERATION:
@@ -153,7 +153,7 @@ class CauseRecords:
             if len(self._samples) > _GENERATION:
                 self._samples.clear()
             self._samples.add(cause.id)
-            link: tuple[Any, ...] = cause
+            link: tuple[Any, ...] = tuple(cause)
             # What a message leads to comes in the same pass of the loop.
             self._young[cause.id] = Cause(*link[:4]), self._clock.now(), link[4]
 
@@ -190,7 +190,7 @@ class CauseRecords:
 
     def need(self, cause: Cause) -> None:
         """Record a cause and what led to it, as far as that is not recorded yet and still remembered."""
-        if cause.__class__ is _Received:
+        if isinstance(cause, _Received):
             self._keep_sample(cause)
         number = cause.id
         chain: list[Link] = []
