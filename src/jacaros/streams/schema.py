@@ -3,7 +3,6 @@
 Mapping files and programs declare the same operators with the same options, and both are checked here.
 """
 
-import difflib
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -149,7 +148,9 @@ VALUED: Final = frozenset({"mean", "min", "max", "slope", "share", "hysteresis",
 
 def unknown(operator: str) -> Fault:
     """Return the fault of an operator that does not exist."""
-    near = difflib.get_close_matches(operator, OPERATORS, 1)
+    from difflib import get_close_matches  # here: only for declarations that are wrong
+
+    near = get_close_matches(operator, OPERATORS, 1)
     told = f"did you mean `{near[0]}`?" if near else f"operators: {', '.join(OPERATORS)}"
     return Fault("", f"unknown operator `{operator}`", told)
 
@@ -177,7 +178,9 @@ def faults(operator: str, sources: Sequence[str], options: Mapping[str, object])
             yield Fault("", f"`{operator}` needs `{name}`", _NEEDED[name])
     for name, value in options.items():
         if name not in known:
-            near = difflib.get_close_matches(name, known, 1)
+            from difflib import get_close_matches  # here: only for declarations that are wrong
+
+            near = get_close_matches(name, known, 1)
             told = f"did you mean `{near[0]}`?" if near else f"options: {', '.join(known)}"
             yield Fault(name, f"`{operator}` has no option `{name}`", told)
         elif (fault := _KINDS[name](name, value)) is not None:

@@ -90,7 +90,8 @@ def test_a_condition_costs_the_changes_of_other_beliefs_nothing(
         host.agent.post_goal(atom("change"))
         return calls_of(host.run)
 
-    assert work(200) < work(2) + 100
+    # A look at each wait would be 20,000 calls more; what is freed meanwhile makes a hundred or so.
+    assert work(200) < work(2) + 1000
 
 
 def test_nothing_is_left_of_waits_that_are_over() -> None:

@@ -64,9 +64,10 @@ def _never_met(need: nodes.Literal) -> Iterator[Diagnostic]:
     for name, wanted in units.items():
         there = capacities.get(name, 1)
         if wanted > there:
+            are = "is 1" if there == 1 else f"are {there}"
             yield _wrong(
                 need,
-                f"this can never be met: it needs {wanted} units of `{name}`, and the capacity is {there}",
+                f"this can never be met: {wanted} units of `{name}` are needed, and there {are}",
                 f"name `{name}` once, or say how many there are: {name}({wanted})",
             )
 
