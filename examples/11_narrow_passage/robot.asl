@@ -12,7 +12,7 @@ heading(east, 0).   // degrees
 heading(west, 180).
 opposite(west, east).
 opposite(east, west).
-loads(3).           // it has brought enough after so many
+loads(3).           // loads that it has to bring
 brought(0).
 
 colleague(Name) :- .all_names(Names) & .member(Name, Names) & not .my_name(Name).

@@ -23,7 +23,7 @@ from jacaros.env.values import Atom, Structure
 PATIENCE = 30.0
 """Seconds of waiting after each of which a claim rises."""
 REPORTED = 300.0
-"""Seconds of waiting that are reported: a robot that charges for a minute is no starvation."""
+"""Seconds of waiting that are reported: charging for a minute is not starvation."""
 
 
 class Arbiter:
