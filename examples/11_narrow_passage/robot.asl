@@ -8,11 +8,11 @@ shelf(west, -3.4).  // metres, in the robot's lane: where it loads,
 shelf(east, 3.4).   // and where it unloads
 front(west, -2.4).  // where it waits for the passage, and comes out of it
 front(east, 2.4).
-heading(east, 0).   // degrees
+heading(east, 0).  // degrees
 heading(west, 180).
 opposite(west, east).
 opposite(east, west).
-loads(3).           // loads that it has to bring
+loads(3).  // loads that it has to bring
 brought(0).
 
 colleague(Name) :- .all_names(Names) & .member(Name, Names) & not .my_name(Name).
@@ -67,7 +67,8 @@ colleague(Name) :- .all_names(Names) & .member(Name, Names) & not .my_name(Name)
 +!load(west) <- +loaded.
 +!load(east).
 
-+!to_the_other_side : side(Side) & front(Side, X) & lane(Y) & opposite(Side, Other) & heading(Other, Yaw)
++!to_the_other_side
+    : side(Side) & front(Side, X) & lane(Y) & opposite(Side, Other) & heading(Other, Yaw)
   <- !go_to(X, Y, Yaw);
      !cross(Other).
 

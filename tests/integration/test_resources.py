@@ -155,6 +155,38 @@ def test_policies_say_what_happens_when_a_resource_is_taken(tmp_path: Path) -> N
     assert result.of("robot") == ["one", "resource_busy(arm)", "three", "three done", "one done"]
 
 
+def test_a_robot_without_a_namespace_is_meant_by_the_whole_name(tmp_path: Path) -> None:
+    result = run(
+        tmp_path,
+        """
+        !start.
+        +!start
+          <- makeArtifact("guest", "turtlebot4.yaml", ["robot_7"], G); focus(G);
+             makeArtifact("wheels", "ArtCmdVel", [], W); focus(W);
+             !go[needs(wheels)];
+             .stopMAS.
+        +!go <- moveForward(1); .print("there").
+        """,
+    )
+    assert result.of("robot") == ["there"]
+
+
+def test_the_wheels_of_one_of_two_named_robots_are_ambiguous(tmp_path: Path) -> None:
+    result = run(
+        tmp_path,
+        """
+        !start.
+        +!start
+          <- makeArtifact("left", "turtlebot4.yaml", ["robot_1"], L); focus(L);
+             makeArtifact("right", "turtlebot4.yaml", ["robot_2"], R); focus(R);
+             !go[needs(wheels)].
+        -!start[env_failure_reason(Why)] <- .print(Why); .stopMAS.
+        +!go <- .print("no").
+        """,
+    )
+    assert result.of("robot") == ["ambiguous_resource(wheels)"]
+
+
 def test_two_plans_that_wait_for_each_other_are_reported(tmp_path: Path) -> None:
     result = run(
         tmp_path,

@@ -288,7 +288,8 @@ class AgentBody:
             why = tracer.link("act", f"{self._agent} {call.key}", why, (self._agent, act))
         request = OperationRequest(artifact, call.name, tuple(arguments), self._agent, why, done, timeout)
         request.urgency, request.yields = act.urgency, act.yields
-        request.within = self._needs.claims(act.within)
+        if act.within:
+            request.within = self._needs.claims(act.within)
         request.on_preempted = partial(self._on_preempted, act.id)
         return self._environment.execute(request)
 

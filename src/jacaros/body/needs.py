@@ -149,7 +149,10 @@ class Needs:
             self.forget(number)
 
     def _resolved(self, use: Use, focused: Iterable[ArtifactId], near: Iterable[ArtifactId]) -> Use:
-        """The resource of the robot that is meant: of a focused artifact, else of a near one, else of the run."""
+        """The resource of the robot that is meant: of a focused artifact, else of a near one, else of the run.
+
+        A robot without a namespace has ``wheels`` by its whole name, whatever other robots are there.
+        """
         if "/" in use.name:
             return use
         for artifacts in (focused, near):
@@ -158,6 +161,8 @@ class Needs:
                 for each in self._environment.used_by(artifact):
                     if local_name(each.name) == use.name:
                         meant.setdefault(each.name, each)
+            if use.name in meant:
+                return replace(use, capacity=use.capacity or meant[use.name].capacity)
             if len(meant) > 1:
                 listed = ", ".join(meant)
                 raise OperationFailed(
