@@ -161,18 +161,19 @@ class ProgramFiles:
                 if program is not None:
                     read[key] = program
                     self._report(program)
-        lone: list[AgentProgram] = []
+        lone: dict[Path, AgentProgram] = {}
         for path in source_files(self._folder, (".asl",)):
             if path.resolve() not in read:
                 program = read_agent(path, (path.parent,), self._sources)
                 if program is not None:
-                    read[path.resolve()] = program
-                    lone.append(program)
-        included = {Path(name).resolve() for each in read.values() for name in each.included}
-        for program in lone:
-            if program.path.resolve() not in included:
+                    lone[path.resolve()] = program
+        included = _included([*read.values(), *lone.values()])
+        roots = (each for key, each in lone.items() if key not in included)
+        included = _included([*read.values(), *roots])  # without those that only include each other
+        for path, program in lone.items():
+            if path not in included:
                 self._report(program)
-        yield from read.values()
+        yield from (*read.values(), *lone.values())
 
     def _report(self, program: AgentProgram) -> None:
         if not program.is_test:
@@ -237,6 +238,10 @@ class ProgramFiles:
             except Exception:  # what is wrong with a type is for `jacaros check`
                 continue
             self._modules |= {each.__module__ for each in made.__mro__}
+
+
+def _included(programs: Iterable[AgentProgram]) -> set[Path]:
+    return {Path(name).resolve() for each in programs for name in each.included}
 
 
 def _declared(deployments: Sequence[Deployment]) -> Iterator[tuple[AgentSpec, tuple[Path, ...]]]:

@@ -29,7 +29,8 @@ def parse(file: SourceFile) -> ast.Module:
         raise AslError([_not_python(file, error)]) from error
     except (ValueError, RecursionError, MemoryError) as error:
         # Python's own parser has limits of nesting.
-        raise AslError([Diagnostic("error", f"cannot parse {file.name}: {error}")]) from error
+        why = str(error) or "nested too deeply"
+        raise AslError([Diagnostic("error", f"cannot parse {file.name}: {why}")]) from error
 
 
 def _not_python(file: SourceFile, error: SyntaxError) -> Diagnostic:
@@ -130,21 +131,20 @@ class Import(NamedTuple):
 
 def imports_of(tree: ast.AST) -> frozenset[Import]:
     """All imports of a file, those in functions too, but for those that only type checkers see."""
-    return frozenset(_imports(tree))
-
-
-def _imports(node: ast.AST) -> Iterator[Import]:
-    if isinstance(node, ast.Import):
-        yield from (Import(each.name) for each in node.names)
-    elif isinstance(node, ast.ImportFrom):
-        module = f"{node.module}." if node.module else ""
-        yield from (Import(f"{module}{each.name}", node.level) for each in node.names)
-    elif isinstance(node, ast.If) and _is_type_checking(node.test):
-        for each in node.orelse:
-            yield from _imports(each)
-    else:
-        for child in ast.iter_child_nodes(node):
-            yield from _imports(child)
+    found: set[Import] = set()
+    nodes = [tree]
+    while nodes:  # expressions may be deeper than Python's stack
+        node = nodes.pop()
+        if isinstance(node, ast.Import):
+            found.update(Import(each.name) for each in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            module = f"{node.module}." if node.module else ""
+            found.update(Import(f"{module}{each.name}", node.level) for each in node.names)
+        elif isinstance(node, ast.If) and _is_type_checking(node.test):
+            nodes += node.orelse
+        else:
+            nodes += ast.iter_child_nodes(node)
+    return frozenset(found)
 
 
 def _is_type_checking(test: ast.expr) -> bool:

@@ -5,7 +5,11 @@ from pathlib import Path
 
 import pytest
 
+from jacaros.asl.loader import read_program
+from jacaros.asl.nodes import Program
+from jacaros.asl.source import SourceFile
 from jacaros.metrics import CountedFile, Group, MetricsError, measure
+from jacaros.metrics.agentspeak import comments_of
 
 
 def counted(folder: Path, name: str, text: str) -> CountedFile:
@@ -205,6 +209,19 @@ def test_the_examples_have_as_many_lines_as_a_plain_count_says(folder: Path) -> 
     agents = measure([folder])[0].counts(Group.AGENTS)
     text = (folder / "robot.asl").read_text(encoding="utf-8")
     assert (agents.lines, agents.code_lines) == plain_count(text)
+
+
+@pytest.mark.parametrize(
+    "path", sorted(EXAMPLES.glob("*/*.asl")), ids=lambda path: f"{path.parent.name}/{path.stem}"
+)
+def test_the_code_lines_of_a_program_are_the_same_program(path: Path) -> None:
+    def tree(text: str) -> Program:
+        return read_program(SourceFile("a.asl", text), lambda *_: ("included.asl", ""))[0]
+
+    text = path.read_text(encoding="utf-8")
+    file = CountedFile(path, b"", text, comments_of(SourceFile("a.asl", text)))
+    assert len(file.code) < len(text)
+    assert tree(file.code) == tree(text)
 
 
 def test_python_with_a_wrong_indent_is_reported(tmp_path: Path) -> None:

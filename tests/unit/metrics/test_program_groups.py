@@ -166,3 +166,33 @@ def test_programs_in_folders_of_one_name_are_called_by_their_paths(tmp_path: Pat
     for folder in folders:
         write(folder, {"robot.asl": AGENT})
     assert [each.name for each in measure(folders)] == [str(folders[0]), str(folders[1]), "c"]
+
+
+def test_a_part_is_read_as_its_program_reads_it(tmp_path: Path) -> None:
+    """Alone it has an error: only the project says where the file is that it includes."""
+    files = {
+        "a.jcm": "mas a { agent a asl-path: shared, parts }\n",
+        "shared/a.asl": '{ include("b.asl") }\n!go.\n+!go.\n',
+        "parts/b.asl": '{ include("c.asl") }\n',
+        "shared/c.asl": "+!c.\n",
+    }
+    program = measured(tmp_path, files)
+    assert grouped(program, tmp_path)["agents"] == ["parts/b.asl", "shared/a.asl", "shared/c.asl"]
+
+
+def test_files_that_include_each_other_are_reported(tmp_path: Path) -> None:
+    write(tmp_path, {"a.asl": '{ include("b.asl") }\n', "b.asl": '{ include("a.asl") }\n'})
+    with pytest.raises(MetricsError) as wrong:
+        measure([tmp_path])
+    assert [each.code for each in wrong.value.diagnostics] == ["include-circle"] * 2
+
+
+def test_imports_for_type_checkers_are_no_library_code(tmp_path: Path) -> None:
+    text = (
+        "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    import py_trees\nelse:\n    import json\n"
+    )
+    program = measured(tmp_path, {"a.asl": AGENT, "artifacts.py": text})
+    assert program.files[Group.LIBRARY] == ()
+    program = measured(tmp_path, {"artifacts.py": "def late():\n    import jacaros.behaviour_trees.act\n"})
+    found = {file.path.name for file in program.files[Group.LIBRARY]}
+    assert {"act.py", "behaviour.py"} <= found, "those of jacaros and of py_trees"
