@@ -7,7 +7,7 @@ look (a property with a new value) has not ended in between.
 import heapq
 import itertools
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from jacaros.asl import nodes
@@ -136,6 +136,7 @@ class DerivedBeliefs:
         self._streams: dict[Functor, dict[str, Stream]] = {}
         self._pending: list[tuple[Stream, Values | None, Cause | None]] = []
         self._kept: dict[str, nodes.History] = {}
+        self._observed: dict[tuple[str | None, str], float] = {}
         self._histories: dict[Functor, History] = {}
         self._changed: list[tuple[History, Row]] = []
         self._settling = False
@@ -153,12 +154,26 @@ class DerivedBeliefs:
     def keep(self, declared: Iterable[nodes.History]) -> None:
         """Begin with histories that are not kept yet; of two for the same beliefs the longer one."""
         self._kept |= {format_history(each): each for each in declared}
-        windows: dict[Functor, float] = {}
+        self._arrange()
+
+    def observe(self, namespace: str | None, histories: Mapping[str, float]) -> None:
+        """Keep the histories of beliefs with any number of arguments, which artifacts ask for: seconds by name."""
+        for name, window in histories.items():
+            self._observed[namespace, name] = max(window, self._observed.get((namespace, name), 0.0))
+        self._arrange()
+
+    def _arrange(self) -> None:
+        """Have the histories that are declared or observed, and no others."""
+        windows = dict.fromkeys((*self._histories, *self.agent.beliefs), 0.0)
         for each in self._kept.values():
             symbol = functor_of(lower_value(each.belief))
             assert symbol is not None
             windows[symbol] = max(each.window, windows.get(symbol, 0.0))
-        self._histories = {symbol: self._history(symbol, window) for symbol, window in windows.items()}
+        for symbol in windows:
+            windows[symbol] = max(windows[symbol], self._observed.get((symbol.namespace, symbol.name), 0.0))
+        self._histories = {
+            symbol: self._history(symbol, window) for symbol, window in windows.items() if window
+        }
 
     def _history(self, symbol: Functor, window: float) -> History:
         """The history of beliefs, which is made unless there is one."""
@@ -249,6 +264,7 @@ class DerivedBeliefs:
                 [each.declared for text, each in self._all.items() if text not in own],
                 [each for text, each in self._kept.items() if text not in own],
             ),
+            "observed": list(self._observed.items()),
             "pending": [(stream.symbol, stream.name, values) for stream, values, _ in self._pending],
         }
 
@@ -259,6 +275,8 @@ class DerivedBeliefs:
             if text in self._all:
                 self._all[text].pattern.resume(state)
                 self._all[text].row = row
+        for (namespace, name), window in held["observed"]:
+            self.observe(namespace, {name: window})
         for symbol, state in held["histories"]:
             history = self._histories.get(symbol)
             if history is not None:
@@ -289,6 +307,8 @@ class DerivedBeliefs:
         """Hear of a belief that came or went, or of a signal."""
         if self._histories and (history := self._histories.get(symbol)) is not None:
             self._change(history, row)
+        elif self._observed and (window := self._observed.get((symbol.namespace, symbol.name))):
+            self._histories[symbol] = self._history(symbol, window)  # which looks at this belief, too
         streams = self._streams.get(symbol)
         if streams is None:
             return
@@ -368,16 +388,26 @@ class DerivedBeliefs:
 
 def declare(agent: Circumstance, program: nodes.Program) -> None:
     """Begin with the declarations of a program; an agent without any has no costs."""
-    if not (program.derived or program.histories):
-        return
+    if program.derived or program.histories:
+        derived = _begun(agent)
+        derived.keep(program.histories)
+        derived.declare(program.derived)
+
+
+def observe(agent: Circumstance, namespace: str | None, histories: Mapping[str, float]) -> None:
+    """Keep what beliefs in a namespace were, as an artifact asks for: seconds by name."""
+    _begun(agent).observe(namespace, histories)
+
+
+def _begun(agent: Circumstance) -> DerivedBeliefs:
+    """The declarations of an agent; from the first one on it hears of all its beliefs."""
     observers = agent.observers
     if observers.derived is None:
         observers.derived = DerivedBeliefs(agent)
         observers.hear_beliefs = True
         # What is written out for speed tells nobody of changes that no plan handles.
         agent.features.usual_events = observers.usual_events = False
-    _derived(agent).keep(program.histories)
-    _derived(agent).declare(program.derived)
+    return _derived(agent)
 
 
 def texts(program: nodes.Program) -> set[str]:
@@ -404,11 +434,8 @@ def resume(agent: Circumstance, program: nodes.Program, held: dict[str, Any] | N
     if held is not None:
         derived, histories = held["included"]
         declare(agent, nodes.Program(derived=tuple(derived), histories=tuple(histories)))
-    kept: list[tuple[Functor, Row]] = []
-    if agent.observers.derived is not None:
-        if held is not None:
-            _derived(agent).resume(held)
-        kept = _derived(agent).rows
+        _begun(agent).resume(held)
+    kept = [] if agent.observers.derived is None else _derived(agent).rows
     for symbol, table in list(agent.beliefs.items()):
         for entry, annotations in list(table.entries()):
             if SOURCE_DERIVED in annotations and (symbol, entry) not in kept:
