@@ -145,7 +145,7 @@ def test_memory_is_bounded_by_the_window() -> None:
         run_until(host, host.time + 0.01)
     held = deriving.stored(host.agent, host.agent.program)
     assert held is not None
-    [(_, spans)] = held["histories"]
+    [(_, spans)] = held["histories"]["kept"]
     assert 100 <= len(spans) <= 102
 
 

@@ -16,7 +16,7 @@ from jacaros.asl.directives.history import format_history
 from jacaros.asl.lowering import lower_value
 from jacaros.bdi.rules import belief_update
 from jacaros.bdi.rules.alarms import cancel_alarm, set_alarm
-from jacaros.bdi.rules.past import History, is_kept
+from jacaros.bdi.rules.histories import Histories
 from jacaros.bdi.state.belief_base import Item, Row, take_away
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.waiting import Alarm
@@ -127,18 +127,16 @@ class DerivedBeliefs:
 
     Attributes:
         cause: of the change that is being worked on.
+        histories: what beliefs were.
     """
 
     def __init__(self, agent: Circumstance) -> None:
         self.agent = agent
         self.cause: Cause | None = None
+        self.histories = Histories(agent, self._soon)
         self._all: dict[str, Derived] = {}
         self._streams: dict[Functor, dict[str, Stream]] = {}
         self._pending: list[tuple[Stream, Values | None, Cause | None]] = []
-        self._kept: dict[str, nodes.History] = {}
-        self._observed: dict[tuple[str | None, str], float] = {}
-        self._histories: dict[Functor, History] = {}
-        self._changed: list[tuple[History, Row]] = []
         self._settling = False
         self._queue: list[tuple[float, int, Derived]] = []
         self._numbers = itertools.count()
@@ -149,69 +147,16 @@ class DerivedBeliefs:
     @property
     def directives(self) -> tuple[list[nodes.Derivation], list[nodes.History]]:
         """All declarations."""
-        return [each.declared for each in self._all.values()], list(self._kept.values())
+        return [each.declared for each in self._all.values()], list(self.histories.declared.values())
 
-    def keep(self, declared: Iterable[nodes.History]) -> None:
-        """Begin with histories that are not kept yet; of two for the same beliefs the longer one."""
-        self._kept |= {format_history(each): each for each in declared}
-        self._arrange()
-
-    def observe(self, namespace: str | None, histories: Mapping[str, float]) -> None:
-        """Keep the histories of beliefs with any number of arguments, which artifacts ask for: seconds by name."""
-        for name, window in histories.items():
-            self._observed[namespace, name] = max(window, self._observed.get((namespace, name), 0.0))
-        self._arrange()
-
-    def _arrange(self) -> None:
-        """Have the histories that are declared or observed, and no others."""
-        windows = dict.fromkeys((*self._histories, *self.agent.beliefs), 0.0)
-        for each in self._kept.values():
-            symbol = functor_of(lower_value(each.belief))
-            assert symbol is not None
-            windows[symbol] = max(each.window, windows.get(symbol, 0.0))
-        for symbol in windows:
-            windows[symbol] = max(windows[symbol], self._observed.get((symbol.namespace, symbol.name), 0.0))
-        self._histories = {
-            symbol: self._history(symbol, window) for symbol, window in windows.items() if window
-        }
-
-    def _history(self, symbol: Functor, window: float) -> History:
-        """The history of beliefs, which is made unless there is one."""
-        history = self._histories.get(symbol)
-        if history is None:
-            history = History(symbol, window)
-            self._look_at(history)
-        history.window = window
-        return history
-
-    def _look_at(self, history: History) -> None:
-        """Compare a history with the present beliefs."""
-        for row in history.rows(self.agent.beliefs[history.functor]):
-            self._change(history, row)
-
-    def _change(self, history: History, row: Row) -> None:
-        """Have a belief looked at that may have come or gone."""
-        if not self._changed and not self._settling:
+    def _soon(self) -> None:
+        """Settle before the next cycle, unless that is what the agent does."""
+        if not self._settling:
             self.agent.do_soon(settle)
-        self._changed.append((history, row))
-
-    def _note(self, now: float) -> None:
-        """Write the changes that wait into the histories."""
-        changed, self._changed = self._changed, []
-        for history, row in changed:
-            if is_kept(row):
-                history.note(self.agent.beliefs[history.functor], row, now)
 
     def past(self, symbol: Functor, milliseconds: Term) -> list[Item] | None:
         """Return what was believed that time ago, newest first; None if no history of such beliefs is kept."""
-        history = self._histories.get(symbol)
-        if history is None:
-            return None
-        now = self._now()
-        self._note(now)
-        if not isinstance(milliseconds, float) or not 0.0 <= milliseconds <= history.window * 1000.0:
-            return []
-        return history.at(now - milliseconds / 1000.0)
+        return self.histories.past(symbol, milliseconds, self._now())
 
     def declare(self, declared: Iterable[nodes.Derivation]) -> None:
         """Begin with declarations that are not there yet."""
@@ -234,8 +179,8 @@ class DerivedBeliefs:
         for text in texts(old) - texts(new):
             if text in self._all:
                 self._end(self._all.pop(text))
-            self._kept.pop(text, None)
-        self.keep(new.histories)
+            self.histories.declared.pop(text, None)
+        self.histories.keep(new.histories)
         self.declare(new.derived)
 
     def _end(self, derived: Derived) -> None:
@@ -251,10 +196,10 @@ class DerivedBeliefs:
 
     def stored(self, program: nodes.Program) -> dict[str, Any]:
         """Return what the past has left, as data, and the declarations that are not those of a program."""
-        self._note(self._now())
+        self.histories.note(self._now())
         own = texts(program)
         return {
-            "histories": [(symbol, history.state()) for symbol, history in self._histories.items()],
+            "histories": self.histories.stored(),
             "latest": self._latest,
             "derived": [
                 (text, each.pattern.state(), None if each.row is None else (*each.row,))
@@ -262,9 +207,8 @@ class DerivedBeliefs:
             ],
             "included": (
                 [each.declared for text, each in self._all.items() if text not in own],
-                [each for text, each in self._kept.items() if text not in own],
+                [each for text, each in self.histories.declared.items() if text not in own],
             ),
-            "observed": list(self._observed.items()),
             "pending": [(stream.symbol, stream.name, values) for stream, values, _ in self._pending],
         }
 
@@ -275,13 +219,7 @@ class DerivedBeliefs:
             if text in self._all:
                 self._all[text].pattern.resume(state)
                 self._all[text].row = row
-        for (namespace, name), window in held["observed"]:
-            self.observe(namespace, {name: window})
-        for symbol, state in held["histories"]:
-            history = self._histories.get(symbol)
-            if history is not None:
-                history.resume(state)
-                self._look_at(history)
+        self.histories.resume(held["histories"])
         for symbol, name, values in held["pending"]:
             stream = self._streams.get(symbol, {}).get(name)
             if stream is not None:
@@ -305,18 +243,15 @@ class DerivedBeliefs:
 
     def heard(self, operator: str, symbol: Functor, row: Row, cause: Cause | None) -> None:
         """Hear of a belief that came or went, or of a signal."""
-        if self._histories and (history := self._histories.get(symbol)) is not None:
-            self._change(history, row)
-        elif self._observed and (window := self._observed.get((symbol.namespace, symbol.name))):
-            self._histories[symbol] = self._history(symbol, window)  # which looks at this belief, too
+        self.histories.heard(symbol, row)
         streams = self._streams.get(symbol)
         if streams is None:
             return
         for stream in streams.values():
             if not stream.known or stream.matches(row):
                 pending = self._pending
-                if not pending and not self._settling:
-                    self.agent.do_soon(settle)
+                if not pending:
+                    self._soon()
                 stream.last = len(pending)
                 pending.append((stream, stream.event(row) if operator == "+" else None, cause))
 
@@ -339,7 +274,7 @@ class DerivedBeliefs:
                             self._schedule(derived)
         finally:
             self._settling, self.cause = False, None
-            self._note(now)
+            self.histories.note(now)
         self._wait()
 
     def ring(self, due: float) -> None:
@@ -390,13 +325,13 @@ def declare(agent: Circumstance, program: nodes.Program) -> None:
     """Begin with the declarations of a program; an agent without any has no costs."""
     if program.derived or program.histories:
         derived = _begun(agent)
-        derived.keep(program.histories)
+        derived.histories.keep(program.histories)
         derived.declare(program.derived)
 
 
 def observe(agent: Circumstance, namespace: str | None, histories: Mapping[str, float]) -> None:
     """Keep what beliefs in a namespace were, as an artifact asks for: seconds by name."""
-    _begun(agent).observe(namespace, histories)
+    _begun(agent).histories.observe(namespace, histories)
 
 
 def _begun(agent: Circumstance) -> DerivedBeliefs:
