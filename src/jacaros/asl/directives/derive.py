@@ -221,7 +221,7 @@ def format_derivation(derived: nodes.Derivation) -> str:
     return directive if name is None else f"{{ begin namespace({name}) }} {directive} {{ end }}"
 
 
-def _option(name: str, value: object) -> str:
+def _option(name: str, value: float | tuple[float, ...]) -> str:
     """An option as programs write it."""
     from jacaros.terms.text import number_text
 
