@@ -14,7 +14,6 @@ from jacaros.asl.checks.actions import (
 )
 from jacaros.asl.checks.formulas import clauses as clauses_of
 from jacaros.asl.checks.goals import goals_without_plan
-from jacaros.asl.checks.histories import undeclared_histories
 from jacaros.asl.checks.needs import wrong_needs
 from jacaros.asl.checks.plans import (
     contexts_never_true,
@@ -74,7 +73,6 @@ def _mistakes(program: nodes.Program, known: KnownActions, errors: Sequence[Diag
         *wrong_urgencies(found),
         *wrong_supervision(program.goals, found),
         *wrong_needs(found),
-        *undeclared_histories(program, found),
     ]
     for clause in clauses:
         warnings += vain_comparisons(clause)

@@ -248,6 +248,15 @@ class Mind(Circumstance):
 
     has_untaken = perceiving.is_untaken
 
+    def keep_histories(self, namespace: str | None, histories: Mapping[str, float]) -> None:
+        """Keep what beliefs were, as ``{ history(...) }`` does.
+
+        Args:
+            namespace: of the beliefs.
+            histories: seconds by name.
+        """
+        deriving.observe(self, namespace, histories)
+
     def complete(self, act_id: int, completion: Completion) -> None:
         """An external action ended; an id that is not pending (any more) is ignored."""
         if act_id == self._beginning:

@@ -67,7 +67,7 @@ def stored(mind: Mind) -> dict[str, Any]:
     held["condition_waits"] = (list(conditions.values()), list(conditions.due), list(conditions.restless))
     held["refused"] = {name: (each.refusals, each.losses) for name, each in mind.budgets.items()}
     held["percepts"] = list(mind.incoming.percepts)
-    held["derived"] = deriving.stored(mind)
+    held["derived"] = deriving.stored(mind, mind.program)
     held["serial"] = mind.trail.serial
     held["time"] = mind.architecture.now()
     writer = Writer(mind)
@@ -215,6 +215,7 @@ def copy_mind(original: Mind, clone: Mind) -> None:
     part["intentions"] = [
         each for each in (*original.intentions, *original.crowd) if _can_be_copied(original, each)
     ]
+    part["derived"] = deriving.stored(original, original.program)
     writer = Writer(original, shared=True)
     entry = writer.write(part)
     held = Reader(clone, writer.table).read(entry)
@@ -226,7 +227,7 @@ def copy_mind(original: Mind, clone: Mind) -> None:
         clone.counts.intentions += 1
         intention.id = clone.counts.intentions
         clone.alive[intention.id] = intention
-    deriving.begin_anew(clone, clone.program)
+    deriving.resume(clone, clone.program, held["derived"])
     clone.architecture.ready()
 
 

@@ -1,6 +1,6 @@
 """The body of one agent: carries out its actions, and perceives what it focuses."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Protocol
 
@@ -34,6 +34,9 @@ class ServedMind(Protocol):
 
     def has_untaken(self, name: str) -> bool:
         """Whether percepts about properties called *name* have still to be taken up."""
+
+    def keep_histories(self, namespace: str | None, histories: Mapping[str, float]) -> None:
+        """Keep what properties in a namespace were: seconds by name."""
 
     def complete(self, act_id: int, completion: Completion) -> None:
         """Be told the end of an act."""
@@ -96,7 +99,9 @@ class AgentBody:
         self._entered = False
         self._session: ArtifactId | None = None
         self._workspaces = JoinedWorkspaces(environment, home)
-        focused = FocusedArtifacts(agent, writer, references, mind.perceive, mind.has_untaken)
+        focused = FocusedArtifacts(
+            agent, writer, references, mind.perceive, mind.has_untaken, mind.keep_histories
+        )
         self._selection = Selection(agent, self._workspaces, focused, keys())
         self._situation = Situation(
             agent,

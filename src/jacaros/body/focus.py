@@ -1,6 +1,6 @@
 """What an agent focuses: the artifacts whose properties and signals it perceives."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 from jacaros.bdi.state.act import Percept
 from jacaros.body.filtering import Filter, FilteredObserver
@@ -20,6 +20,9 @@ _PERSONAL = ("body_", "session_")
 
 Notice = Callable[[list[Percept]], None]
 """Where percepts go."""
+
+Keep = Callable[[str | None, Mapping[str, float]], None]
+"""Keeps past values of properties in a namespace: seconds by name."""
 
 Untaken = Callable[[str], bool]
 """Whether percepts about properties of a name have still to be taken up."""
@@ -69,9 +72,11 @@ class FocusedArtifacts:
         references: References,
         notice: Notice,
         untaken: Untaken = lambda name: False,
+        keep: Keep = lambda namespace, histories: None,
     ) -> None:
         self._agent = agent
         self._untaken = untaken
+        self._keep = keep
         self._writer = writer
         self._references = references
         self._notice = notice
@@ -157,6 +162,8 @@ class FocusedArtifacts:
 
     def _take(self, workspace: Workspace, artifact: ArtifactId, namespace: str | None) -> None:
         is_first = artifact not in self._focused
+        if histories := workspace.histories(artifact):
+            self._keep(namespace, histories)
         self._focused.setdefault(artifact, {})[namespace] = workspace
         self._watch(workspace, artifact.name.startswith(_PERSONAL))
         if is_first:

@@ -9,7 +9,7 @@ called before the method returns, and does not come at all when it was given up.
 """
 
 import asyncio
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Protocol, runtime_checkable
 
 from jacaros.clock import Clock
@@ -79,6 +79,9 @@ class Workspace(Protocol):
 
     def offers(self, artifact_id: ArtifactId) -> Collection[str]:
         """The operations of an artifact for agents, such as ``inc/1`` and ``sum/any``; raises `UnknownArtifact`."""
+
+    def histories(self, artifact_id: ArtifactId) -> Mapping[str, float]:
+        """For properties by name, the seconds for which past values are to be kept; raises `UnknownArtifact`."""
 
     def has_method(self, artifact_id: ArtifactId, name: str) -> bool:
         """True when its class has a public method of that name that is no operation of agents; see `offers`."""

@@ -1,7 +1,7 @@
 """Workspaces: where artifacts are made, found, focused, linked, used and disposed."""
 
 import asyncio
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from functools import partial
 
 from jacaros.env import ports
@@ -28,7 +28,7 @@ from jacaros.env.operation import (
     marks_of,
 )
 from jacaros.env.ports import Made, Told, nobody_waits
-from jacaros.env.property import ObservableProperty
+from jacaros.env.property import ObservableProperty, histories_of
 from jacaros.env.values import Structure
 from jacaros.trace import Cause
 
@@ -299,6 +299,14 @@ class Workspace(ports.Workspace):
             UnknownArtifact: it is gone.
         """
         return self._registry.interface(artifact_id) or self._steps_of(artifact_id).interface
+
+    def histories(self, artifact_id: ArtifactId) -> Mapping[str, float]:
+        """For properties by name, the seconds for which those who focus an artifact keep past values.
+
+        Raises:
+            UnknownArtifact: it is gone.
+        """
+        return histories_of(self._steps_of(artifact_id).artifact_type)
 
     def has_method(self, artifact_id: ArtifactId, name: str) -> bool:
         """True when the author of an artifact's class wrote a public method of that name that is no operation of agents.

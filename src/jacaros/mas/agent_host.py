@@ -55,6 +55,9 @@ class HostedMind(Protocol):
     def has_untaken(self, name: str) -> bool:
         """Whether percepts about properties called *name* have still to be taken up."""
 
+    def keep_histories(self, namespace: str | None, histories: Mapping[str, float]) -> None:
+        """Keep what beliefs in a namespace were: seconds by name."""
+
     def complete(self, act_id: int, completion: Completion) -> None:
         """Be told the end of an action."""
 

@@ -168,13 +168,9 @@ def _of_beliefs(
     folders: tuple[Path, ...],
     unseen: set[Path] | None,
 ) -> list[Diagnostic]:
-    """Misspelt names of beliefs in the programs of a project; not where classes of its own may make more."""
-    if any(
-        agent.agent_class or agent.architecture_classes or agent.belief_base_class for agent, _ in programs
-    ):
-        return []
+    """Histories that nobody keeps, and misspelt names of beliefs, the latter not where classes of its own may make more."""
     from jacaros.mas.action_check import made_types
-    from jacaros.mas.belief_check import check_beliefs  # here: see `_of_artifacts`
+    from jacaros.mas.belief_check import check_beliefs, check_histories  # here: see `_of_artifacts`
 
     def types() -> "list[type[Artifact]] | None":
         from jacaros.artifacts.registry import type_finder  # here: see `_of_artifacts`
@@ -182,7 +178,12 @@ def _of_beliefs(
         return made_types(deployment, trees, type_finder(ProjectModules(*folders, unseen=unseen)))
 
     trees = [program for _, program in programs]
-    return check_beliefs(trees, types, folders)
+    told = check_histories(trees, types)
+    if any(
+        agent.agent_class or agent.architecture_classes or agent.belief_base_class for agent, _ in programs
+    ):
+        return told
+    return told + check_beliefs(trees, types, folders)
 
 
 def _check_lone_program(path: Path, findings: Findings) -> None:

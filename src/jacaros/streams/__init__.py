@@ -11,6 +11,7 @@ file                                           what it holds
 `counting`, `aggregates`, `share`              sliding windows
 `states`, `area`                               hysteresis, debounce, held, delayed; inside an area
 `order`                                        sequence, absence
+`joining`                                      samples of several streams, for the two that join them by their times:
 `together`, `interpolated`                     samples with nearby stamps; values at the stamps of another stream
 ============================================== =======================================================================
 

@@ -4,10 +4,11 @@ import math
 from bisect import bisect_left, bisect_right
 from collections.abc import Sequence
 
-from jacaros.streams.operator import Emit, Operator, Values, number_at
+from jacaros.streams.joining import Joining
+from jacaros.streams.operator import Emit, Values, number_at
 
 
-class Interpolated(Operator):
+class Interpolated(Joining):
     """Shows, for samples of the first stream, their values and those of the other streams at the same time.
 
     Numbers are interpolated linearly between the samples before and after, of which neither may be further away than
@@ -22,57 +23,20 @@ class Interpolated(Operator):
             nothing, for values that are not angles.
     """
 
-    ordered = False
-
-    __slots__ = ("_newest", "_retention", "_shown_at", "_times", "_turns", "_values", "_within", "dropped")
+    __slots__ = ("_turns", "_within")
 
     def __init__(
         self, emit: Emit, count: int, within: float, lateness: float, turns: Sequence[float] = ()
     ) -> None:
-        super().__init__(emit)
-        self._within, self._retention, self._turns = within, within + lateness, tuple(turns)
-        self._times: list[list[float]] = [[] for _ in range(count)]
-        self._values: list[list[Values]] = [[] for _ in range(count)]
-        self._newest = self._shown_at = -math.inf
-        self.dropped = 0
+        super().__init__(emit, [within + lateness, *[within + lateness + within] * (count - 1)])
+        self._within, self._turns = within, tuple(turns)
 
-    def take(self, source: int, time: float, values: Values | None) -> None:
-        if values is None:
-            self._times[source].clear()
-            self._values[source].clear()
-            self.hide()
-            return
-        kept_for = self._retention + (self._within if source else 0.0)
-        if time < self._newest - kept_for or (source == 0 and time <= self._shown_at):
-            self.dropped += 1
-            return
-        times = self._times[source]
-        place = bisect_right(times, time)
-        times.insert(place, time)
-        self._values[source].insert(place, values)
-        if time > self._newest:
-            self._newest = time
-            self._forget()
-        self._look()
-
-    def advance(self, time: float) -> None:
-        self.deadline = math.inf
-
-    def _forget(self) -> None:
-        for source, times in enumerate(self._times):
-            oldest = self._newest - self._retention - (self._within if source else 0.0)
-            if times and times[0] < oldest:
-                count = bisect_left(times, oldest)
-                del times[:count], self._values[source][:count]
-
-    def _look(self) -> None:
+    def join(self, source: int, place: int, time: float) -> None:
         """Show the samples of the first stream for which all that is needed has come, in their order."""
-        for time, values in list(zip(self._times[0], self._values[0], strict=True)):
-            made = self._made(time, values)
+        for due, values in list(zip(self._times[0], self._values[0], strict=True)):
+            made = self._made(due, values)
             if made is not None:
-                self._shown_at = time
-                count = bisect_right(self._times[0], time)
-                del self._times[0][:count], self._values[0][:count]
+                self.use(0, bisect_right(self._times[0], due) - 1)
                 self.show(made)
 
     def _made(self, time: float, values: Values) -> Values | None:

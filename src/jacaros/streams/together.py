@@ -1,12 +1,12 @@
 """Several streams as one: samples whose stamps are near each other, as message_filters' ApproximateTime gives them."""
 
-import math
-from bisect import bisect_left, bisect_right
+from bisect import bisect_left
 
-from jacaros.streams.operator import Emit, Operator, Values
+from jacaros.streams.joining import Joining
+from jacaros.streams.operator import Emit
 
 
-class Together(Operator):
+class Together(Joining):
     """Shows the values of one sample of each stream, one behind the other, when their times are within a bound.
 
     A set is made as soon as one can be: of the sample that has just come and the nearest ones of the other streams.  No
@@ -18,46 +18,21 @@ class Together(Operator):
         lateness: seconds for which a sample waits for those of other streams beyond that.
     """
 
-    ordered = False
-
-    __slots__ = ("_newest", "_retention", "_times", "_used", "_values", "_within", "dropped")
+    __slots__ = ("_within",)
 
     def __init__(self, emit: Emit, count: int, within: float, lateness: float) -> None:
-        super().__init__(emit)
-        self._within, self._retention = within, within + lateness
-        self._times: list[list[float]] = [[] for _ in range(count)]
-        self._values: list[list[Values]] = [[] for _ in range(count)]
-        self._used = [-math.inf] * count
-        self._newest = -math.inf
-        self.dropped = 0
+        super().__init__(emit, [within + lateness] * count)
+        self._within = within
 
-    def take(self, source: int, time: float, values: Values | None) -> None:
-        if values is None:
-            self._times[source].clear()
-            self._values[source].clear()
-            self.hide()
-            return
-        if time <= self._used[source] or time < self._newest - self._retention:
-            self.dropped += 1
-            return
-        place = bisect_right(self._times[source], time)
-        self._times[source].insert(place, time)
-        self._values[source].insert(place, values)
-        if time > self._newest:
-            self._newest = time
-            self._forget(time - self._retention)
+    def join(self, source: int, place: int, time: float) -> None:
         chosen = self._nearest(source, place, time)
-        if chosen is not None:
-            self._use(chosen)
-
-    def advance(self, time: float) -> None:
-        self.deadline = math.inf
-
-    def _forget(self, oldest: float) -> None:
-        for times, values in zip(self._times, self._values, strict=True):
-            if times and times[0] < oldest:
-                count = bisect_left(times, oldest)
-                del times[:count], values[:count]
+        if chosen is None:
+            return
+        made: list[object] = []
+        for number, each in enumerate(chosen):
+            made += self._values[number][each]
+            self.use(number, each)
+        self.show(tuple(made))
 
     def _nearest(self, source: int, place: int, time: float) -> list[int] | None:
         """Return the place of one sample in each stream; None unless they are within the bound."""
@@ -70,15 +45,6 @@ class Together(Operator):
             chosen.append(found)
             first, last = min(first, times[found]), max(last, times[found])
         return chosen if last - first <= self._within else None
-
-    def _use(self, chosen: list[int]) -> None:
-        made: list[object] = []
-        for number, place in enumerate(chosen):
-            times, values = self._times[number], self._values[number]
-            made += values[place]
-            self._used[number] = times[place]
-            del times[: place + 1], values[: place + 1]
-        self.show(tuple(made))
 
 
 def _nearest_to(times: list[float], time: float) -> int | None:

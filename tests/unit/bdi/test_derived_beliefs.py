@@ -9,11 +9,13 @@ from recording_host import RecordingHost, mind
 from jacaros.asl import nodes
 from jacaros.asl.checks.beliefs import beliefs_of
 from jacaros.asl.diagnostics import AslError
+from jacaros.asl.directives.derive import format_derivation
+from jacaros.asl.directives.history import format_history
 from jacaros.asl.loader import load_program
 from jacaros.bdi.actions.internal_action import STANDARD
 from jacaros.bdi.mind import Mind
 from jacaros.bdi.rules import deriving
-from jacaros.bdi.snapshot import restore, stored
+from jacaros.bdi.snapshot import copy_mind, restore, stored
 from jacaros.bdi.state.act import Percept
 from jacaros.terms.values import SOURCE_PERCEPT, functor
 from jacaros.testing.run import run_project
@@ -156,24 +158,99 @@ def test_a_mind_that_is_restored_after_each_cycle_derives_the_same(derived: str,
     assert found[0] == found[1]
 
 
-def test_beliefs_of_declarations_of_before_are_given_up() -> None:
-    host = mind("{ derive(d, count(e(_), within(1000), at_least(2))) } !s. +!s <- +e(1); +e(2).")
-    host.agent.run(100)
-    assert len(host.agent.beliefs[functor("d", 0)]) == 1
-    deriving.resume(host.agent, nodes.Program(), None)
-    assert len(host.agent.beliefs[functor("d", 0)]) == 0
+D = "{ derive(d, count(e(_), within(1000), at_least(2))) }"
+ON_OFF = "+d <- .print(on). -d <- .print(off)."
 
 
-def test_a_changed_program_replaces_the_declarations() -> None:
-    host = mind("{ derive(d, count(e(_), within(1000), at_least(1))) } !s. +!s <- +e(1).")
-    host.agent.run(100)
-    assert len(host.agent.beliefs[functor("d", 0)]) == 1
-    program, _ = load_program("a.asl", "{ derive(f, count(e(_), within(1000), at_least(1))) }")
-    deriving.replace(host.agent, program)
+def after_two_events(more: str = "") -> RecordingHost:
+    """A host whose agent derives `d` of two events, 400 ms after the second one."""
+    host = mind(f"{D} {ON_OFF} {more} !s. +!s <- +e(1); .wait(100); +e(2); .wait(5000).")
+    run_until(host, host.time + 0.5)
+    assert host.printed == ["on"]
+    return host
+
+
+def change(program: str) -> nodes.Program:
+    """Another program for the agent."""
+    return load_program("a.asl", f"{program} {ON_OFF} !s. +!s.")[0]
+
+
+def test_a_mind_that_is_restored_for_another_program_gives_up_what_that_does_not_derive() -> None:
+    host = after_two_events()
+    data = json.loads(json.dumps(stored(host.agent)))
+    old = host.agent
+    program = nodes.Program(old.program.beliefs, old.program.goals, old.program.plans)
+    host.agent = Mind(old.name, program, host, old.options, old.engine.actions)
+    restore(host.agent, data, same_host=True)
     assert len(host.agent.beliefs[functor("d", 0)]) == 0
-    host.agent.add_belief(functor("e", 1), (2.0,), ())
-    host.agent.run(100)
+    assert len(host.agent.beliefs[functor("e", 1)]) == 2
+
+
+def test_a_restored_mind_derives_what_an_included_program_declares() -> None:
+    host = after_two_events()
+    program, _ = load_program(
+        "b.asl", "{ derive(f, count(e(_), within(1000), at_least(3))) } +f <- .print(f)."
+    )
+    deriving.declare(host.agent, program)
+    for value in (3.0, 4.0):
+        host.agent.add_belief(functor("e", 1), (value,), ())
+        run_until(host, host.time)
+        restored(host)
+    host.agent.add_belief(functor("e", 1), (5.0,), ())
+    run_until(host, host.time + 0.1)
     assert len(host.agent.beliefs[functor("f", 0)]) == 1
+
+
+@pytest.mark.parametrize(
+    ("new", "until_off"),
+    [(D, 0.5), ("{ derive(d, count(e(_), within(1000), at_least(1))) }", 0.0)],
+    ids=["unchanged", "changed"],
+)
+def test_a_changed_program_keeps_the_windows_of_unchanged_declarations(new: str, until_off: float) -> None:
+    host = after_two_events("{ derive(gone, count(e(_), within(1000))) }")
+    deriving.replace(
+        host.agent, host.agent.program, change(f"{new} {{ derive(f, count(e(_), within(10))) }}")
+    )
+    host.agent.program = change(new)
+    end = host.time + until_off
+    run_until(host, end - 0.01)
+    assert host.printed == (["on"] if until_off else ["on", "off"])
+    run_until(host, end + 0.01)
+    assert host.printed == ["on", "off"]
+    assert len(host.agent.beliefs[functor("gone", 1)]) == 0
+    host.agent.add_belief(functor("e", 1), (5.0,), ())
+    run_until(host, host.time)
+    assert [entry for entry, _ in host.agent.beliefs[functor("f", 1)].entries()] == [(1.0,)]
+
+
+def test_a_changed_program_keeps_the_history_that_both_declare() -> None:
+    kept = "{ history(e(_), within(1000)) }"
+    host = after_two_events(f"{kept} {{ history(g(_), within(1000)) }}")
+    deriving.replace(host.agent, host.agent.program, change(f"{D} {kept}"))
+    past = host.agent.observers.derived
+    assert past is not None
+    assert [row for row, _ in past.past(functor("e", 1), 450.0) or ()] == [(1.0,)]
+    assert past.past(functor("g", 1), 50.0) is None
+
+
+def test_a_clone_goes_on_with_the_windows_of_the_original() -> None:
+    host = after_two_events("{ history(e(_), within(1000)) }")
+    other = RecordingHost()
+    other.time = host.time
+    clone = other.agent = Mind(
+        "clone", host.agent.program, other, host.agent.options, host.agent.engine.actions
+    )
+    copy_mind(host.agent, clone)
+    past = clone.observers.derived
+    assert past is not None
+    assert [row for row, _ in past.past(functor("e", 1), 450.0) or ()] == [(1.0,)]
+    assert len(clone.beliefs[functor("d", 0)]) == 1
+    run_until(other, other.time + 0.49)
+    assert len(clone.beliefs[functor("d", 0)]) == 1
+    run_until(other, other.time + 0.02)
+    assert other.printed == ["off"]
+    assert len(clone.beliefs[functor("d", 0)]) == 0
+    assert host.printed == ["on"]
 
 
 def test_contexts_and_waits_see_derived_beliefs(tmp_path: Path) -> None:
@@ -257,6 +334,11 @@ def test_an_agent_without_declarations_listens_to_nothing(tmp_path: Path) -> Non
             "`equals` is for mapping files",
             "write the value into the belief, as in door(open)",
         ),
+        (
+            "together([e(X), f(Y)], within(1), lateness(1))",
+            "`lateness` is for mapping files",
+            "leave it out: an agent takes changes in one after the other, so that none is late",
+        ),
         ("count(e[source(self)], within(1))", "annotations are not looked at here", "leave them out"),
         ("count(e(f(X)), within(1))", "a variable within a term", "write _ for the whole argument"),
         ("count(d, within(1))", "`d` is derived from itself", "derive it from other beliefs"),
@@ -269,6 +351,20 @@ def test_wrong_patterns_are_told_with_help(derived: str, message: str, help_: st
     told = {each.message: each.hint for each in caught.value.diagnostics}
     assert message in told, told
     assert help_ is None or told[message] == help_
+
+
+def test_directives_are_written_as_they_are_read() -> None:
+    text = """{ derive(a, count(e(_,3,"x y"), within(100), at_least(2))) }
+        { derive(b, missing(r(_), after(q(z)), within(57))) }
+        { derive(c, interpolated([scan(R), pose(X,A), p(B,_,C)], within(0.1), degrees(A, C), radians(B))) }
+        { derive(d, inside(pose(X,Y,_), circle(0, -1, 1.5), margin(0.5))) }
+        { derive(f, held(~open(_), lasting(1234.5678))) }
+        { begin namespace(ns) } { derive(g, all([ns::g2, h::i(_)], within(100))) } { end }
+        { history(h(_,_), within(333.3)) }
+        { history(ns::k, within(1)) }"""
+    program, _ = load_program("a.asl", f"{text}\n!s. +!s.")
+    written = [*map(format_derivation, program.derived), *map(format_history, program.histories)]
+    assert written == [line.strip() for line in text.splitlines()]
 
 
 def test_circles_over_several_declarations_are_told() -> None:

@@ -6,15 +6,13 @@ from pathlib import Path
 import pytest
 from recording_host import RecordingHost, mind
 
-from jacaros.asl.checker import check
-from jacaros.asl.checks.actions import KnownActions
 from jacaros.asl.diagnostics import AslError
 from jacaros.asl.loader import load_program
-from jacaros.bdi.actions.internal_action import STANDARD
 from jacaros.bdi.mind import Mind
 from jacaros.bdi.rules import deriving
 from jacaros.bdi.snapshot import restore, stored
 from jacaros.bdi.state.act import Percept
+from jacaros.mas.checking import check_files
 from jacaros.terms.values import SOURCE_PERCEPT, functor
 from jacaros.testing.run import run_project
 
@@ -145,9 +143,9 @@ def test_memory_is_bounded_by_the_window() -> None:
     for value in range(1000):
         old = show(host, float(value), old)
         run_until(host, host.time + 0.01)
-    held = deriving.stored(host.agent)
+    held = deriving.stored(host.agent, host.agent.program)
     assert held is not None
-    [(_, spans)] = held["histories"]
+    [(_, spans)] = held["histories"]["kept"]
     assert 100 <= len(spans) <= 102
 
 
@@ -164,6 +162,38 @@ def test_a_stored_mind_keeps_its_history(same_host: bool, now: str) -> None:
     restore(host.agent, data, same_host=same_host)
     run_until(host, host.time + 0.1)
     assert [ask(host, each) for each in (0.0, 150.0, 250.0)] == [now, "[2]", "[1]"]
+
+
+def test_a_history_that_an_artifact_asks_for_is_like_one_of_a_directive() -> None:
+    host = mind(PROPERTY.split("}")[1])
+    old = show(host, 1.0, [])
+    run_until(host, host.time + 0.1)
+    assert ask(host, 50.0) == "[]"
+    host.agent.keep_histories(None, {"p": 0.5, "q": 1.0})
+    host.agent.keep_histories("ns", {"p": 9.0})
+    for value in (2.0, 3.0):
+        run_until(host, host.time + 0.1)
+        old = show(host, value, old)
+        run_until(host, host.time)
+    assert [ask(host, each) for each in (0.0, 50.0, 150.0, 250.0, 501.0)] == ["[3]", "[2]", "[1]", "[]", "[]"]
+    data = json.loads(json.dumps(stored(host.agent)))
+    before = host.agent
+    host.agent = Mind(before.name, before.program, host, before.options, before.engine.actions)
+    restore(host.agent, data, same_host=True)
+    run_until(host, host.time + 0.1)
+    assert [ask(host, each) for each in (50.0, 150.0, 250.0, 501.0)] == ["[3]", "[2]", "[1]", "[]"]
+
+
+def test_the_longest_of_several_windows_of_a_history_counts() -> None:
+    host = mind("{ history(p(_), within(100)) }" + PROPERTY)
+    host.agent.keep_histories(None, {"p": 0.5})
+    old = show(host, 1.0, [])
+    for value in (2.0, 3.0):
+        run_until(host, host.time + 0.4)
+        old = show(host, value, old)
+    assert [ask(host, each) for each in (100.0, 500.0, 1000.0, 1001.0)] == ["[2]", "[1]", "[]", "[]"]
+    deriving.replace(host.agent, host.agent.program, load_program("a.asl", "!s. +!s.")[0])
+    assert [ask(host, each) for each in (100.0, 500.0, 501.0)] == ["[2]", "[1]", "[]"]
 
 
 @pytest.mark.parametrize(
@@ -185,18 +215,16 @@ def test_wrong_declarations_are_reported(declared: str, message: str) -> None:
     assert caught.value.diagnostics[0].hint
 
 
-def test_check_reports_a_history_that_is_not_kept() -> None:
-    text = "{ history(a(_), within(5)) } !s. +!s : a(_)[ago(1)] & not b(_,_)[ago(1)] <- ?c[ago(2)]."
-    program, _ = load_program("a.asl", text)
+def test_check_reports_a_history_that_is_not_kept(tmp_path: Path) -> None:
+    file = tmp_path / "a.asl"
+    file.write_text("{ history(a(_), within(5)) } !s. +!s : a(_)[ago(1)] & not b(_,_)[ago(1)] <- ?c[ago(2)].")
     told = [
-        (each.message, each.hint)
-        for each in check(program, KnownActions(STANDARD))
-        if each.code == "no-history"
+        (each.message, each.hint) for each in check_files([file]).diagnostics if each.code == "no-history"
     ]
     assert told == [
         (
             f"no history of `{each}` is kept: `ago` finds nothing",
-            f"declare {{ history({each}, within(2000)) }}",
+            f"declare {{ history({each}, within(2000)) }}, or `history: 2` in the mapping file of a property",
         )
         for each in ("b(_, _)", "c")
     ]

@@ -10,7 +10,8 @@ file                                           what it holds
 `rows`                                         of a message, or of each element of an array
 `artifact`, `host`, `operation_methods`        the class that is made of it
 `feeds`, `frames`, `parameters`                properties and signals
-`deriving`                                     properties and signals composed of events of others
+`deriving`, `stamped_frames`                   properties and signals composed of events of others; frames at the
+                                               stamps of messages
 `operating`, `publishing`, `type_search`       operations; types that the file leaves out
 ============================================== =======================================================================
 """

@@ -129,6 +129,7 @@ class TopicPart:
         initial: values before the first message; None: there is no property then.
         when_changed: a signal is sent only for other values than before.
         frame: the only frame whose messages are shown; None: any.
+        history: seconds for which agents that focus the artifact keep past values.
     """
 
     name: str
@@ -148,6 +149,7 @@ class TopicPart:
     frame: Written | None = None
     signal: bool = False
     description: str = ""
+    history: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -159,6 +161,7 @@ class FramePart:
         fields: with paths of one step, ``x`` to ``stamp``.
         rate: looks a second.
         oldest: seconds that a transform may be old; None: any.
+        history: as of a `TopicPart`.
     """
 
     name: str
@@ -171,6 +174,7 @@ class FramePart:
     oldest: float | None = None
     policy: ReadingPolicy = ALWAYS
     description: str = ""
+    history: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -201,6 +205,7 @@ class DerivedPart:
     Attributes:
         spec: the pattern; None after a mistake.
         sources: the properties and signals, as written.
+        history: as of a `TopicPart`.
     """
 
     name: str
@@ -208,6 +213,7 @@ class DerivedPart:
     spec: Spec | None
     sources: tuple[Written, ...]
     description: str = ""
+    history: float | None = None
 
     @property
     def signal(self) -> bool:
@@ -352,6 +358,12 @@ class ArtifactPart:
     def properties(self) -> tuple[TopicPart, ...]:
         """Those from topics."""
         return tuple(part for part in self.topics if not part.signal)
+
+    @property
+    def histories(self) -> dict[str, float]:
+        """The seconds for which past values of properties are kept, by name."""
+        parts: tuple[TopicPart | FramePart | DerivedPart, ...] = (*self.topics, *self.frames, *self.derived)
+        return {each.name: each.history for each in parts if each.history is not None}
 
     @property
     def signals(self) -> tuple[TopicPart, ...]:

@@ -6,14 +6,15 @@ from collections import deque
 from functools import partial
 
 from jacaros.artifacts.kit.reading import Values
-from jacaros.artifacts.mapping.declared import ArtifactPart, DerivedPart, FieldPart
+from jacaros.artifacts.mapping.declared import ArtifactPart, DerivedPart, FieldPart, FramePart
 from jacaros.artifacts.mapping.host import Host
 from jacaros.artifacts.mapping.read_fields import ANGLES
+from jacaros.artifacts.mapping.stamped_frames import StampedFrames
 from jacaros.clock import Timer
 from jacaros.ros.message import to_seconds
 from jacaros.streams.operator import HIDE, OCCUR, SHOW
 from jacaros.streams.pattern import Pattern
-from jacaros.streams.schema import Spec
+from jacaros.streams.schema import JOINING, Spec
 from jacaros.trace import Cause
 
 JUMP = 0.1
@@ -41,8 +42,14 @@ class Derivation:
         self._latest = host.clock.now()
         self._told_dropped = 0
         self._pattern = Pattern(spec, self._latest, self._emit)
+        frames = frames_at_stamps(spec, host.part)
+        self._frames = None
+        if frames:
+            patience = float(spec.options["within"]) + spec.lateness
+            self._frames = StampedFrames(host, part, frames, patience, self._take_with_frames)
         for number, name in enumerate(spec.streams):
-            host.taps.setdefault(name, []).append(partial(self.hear, number))
+            hear = self._hear_end if number in frames else self.hear
+            host.taps.setdefault(name, []).append(partial(hear, number))
         host.at_dispose(self.close)
         self._wait()
 
@@ -58,8 +65,32 @@ class Derivation:
         now = self._host.clock.now()
         if now < self._latest - JUMP:
             self._restart(now)
+        time = min(stamp, now) if stamp > 0.0 else now
+        if self._frames is not None and stream == 0:
+            if values is not None:
+                self._frames.add(time, values, cause)
+                return
+            self._frames.clear()
         self._latest, self._cause = now, cause
-        self._pattern.take(stream, min(stamp, now) if stamp > 0.0 else now, values)
+        self._pattern.take(stream, time, values)
+        self._settle()
+
+    def _hear_end(self, stream: int, stamp: float, values: Values | None, cause: Cause | None) -> None:
+        """Hear that a frame is no longer known; while it is, its values are looked up at stamps."""
+        if values is None:
+            self.hear(stream, stamp, None, cause)
+
+    def _take_with_frames(
+        self, time: float, values: Values, frames: dict[int, Values], cause: Cause | None
+    ) -> None:
+        """Take a message of the first stream with the frames at its time."""
+        self._latest, self._cause = self._host.clock.now(), cause
+        for number, found in frames.items():
+            self._pattern.take(number, time, found)
+        self._pattern.take(0, time, values)
+        self._settle()
+
+    def _settle(self) -> None:
         if self._pattern.dropped != self._told_dropped:
             self._tell_dropped()
         self._wait()
@@ -69,6 +100,8 @@ class Derivation:
             self._emit(HIDE, ())
         self._pattern = Pattern(self._spec, now, self._emit)
         self._told_dropped = 0
+        if self._frames is not None:
+            self._frames.clear()
         self.close()
 
     def _tell_dropped(self) -> None:
@@ -128,6 +161,14 @@ class Derivation:
         if self._timer is not None:
             self._timer.cancel()
             self._timer = None
+
+
+def frames_at_stamps(spec: Spec, part: ArtifactPart) -> dict[int, FramePart]:
+    """Return the frames that are looked up at the stamps of the first stream, by the numbers of their streams."""
+    if spec.operator not in JOINING:
+        return {}
+    frames = {each.name: each for each in part.frames}
+    return {number: frames[name] for number, name in enumerate(spec.streams) if number and name in frames}
 
 
 def with_angles(spec: Spec, part: ArtifactPart) -> Spec:

@@ -1,9 +1,10 @@
 """Frames of tf as properties: looked up so many times a second."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
-from jacaros.artifacts.mapping.declared import FramePart
+from jacaros.artifacts.kit.reading import Values
+from jacaros.artifacts.mapping.declared import FieldPart, FramePart
 from jacaros.artifacts.mapping.decoding import converted
 from jacaros.artifacts.mapping.host import Host
 from jacaros.env.values import Structure
@@ -24,7 +25,7 @@ class FrameFeed:
         self._host, self._part = host, part
         self._target, self._source = host.frame(part.target), host.frame(part.source)
         self._reading = host.reading_of(part.name, part.policy)
-        self._values = [(field.path.text, converted(field.conversion)) for field in part.fields]
+        self._values = values_of(part.fields)
         self._notes = [(note.name, note.path.text, converted(note.conversion)) for note in part.annotations]
         self._taps = host.taps.get(part.name, ())
         self._told = -1.0
@@ -49,7 +50,7 @@ class FrameFeed:
             self._part.name,
             tuple(Structure(name, (convert(_part(transform, what)),)) for name, what, convert in self._notes),
         )
-        values = tuple([convert(_part(transform, what)) for what, convert in self._values])
+        values = self._values(transform)
         self._reading.take(values)
         if self._taps and (transform.stamp != self._told or not transform.stamp):
             self._told = transform.stamp
@@ -80,6 +81,12 @@ class FrameFeed:
     def close(self) -> None:
         """Look no more."""
         self._timer.cancel()
+
+
+def values_of(fields: Iterable[FieldPart]) -> Callable[[Transform], Values]:
+    """Return what gives the values of a transform that are shown."""
+    parts = [(field.path.text, converted(field.conversion)) for field in fields]
+    return lambda transform: tuple([convert(_part(transform, what)) for what, convert in parts])
 
 
 def _roll(transform: Transform) -> float:

@@ -77,6 +77,7 @@ def _properties(part: ArtifactPart, interfaces: Interfaces) -> Iterator[str]:
     for frame in part.frames:
         told = frame.description or f"frame {frame.source} in {frame.target}"
         words = [_of_transform(field) for field in frame.fields]
+        told += _kept(frame.history)
         yield f"{usage(frame.name, frame.fields)}: {_told(told, frame.fields, words)}."
     for parameter in part.parameters:
         yield f"{parameter.name}(Value): {_of_parameter(parameter)}."
@@ -127,7 +128,12 @@ def _derived(part: DerivedPart, spec: Spec) -> str:
         if spec.operator in ("debounce", "delayed", "together", "interpolated")
         else "(Value)"
     )
-    return f"{part.name}{values}: {told.rstrip('.')}."
+    return f"{part.name}{values}: {told.rstrip('.')}{_kept(part.history)}."
+
+
+def _kept(history: float | None) -> str:
+    """How long past values are kept, after a comma."""
+    return "" if history is None else f", past values are kept for {history:g} s"
 
 
 def _from_topic(topic: TopicPart, interfaces: Interfaces) -> str:
@@ -136,7 +142,7 @@ def _from_topic(topic: TopicPart, interfaces: Interfaces) -> str:
     type_name = topic.type_name.text if topic.type_name is not None else ""
     of_type = f" ({type_name})" if type_name else ""
     told = topic.description or f"from topic {topic.topic.text}{of_type}{each}{_when(topic.policy)}"
-    return _observed(topic, type_name, told, interfaces)
+    return _observed(topic, type_name, told.rstrip(".") + _kept(topic.history), interfaces)
 
 
 def _observed(topic: TopicPart, type_name: str, told: str, interfaces: Interfaces) -> str:

@@ -12,6 +12,12 @@ EXAMPLE: Final = "as in { derive(bumped_often, count(bump(_), within(5000), at_l
 _TIMES: Final = {"within": "within", "lasting": "for", "by": "by"}
 """Options that are milliseconds here, and their names in the schema, where they are seconds (`for` is a keyword)."""
 
+_OF_MAPPINGS: Final = {
+    "equals": "write the value into the belief, as in door(open)",
+    "lateness": "leave it out: an agent takes changes in one after the other, so that none is late",
+}
+"""Options that only mapping files have, and what to write here."""
+
 _TURNS: Final = {"degrees": 360.0, "radians": math.tau}
 """Options of `interpolated` that name angles, and their whole turns."""
 
@@ -69,7 +75,7 @@ class _Reader:
         checked = {
             name: value for name, value in options.items() if operator != "interpolated" or name not in _TURNS
         }
-        for fault in list(faults(operator, [_key(each) for each in streams], checked)):
+        for fault in list(faults(operator, [written(each) for each in streams], checked)):
             self._say(_as_written(fault.message), places.get(fault.option, pattern), _as_written(fault.help))
         if "after" in options and isinstance(options["after"], nodes.Literal):
             streams += list(self._streams(options.pop("after"), False, operator))
@@ -114,10 +120,8 @@ class _Reader:
                     "an option is expected", term, "write options behind the belief, such as within(5000)"
                 )
                 continue
-            if term.functor == "equals":
-                self._say(
-                    "`equals` is for mapping files", term, "write the value into the belief, as in door(open)"
-                )
+            if term.functor in _OF_MAPPINGS:
+                self._say(f"`{term.functor}` is for mapping files", term, _OF_MAPPINGS[term.functor])
                 continue
             name = _TIMES.get(term.functor, term.functor)
             places[name] = term
@@ -181,7 +185,7 @@ def _constant(term: nodes.Term) -> object:
     return term
 
 
-def _key(stream: nodes.Literal) -> str:
+def written(stream: nodes.Literal) -> str:
     """A name for a stream, the same for equal ones."""
     from jacaros.asl.formatter import format_term
 
@@ -201,7 +205,53 @@ def _as_written(text: str) -> str:
 
 def streams_of(derived: nodes.Derivation) -> tuple[str, ...]:
     """Names for the streams of a declaration, in its order; the same for equal ones."""
-    return tuple(map(_key, derived.streams))
+    return tuple(map(written, derived.streams))
+
+
+def format_derivation(derived: nodes.Derivation) -> str:
+    """Return the directive as text, the same for equal ones; in a block of its namespace, if it has one."""
+    streams = list(map(written, derived.streams))
+    words = [f"after({streams.pop()})"] if derived.operator == "missing" else []
+    words += [_option(name, value) for name, value in derived.options]
+    words += _angles_of(derived)
+    first = f"[{', '.join(streams)}]" if OPERATORS[derived.operator].several else streams[0]
+    pattern = f"{derived.operator}({', '.join([first, *words])})"
+    directive = f"{{ derive({derived.name}, {pattern}) }}"
+    name = derived.namespace
+    return directive if name is None else f"{{ begin namespace({name}) }} {directive} {{ end }}"
+
+
+def _option(name: str, value: float | tuple[float, ...]) -> str:
+    """An option as programs write it."""
+    from jacaros.terms.text import number_text
+
+    values = value if isinstance(value, tuple) else (value,)
+    for here, known in _TIMES.items():
+        if name == known:
+            return f"{here}({number_text(milliseconds(values[0]))})"
+    return f"{name}({', '.join(number_text(float(each)) for each in values)})"
+
+
+def milliseconds(seconds: float) -> float:
+    """Return the number of milliseconds that is read as that number of seconds."""
+    exact = seconds * 1000.0
+    rounded = round(exact, 6)
+    return rounded if rounded / 1000.0 == seconds else exact
+
+
+def _angles_of(derived: nodes.Derivation) -> list[str]:
+    """The options that name the variables of angles."""
+    named = [each.arguments[place] for each in derived.streams[1:] for place in values_of(each)]
+    found = []
+    for name, turn in _TURNS.items():
+        angles = [
+            each.name
+            for each, own in zip(named, derived.turns, strict=False)
+            if own == turn and isinstance(each, nodes.Variable)
+        ]
+        if angles:
+            found.append(f"{name}({', '.join(angles)})")
+    return found
 
 
 def circle(derived: list[nodes.Derivation]) -> nodes.Derivation | None:

@@ -3,8 +3,9 @@
 from typing import Final
 
 from jacaros.asl import nodes
-from jacaros.asl.directives.derive import Placed, Report
+from jacaros.asl.directives.derive import Placed, Report, milliseconds, written
 from jacaros.streams.schema import LONGEST
+from jacaros.terms.text import number_text
 
 EXAMPLE: Final = "as in { history(range(_), within(2000)) }"
 _DAY: Final = LONGEST * 1000.0
@@ -38,6 +39,12 @@ def read_history(directive: nodes.Literal, placed: Placed, report: Report) -> no
     found = placed(belief)
     assert isinstance(found, nodes.Literal)
     return nodes.History(found, window / 1000.0, span=directive.span)
+
+
+def format_history(history: nodes.History) -> str:
+    """Return the directive as text, the same for equal ones."""
+    window = number_text(milliseconds(history.window))
+    return f"{{ history({written(history.belief)}, within({window})) }}"
 
 
 def asks_for_past(literal: nodes.Literal) -> bool:

@@ -26,6 +26,7 @@ from jacaros.errors import JacarosError
 from jacaros.terms.text import plan_text, text
 from jacaros.terms.values import (
     SELF,
+    SOURCE_DERIVED,
     SOURCE_SELF,
     Annotated,
     Functor,
@@ -130,7 +131,9 @@ def list_files(ctx: Context, folder: Term, *rest: Term) -> bool:
 
 @internal_action(".save_agent", arity=(1, 2), restricted=0)
 def save_agent(ctx: Context, file: Term, goals: Term = None) -> None:
-    """``.save_agent(File[, Goals])`` writes the beliefs, rules and plans of the agent as a program.
+    """``.save_agent(File[, Goals])`` writes the beliefs, rules, plans and directives of the agent as a program.
+
+    Derived beliefs are left out: the directives derive them anew, from the beliefs that are written.
 
     *Goals* is a list of the initial goals that the program is to have.  A path that is not absolute is one of
     the project's folder.
@@ -149,14 +152,17 @@ def save_agent(ctx: Context, file: Term, goals: Term = None) -> None:
 def _program_text(agent: Circumstance, goals: list[Term]) -> str:
     """What an agent knows, with initial goals."""
     known = knowledge(agent)
+    directives = _directives(agent)
     parts = [
         "// beliefs and rules",
         *(
             _belief_text(symbol, entry, annotations)
             for symbol, rows, late in known["beliefs"]
             for entry, annotations in (*reversed(rows), *late)
+            if annotations != (SOURCE_DERIVED,)
         ),
         "",
+        *(["// derived events and histories", *directives, ""] if directives else ()),
         "// initial goals",
         *(f"!{text(goal)}." for goal in goals),
         "",
@@ -172,12 +178,24 @@ def _program_text(agent: Circumstance, goals: list[Term]) -> str:
     return "\n".join(parts) + "\n"
 
 
+def _directives(agent: Circumstance) -> list[str]:
+    """The derived events and histories that the program of the agent, and programs it has included, declare."""
+    if agent.observers.derived is None:
+        return []
+    from jacaros.asl.directives.derive import format_derivation  # here: most agents derive nothing
+    from jacaros.asl.directives.history import format_history
+    from jacaros.bdi.rules.deriving import directives
+
+    derived, histories = directives(agent)
+    return [*map(format_derivation, derived), *map(format_history, histories)]
+
+
 def _belief_text(symbol: Functor, entry: Any, annotations: tuple[Term, ...]) -> str:
-    """A rule; or a belief without its own source, which a program's beliefs get anyway."""
+    """A rule; or a belief without its own source, which a program's beliefs get anyway, or that of a pattern."""
     if isinstance(entry, Rule):
         return f"{format_term(entry.node)}."
     belief = literal(symbol, entry, annotations) if isinstance(entry, tuple) else entry.head()
-    kept = tuple(each for each in annotations if each != SOURCE_SELF)
+    kept = tuple(each for each in annotations if each not in (SOURCE_DERIVED, SOURCE_SELF))
     return f"{text(Annotated(bare(belief), kept) if kept else bare(belief))}."
 
 

@@ -7,25 +7,25 @@ look (a property with a new value) has not ended in between.
 import heapq
 import itertools
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from jacaros.asl import nodes
-from jacaros.asl.directives.derive import streams_of, values_of
+from jacaros.asl.directives.derive import format_derivation, streams_of, values_of
+from jacaros.asl.directives.history import format_history
 from jacaros.asl.lowering import lower_value
 from jacaros.bdi.rules import belief_update
 from jacaros.bdi.rules.alarms import cancel_alarm, set_alarm
-from jacaros.bdi.rules.past import History, is_kept
+from jacaros.bdi.rules.histories import Histories
 from jacaros.bdi.state.belief_base import Item, Row, take_away
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.waiting import Alarm
 from jacaros.streams.operator import HIDE, OCCUR, Values
 from jacaros.streams.pattern import Pattern
 from jacaros.streams.schema import Spec
-from jacaros.terms.values import Functor, Term, arguments_of, atom, functor, functor_of
+from jacaros.terms.values import SOURCE_DERIVED, Functor, Term, arguments_of, functor, functor_of
 from jacaros.trace import Cause
 
-SOURCE_DERIVED: Term = (functor("source", 1), atom("derived"))
 _ANNOTATIONS = (SOURCE_DERIVED,)
 
 
@@ -79,15 +79,17 @@ class Derived:
     """One declaration at work.
 
     Attributes:
+        declared: what the program says.
+        text: the same as text, equal for equal declarations.
         pattern: its state.
         scheduled: when it is looked at next.
         row: of the belief that is held, None for none.
     """
 
-    __slots__ = ("name", "namespace", "owner", "pattern", "row", "scheduled")
+    __slots__ = ("declared", "owner", "pattern", "row", "scheduled", "text")
 
     def __init__(self, owner: "DerivedBeliefs", declared: nodes.Derivation, start: float) -> None:
-        self.owner, self.name, self.namespace = owner, declared.name, declared.namespace
+        self.owner, self.declared, self.text = owner, declared, format_derivation(declared)
         spec = Spec(declared.operator, streams_of(declared), dict(declared.options), turns=declared.turns)
         self.pattern = Pattern(spec, start, self._emit)
         self.scheduled = math.inf
@@ -114,7 +116,7 @@ class Derived:
             belief_update.disbelieve(self.owner.agent, symbol, row, _ANNOTATIONS)
 
     def _symbol(self, arity: int) -> Functor:
-        return functor(self.name, arity, False, self.namespace)
+        return functor(self.declared.name, arity, False, self.declared.namespace)
 
 
 class DerivedBeliefs:
@@ -125,17 +127,16 @@ class DerivedBeliefs:
 
     Attributes:
         cause: of the change that is being worked on.
+        histories: what beliefs were.
     """
 
     def __init__(self, agent: Circumstance) -> None:
         self.agent = agent
         self.cause: Cause | None = None
-        self._declared: list[nodes.Derivation] = []
-        self._all: list[Derived] = []
+        self.histories = Histories(agent, self._soon)
+        self._all: dict[str, Derived] = {}
         self._streams: dict[Functor, dict[str, Stream]] = {}
         self._pending: list[tuple[Stream, Values | None, Cause | None]] = []
-        self._histories: dict[Functor, History] = {}
-        self._changed: list[tuple[History, Row]] = []
         self._settling = False
         self._queue: list[tuple[float, int, Derived]] = []
         self._numbers = itertools.count()
@@ -143,55 +144,28 @@ class DerivedBeliefs:
         self._due = math.inf
         self._latest, self._offset = agent.architecture.now(), 0.0
 
-    def keep(self, declared: Iterable[nodes.History]) -> None:
-        """Begin with histories that are not kept yet; of two for the same beliefs the longer one."""
-        for each in declared:
-            symbol = functor_of(lower_value(each.belief))
-            assert symbol is not None
-            history = self._histories.get(symbol)
-            if history is None:
-                history = self._histories[symbol] = History(symbol, each.window)
-                self._look_at(history)
-            history.window = max(history.window, each.window)
+    @property
+    def directives(self) -> tuple[list[nodes.Derivation], list[nodes.History]]:
+        """All declarations."""
+        return [each.declared for each in self._all.values()], list(self.histories.declared.values())
 
-    def _look_at(self, history: History) -> None:
-        """Compare a history with the present beliefs."""
-        for row in history.rows(self.agent.beliefs[history.functor]):
-            self._change(history, row)
-
-    def _change(self, history: History, row: Row) -> None:
-        """Have a belief looked at that may have come or gone."""
-        if not self._changed and not self._settling:
+    def _soon(self) -> None:
+        """Settle before the next cycle, unless that is what the agent does."""
+        if not self._settling:
             self.agent.do_soon(settle)
-        self._changed.append((history, row))
-
-    def _note(self, now: float) -> None:
-        """Write the changes that wait into the histories."""
-        changed, self._changed = self._changed, []
-        for history, row in changed:
-            if is_kept(row):
-                history.note(self.agent.beliefs[history.functor], row, now)
 
     def past(self, symbol: Functor, milliseconds: Term) -> list[Item] | None:
         """Return what was believed that time ago, newest first; None if no history of such beliefs is kept."""
-        history = self._histories.get(symbol)
-        if history is None:
-            return None
-        now = self._now()
-        self._note(now)
-        if not isinstance(milliseconds, float) or not 0.0 <= milliseconds <= history.window * 1000.0:
-            return []
-        return history.at(now - milliseconds / 1000.0)
+        return self.histories.past(symbol, milliseconds, self._now())
 
     def declare(self, declared: Iterable[nodes.Derivation]) -> None:
         """Begin with declarations that are not there yet."""
         start = self._now()
         for each in declared:
-            if each in self._declared:
-                continue
-            self._declared.append(each)
             derived = Derived(self, each, start)
-            self._all.append(derived)
+            if derived.text in self._all:
+                continue
+            self._all[derived.text] = derived
             streams = dict(zip(streams_of(each), each.streams, strict=True))
             for number, name in enumerate(derived.pattern.spec.streams):
                 stream = Stream(name, streams[name])
@@ -200,64 +174,84 @@ class DerivedBeliefs:
             self._schedule(derived)
         self._wait()
 
-    def end(self) -> None:
-        """Give up all declarations, with their beliefs."""
-        for derived in self._all:
-            derived.forget()
-        self._declared, self._all, self._streams, self._pending, self._queue = [], [], {}, [], []
-        self._histories, self._changed = {}, []
-        self._wait()
+    def replace(self, old: nodes.Program, new: nodes.Program) -> None:
+        """Have the declarations of *new* in place of those of *old*; what both declare keeps its past."""
+        for text in texts(old) - texts(new):
+            if text in self._all:
+                self._end(self._all.pop(text))
+            self.histories.declared.pop(text, None)
+        self.histories.keep(new.histories)
+        self.declare(new.derived)
 
-    def stored(self) -> dict[str, Any]:
-        """Return what the past has left, as data."""
-        self._note(self._now())
+    def _end(self, derived: Derived) -> None:
+        """Give up a declaration, with its belief."""
+        for streams in self._streams.values():
+            for name, stream in list(streams.items()):
+                stream.listeners = [each for each in stream.listeners if each[0] is not derived]
+                if not stream.listeners:
+                    del streams[name]
+        self._queue = [each for each in self._queue if each[2] is not derived]
+        heapq.heapify(self._queue)
+        derived.forget()
+
+    def stored(self, program: nodes.Program) -> dict[str, Any]:
+        """Return what the past has left, as data, and the declarations that are not those of a program."""
+        self.histories.note(self._now())
+        own = texts(program)
         return {
-            "histories": [(symbol, history.state()) for symbol, history in self._histories.items()],
+            "histories": self.histories.stored(),
             "latest": self._latest,
-            "patterns": [
-                (each.pattern.state(), None if each.row is None else (*each.row,)) for each in self._all
+            "derived": [
+                (text, each.pattern.state(), None if each.row is None else (*each.row,))
+                for text, each in self._all.items()
             ],
+            "included": (
+                [each.declared for text, each in self._all.items() if text not in own],
+                [each for text, each in self.histories.declared.items() if text not in own],
+            ),
             "pending": [(stream.symbol, stream.name, values) for stream, values, _ in self._pending],
         }
 
     def resume(self, held: dict[str, Any]) -> None:
-        """Continue from what was `stored` of an agent with the same program."""
+        """Continue from what was `stored` of an agent; what was not declared there begins."""
         self._latest = held["latest"]
-        for derived, (state, row) in zip(self._all, held["patterns"], strict=True):
-            derived.pattern.resume(state)
-            derived.row = row
-        for symbol, state in held.get("histories", ()):
-            history = self._histories.get(symbol)
-            if history is not None:
-                history.resume(state)
-                self._look_at(history)
+        for text, state, row in held["derived"]:
+            if text in self._all:
+                self._all[text].pattern.resume(state)
+                self._all[text].row = row
+        self.histories.resume(held["histories"])
         for symbol, name, values in held["pending"]:
-            stream = self._streams[symbol][name]
-            stream.last = len(self._pending)
-            self._pending.append((stream, values, None))
+            stream = self._streams.get(symbol, {}).get(name)
+            if stream is not None:
+                stream.last = len(self._pending)
+                self._pending.append((stream, values, None))
         if self._alarm is not None:
             cancel_alarm(self.agent, self._alarm)
         kept = [each for each in self.agent.waits.alarms.values() if each.function is ring]
         self._alarm = kept[0] if kept else None
         self._due = kept[0].arguments[0] if kept else math.inf
         self._queue = []
-        for derived in self._all:
+        for derived in self._all.values():
             derived.scheduled = math.inf
             self._schedule(derived)
         self._wait()
 
+    @property
+    def rows(self) -> list[tuple[Functor, Row]]:
+        """The derived beliefs that are held."""
+        return [each.row for each in self._all.values() if each.row is not None]
+
     def heard(self, operator: str, symbol: Functor, row: Row, cause: Cause | None) -> None:
         """Hear of a belief that came or went, or of a signal."""
-        if self._histories and (history := self._histories.get(symbol)) is not None:
-            self._change(history, row)
+        self.histories.heard(symbol, row)
         streams = self._streams.get(symbol)
         if streams is None:
             return
         for stream in streams.values():
             if not stream.known or stream.matches(row):
                 pending = self._pending
-                if not pending and not self._settling:
-                    self.agent.do_soon(settle)
+                if not pending:
+                    self._soon()
                 stream.last = len(pending)
                 pending.append((stream, stream.event(row) if operator == "+" else None, cause))
 
@@ -280,7 +274,7 @@ class DerivedBeliefs:
                             self._schedule(derived)
         finally:
             self._settling, self.cause = False, None
-            self._note(now)
+            self.histories.note(now)
         self._wait()
 
     def ring(self, due: float) -> None:
@@ -329,47 +323,66 @@ class DerivedBeliefs:
 
 def declare(agent: Circumstance, program: nodes.Program) -> None:
     """Begin with the declarations of a program; an agent without any has no costs."""
-    if not (program.derived or program.histories):
-        return
+    if program.derived or program.histories:
+        derived = _begun(agent)
+        derived.histories.keep(program.histories)
+        derived.declare(program.derived)
+
+
+def observe(agent: Circumstance, namespace: str | None, histories: Mapping[str, float]) -> None:
+    """Keep what beliefs in a namespace were, as an artifact asks for: seconds by name."""
+    _begun(agent).histories.observe(namespace, histories)
+
+
+def _begun(agent: Circumstance) -> DerivedBeliefs:
+    """The declarations of an agent; from the first one on it hears of all its beliefs."""
     observers = agent.observers
     if observers.derived is None:
         observers.derived = DerivedBeliefs(agent)
         observers.hear_beliefs = True
         # What is written out for speed tells nobody of changes that no plan handles.
         agent.features.usual_events = observers.usual_events = False
-    _derived(agent).keep(program.histories)
-    _derived(agent).declare(program.derived)
+    return _derived(agent)
 
 
-def begin_anew(agent: Circumstance, program: nodes.Program) -> None:
-    """Begin with empty windows, after beliefs of before have been taken over: derived ones among them go."""
-    for table in list(agent.beliefs.values()):
-        for entry, annotations in list(table.entries()):
-            if SOURCE_DERIVED in annotations:
-                take_away(table, entry, annotations, _ANNOTATIONS)
-    declare(agent, program)
+def texts(program: nodes.Program) -> set[str]:
+    """Return the declarations of a program as text."""
+    return {*map(format_derivation, program.derived), *map(format_history, program.histories)}
 
 
-def stored(agent: Circumstance) -> dict[str, Any] | None:
+def directives(agent: Circumstance) -> tuple[list[nodes.Derivation], list[nodes.History]]:
+    """Return the declarations of an agent, also those of programs that it has included."""
+    return ([], []) if agent.observers.derived is None else _derived(agent).directives
+
+
+def stored(agent: Circumstance, program: nodes.Program) -> dict[str, Any] | None:
     """Return what the declarations of an agent hold, as data; None without declarations."""
-    return None if agent.observers.derived is None else _derived(agent).stored()
+    return None if agent.observers.derived is None else _derived(agent).stored(program)
 
 
 def resume(agent: Circumstance, program: nodes.Program, held: dict[str, Any] | None) -> None:
-    """Continue from what was `stored`; begin anew if there are other declarations now."""
-    if held is None or len(held["patterns"]) != len(set(program.derived)):
-        begin_anew(agent, program)
-        return
+    """Continue from what was `stored` of an agent, whose beliefs this one has taken over.
+
+    A declaration that only the program has begins with an empty window.  Beliefs that were derived by one that is gone go.
+    """
     declare(agent, program)
-    if agent.observers.derived is not None:
-        _derived(agent).resume(held)
+    if held is not None:
+        derived, histories = held["included"]
+        declare(agent, nodes.Program(derived=tuple(derived), histories=tuple(histories)))
+        _begun(agent).resume(held)
+    kept = [] if agent.observers.derived is None else _derived(agent).rows
+    for symbol, table in list(agent.beliefs.items()):
+        for entry, annotations in list(table.entries()):
+            if SOURCE_DERIVED in annotations and (symbol, entry) not in kept:
+                take_away(table, entry, annotations, _ANNOTATIONS)
 
 
-def replace(agent: Circumstance, program: nodes.Program) -> None:
-    """Have other declarations than before."""
+def replace(agent: Circumstance, old: nodes.Program, new: nodes.Program) -> None:
+    """Have the declarations of a changed program in place of those of the old one; what both declare keeps its past."""
     if agent.observers.derived is not None:
-        _derived(agent).end()
-    declare(agent, program)
+        _derived(agent).replace(old, new)
+    else:
+        declare(agent, new)
 
 
 def settle(agent: Circumstance) -> None:

@@ -43,7 +43,7 @@ def reload_programs(directory: Directory[AgentHost], population: Population) -> 
 
 def _texts(program: nodes.Program) -> set[tuple[str, str]]:
     """Names and texts of the files of a program; what the project declares is not in a file."""
-    clauses = (*program.plans, *program.beliefs, *program.goals)
+    clauses = (*program.plans, *program.beliefs, *program.goals, *program.derived, *program.histories)
     return {(clause.span.file.name, clause.span.file.text) for clause in clauses if clause.span is not None}
 
 
@@ -59,7 +59,7 @@ def _replace_soon(mind: Mind, program: nodes.Program, population: Population) ->
 def _replace(mind: Mind, program: nodes.Program, population: Population) -> None:
     mind.register_functions(program.functions)
     replace_rules(mind, mind.program.beliefs, program.beliefs)
-    deriving.replace(mind, program)
+    deriving.replace(mind, mind.program, program)
     mind.program = program
     replace_plans(mind, population.plans_of(program))
 
@@ -70,12 +70,20 @@ def _report(mind: Mind, new: nodes.Program) -> list[str]:
     gone = len(before - after)
     return [
         f"{agent}: {gone} plan{'s' if gone != 1 else ''} gone, {len(after - before)} new, {len(before & after)} unchanged",
+        *_declarations(agent, deriving.texts(old), deriving.texts(new)),
         *(
             f"{agent}: intention {number} continues with its old plan {_place(plan.node)}"
             for number, plan in outdated_plans(mind, new.plans)
         ),
         *(f"{agent}: the new initial {what} is not adopted" for what in _new_facts(old, new)),
     ]
+
+
+def _declarations(agent: str, before: set[str], after: set[str]) -> Iterator[str]:
+    """What becomes of derived events and histories, if the program declares others than before."""
+    if before != after:
+        counts = f"{len(before - after)} gone, {len(after - before)} new, {len(before & after)} unchanged"
+        yield f"{agent}: derived events and histories: {counts}"
 
 
 def _new_facts(old: nodes.Program, new: nodes.Program) -> Iterator[str]:

@@ -292,6 +292,9 @@ class _Task:
         """Nothing waits: its session takes everything up at once."""
         return False
 
+    def keep_histories(self, namespace: str | None, histories: Mapping[str, float]) -> None:
+        """Nothing: it has no beliefs."""
+
     def complete(self, act_id: int, completion: Completion) -> None:
         """Nothing: it acts by its session."""
 

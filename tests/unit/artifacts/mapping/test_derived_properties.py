@@ -1,10 +1,14 @@
 """Derived properties and signals of mapping files: end to end on the virtual clock, and what is wrong with declarations."""
 
+import math
+from bisect import bisect_left
+from collections.abc import Sequence
+from operator import itemgetter
 from typing import Any
 
 import pytest
 from mapped_lab import settle, with_mapped
-from robot_lab import Lab, Watcher
+from robot_lab import TWIST, Lab, Watcher, apart
 
 from jacaros.artifacts.mapping.declared import MappingError
 from jacaros.artifacts.mapping.file import read_mapping
@@ -175,17 +179,127 @@ derived:
     async def body(lab: Lab, artifact: ArtifactId) -> None:
         watcher, seen = lab.watch(artifact), []
         for x in (0.0, 0.8, 1.6, 1.8):  # outside, inside, within the margin, outside
-            header = {"stamp": lab.clock.now(), "frame_id": "map"}
-            transform = {"translation": {"x": x}}
-            lab.backend.tf_broadcast(
-                {"header": header, "child_frame_id": "base_link", "transform": transform}
-            )
-            await settle()
+            await _stand(lab, x)
             await lab.sleep(0.5)
             seen.append(watcher.holds("at_dock") == [()])
         assert seen == [False, True, True, False]
 
     with_mapped(text, body)
+
+
+AT_STAMPS = f"""
+properties:
+  scan: {{topic: scan, type: sensor_msgs/msg/LaserScan, fields: [header.stamp]}}
+  mark: {{topic: mark, type: {POINT}, fields: [header.stamp]}}
+frames:
+  pose: {{target: map, source: base_footprint}}
+derived:
+  at_scan: {{together: [scan, pose], within: 0.1}}
+  at_mark: {{together: [mark, pose], within: 0.1}}
+  exact: {{interpolated: [mark, pose], within: 0.1}}
+"""
+
+
+def test_a_frame_is_looked_up_at_the_stamps_of_messages() -> None:
+    """The robot drives a circle at 0.5 m/s; poses are compared with the true ones of the stamps.
+
+    The simulator sends tf and scans at the same ticks, every 50 ms and every 200 ms. The stamps of the marks are between,
+    and the world moves in steps of 20 ms, 10 mm and 1.1 degrees.
+    """
+
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        watcher = lab.watch(artifact)
+        truth: list[tuple[float, tuple[float, float, float]]] = []
+        wheels = lab.backend.publisher("/cmd_vel", TWIST)
+        marks = lab.backend.publisher("mark", POINT)
+        for _ in range(40):
+            wheels.publish(wheels.message(linear={"x": 0.5}, angular={"z": 1.0}))
+            for step in range(20):
+                truth.append((lab.clock.now(), lab.pose()))
+                if step == 13:
+                    marks.publish(marks.message(header={"stamp": lab.clock.now()}))
+                await lab.sleep(0.005)
+        stamp, newest = 0.0, []
+        for name, values in watcher.changes:
+            if name == "scan":
+                stamp = float(str(values[0]))
+            elif name == "pose" and stamp:
+                newest.append(_off(stamp, values, truth))
+        assert max(newest) > (0.05, 5.0)
+        for name, count, most in (("at_scan", 19, 1e-9), ("at_mark", 39, 0.005), ("exact", 39, 0.005)):
+            off = [_off(float(str(stamp)), pose, truth) for stamp, *pose in watcher.values(name)]
+            assert len(off) >= count
+            assert max(metres for metres, _ in off) < most
+            assert max(degrees for _, degrees in off) < 100.0 * most
+
+    with_mapped(AT_STAMPS, body, world="empty")
+
+
+TWO_AND_A_FRAME = """
+frames:
+  pose: {target: map, source: base_link}
+derived:
+  scene: {together: [a, pose, b], within: 0.05, lateness: 0.2}
+"""
+
+
+def test_a_frame_and_two_topics_come_together() -> None:
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        s = Sender(lab, lab.watch(artifact))
+        await lab.sleep(1.0)
+        for x in (0.0, 1.0):
+            await _stand(lab, x)
+            await lab.sleep(0.2)
+        await s.send("b", 9.0, ago=0.29)
+        assert s.watcher.holds("scene") == []
+        await s.send("a", 5.0, ago=0.3)  # 0.1 s after the first transform, of the two that are 0.2 s apart
+        assert s.watcher.holds("scene") == [(5.0, pytest.approx(0.5, abs=1e-5), 0.0, 0.0, 9.0)]
+
+    with_mapped(MAPPING + TWO_AND_A_FRAME, body)
+
+
+def test_a_message_without_a_transform_is_dropped_and_logged() -> None:
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        s = Sender(lab, lab.watch(artifact))
+        await lab.sleep(4.0)
+        await _stand(lab, 0.0)
+        await lab.sleep(0.1)
+        await s.send("a", 1.0)
+        await s.send("b", 2.0)
+        await lab.sleep(0.2)
+        assert not any("without a transform" in line for line in lab.logged)
+        await lab.sleep(0.1)
+        assert any(
+            "scene: 1 message without a transform dropped: no transform" in line for line in lab.logged
+        )
+        await s.send("a", 3.0)
+        await s.send("b", 4.0)
+        await lab.sleep(0.1)
+        await _stand(lab, 0.2)
+        assert [each[0] for each in s.watcher.holds("scene")] == [3.0]
+
+    with_mapped(MAPPING + TWO_AND_A_FRAME, body)
+
+
+async def _stand(lab: Lab, x: float) -> None:
+    """Send the transform of a robot that stands at x metres now."""
+    header = {"stamp": lab.clock.now(), "frame_id": "map"}
+    transform = {"translation": {"x": x}}
+    lab.backend.tf_broadcast({"header": header, "child_frame_id": "base_link", "transform": transform})
+    await settle()
+
+
+def _off(
+    stamp: float, values: Sequence[object], truth: list[tuple[float, tuple[float, float, float]]]
+) -> tuple[float, float]:
+    """Metres and degrees between a pose and the true one at a stamp."""
+    pose = [float(str(each)) for each in values]
+    place = bisect_left(truth, stamp, key=itemgetter(0))
+    (t0, before), (t1, after) = truth[place - 1], truth[min(place, len(truth) - 1)]
+    part = (stamp - t0) / (t1 - t0) if t1 > t0 else 0.0
+    x, y = (a + part * (b - a) for a, b in zip(before[:2], after[:2], strict=True))
+    yaw = before[2] + part * math.degrees(math.remainder(math.radians(after[2] - before[2]), math.tau))
+    return apart((pose[0], pose[1], math.degrees(pose[2])), (x, y, yaw))
 
 
 def _problems(entry: str) -> list[str]:
