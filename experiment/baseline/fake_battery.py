@@ -1,6 +1,6 @@
-"""A battery runs down from 100 to 0 percent, and the node tells what it thinks of it.
+"""A battery runs down from 100 to 0 percent, and the node reports its state.
 
-It is a battery that a timer drains, one percent a second; with the parameter source:=robot it is that of the robot.
+A timer drains the battery, one percent a second. With the parameter source:=robot it is the robot's battery.
 """
 
 import rclpy
@@ -8,7 +8,7 @@ from rclpy.node import Node
 from rclpy.qos import qos_profile_sensor_data
 from sensor_msgs.msg import BatteryState
 
-MEDIUM, LOW = 50, 20  # percent from which on the battery is said to be so
+MEDIUM, LOW = 50, 20  # percent from which on down the battery is medium or low
 
 
 def diagnosis(percent):

@@ -64,7 +64,7 @@ class NavigateTo(py_trees.behaviour.Behaviour):
 
 
 class CleaningTask(py_trees.behaviour.Behaviour):
-    """Cleans for some seconds; when it is interrupted it goes on later with what remained."""
+    """Cleans for some seconds; after an interruption it continues with the remaining time."""
 
     def __init__(self, name, node, task, seconds):
         super().__init__(name)
@@ -102,7 +102,7 @@ class Log(py_trees.behaviour.Behaviour):
 
 
 class HouseCleaning(Node):
-    """Ticks the tree, and tells it of the battery."""
+    """Ticks the tree, and puts the battery on its blackboard."""
 
     def __init__(self):
         super().__init__("house_cleaning")
@@ -117,7 +117,7 @@ class HouseCleaning(Node):
         self.create_timer(PERIOD, self.tick)
 
     def create_root(self):
-        # All rounds in one row: a task that is done stays done when the battery interrupts it.
+        # One sequence of all rounds: a decorator Repeat would forget its count when the battery interrupts it.
         rooms = []
         for number in range(1, ROUNDS + 1):
             rooms += [self.create_room(f"{room} {number}", room, *ROOMS[room]) for room in ROOMS]
@@ -140,11 +140,11 @@ class HouseCleaning(Node):
             ],
         )
         check = py_trees.behaviours.CheckBlackboardVariableValue("Enough?", enough)
-        # With memory, a recharge that has begun goes on until it ends.
+        # With memory, a recharge continues although the battery is no longer low.
         return py_trees.composites.Selector("Energy", memory=True, children=[check, recharge])
 
     def create_room(self, name, room, place, tasks):
-        """Where it was interrupted, it goes back into the room, and on with the task."""
+        """After an interruption, the robot drives back into the room and continues with the task."""
         work = [
             CleaningTask(f"{task} {name}", self, f"{task} {room.replace(' ', '_')}", seconds)
             for task, seconds in tasks.items()

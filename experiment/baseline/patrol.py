@@ -60,7 +60,7 @@ class NavigateTo(py_trees.behaviour.Behaviour):
 
 
 class Report(py_trees.behaviour.Behaviour):
-    """Calls a function that takes note of what has been reached."""
+    """Calls a function when the tree has come this far."""
 
     def __init__(self, name, function):
         super().__init__(name)
@@ -72,7 +72,7 @@ class Report(py_trees.behaviour.Behaviour):
 
 
 class Patrol(Node):
-    """Ticks the tree ten times a second, and tells it of the battery."""
+    """Ticks the tree ten times a second, and puts the battery on its blackboard."""
 
     def __init__(self):
         super().__init__("patrol")
@@ -113,7 +113,7 @@ class Patrol(Node):
             ],
         )
         check = py_trees.behaviours.CheckBlackboardVariableValue("Enough?", enough)
-        # With memory, a recharge that has begun goes on until it ends.
+        # With memory, a recharge continues although the battery is no longer low.
         return py_trees.composites.Selector("Energy", memory=True, children=[check, recharge])
 
     def create_corner(self, number, pose):

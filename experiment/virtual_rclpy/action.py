@@ -4,7 +4,6 @@ They send to the action servers of the memory graph without the care that JaCaRO
 immediately, whatever became of the goals before.
 """
 
-import itertools
 from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
@@ -16,8 +15,6 @@ from virtual_rclpy.task import Future
 
 _STATUS = {GoalStatus.SUCCEEDED: 4, GoalStatus.CANCELED: 5, GoalStatus.ABORTED: 6}
 """``action_msgs/msg/GoalStatus``."""
-
-_numbers = itertools.count(1)
 
 
 class ClientGoalHandle:
@@ -46,6 +43,7 @@ class ActionClient:
     def __init__(self, node: Node, action_type: Interface, action_name: str) -> None:
         self.graph = node.graph
         self.name = node.backend.resolve(action_name)
+        self._new_id = node.backend.new_goal_id
         self.sender = self  # the graph's servers tell it what becomes of the goals
         self._feedback: dict[str, Callable[[Any], object] | None] = {}
         self._sent: dict[str, tuple[Any, Future]] = {}
@@ -58,7 +56,7 @@ class ActionClient:
 
     def send_goal_async(self, goal: Any, feedback_callback: Callable[[Any], object] | None = None) -> Future:
         """Send a goal; the future's result is its `ClientGoalHandle`."""
-        goal_id, answer = f"baseline-{next(_numbers)}", Future(self.graph)
+        goal_id, answer = self._new_id(), Future(self.graph)
         server = self.graph.graph.action_server(self.name)
         if server is not None:
             self._sent[goal_id], self._feedback[goal_id] = (server, answer), feedback_callback

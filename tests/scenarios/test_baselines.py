@@ -1,5 +1,6 @@
 """The baselines of the experiment, run on the virtual clock and judged by the checkers of the examples."""
 
+import ast
 import sys
 from pathlib import Path
 
@@ -13,6 +14,22 @@ sys.path.insert(0, str(EXAMPLES.parent / "experiment"))
 
 from scenarios import SCENARIOS
 from virtual_run import main, run_baseline
+
+LIBRARIES = {"math", "operator", "py_trees", "rclpy", "tf2_ros"}
+
+
+@pytest.mark.parametrize("name", SCENARIOS)
+def test_the_baseline_imports_ros_and_py_trees_alone(name: str) -> None:
+    tree = ast.parse(SCENARIOS[name].baseline.read_text(encoding="utf-8"))
+    imported = {
+        module.split(".")[0]
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Import | ast.ImportFrom)
+        for module in (
+            [node.module or ""] if isinstance(node, ast.ImportFrom) else [a.name for a in node.names]
+        )
+    }
+    assert {module for module in imported if not module.endswith("_msgs")} <= LIBRARIES
 
 
 @pytest.mark.slow
