@@ -130,7 +130,7 @@ def parts() -> list[Part]:
             (*PYTEST, "tests/integration", "tests/compatibility", "-m", "not ros1 and not ros2", *ONCE_MORE),
             budget=60,
         ),
-        Part("scenarios", (*PYTEST, "tests/scenarios", "-m", "not ros1 and not ros2"), budget=130),
+        Part("scenarios", (*PYTEST, "tests/scenarios", "-m", "not ros1 and not ros2"), budget=165),
         Part("faults", (*PYTEST, "tests/faults"), budget=10),
         Part(
             "examples", (f"{BIN}/jacaros", "test", "examples", "--junit", "runs/test/examples.xml"), budget=5

@@ -1,0 +1,56 @@
+"""The five scenarios of the experiment: what both sides run, where, and how a run is judged."""
+
+import runpy
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from jacaros.testing import RunResult, Verdict
+
+FOLDER = Path(__file__).parent
+EXAMPLES = FOLDER.parent / "examples"
+
+
+class Scenario(NamedTuple):
+    """A scenario.
+
+    Attributes:
+        project: project file of the agents.
+        baseline: Python program that does the same.
+        world: world file, or name of a shipped world; the project names the same.
+        parameters: of the baseline's node.
+    """
+
+    project: Path
+    baseline: Path
+    world: str | Path
+    parameters: Mapping[str, Any] = {}
+
+    def judge(self, result: RunResult) -> Verdict:
+        """Judge a run of either side by the checker of the example."""
+        check = runpy.run_path(str(self.project.parent / "check.py"))["check"]
+        output = () if self.world != WEAK_BATTERY else (result.lines,)
+        verdict: Verdict = check(*output, result.ground_truth)
+        return verdict
+
+
+WEAK_BATTERY = EXAMPLES / "03_fake_battery" / "weak_battery.yaml"
+"""World of the scenario that is judged by output, too: it is about reporting."""
+
+
+def _scenario(
+    name: str, project: str, world: str | Path, parameters: Mapping[str, Any] | None = None
+) -> tuple[str, Scenario]:
+    return name, Scenario(EXAMPLES / project, FOLDER / "baseline" / f"{name}.py", world, parameters or {})
+
+
+SCENARIOS = dict(
+    [
+        _scenario("out_and_back", "01_out_and_back/out_and_back.jcm", "empty"),
+        _scenario("square", "02_square/square.jcm", "empty"),
+        _scenario("fake_battery", "03_fake_battery/robot_battery.jcm", WEAK_BATTERY, {"source": "robot"}),
+        _scenario("patrol", "04_patrol/patrol.jcm", EXAMPLES / "04_patrol" / "patrol.yaml"),
+        _scenario("house_cleaning", "05_house_cleaning/house_cleaning.jcm", "house"),
+    ]
+)
+"""The scenarios by the names of their baselines."""

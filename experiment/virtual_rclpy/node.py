@@ -1,0 +1,109 @@
+"""``rclpy.node``: nodes with publishers, subscriptions, timers and parameters."""
+
+import copy
+from collections.abc import Callable
+from types import SimpleNamespace
+from typing import Any
+
+from jacaros.clock import Timer as ClockTimer
+from jacaros.ros.backend import Publisher as GraphPublisher
+from virtual_rclpy.graph import VirtualGraph, current
+from virtual_rclpy.messages import Interface
+from virtual_rclpy.qos import QoSProfile, qos_of
+
+
+class Publisher:
+    """Sends messages to a topic."""
+
+    def __init__(self, publisher: GraphPublisher) -> None:
+        self._publisher = publisher
+
+    def publish(self, message: Any) -> None:
+        """Send a copy: in a memory graph receivers have the object itself."""
+        self._publisher.publish(copy.deepcopy(message))
+
+    def get_subscription_count(self) -> int:
+        """Return the number of subscriptions of the topic."""
+        return self._publisher.subscription_count
+
+
+class Timer:
+    """Calls a function again and again."""
+
+    def __init__(self, graph: VirtualGraph, period: float, callback: Callable[[], object]) -> None:
+        self._graph, self._period, self._callback = graph, period, callback
+        self._next = graph.clock.elapsed
+        self._timer: ClockTimer | None = None
+        self._wait()
+
+    def cancel(self) -> None:
+        """Call it no more."""
+        if self._timer is not None:
+            self._timer.cancel()
+            self._timer = None
+
+    def _wait(self) -> None:
+        self._next += self._period
+        self._timer = self._graph.clock.call_later(self._next - self._graph.clock.elapsed, self._ring)
+
+    def _ring(self) -> None:
+        self._wait()
+        self._graph.call(self._callback)
+
+
+class Logger:
+    """Passes what a node logs to the run."""
+
+    def __init__(self, graph: VirtualGraph, name: str) -> None:
+        self._graph, self._name = graph, name
+
+    def info(self, text: str) -> None:
+        """Log a line."""
+        self._graph.print_line(self._name, text)
+
+    warning = error = info
+
+
+class Node:
+    """A node.
+
+    Attributes:
+        graph: the virtual run's graph.
+        backend: the node in it.
+    """
+
+    def __init__(self, node_name: str) -> None:
+        self.graph = current()
+        self.backend = self.graph.node(node_name)
+        self._name = node_name
+
+    def create_publisher(self, msg_type: Interface, topic: str, qos_profile: QoSProfile | int) -> Publisher:
+        """Make a publisher."""
+        return Publisher(self.backend.publisher(topic, msg_type.type_name, qos_of(qos_profile)))
+
+    def create_subscription(
+        self,
+        msg_type: Interface,
+        topic: str,
+        callback: Callable[[Any], object],
+        qos_profile: QoSProfile | int,
+    ) -> Any:
+        """Call *callback* with each message of a topic."""
+        return self.backend.subscription(
+            topic,
+            msg_type.type_name,
+            lambda sample: self.graph.call(callback, sample.message),
+            qos_of(qos_profile),
+        )
+
+    def create_timer(self, timer_period_sec: float, callback: Callable[[], object]) -> Timer:
+        """Call *callback* every so many seconds."""
+        return Timer(self.graph, timer_period_sec, callback)
+
+    def declare_parameter(self, name: str, value: Any) -> Any:
+        """Declare a parameter; its value is that of the run, if it gives one."""
+        return SimpleNamespace(value=self.graph.parameters.get(name, value))
+
+    def get_logger(self) -> Logger:
+        """Return the logger."""
+        return Logger(self.graph, self._name)
