@@ -1,0 +1,26 @@
+// Patrol over Nav2: from corner to corner for a whole shift, and to the dock whenever the battery is low.
+
+place(1, 2, 0, 0).  // number of a corner, and where it is: metres, and degrees
+place(2, 2, 2, 90).
+place(3, 0, 2, 180).
+place(4, 0, 0, 270).
+place(dock, 1, 1, 0).
+charged_at(100).  // percent
+attempts(5).
+shift(10).  // it ends after so many recharges
+recharges(0).
+
+!keep_charged.
+!patrol([1, 2, 3, 4]).
+
++!arrived(_) : shift(N) & recharges(N)
+  <- .stopMAS.
+
+// The dock charges a robot that stands in it: no need to drive in and out.
++!drive_into_dock
+  <- !go_to(dock).
+
++!drive_out_of_dock : recharges(N)
+  <- -+recharges(N + 1).
+
+{ include("$jacaros/navigation.asl") }
