@@ -26,11 +26,11 @@ class Scenario(NamedTuple):
     world: str | Path
     parameters: Mapping[str, Any] = {}
 
-    def judge(self, result: RunResult) -> Verdict:
-        """Judge a run of either side by the checker of the example."""
+    def judge(self, result: RunResult, **limits: int) -> Verdict:
+        """Judge a run of either side by the checker of the example, with limits that it takes."""
         check = runpy.run_path(str(self.project.parent / "check.py"))["check"]
         output = () if self.world != WEAK_BATTERY else (result.lines,)
-        verdict: Verdict = check(*output, result.ground_truth)
+        verdict: Verdict = check(*output, result.ground_truth, **limits)
         return verdict
 
 

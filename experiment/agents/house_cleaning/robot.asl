@@ -8,7 +8,7 @@ place(2, 2, 2, 0).
 place(3, 0, 2, 0).
 place(dock, 1, 1, 0).
 charged_at(100).  // percent
-attempts(5).
+attempts(20).
 rounds(4).
 
 !start.
@@ -21,15 +21,17 @@ rounds(4).
 
 +!arrived(0).
 
-// After an interruption, the robot goes back into the room before it goes on.
 +!arrived(Room)
-  <- clean(Room).
-
-^!arrived(Room)[state(resumed)]
-  <- !go_to(Room).
+  <- +at_work(Room);
+     clean(Room);
+     -at_work(Room).
 
 +!drive_into_dock
   <- !go_to(dock).
+
+// What the battery has interrupted continues where it was.
++!drive_out_of_dock : at_work(Room)
+  <- !go_to(Room).
 
 +!drive_out_of_dock.
 

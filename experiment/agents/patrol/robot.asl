@@ -6,7 +6,7 @@ place(3, 0, 2, 180).
 place(4, 0, 0, 270).
 place(dock, 1, 1, 0).
 charged_at(100).  // percent
-attempts(5).
+attempts(20).
 shift(10).  // it ends after so many recharges
 recharges(0).
 
