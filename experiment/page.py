@@ -1,0 +1,77 @@
+"""Fills the page of the experiment: the words of ``page.md`` with the tables that were measured."""
+
+import re
+from collections.abc import Callable, Mapping, Sequence
+
+import sizes
+import success
+from disturbed_runs import AGENTS, BASELINE, OVER_NAV2, Outcome
+from jacaros.metrics import ProgramMetrics, Table, as_markdown
+from scenarios import FOLDER, SCENARIOS
+
+MARK = re.compile(r"<!-- (\w+) -->")
+
+
+def page(outcomes: Sequence[Outcome]) -> str:
+    """The text of ``docs/experiment.md``."""
+    tables = all_tables(outcomes)
+    words = (FOLDER / "page.md").read_text(encoding="utf-8")
+    return MARK.sub(lambda mark: as_markdown(tables[mark[1]]()), words)
+
+
+def all_tables(outcomes: Sequence[Outcome]) -> Mapping[str, Callable[[], Table]]:
+    """The tables of the page, by the marks that they replace."""
+    examples, over_nav2 = sizes.examples(), sizes.over_nav2()
+    return {
+        **{
+            kind: lambda kind=kind: sizes.size_table(examples, kind)
+            for kind in ("identifiers", "names", "lines", "code_lines", "gzip_bytes")
+        },
+        "over_nav2": lambda: over_nav2_table(over_nav2),
+        "library": lambda: sizes.library_table([*examples, *over_nav2]),
+        "success": lambda: success.success_table(outcomes),
+        "patrol_by_kind": lambda: success.kind_table(outcomes, "patrol"),
+        "house_cleaning_by_kind": lambda: success.kind_table(outcomes, "house_cleaning"),
+    }
+
+
+def over_nav2_table(programs: Sequence[ProgramMetrics]) -> Table:
+    """Sizes of the agents over Nav2, beside those of the baseline over Nav2."""
+    kinds = ("identifiers", "names", "code_lines", "gzip_bytes")
+    rows = tuple(
+        (
+            f"{program.name}, {side}",
+            *(getattr(counts, kind) for kind in kinds),
+        )
+        for program in programs
+        for side, counts in (
+            ("agents", program.total),
+            (BASELINE, program.counts(sizes.Group.BASELINE)),
+        )
+    )
+    return Table(
+        "Over Nav2",
+        ("program", "identifiers", "with beliefs and variables", "code lines", "bytes compressed"),
+        rows,
+    )
+
+
+def summary(outcomes: Sequence[Outcome]) -> str:
+    """The table of the front page: code lines, and runs that passed under disturbances."""
+    agents = {each.name.partition("_")[2]: each for each in sizes.examples()}
+    nav2 = {each.name: each for each in sizes.over_nav2()}
+    rows = []
+    for name in SCENARIOS:
+        program, side = (nav2[name], OVER_NAV2) if name in nav2 else (agents[name], AGENTS)
+        runs = sum(each.job[:2] == (name, side) for each in outcomes)
+        rows.append(
+            (
+                name.replace("_", " "),
+                program.total.code_lines,
+                program.counts(sizes.Group.BASELINE).code_lines,
+                f"{success.passed(outcomes, name, side)} of {runs}",
+                f"{success.passed(outcomes, name, BASELINE)} of {runs}",
+            )
+        )
+    header = ("scenario", "code lines: agents", "Python", "disturbed runs passed: agents", "Python")
+    return as_markdown(Table("Summary", header, tuple(rows)))

@@ -1,0 +1,81 @@
+"""Run the experiment, and write its page: python experiment/run.py
+
+With ``--quick``, repeat some of the recorded runs, and check that they and the page are as recorded.
+"""
+
+import argparse
+import json
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import sizes
+from disturbed_runs import Job, Outcome, jobs, run_all
+from page import page, summary
+
+DOCS = Path(__file__).parents[1] / "docs"
+PAGE, RECORD, IMAGES = DOCS / "experiment.md", DOCS / "experiment.json", DOCS / "images"
+README = DOCS.parent / "README.md"
+RUNS, QUICK_RUNS = 50, 2
+
+
+def main() -> int:
+    """Do what the command line says; the exit code is 1 if something is not as recorded."""
+    parser = argparse.ArgumentParser(description="Run the experiment, and write docs/experiment.md.")
+    parser.add_argument(
+        "--quick", action="store_true", help="repeat some runs, and compare with what is recorded"
+    )
+    parser.add_argument("--runs", type=int, default=RUNS, help=f"runs of each side (default {RUNS})")
+    given = parser.parse_args()
+    return check() if given.quick else renew(given.runs)
+
+
+def renew(runs: int) -> int:
+    """Make all runs, and write record, page and charts."""
+    outcomes = run_all(jobs(range(1, runs + 1)))
+    RECORD.write_text(as_json(outcomes), encoding="utf-8")
+    PAGE.write_text(page(outcomes), encoding="utf-8")
+    for kind, svg in sizes.charts(sizes.examples()).items():
+        (IMAGES / f"experiment_{kind}.svg").write_text(svg, encoding="utf-8")
+    print(f"wrote {PAGE.name} and {RECORD.name}; the table of the README is:\n\n{summary(outcomes)}")
+    return 0
+
+
+def check() -> int:
+    """Make the first runs again, and compare them, page, charts and README with what is recorded."""
+    recorded = from_json(RECORD.read_text(encoding="utf-8"))
+    known = {each.job: each for each in recorded}
+    problems = [
+        f"{' '.join(map(str, new.job))}: {new[1:]}, recorded: {known[new.job][1:]}"
+        for new in run_all(jobs(range(1, QUICK_RUNS + 1)))
+        if new != known[new.job]
+    ]
+    if PAGE.read_text(encoding="utf-8") != page(recorded):
+        problems.append(f"{PAGE.name} is not what these programs give")
+    for kind, svg in sizes.charts(sizes.examples()).items():
+        if (IMAGES / f"experiment_{kind}.svg").read_text(encoding="utf-8") != svg:
+            problems.append(f"the chart of {kind} is not what these programs give")
+    if summary(recorded) not in README.read_text(encoding="utf-8"):
+        problems.append(f"README.md has other figures than\n\n{summary(recorded)}\n")
+    for problem in problems:
+        print(f"error: {problem}", file=sys.stderr)
+    if problems:
+        print("  = help: run `make experiment`, and copy the table that it prints to README.md", file=sys.stderr)
+    return 1 if problems else 0
+
+
+def as_json(outcomes: Sequence[Outcome]) -> str:
+    """The record of runs: one line for each."""
+    rows = [json.dumps([*each.job, *each[1:]]) for each in outcomes]
+    return "[\n" + ",\n".join(rows) + "\n]\n"
+
+
+def from_json(text: str) -> list[Outcome]:
+    """The runs of a record."""
+    rows: list[list[Any]] = json.loads(text)
+    return [Outcome(Job(*row[:3]), *row[3:]) for row in rows]
+
+
+if __name__ == "__main__":
+    sys.exit(main())
