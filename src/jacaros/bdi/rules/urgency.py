@@ -15,8 +15,8 @@ a name.  What is more urgent goes first, and among equals the order is Jason's. 
 
 The queues are plain as long as nothing in them is urgent, whatever plans there are.  What is urgent is noted before it is
 queued: all that waits has urgency 0 then, so the queues are in order already, however long they are, and are kept so until
-nothing urgent is left.  They are sorted only after a change of plans.  So an urgent plan costs unrelated events one look-up in
-a table each.
+nothing urgent is left.  They are sorted only after a change of plans.  So an urgent plan costs unrelated events one look-up
+in a table each.
 """
 
 from bisect import bisect_left, bisect_right

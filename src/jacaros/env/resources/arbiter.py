@@ -7,6 +7,8 @@ A claim is granted all that it asks for, or nothing.  The rules:
   only when that is enough.  A holder keeps what it holds until it has given way (a robot brakes), then it waits again.
 * A claim within others (an operation of a plan that holds the resource) is granted only while these are, and what they
   hold does not stand in its way.
+* A claim of an atomic plan preempts other plans of its agent, however urgent: they make no step before it ends.  They wait
+  again until it has ended.
 * A holder that cannot give way inherits the urgency of what it blocks.
 * A claim that waits rises by 1 for each `PATIENCE`; that moves it forward in the order and protects what it gets by that,
   but takes nothing away from a holder.
@@ -129,7 +131,10 @@ class Arbiter:
         """Change the state of one claim; False when all are as they should be."""
         self._inherit()
         reserved: set[str] = set()
+        blocked = {claim.blocks for claim in self._all() if claim.blocks}
         for claim in self._in_order():
+            if claim.plan_of in blocked and not claim.blocks:
+                continue
             if any(outer.state is not State.HELD for outer in claim.within):
                 continue
             blockers = self._blockers(claim)
@@ -188,6 +193,8 @@ class Arbiter:
         return chosen
 
     def _outranks(self, claim: Claim, holder: Claim) -> bool:
+        if claim.blocks and claim.blocks == holder.plan_of:
+            return True
         rank = self._rank(holder)
         return claim.base > rank or (_takes(claim) and claim.base == rank)
 

@@ -50,9 +50,11 @@ class Table:
         brakes: bool = False,
         enter: bool = True,
         who: str = "somebody",
+        plan_of: str = "",
+        blocks: str = "",
     ) -> Claim:
         party = Party(self.arbiter, can_yield, brakes)
-        made = Claim(read_uses(uses), who, party, urgency, policy, within)
+        made = Claim(read_uses(uses), who, party, urgency, policy, within, plan_of, blocks)
         if enter:
             self.arbiter.enter(made)
         return made
@@ -270,3 +272,50 @@ def test_uses_are_read_from_text() -> None:
     for wrong in ("", "two words", "lift(0)", "lift(many)"):
         with pytest.raises(ValueError, match="resource"):
             read_use(wrong)
+
+
+# --- atomic plans ---------------------------------------------------------------------------------------------
+
+
+def test_an_atomic_plan_takes_what_a_plan_of_its_agent_holds_however_urgent_that_is() -> None:
+    table = Table()
+    plan = table.claim("wheels", urgency=5, plan_of="robot")
+    atomic = table.claim("wheels", can_yield=False, blocks="robot")
+    assert (plan.state, atomic.state) == (State.WAITING, State.HELD)
+    table.arbiter.leave(atomic)
+    assert plan.state is State.HELD
+
+
+def test_an_atomic_plan_waits_for_operations_and_for_other_agents() -> None:
+    table = Table()
+    for holder in (table.claim("wheels"), table.claim("wheels", plan_of="other", enter=False)):
+        table.arbiter.enter(holder)
+        atomic = table.claim("wheels", blocks="robot")
+        assert atomic.state is State.WAITING
+        table.arbiter.leave(holder)
+        assert atomic.state is State.HELD
+        table.arbiter.leave(atomic)
+
+
+def test_an_operation_under_way_ends_before_its_plan_gives_way_to_an_atomic_one() -> None:
+    table = Table()
+    plan = table.claim("wheels", plan_of="robot")
+    drive = table.claim("wheels", within=(plan,))
+    atomic = table.claim("wheels", blocks="robot")
+    assert (plan.state, drive.state, atomic.state) == (State.HELD, State.HELD, State.WAITING)
+    table.arbiter.leave(drive)
+    assert (plan.state, atomic.state) == (State.WAITING, State.HELD)
+
+
+def test_a_plan_that_waits_goes_behind_an_atomic_one_of_its_agent_alone() -> None:
+    table = Table()
+    holder = table.claim("wheels", plan_of="other", can_yield=False)
+    plan = table.claim("wheels", urgency=5, plan_of="robot")
+    guest = table.claim("wheels", urgency=5)
+    atomic = table.claim("wheels", plan_of="robot", blocks="robot")
+    table.arbiter.leave(holder)
+    assert (plan.state, guest.state, atomic.state) == (State.WAITING, State.HELD, State.WAITING)
+    table.arbiter.leave(guest)
+    assert (plan.state, atomic.state) == (State.WAITING, State.HELD)
+    table.arbiter.leave(atomic)
+    assert plan.state is State.HELD
