@@ -319,3 +319,36 @@ def test_a_plan_that_waits_goes_behind_an_atomic_one_of_its_agent_alone() -> Non
     assert (plan.state, atomic.state) == (State.WAITING, State.HELD)
     table.arbiter.leave(atomic)
     assert plan.state is State.HELD
+
+
+# --- claims that would have it again at once --------------------------------------------------------------------
+
+
+def test_what_is_within_one_that_stays_is_not_asked_to_give_way() -> None:
+    table = Table()
+    plan = table.claim("base", urgency=1, can_yield=False)
+    step = table.claim("base", within=(plan,))
+    taker = table.claim("base", urgency=1, policy="take")
+    assert (plan.state, step.state, taker.state) == (State.HELD, State.HELD, State.WAITING)
+
+
+def test_what_is_within_others_does_not_take_back_what_it_gave_to_one_that_waits_for_more() -> None:
+    table = Table()
+    plan = table.claim("lift(2)", urgency=1)
+    braking = table.claim("arm", "map(shared)", urgency=1, brakes=True)
+    step = table.claim("map(shared)", within=(plan,))
+    urgent = table.claim("arm", "map", urgency=5)
+    assert (braking.state, step.state) == (State.YIELDING, State.WAITING)
+    table.arbiter.gave_way(braking)
+    assert (plan.state, urgent.state, step.state) == (State.HELD, State.HELD, State.WAITING)
+    table.arbiter.leave(urgent)
+    assert (braking.state, step.state) == (State.HELD, State.HELD)
+
+
+def test_nothing_is_taken_away_for_one_that_waits_behind_others() -> None:
+    table = Table()
+    plan = table.claim("map(shared)", urgency=1)
+    step = table.claim("base", within=(plan,))
+    first = table.claim("map", urgency=1)
+    second = table.claim("base", "map(shared)", urgency=1)
+    assert (step.state, first.state, second.state) == (State.HELD, State.WAITING, State.WAITING)
