@@ -106,7 +106,9 @@ def _carried(draw: Draw, where: Surroundings) -> list[str]:
     """Somebody lifts the robot and puts it down elsewhere."""
     x0, y0, x1, y1 = where.area
     x, y, yaw = draw.uniform(x0, x1), draw.uniform(y0, y1), draw.uniform(-180, 180)
-    return [f"kind: kidnapped_robot, to: {{x: {x:.2f}, y: {y:.2f}, yaw_degrees: {yaw:.0f}}}, {_at(draw, where)}"]
+    return [
+        f"kind: kidnapped_robot, to: {{x: {x:.2f}, y: {y:.2f}, yaw_degrees: {yaw:.0f}}}, {_at(draw, where)}"
+    ]
 
 
 def _at(draw: Draw, where: Surroundings) -> str:

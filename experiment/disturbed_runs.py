@@ -73,10 +73,7 @@ def sides_of(scenario: str) -> list[str]:
 def jobs(seeds: Iterable[int], scenarios: Iterable[str] = SCENARIOS) -> list[Job]:
     """All runs with some seeds."""
     return [
-        Job(scenario, side, seed)
-        for scenario in scenarios
-        for side in sides_of(scenario)
-        for seed in seeds
+        Job(scenario, side, seed) for scenario in scenarios for side in sides_of(scenario) for seed in seeds
     ]
 
 
@@ -108,7 +105,11 @@ def run_one(job: Job) -> Outcome:
 
 def _complaints(name: str, result: RunResult) -> list[str]:
     scenario = SCENARIOS[name]
-    return scenario.judge(result, cycles=CYCLES).complaints if name == "patrol" else scenario.judge(result).complaints
+    return (
+        scenario.judge(result, cycles=CYCLES).complaints
+        if name == "patrol"
+        else scenario.judge(result).complaints
+    )
 
 
 def _over_nav2(scenario: str) -> Path:

@@ -61,7 +61,9 @@ def check() -> int:
     for problem in problems:
         print(f"error: {problem}", file=sys.stderr)
     if problems:
-        print("  = help: run `make experiment`, and copy the table that it prints to README.md", file=sys.stderr)
+        print(
+            "  = help: run `make experiment`, and copy the table that it prints to README.md", file=sys.stderr
+        )
     return 1 if problems else 0
 
 

@@ -28,7 +28,10 @@ def kind_table(outcomes: Sequence[Outcome], scenario: str) -> Table:
     rows = tuple(
         (
             kind,
-            *(_share(each for each in of_scenario if (each.kind, each.job.side) == (kind, side)) for side in sides),
+            *(
+                _share(each for each in of_scenario if (each.kind, each.job.side) == (kind, side))
+                for side in sides
+            ),
         )
         for kind in kinds
     )

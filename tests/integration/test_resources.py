@@ -140,6 +140,29 @@ def test_needs_of_a_goal_are_given_back_however_it_ends(tmp_path: Path) -> None:
     assert result.of("robot") == ["one", "needs(arm)", "2", "two failed", "three"]
 
 
+@pytest.mark.parametrize("needs", ["", ", needs(wheels)"], ids=["uses", "needs"])
+def test_an_atomic_plan_has_the_wheels_that_another_plan_of_its_agent_holds(
+    tmp_path: Path, needs: str
+) -> None:
+    result = run(
+        tmp_path,
+        WHEELS
+        + """
+        +!go <- !!square; .wait(5000); !dock; .wait({+finished}); .stopMAS.
+        @square[needs(wheels), urgency(5)]
+        +!square <- moveForward(0.2); .wait(9000); .print("square done"); +finished.
+        @dock[atomic NEEDS]
+        +!dock <- .print("docks"); moveForward(0.2); .print("docked").
+        ^!square[state(S)[reason(preempted(R))]] <- .print("square ", S, ": ", R).
+        """.replace(" NEEDS", needs),
+    )
+    assert sorted(result.of("robot")) == [
+        *("docked", "docks", "square done", "square resumed: wheels", "square suspended: wheels")
+    ]
+    assert result.of("robot")[-1] == "square done"
+    assert result.errors == []
+
+
 def test_policies_say_what_happens_when_a_resource_is_taken(tmp_path: Path) -> None:
     result = run(
         tmp_path,

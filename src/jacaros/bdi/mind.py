@@ -11,7 +11,6 @@ from jacaros.bdi.architecture import Architecture
 from jacaros.bdi.engines import new_engine
 from jacaros.bdi.rules import (
     belief_update,
-    deriving,
     forks,
     functions,
     goals,
@@ -113,9 +112,16 @@ class Mind(Circumstance):
     def start(self) -> None:
         """Take up the initial beliefs and goals."""
         self.engine.begin(self)
-        deriving.declare(self, self.program)
+        self._declare(self.program)
         with functions.evaluating(self):
             self.take_up(self.program)
+
+    def _declare(self, program: nodes.Program) -> None:
+        """Begin with the derived events and histories of a program."""
+        if program.derived or program.histories:
+            from jacaros.bdi.rules import deriving  # here: most programs do without it
+
+            deriving.declare(self, program)
 
     def take_up(self, program: nodes.Program) -> None:
         """Take up the beliefs and goals of a program."""
@@ -159,7 +165,7 @@ class Mind(Circumstance):
             path, self.architecture.read_program, functions.known_names(self), self.engine.actions, namespace
         )
         self.register_functions(program.functions)
-        deriving.declare(self, program)
+        self._declare(program)
         plan_changes.include_plans(self, program.plans)
         self.take_up(program)
 
@@ -255,6 +261,8 @@ class Mind(Circumstance):
             namespace: of the beliefs.
             histories: seconds by name.
         """
+        from jacaros.bdi.rules import deriving  # here: most agents keep none
+
         deriving.observe(self, namespace, histories)
 
     def complete(self, act_id: int, completion: Completion) -> None:

@@ -12,7 +12,7 @@ from typing import Any
 
 from jacaros.bdi.mind import Mind
 from jacaros.bdi.object_table import Reader, Writer
-from jacaros.bdi.rules import deriving, urgency
+from jacaros.bdi.rules import urgency
 from jacaros.bdi.rules.alarms import start_alarm
 from jacaros.bdi.rules.belief_update import look_again
 from jacaros.bdi.rules.plan_changes import look_at_plans
@@ -55,6 +55,8 @@ def stored(mind: Mind) -> dict[str, Any]:
     Raises:
         NotStorable: the mind holds a live object.
     """
+    from jacaros.bdi.rules import deriving  # here, as below: few minds are stored or copied
+
     conditions = mind.waits.conditions
     held = knowledge(mind)
     held |= {name: getattr(mind, name) for name in _FIELDS}
@@ -99,6 +101,8 @@ def restore(mind: Mind, data: dict[str, Any], *, same_host: bool = False) -> Non
         raise ValueError(
             f"the stored mind has format {data.get('format')!r}; this version reads format {FORMAT}"
         )
+    from jacaros.bdi.rules import deriving
+
     mind.engine.begin(mind)
     held = Reader(mind, data["objects"]).read(data["held"])
     _learn(mind, held)
@@ -206,6 +210,8 @@ def copy_mind(original: Mind, clone: Mind) -> None:
     The running intention is not copied, nor are those that wait or are suspended, and branches of forks: what they wait for
     belongs to the original.
     """
+    from jacaros.bdi.rules import deriving
+
     part = knowledge(original)
     part["events"] = [
         event

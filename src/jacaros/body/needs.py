@@ -135,7 +135,9 @@ class Needs:
         need = HeldNeed(act.id, self._environment.arbiter, self._teller, act.yields)
         self._held[act.id] = need
         who = f"[{self._agent}] {goal}"
-        need.ask(Claim(uses, who, need, act.urgency, _policy(policy), self.claims(act.within)))
+        blocks = "" if act.yields else self._agent
+        within = self.claims(act.within)
+        need.ask(Claim(uses, who, need, act.urgency, _policy(policy), within, self._agent, blocks))
 
     def forget(self, number: int) -> None:
         """Give back what an act has asked for."""

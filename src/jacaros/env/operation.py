@@ -66,7 +66,7 @@ class OperationRequest:
             None: no limit.
         urgency: decides who gets what the operation uses; the greater one first.
         policy: what happens when it cannot have that at once.
-        yields: the resources may be taken away from it.
+        yields: the resources may be taken away from it; False for an operation of an atomic plan.
         within: claims of the caller that the operation is a part of, outermost first.
         on_preempted: called with the resource that a more urgent claim takes away from the running operation, and with
             None when it continues.

@@ -300,6 +300,48 @@ def test_a_periodic_goal_ends_when_it_is_dropped(drop):
     assert not host.agent.waits.alarms
 
 
+@pytest.mark.parametrize("moment", [2100, 2500], ids=["in a pursuit", "between two"])
+@pytest.mark.parametrize(
+    ("end", "told"), [(".succeed_goal(scan)", []), (".fail_goal(scan)", ["failed"])], ids=["succeed", "fail"]
+)
+def test_a_periodic_goal_that_is_named_ends_for_good_and_its_plan_continues(moment, end, told):
+    host = ran(
+        f"""
+        !g. !end.
+        +!g <- !scan[every(1000), retry(2), within(900)]; .print(after).
+        +!scan <- .print(scan); .wait(300).
+        -!scan <- .print(failed).
+        +!end <- .wait({moment}); {end}.
+        """
+    )
+    assert (host.printed, elapsed(host)) == ([*["scan"] * 3, *told, "after"], moment / 1000)
+    assert not host.agent.alive
+    assert not host.agent.waits.alarms
+
+
+def test_a_periodic_goal_that_succeeds_before_its_first_pursuit_has_none():
+    program = """
+        !g. !end.
+        +!g <- !scan[every(1000)]; .print(after).
+        +!scan <- .print(scan).
+        +!end <- .succeed_goal(scan).
+        """
+    assert printed(program, 5.0) == ["after"]
+
+
+def test_the_plan_of_a_periodic_goal_can_end_it():
+    program = """
+        n(0). !g.
+        +!g <- !scan[every(1000)]; .print(after).
+        +!scan <- ?n(N); -+n(N + 1); .print(N); if (N == 2) { .succeed_goal(scan) }; .wait(10).
+        """
+    assert printed(program) == ["0", "1", "2", "after"]
+
+
+def test_done_ends_the_present_pursuit():
+    assert printed("!scan[every(1000)]. +!scan <- .print(scan); .done; .print(never).", 2.5) == ["scan"] * 3
+
+
 def test_a_periodic_sub_goal_holds_its_plan_until_it_fails():
     assert printed(
         """

@@ -1,12 +1,15 @@
 """Urgent events and intentions go before what waits, and among equals the order is Jason's."""
 
-from collections import deque
+from collections import Counter, deque
+from random import Random
 
+import pytest
 from recording_host import RecordingHost, mind, printed
 
 from jacaros.bdi.rules.selections import Fair
-from jacaros.bdi.rules.urgency import UrgentQueue
+from jacaros.bdi.rules.urgency import Urgent, UrgentQueue
 from jacaros.bdi.state.act import Percept
+from jacaros.bdi.state.event import Event
 from jacaros.bdi.state.options import Options
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.terms.order import annotation_set
@@ -316,6 +319,64 @@ def test_an_urgent_goal_of_a_message_goes_first_too() -> None:
     host.agent.receive(SpeechAct("achieve", "friend", "tester", atom("halt"), "m9"))
     host.run()
     assert host.printed == ["halted", "low 1", "low 2", "low 3"]
+
+
+def test_a_burst_is_not_sorted_when_something_urgent_comes(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = []
+    of_event = Urgent._of_event
+
+    def counted(selections: Urgent, event: Event) -> int:
+        asked.append(event)
+        return of_event(selections, event)
+
+    monkeypatch.setattr(Urgent, "_of_event", counted)
+    host = mind("+low(I) <- true. @stop[urgency(10)] +bump(I) <- .print(bump(I)); .print(off).")
+    host.run()
+    host.agent.perceive(noticed(*map(low, range(10_000))))
+    host.agent.run(1)
+    for number in range(3):
+        asked.clear()
+        host.agent.perceive(noticed(bump(number)))
+        host.agent.run(4)
+        assert host.printed[-2:] == [f"bump({number})", "off"]
+        assert len(asked) < 50
+    assert len(host.agent.events) > 9_900
+
+
+@pytest.mark.parametrize("events", ["discard", "requeue"])
+def test_what_waits_is_in_order_in_every_cycle(events: str) -> None:
+    """As long as nothing urgent was noted, all that waits has urgency 0: so nothing has to be sorted.
+
+    But for events that are put back to be tried again: they go back to the front.
+    """
+    program = """
+        +low(I) <- !calm(I); .wait({ +tick }, 20); !!calm(I).
+        +!calm(I) <- .print(I); ++noted(I); true.
+        +!fork(I) <- (!calm(I) |&| !hurry(I) ||| .wait(5)); !calm(I).
+        @hurry[urgency(3)] +!hurry(I) : I mod 3 > 0 <- .wait(I mod 7); -+hurried(I); .fail_goal(calm(I)).
+        -!hurry(I) <- .suspend(calm(_)); .wait(3); .resume(calm(_)).
+        @bump[urgency(10)] +bump(I) : I mod 4 > 0 <- !!fork(I); !hurry(I).
+        @noted[urgency(1)] +noted(I) : I mod 5 = 0 <- .drop_desire(calm(I + 1)); true.
+    """
+    host = mind(program, options=Options(events=events))
+    agent, chance = host.agent, Random(18)
+    ranked = Counter[bool]()
+    for number in range(1500):
+        if chance.random() < 0.2:
+            kinds = chance.choices([low, bump, lambda _: atom("tick")], [6, 1, 2], k=chance.randrange(1, 6))
+            agent.perceive(noticed(*(kind(number) for kind in kinds)))
+        agent.run(1)
+        if chance.random() < 0.1:
+            host.ring_next(host.time + 1000)
+        selections = agent.selections
+        assert isinstance(selections, Urgent)
+        of_events = [selections._of_event(event) for event in agent.events]
+        of_intentions = [selections.urgency_of(each) for each in agent.intentions if not each.dropped]
+        for urgencies in (of_events, of_intentions):
+            assert urgencies == sorted(urgencies, reverse=True)
+            assert events == "requeue" or not (selections.plain and any(urgencies))
+        ranked[selections.plain] += 1
+    assert min(ranked[True], ranked[False]) > 100
 
 
 # --- the queue ------------------------------------------------------------------------------------------------

@@ -201,7 +201,8 @@ NOT_FOR_A_LONE_PROGRAM = (
     # ours: what other commands, projects and robots need
     *("jacaros.artifacts", "jacaros.asl.layout", "jacaros.body", "jacaros.env", "jacaros.extension"),
     *("jacaros.inspector", "jacaros.mas.checking", "jacaros.mas.project.jcm", "jacaros.mas.project.mas2j"),
-    *("jacaros.mas.project.reading", "jacaros.mas.environment", "jacaros.sim", "jacaros.testing"),
+    *("jacaros.mas.project.reading", "jacaros.mas.environment", "jacaros.sim", "jacaros.streams"),
+    *("jacaros.testing",),
     # of the middleware a run needs only the owner of its signals, jacaros.ros.lifetime
     *("jacaros.ros.backend", "jacaros.ros.message", "jacaros.ros.node", "jacaros.ros.open"),
 )

@@ -261,7 +261,10 @@ def outcomes(fault: str, begins: list[float]) -> list[tuple[float, str, str]]:
         client = backend.action_client("/navigate_to_pose", "nav2_msgs/action/NavigateToPose")
         for begin in begins:
             await clock.sleep(begin - clock.elapsed)
-            pose = {"header": {"frame_id": "map"}, "pose": {"position": {"x": 1.0}, "orientation": {"w": 1.0}}}
+            pose = {
+                "header": {"frame_id": "map"},
+                "pose": {"position": {"x": 1.0}, "orientation": {"w": 1.0}},
+            }
             goal = await client.send({"pose": pose})
             result = await goal.outcome()
             ended.append((round(clock.elapsed, 1), result.status.name, result.result.error_msg))
@@ -278,7 +281,9 @@ def test_goals_of_an_action_are_aborted_while_the_fault_lasts() -> None:
 
 
 def test_a_fault_of_an_action_that_nobody_offers_is_refused() -> None:
-    with pytest.raises(UsageError, match=r"fault f: unknown action /navigate_to; did you mean /navigate_to_pose\?"):
+    with pytest.raises(
+        UsageError, match=r"fault f: unknown action /navigate_to; did you mean /navigate_to_pose\?"
+    ):
         heard("{kind: aborted_action, action: /navigate_to}", *SCAN)
 
 

@@ -1,18 +1,20 @@
 """``{ history(range(_), within(2000)) }``: what a belief was is kept, and asked for with the annotation `ago(Ms)`."""
 
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from jacaros.asl import nodes
-from jacaros.asl.directives.derive import Placed, Report, milliseconds, written
-from jacaros.streams.schema import LONGEST
 from jacaros.terms.text import number_text
 
+if TYPE_CHECKING:
+    from jacaros.asl.directives.derive import Placed, Report
+
 EXAMPLE: Final = "as in { history(range(_), within(2000)) }"
-_DAY: Final = LONGEST * 1000.0
 
 
-def read_history(directive: nodes.Literal, placed: Placed, report: Report) -> nodes.History | None:
+def read_history(directive: nodes.Literal, placed: "Placed", report: "Report") -> nodes.History | None:
     """Return what the directive declares; None after a mistake, which is reported."""
+    from jacaros.streams.schema import LONGEST  # here: conditions of all programs ask `asks_for_past`
+
     match directive.arguments:
         case (
             nodes.Literal() as belief,
@@ -25,7 +27,7 @@ def read_history(directive: nodes.Literal, placed: Placed, report: Report) -> no
         case _:
             report("'history' needs a belief and `within`", directive.span, EXAMPLE)
             return None
-    if not 0.0 < window <= _DAY:
+    if not 0.0 < window <= LONGEST * 1000.0:
         message = "`within` must be above zero" if window <= 0.0 else "`within` is longer than a day"
         report(message, directive.arguments[1].span, "write a positive number of milliseconds, at most a day")
         return None
@@ -43,6 +45,8 @@ def read_history(directive: nodes.Literal, placed: Placed, report: Report) -> no
 
 def format_history(history: nodes.History) -> str:
     """Return the directive as text, the same for equal ones."""
+    from jacaros.asl.directives.derive import milliseconds, written  # here, for the same reason
+
     window = number_text(milliseconds(history.window))
     return f"{{ history({written(history.belief)}, within({window})) }}"
 

@@ -7,7 +7,6 @@ from typing import Final, TypeVar
 from jacaros.asl import nodes
 from jacaros.asl.cursor import Names, SyntaxPanic
 from jacaros.asl.diagnostics import Diagnostic
-from jacaros.asl.directives.derive import circle, read_derivation
 from jacaros.asl.directives.goal_patterns import (
     backtracking,
     blind,
@@ -19,7 +18,6 @@ from jacaros.asl.directives.goal_patterns import (
     sequenced,
     single_minded,
 )
-from jacaros.asl.directives.history import read_history
 from jacaros.asl.directives.libraries import counterpart, is_known_library, is_library, is_of_organisations
 from jacaros.asl.directives.pattern import PatternCall, PatternError
 from jacaros.asl.literal_parser import Namespaces
@@ -277,6 +275,8 @@ class DirectiveProcessor:
         return None
 
     def _derive(self, parser: ProgramParser, directive: nodes.Literal, section: nodes.Section) -> None:
+        from jacaros.asl.directives.derive import circle, read_derivation  # here: few programs derive
+
         def report(message: str, span: Span | None, hint: str) -> None:
             parser.report("wrong-directive", message, span or directive.span, hint)
 
@@ -294,6 +294,8 @@ class DirectiveProcessor:
         section.derived.append(made)
 
     def _keep_history(self, parser: ProgramParser, directive: nodes.Literal, section: nodes.Section) -> None:
+        from jacaros.asl.directives.history import read_history  # here: few programs keep histories
+
         def report(message: str, span: Span | None, hint: str) -> None:
             parser.report("wrong-directive", message, span or directive.span, hint)
 

@@ -109,7 +109,7 @@ def take_in(agent: Circumstance, percepts: list[Percept]) -> None:  # noqa: C901
         agent.library.selects,
         agent.events,
     )
-    derived = agent.observers.derived
+    derived, urgencies = agent.observers.derived, agent.selections.urgencies
     for percept in percepts:
         kept = percept.kept or _keep(agent, percept)
         symbol, row, change, event = kept
@@ -135,6 +135,8 @@ def take_in(agent: Circumstance, percepts: list[Percept]) -> None:  # noqa: C901
         if selects[change] is not None:
             if event is None:
                 event = kept[3] = ((change, *row), None, annotations, percept.cause)
+            if urgencies is not None and urgencies[change]:
+                agent.selections.rank()
             events.append(event)
 
 
@@ -147,7 +149,6 @@ def _is_usual(agent: Circumstance, count: int) -> bool:
         and agent.observers.mind is None
         and agent.observers.step is None
         and agent.options.events == "discard"
-        and agent.selections.urgencies is None
         and len(agent.events) + count <= agent.options.event_limit
         and len(agent.alive) < agent.options.intention_limit
     )

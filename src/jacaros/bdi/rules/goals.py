@@ -7,6 +7,7 @@ from jacaros.bdi.rules import goal_failure, meta_events, needs, waits
 from jacaros.bdi.rules.alarms import cancel_alarm
 from jacaros.bdi.rules.clr_int import achieve, cut, pending_event, pop_finished, remove_event
 from jacaros.bdi.rules.failure import release_bindings
+from jacaros.bdi.rules.supervision import end_periods
 from jacaros.bdi.state.belief_base import parts
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.event import (
@@ -301,7 +302,10 @@ def resume_intention(agent: Circumstance, intention: Intention, by: Term = _BY_R
 
 
 def succeed_goal(agent: Circumstance, goal: Term) -> bool:
-    """End matching goals as achieved: their callers go on.  True when the running intention is concerned."""
+    """End matching goals as achieved, periodic ones for good: their callers go on.
+
+    True when the running intention is concerned.
+    """
     own = False
     for intention in intentions_for(agent, goal):
         if intention.dropped:  # the branch of a fork above the goal, which has ended with another branch
@@ -309,6 +313,7 @@ def succeed_goal(agent: Circumstance, goal: Term) -> bool:
         index = frame_of(agent, intention, goal)
         running = intention is agent.current
         queued = agent.is_in_turn(intention)
+        end_periods(intention, len(intention.frames) if index is None else index)
         if index is None:
             event = pending_event(agent, intention)
             if event is not None:
@@ -335,7 +340,7 @@ def goes_on(agent: Circumstance, intention: Intention) -> bool:
 def fail_goal(agent: Circumstance, goal: Term, reason: FailureReason | None = None) -> bool:
     """End matching goals as failed: their own handlers run, or those below.  True when the caller itself is concerned.
 
-    Without *reason* the failure events carry no error annotation, as in Jason.
+    A periodic goal is not pursued again.  Without *reason* the failure events carry no error annotation, as in Jason.
     """
     reason = reason or nowhere()
     own = False
@@ -343,6 +348,7 @@ def fail_goal(agent: Circumstance, goal: Term, reason: FailureReason | None = No
         if intention.dropped:  # the branch of a fork above the goal, which has ended with another branch
             continue
         index = frame_of(agent, intention, goal)
+        end_periods(intention, len(intention.frames) if index is None else index)
         if index is None:
             _fail_pending(agent, intention, reason)
             continue

@@ -61,6 +61,13 @@ def end_below(agent: Circumstance, intention: Intention, index: int) -> None:
         end(agent, supervision)
 
 
+def end_periods(intention: Intention, index: int) -> None:
+    """The goal at *index*, or the one about to get a frame there, is not pursued again after its present pursuit."""
+    for supervision in supervisions_below(intention, index):
+        if isinstance(supervision, Pursuit):
+            supervision.period = None
+
+
 def end_above(agent: Circumstance, intention: Intention, index: int) -> None:
     """The frames from the one at *index* on are dropped, as far as no other branch of a fork has them, too."""
     frames = intention.frames

@@ -13,15 +13,16 @@ a name.  What is more urgent goes first, and among equals the order is Jason's. 
   before it are read in the same cycle, and it too.  Percepts are always worked in all together.
 * Atomic intentions are not interrupted.
 
-The queues are plain as long as nothing in them is urgent, whatever plans there are.  What is urgent is noted when it comes;
-the next cycle puts the queues in order, and they are kept in order until nothing urgent is left.  So an urgent plan costs
-unrelated events one look-up in a table each.
+The queues are plain as long as nothing in them is urgent, whatever plans there are.  What is urgent is noted before it is
+queued: all that waits has urgency 0 then, so the queues are in order already, however long they are, and are kept so until
+nothing urgent is left.  They are sorted only after a change of plans.  So an urgent plan costs unrelated events one look-up
+in a table each.
 """
 
 from bisect import bisect_left, bisect_right
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
 from jacaros.bdi.rules.proc_msg import RECEIVED
 from jacaros.bdi.rules.selections import Fair
@@ -83,8 +84,16 @@ class Urgent(Fair):
 
     def rank(self) -> None:
         """Something urgent comes into the queues: from the next cycle on it goes first."""
+        if self._in_order and not self._ranked:
+            self._queue_by(UrgentQueue)
         self._ranked, self.plain = True, False
         self.agent.incoming.called = True
+
+    def _queue_by(self, kind: "type[CalmQueue[Any]]") -> None:
+        """Make the queues ones of another kind, which the code that runs meanwhile may have at hand."""
+        for queue in (self.agent.events, self.agent.intentions):
+            if isinstance(queue, CalmQueue):
+                queue.__class__ = kind
 
     # --- what comes into the queues ------------------------------------------------------------------------
 
@@ -132,9 +141,12 @@ class Urgent(Fair):
         return super().select_intention()
 
     def _put_in_order(self) -> "tuple[deque[Event], deque[Intention]]":
-        """The queues; in order of urgency as long as something urgent is in them."""
+        """The queues; in order of urgency as long as something urgent is in them.
+
+        They are sorted after a change of plans only, and not within it: code that runs meanwhile has the old ones at hand.
+        """
         agent = self.agent
-        if self._ranked and not self._in_order:
+        if not self._in_order:
             self._in_order = True
             if self._orders_events:
                 agent.events = UrgentQueue(self._of_event, agent.events)
@@ -144,9 +156,8 @@ class Urgent(Fair):
 
     def _calm_down(self) -> None:
         """Nothing urgent is left."""
-        self._ranked = self._in_order = False
-        self.plain = True
-        self.agent.events, self.agent.intentions = deque(self.agent.events), deque(self.agent.intentions)
+        self._ranked, self.plain = False, True
+        self._queue_by(CalmQueue)
 
     def may_line_up(self, intention: Intention) -> bool:
         """Whether a new intention may have to wait until there are few."""
@@ -212,12 +223,25 @@ class _OfKinds(dict[Trigger, int]):
         return self[kind]
 
 
-class UrgentQueue(deque[Item], Generic[Item]):
-    """A queue in which the more urgent stands before the less urgent, and equals in the order in which they came."""
+class CalmQueue(deque[Item], Generic[Item]):
+    """A queue in which nothing is urgent: the first goes first.
+
+    Args:
+        urgency: of an item.
+        items: the first ones.
+    """
+
+    __slots__ = ("_urgency",)
 
     def __init__(self, urgency: Callable[[Item], int], items: Iterable[Item] = ()) -> None:
         super().__init__(sorted(items, key=urgency, reverse=True))
         self._urgency = urgency
+
+
+class UrgentQueue(CalmQueue[Item]):
+    """A queue in which the more urgent stands before the less urgent, and equals in the order in which they came."""
+
+    __slots__ = ()
 
     def first_urgency(self) -> int:
         """The urgency of the first item, which is the greatest; 0 without any."""

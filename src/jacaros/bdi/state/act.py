@@ -28,7 +28,7 @@ class Act:
         place: plan, file and line of the step, when somebody watches.
         urgency: of the intention; decides who gets resources.
         within: acts by which plans of the intention have asked for resources, outermost first.
-        yields: its resources may be taken away from it.
+        yields: its resources may be taken away from it; False for that of an atomic plan.
     """
 
     id: int

@@ -65,7 +65,8 @@ class Holding:
         self._when_preempted = when_preempted
         agent = f"[{request.agent}] " if request.agent is not None else ""
         who = f"{agent}{request.operation}"
-        self.claim = Claim(uses, who, self, request.urgency, request.policy, request.within)
+        blocks = request.agent if request.agent is not None and not request.yields else ""
+        self.claim = Claim(uses, who, self, request.urgency, request.policy, request.within, blocks=blocks)
         self.entered = self.resting = self._entering = False
         self._told = False
         self._watchers: list[Callable[[], None]] = []

@@ -6,7 +6,9 @@ A claim is granted all that it asks for, or nothing.  The rules:
 * A more urgent claim preempts: holders that are less urgent are asked to give way, the least urgent and newest first, and
   only when that is enough.  A holder keeps what it holds until it has given way (a robot brakes), then it waits again.
 * A claim within others (an operation of a plan that holds the resource) is granted only while these are, and what they
-  hold does not stand in its way.
+  hold does not stand in its way.  It waits behind those before it only while holders give way to them.
+* A claim of an atomic plan preempts other plans of its agent, however urgent: they make no step before it ends.  They wait
+  again until it has ended.
 * A holder that cannot give way inherits the urgency of what it blocks.
 * A claim that waits rises by 1 for each `PATIENCE`; that moves it forward in the order and protects what it gets by that,
   but takes nothing away from a holder.
@@ -129,12 +131,16 @@ class Arbiter:
         """Change the state of one claim; False when all are as they should be."""
         self._inherit()
         reserved: set[str] = set()
+        coming: set[str] = set()
+        blocked = {claim.blocks for claim in self._all() if claim.blocks}
         for claim in self._in_order():
+            if claim.plan_of in blocked and not claim.blocks:
+                continue
             if any(outer.state is not State.HELD for outer in claim.within):
                 continue
             blockers = self._blockers(claim)
             wanted = {use.name for use in claim.uses}
-            ahead = not claim.within and bool(wanted & reserved)
+            ahead = bool(wanted & (coming if claim.within else reserved))
             exceeded = self._exceeded(claim)
             if exceeded is not None:
                 self._fail(claim, Structure("resource_exceeded", (Atom(local_name(exceeded)),)))
@@ -142,9 +148,13 @@ class Arbiter:
             if not blockers and not ahead:
                 self._grant(claim)
                 return True
-            if self._preempt(claim, blockers) or self._refuse(claim, blockers, ahead):
+            # What others give up goes to those ahead first.
+            if (not ahead and self._preempt(claim, blockers)) or self._refuse(claim, blockers, ahead):
                 return True
             reserved |= wanted
+            going = self._chosen(claim, blockers)
+            if going and not ahead and _all_go(going):
+                coming |= wanted
         return self._break_deadlock()
 
     def _in_order(self) -> list[Claim]:
@@ -161,8 +171,10 @@ class Arbiter:
     def _preempt(self, claim: Claim, blockers: list[tuple[Claim, str]]) -> bool:
         """Ask one holder to give way; False when there is none to be asked."""
         chosen = self._chosen(claim, blockers)
+        stays = not _all_go(chosen)
         for holder, resource in chosen:
-            if holder.state is State.HELD and holder.claimant.can_yield:
+            # A claim within others would be granted again at once as long as one stays, and asked again.
+            if holder.state is State.HELD and holder.claimant.can_yield and not (stays and holder.within):
                 holder.state = State.YIELDING
                 holder.claimant.preempted(holder, resource)
                 return True
@@ -188,6 +200,8 @@ class Arbiter:
         return chosen
 
     def _outranks(self, claim: Claim, holder: Claim) -> bool:
+        if claim.blocks and claim.blocks == holder.plan_of:
+            return True
         rank = self._rank(holder)
         return claim.base > rank or (_takes(claim) and claim.base == rank)
 
@@ -320,6 +334,11 @@ class Arbiter:
 def _takes(claim: Claim) -> bool:
     """Whether a claim takes from an equal: only until it has had its turn, or two would take for ever."""
     return claim.policy == "take" and claim.fresh
+
+
+def _all_go(chosen: list[tuple[Claim, str]]) -> bool:
+    """Whether all give way already, or do when they are asked."""
+    return all(each.state is State.YIELDING or each.claimant.can_yield for each, _ in chosen)
 
 
 def _use_of(claim: Claim, name: str) -> Use:

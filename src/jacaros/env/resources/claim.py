@@ -48,6 +48,8 @@ class Claim:
         urgency: of the plan or operation.
         policy: what it does when it is not granted at once.
         within: claims that it is a part of, outermost first; what these hold does not stand in its way.
+        plan_of: the agent for whose plan it is; empty for an operation, which ends without a further step of a plan.
+        blocks: the agent whose other plans make no step until this claim has been given back: that of an atomic plan.
 
     Attributes:
         state: where it is.
@@ -60,10 +62,12 @@ class Claim:
     """
 
     __slots__ = (
+        "blocks",
         "claimant",
         "fresh",
         "inherited",
         "order",
+        "plan_of",
         "policy",
         "since",
         "state",
@@ -83,9 +87,12 @@ class Claim:
         urgency: int = 0,
         policy: Policy = "wait",
         within: "tuple[Claim, ...]" = (),
+        plan_of: str = "",
+        blocks: str = "",
     ) -> None:
         self.uses, self.who, self.claimant = uses, who, claimant
         self.urgency, self.policy, self.within = urgency, policy, within
+        self.plan_of, self.blocks = plan_of, blocks
         self.state, self.fresh, self.warned = State.OUT, True, False
         self.order = self.inherited = 0
         self.waited = self.since = 0.0

@@ -50,9 +50,11 @@ class Table:
         brakes: bool = False,
         enter: bool = True,
         who: str = "somebody",
+        plan_of: str = "",
+        blocks: str = "",
     ) -> Claim:
         party = Party(self.arbiter, can_yield, brakes)
-        made = Claim(read_uses(uses), who, party, urgency, policy, within)
+        made = Claim(read_uses(uses), who, party, urgency, policy, within, plan_of, blocks)
         if enter:
             self.arbiter.enter(made)
         return made
@@ -270,3 +272,83 @@ def test_uses_are_read_from_text() -> None:
     for wrong in ("", "two words", "lift(0)", "lift(many)"):
         with pytest.raises(ValueError, match="resource"):
             read_use(wrong)
+
+
+# --- atomic plans ---------------------------------------------------------------------------------------------
+
+
+def test_an_atomic_plan_takes_what_a_plan_of_its_agent_holds_however_urgent_that_is() -> None:
+    table = Table()
+    plan = table.claim("wheels", urgency=5, plan_of="robot")
+    atomic = table.claim("wheels", can_yield=False, blocks="robot")
+    assert (plan.state, atomic.state) == (State.WAITING, State.HELD)
+    table.arbiter.leave(atomic)
+    assert plan.state is State.HELD
+
+
+def test_an_atomic_plan_waits_for_operations_and_for_other_agents() -> None:
+    table = Table()
+    for holder in (table.claim("wheels"), table.claim("wheels", plan_of="other", enter=False)):
+        table.arbiter.enter(holder)
+        atomic = table.claim("wheels", blocks="robot")
+        assert atomic.state is State.WAITING
+        table.arbiter.leave(holder)
+        assert atomic.state is State.HELD
+        table.arbiter.leave(atomic)
+
+
+def test_an_operation_under_way_ends_before_its_plan_gives_way_to_an_atomic_one() -> None:
+    table = Table()
+    plan = table.claim("wheels", plan_of="robot")
+    drive = table.claim("wheels", within=(plan,))
+    atomic = table.claim("wheels", blocks="robot")
+    assert (plan.state, drive.state, atomic.state) == (State.HELD, State.HELD, State.WAITING)
+    table.arbiter.leave(drive)
+    assert (plan.state, atomic.state) == (State.WAITING, State.HELD)
+
+
+def test_a_plan_that_waits_goes_behind_an_atomic_one_of_its_agent_alone() -> None:
+    table = Table()
+    holder = table.claim("wheels", plan_of="other", can_yield=False)
+    plan = table.claim("wheels", urgency=5, plan_of="robot")
+    guest = table.claim("wheels", urgency=5)
+    atomic = table.claim("wheels", plan_of="robot", blocks="robot")
+    table.arbiter.leave(holder)
+    assert (plan.state, guest.state, atomic.state) == (State.WAITING, State.HELD, State.WAITING)
+    table.arbiter.leave(guest)
+    assert (plan.state, atomic.state) == (State.WAITING, State.HELD)
+    table.arbiter.leave(atomic)
+    assert plan.state is State.HELD
+
+
+# --- claims that would have it again at once --------------------------------------------------------------------
+
+
+def test_what_is_within_one_that_stays_is_not_asked_to_give_way() -> None:
+    table = Table()
+    plan = table.claim("base", urgency=1, can_yield=False)
+    step = table.claim("base", within=(plan,))
+    taker = table.claim("base", urgency=1, policy="take")
+    assert (plan.state, step.state, taker.state) == (State.HELD, State.HELD, State.WAITING)
+
+
+def test_what_is_within_others_does_not_take_back_what_it_gave_to_one_that_waits_for_more() -> None:
+    table = Table()
+    plan = table.claim("lift(2)", urgency=1)
+    braking = table.claim("arm", "map(shared)", urgency=1, brakes=True)
+    step = table.claim("map(shared)", within=(plan,))
+    urgent = table.claim("arm", "map", urgency=5)
+    assert (braking.state, step.state) == (State.YIELDING, State.WAITING)
+    table.arbiter.gave_way(braking)
+    assert (plan.state, urgent.state, step.state) == (State.HELD, State.HELD, State.WAITING)
+    table.arbiter.leave(urgent)
+    assert (braking.state, step.state) == (State.HELD, State.HELD)
+
+
+def test_nothing_is_taken_away_for_one_that_waits_behind_others() -> None:
+    table = Table()
+    plan = table.claim("map(shared)", urgency=1)
+    step = table.claim("base", within=(plan,))
+    first = table.claim("map", urgency=1)
+    second = table.claim("base", "map(shared)", urgency=1)
+    assert (step.state, first.state, second.state) == (State.HELD, State.WAITING, State.WAITING)
