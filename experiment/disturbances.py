@@ -32,7 +32,7 @@ SURROUNDINGS: Mapping[str, Surroundings] = {
     "out_and_back": Surroundings(20.0, (-1.0, -1.0, 1.0, 1.0)),
     "square": Surroundings(35.0, (-0.5, -0.5, 1.5, 1.5)),
     "fake_battery": Surroundings(200.0, (-1.0, -1.0, 1.0, 1.0)),
-    "patrol": Surroundings(190.0, (0.0, 0.0, 2.0, 2.0), recharges=True, navigates=True),
+    "patrol": Surroundings(140.0, (0.0, 0.0, 2.0, 2.0), recharges=True, navigates=True),
     "house_cleaning": Surroundings(
         190.0, (0.0, 0.0, 2.0, 2.0), ("living_room", "bathroom"), recharges=True, navigates=True
     ),

@@ -25,14 +25,14 @@ doors:
 """
 """Doors that the house has for this: a closed one can be passed in the middle of the house."""
 
-CYCLES = 3
+CYCLES = 2
 """Recharges after which a patrol ends here; the whole shift has ten."""
 
 LIMITS: Mapping[str, float] = {
     "out_and_back": 120.0,
     "square": 180.0,
     "fake_battery": 400.0,
-    "patrol": 400.0,
+    "patrol": 240.0,
     "house_cleaning": 900.0,
 }
 """Seconds of the virtual clock after which a run is ended."""
