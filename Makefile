@@ -5,6 +5,7 @@
 # make coverage   which lines the unit, contract and conformance tests run, by package; in some fifteen minutes
 # make bench   figures of speed, beside those of other engines, in some ten minutes; renews docs/benchmarks.md
 #              make bench BENCH=--quick   in some three minutes, and changes nothing; JASON=/path/to/jason takes part, too
+# make experiment   the experiment of docs/experiment.md, in some fifteen minutes; renews the page and its charts
 # make reference   the reference pages and pictures that follow from the code
 #
 # PYTHON=python3.12 make demo     with another interpreter (3.11 or newer)
@@ -13,7 +14,7 @@
 VENV := .venv
 PYTHON ?= $(shell tools/find_python.sh)
 
-.PHONY: demo test test-all quick coverage reference bench clean
+.PHONY: demo test test-all quick coverage reference experiment bench clean
 
 demo: $(VENV)/.installed
 	$(VENV)/bin/python tools/demo.py
@@ -34,6 +35,9 @@ coverage: $(VENV)/.installed-dev
 reference: $(VENV)/.installed-dev
 	$(VENV)/bin/python tools/make_reference.py
 	$(VENV)/bin/python tools/make_pictures.py
+
+experiment: $(VENV)/.installed-dev
+	$(VENV)/bin/python experiment/run.py
 
 bench: $(VENV)/.installed $(VENV)-bench/.installed
 	$(VENV)/bin/python benchmarks/bench.py $(BENCH)

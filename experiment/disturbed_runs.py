@@ -87,7 +87,7 @@ def run_one(job: Job) -> Outcome:
     """Make one run, and judge it."""
     scenario = SCENARIOS[job.scenario]
     faults, limit = faults_for(job.scenario, job.seed), LIMITS[job.scenario]
-    with _world_of(job.scenario) as world:
+    with world_of(job.scenario) as world:
         if job.side == BASELINE:
             result = run_baseline(job.scenario, world, limit, job.seed, faults)
         else:
@@ -117,7 +117,7 @@ def _over_nav2(scenario: str) -> Path:
 
 
 @contextlib.contextmanager
-def _world_of(scenario: str) -> Iterator[str | Path]:
+def world_of(scenario: str) -> Iterator[str | Path]:
     """The world of a scenario; the house gets doors."""
     if scenario != "house_cleaning":
         yield SCENARIOS[scenario].world

@@ -2,11 +2,13 @@
 
 import re
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 
 import sizes
 import success
 from disturbed_runs import AGENTS, BASELINE, OVER_NAV2, Outcome
 from jacaros.metrics import ProgramMetrics, Table, as_markdown
+from jacaros.metrics.groups import Group
 from scenarios import FOLDER, SCENARIOS
 
 MARK = re.compile(r"<!-- (\w+) -->")
@@ -22,11 +24,9 @@ def page(outcomes: Sequence[Outcome]) -> str:
 def all_tables(outcomes: Sequence[Outcome]) -> Mapping[str, Callable[[], Table]]:
     """The tables of the page, by the marks that they replace."""
     examples, over_nav2 = sizes.examples(), sizes.over_nav2()
+    kinds = ("identifiers", "names", "lines", "code_lines", "gzip_bytes")
     return {
-        **{
-            kind: lambda kind=kind: sizes.size_table(examples, kind)
-            for kind in ("identifiers", "names", "lines", "code_lines", "gzip_bytes")
-        },
+        **{kind: partial(sizes.size_table, examples, kind) for kind in kinds},
         "over_nav2": lambda: over_nav2_table(over_nav2),
         "library": lambda: sizes.library_table([*examples, *over_nav2]),
         "success": lambda: success.success_table(outcomes),
@@ -46,7 +46,7 @@ def over_nav2_table(programs: Sequence[ProgramMetrics]) -> Table:
         for program in programs
         for side, counts in (
             ("agents", program.total),
-            (BASELINE, program.counts(sizes.Group.BASELINE)),
+            (BASELINE, program.counts(Group.BASELINE)),
         )
     )
     return Table(
@@ -68,7 +68,7 @@ def summary(outcomes: Sequence[Outcome]) -> str:
             (
                 name.replace("_", " "),
                 program.total.code_lines,
-                program.counts(sizes.Group.BASELINE).code_lines,
+                program.counts(Group.BASELINE).code_lines,
                 f"{success.passed(outcomes, name, side)} of {runs}",
                 f"{success.passed(outcomes, name, BASELINE)} of {runs}",
             )

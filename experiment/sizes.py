@@ -30,7 +30,7 @@ def over_nav2() -> list[ProgramMetrics]:
 def size_table(programs: Sequence[ProgramMetrics], kind: str) -> Table:
     """One measure of both sides, and, where the thesis has it, what it tells of the same scenario."""
     thesis = thesis_figures()["tables"].get(kind, {})
-    rows = []
+    rows: list[tuple[str | int, ...]] = []
     for program in programs:
         columns = (
             program.counts(Group.AGENTS),
@@ -53,7 +53,9 @@ def size_table(programs: Sequence[ProgramMetrics], kind: str) -> Table:
 def library_table(programs: Sequence[ProgramMetrics]) -> Table:
     """Code lines of configuration and libraries, which the totals leave out."""
     groups = (Group.PROJECTS, Group.WORLDS, Group.LIBRARY, Group.BASELINE_LIBRARY)
-    rows = tuple((each.name, *(each.counts(group).code_lines for group in groups)) for each in programs)
+    rows: tuple[tuple[str | int, ...], ...] = tuple(
+        (each.name, *(each.counts(group).code_lines for group in groups)) for each in programs
+    )
     header = ("scenario", "projects", "worlds", "our library", "py_trees")
     return Table("Code lines of configuration and libraries", header, rows)
 

@@ -131,6 +131,7 @@ def parts() -> list[Part]:
             budget=60,
         ),
         Part("scenarios", (*PYTEST, "tests/scenarios", "-m", "not ros1 and not ros2"), budget=165),
+        Part("experiment", (PYTHON, "experiment/run.py", "--quick"), budget=150, quiet_minutes=30),
         Part("faults", (*PYTEST, "tests/faults"), budget=10),
         Part(
             "examples", (f"{BIN}/jacaros", "test", "examples", "--junit", "runs/test/examples.xml"), budget=5
