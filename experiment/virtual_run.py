@@ -18,7 +18,7 @@ from jacaros.errors import JacarosError
 from jacaros.sim import World
 from jacaros.sim.node import SimNode
 from jacaros.testing import RunResult
-from scenarios import SCENARIOS
+from scenarios import SCENARIOS, Scenario
 from virtual_rclpy.graph import TimeIsUp, VirtualGraph, being_current
 from virtual_rclpy.installed import installed
 
@@ -30,7 +30,7 @@ COASTING = 1.0
 
 
 def run_baseline(
-    name: str,
+    name: str | Scenario,
     world: str | Path | None = None,
     seconds: float = LONGEST,
     seed: int = 0,
@@ -40,7 +40,7 @@ def run_baseline(
     """Run a baseline, as `jacaros.testing.run_project` runs the agents of a project; the same arguments give the same run.
 
     Args:
-        name: of the scenario, see `SCENARIOS`.
+        name: of the scenario, see `SCENARIOS`; or a scenario.
         world: world file, name or text in place of the scenario's.
         seconds: of the virtual clock, after which a program that has not ended is ended.
         seed: of the world.
@@ -55,7 +55,7 @@ def run_baseline(
         KeyError: unknown scenario.
         WorldError: the world or the fault file is wrong.
     """
-    scenario = SCENARIOS[name]
+    scenario = SCENARIOS[name] if isinstance(name, str) else name
     made = World.load(scenario.world if world is None else world, seed, faults)
     made.ground_truth.keep = None
     clock, result = VirtualClock(), RunResult()

@@ -5,10 +5,13 @@ that is left.
 """
 
 import sys
+from collections.abc import Mapping, Sequence
 
 from jacaros.sim import GroundTruth
 from jacaros.testing import Verdict, judge
 from jacaros.testing.paths import distance, judge_recharging
+
+Place = tuple[float, float]
 
 ROUND = (
     ("living_room", "vacuum carpet"),
@@ -26,25 +29,32 @@ ROUNDS_TO_CLEAN = 4
 """Each round removes at least that part of the dirt, a quarter."""
 
 
-def check(truth: GroundTruth, rounds: int = 4, recharges: int = 1) -> Verdict:
+def check(
+    truth: GroundTruth,
+    rounds: int = 4,
+    recharges: int = 1,
+    tasks_of_round: Sequence[tuple[str, str]] = ROUND,
+    places: Mapping[str, Place] = PLACES,
+) -> Verdict:
     """Judge a run of so many rounds and at least so many recharges."""
     verdict = Verdict()
     tasks = truth.events_of("task")
     verdict.measure("tasks", len(tasks))
-    verdict.expect(len(tasks) == rounds * len(ROUND), f"{len(tasks)} tasks, not {rounds * len(ROUND)}")
+    wanted = rounds * len(tasks_of_round)
+    verdict.expect(len(tasks) == wanted, f"{len(tasks)} tasks, not {wanted}")
     for number, event in enumerate(tasks):
-        room, task = ROUND[number % len(ROUND)]
+        room, task = tasks_of_round[number % len(tasks_of_round)]
         text, where = event.data["task"], event.data["room"]
         verdict.expect(text == f"{task} {room}", f"task {number + 1} was '{text}', not '{task} {room}'")
         verdict.expect(where == room, f"the robot did '{text}' in the {where}")
-        far = distance(event, *PLACES[room])
+        far = distance(event, *places[room])
         verdict.expect(far <= 0.3, f"the robot did '{text}' {far:.1f} m from the corner of the {room}")
 
-    judge_dirt(verdict, truth, rounds)
+    judge_dirt(verdict, truth, rounds, places)
 
     # A round is over when the robot is in the hallway: after the last task, and before the first one of the next.
-    ends = [event.time for event in tasks[len(ROUND) - 1 :: len(ROUND)]]
-    begins = [event.time for event in tasks[len(ROUND) :: len(ROUND)]]
+    ends = [event.time for event in tasks[len(tasks_of_round) - 1 :: len(tasks_of_round)]]
+    begins = [event.time for event in tasks[len(tasks_of_round) :: len(tasks_of_round)]]
     at_home = [sample.time for sample in truth.path() if distance(sample, *HALLWAY) <= 0.05]
     for end, begin in zip(ends, [*begins, float("inf")], strict=False):
         verdict.expect(
@@ -57,7 +67,9 @@ def check(truth: GroundTruth, rounds: int = 4, recharges: int = 1) -> Verdict:
     return verdict
 
 
-def judge_dirt(verdict: Verdict, truth: GroundTruth, rounds: int) -> None:
+def judge_dirt(
+    verdict: Verdict, truth: GroundTruth, rounds: int, places: Mapping[str, Place] = PLACES
+) -> None:
     """Judge what is left of the dirt, and where the robot was when it removed the rest."""
     for room in truth.world["rooms"]:
         for dirt in room.get("dirt", []):
@@ -69,7 +81,7 @@ def judge_dirt(verdict: Verdict, truth: GroundTruth, rounds: int) -> None:
             )
     verdict.measure("grams_left", round(sum(truth.dirt.values()), 1))
     for event in truth.events_of("cleaned"):
-        far = distance(event, *PLACES[event.data["room"]])
+        far = distance(event, *places[event.data["room"]])
         verdict.expect(far <= 0.3, f"the robot cleaned the {event.data['room']} {far:.1f} m from its corner")
 
 

@@ -44,9 +44,9 @@ class VirtualGraph:
         self._backends: list[Backend] = []
         self._end: asyncio.Future[BaseException] = loop.create_future()
 
-    def node(self, name: str) -> Any:
-        """Join the graph by one more node."""
-        backend = open_backend("memory", self.clock, name, log=self._log, graph=self.graph)
+    def node(self, name: str, namespace: str = "") -> Any:
+        """Join the graph by one more node, whose relative names are in *namespace*."""
+        backend = open_backend("memory", self.clock, name, namespace, log=self._log, graph=self.graph)
         self._backends.append(backend)
         if self.loop.is_running():
             _without_waiting(backend)

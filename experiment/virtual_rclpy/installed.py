@@ -8,7 +8,7 @@ from pathlib import Path
 
 from virtual_rclpy.messages import MessagePackages, is_message_package
 
-SUBMODULES = ("action", "node", "qos", "task", "time")
+SUBMODULES = ("action", "executors", "node", "qos", "task", "time")
 STAND_INS = str(Path(__file__).parents[1] / "stand_ins")
 
 

@@ -72,9 +72,9 @@ class Node:
         backend: the node in it.
     """
 
-    def __init__(self, node_name: str) -> None:
+    def __init__(self, node_name: str, *, namespace: str = "") -> None:
         self.graph = current()
-        self.backend = self.graph.node(node_name)
+        self.backend = self.graph.node(node_name, namespace)
         self._name = node_name
 
     def create_publisher(self, msg_type: Interface, topic: str, qos_profile: QoSProfile | int) -> Publisher:

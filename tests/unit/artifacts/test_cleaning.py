@@ -1,5 +1,6 @@
 """ArtCleaning: the tasks of each room, in the thesis's words and times."""
 
+import re
 from typing import Any
 
 import pytest
@@ -8,6 +9,7 @@ from robot_lab import Lab, in_lab
 from jacaros.artifacts.thesis.cleaning import ArtCleaning
 from jacaros.clock import VirtualClock, run
 from jacaros.env import Environment, Out, Structure
+from jacaros.env.errors import OperationFailed
 
 
 def heard(lab: Lab, topic: str = "/cleaning/task") -> list[str]:
@@ -133,6 +135,44 @@ def test_a_room_that_is_not_there_is_refused() -> None:
         cleaner = await lab.make(ArtCleaning)
         assert (await lab.call(cleaner, "clean", 4)).reason == "unknown_room(4)"
         assert lab.clock.elapsed == 0
+
+    in_lab(body, None)
+
+
+STUDY = Structure("room", ("study", [Structure("vacuum", ("Carpet",)), Structure("mop", ("Floor",))]))
+
+
+def test_a_house_may_have_more_rooms() -> None:
+    async def body(lab: Lab) -> None:
+        tasks = heard(lab)
+        cleaner = await lab.make(ArtCleaning, Structure("more_rooms", ([STUDY],)))
+        watcher = lab.watch(cleaner)
+        for _ in range(5):
+            await lab.do(cleaner, "updateWhereAmI")
+        assert watcher.values("atRoom") == [(0,), (1,), (2,), (3,), (4,), (0,)]
+        await lab.do(cleaner, "clean", 4)
+        assert tasks == ["vacuum carpet study", "mop floor study"]
+        assert watcher.holds("vacuum") == [("Carpet", "study")]
+        assert (await lab.call(cleaner, "clean", 5)).reason == "unknown_room(5)"
+
+    in_lab(body, None)
+
+
+WRONG_ROOMS: list[tuple[object, str]] = [
+    (3, "option more_rooms(3) wants a list such as"),
+    ([Structure("room", ("study",))], "wants rooms such as"),
+    (
+        [Structure("room", ("study", [Structure("sweep", ("Floor",))]))],
+        "of the kinds vacuum, mop, scrub, not sweep",
+    ),
+]
+
+
+@pytest.mark.parametrize(("value", "told"), WRONG_ROOMS)
+def test_wrong_rooms_are_refused(value: object, told: str) -> None:
+    async def body(lab: Lab) -> None:
+        with pytest.raises(OperationFailed, match=re.escape(told)):
+            await lab.make(ArtCleaning, Structure("more_rooms", (value,)))
 
     in_lab(body, None)
 

@@ -5,6 +5,7 @@ from typing import ClassVar
 from jacaros.artifacts.kit.connection import MATCH_OPTIONS
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.env.artifact import Out, operation
+from jacaros.env.values import Structure
 from jacaros.ros.backend import Publisher
 
 ROOMS = ("hallway", "living Room", "kitchen", "bathroom")
@@ -19,12 +20,41 @@ BETWEEN_TASKS = 1.0
 CLEANING = 2.5
 """Seconds that the cleaning of a room takes, as in the thesis."""
 
-TASKS = {
-    0: (),
-    1: (("vacuum", CARPET),),
-    2: (("mop", FLOOR),),
-    3: (("scrub", TUB), ("mop", FLOOR)),
-}
+KINDS = ("vacuum", "mop", "scrub")
+"""The kinds of tasks."""
+
+Task = tuple[str, str]
+"""Kind of a task, and what is cleaned."""
+
+TASKS: tuple[tuple[Task, ...], ...] = (
+    (),
+    (("vacuum", CARPET),),
+    (("mop", FLOOR),),
+    (("scrub", TUB), ("mop", FLOOR)),
+)
+"""The tasks of the rooms, by number."""
+
+
+def more_rooms(value: object) -> tuple[tuple[str, tuple[Task, ...]], ...]:
+    """A list such as ``[room("study", [vacuum("Carpet")])]``: names of rooms, each with its tasks."""
+    try:
+        return tuple(_room(each) for each in value)  # type: ignore[attr-defined]  # TypeError if it is not a list
+    except TypeError:
+        raise ValueError("""a list such as [room("study", [vacuum("Carpet")])]""") from None
+
+
+def _room(value: object) -> tuple[str, tuple[Task, ...]]:
+    match value:
+        case Structure("room", (str(name), list(tasks))):
+            return str(name), tuple(_task(each) for each in tasks)
+    raise ValueError(f"""rooms such as room("study", [vacuum("Carpet")]), not {value}""")
+
+
+def _task(value: object) -> Task:
+    match value:
+        case Structure(kind, (str(thing),)) if kind in KINDS:
+            return kind, str(thing)
+    raise ValueError(f"""tasks such as vacuum("Carpet"), of the kinds {", ".join(KINDS)}, not {value}""")
 
 
 class ArtCleaning(RosArtifact):
@@ -36,24 +66,30 @@ class ArtCleaning(RosArtifact):
     end and at the moment of a pause, and its name starts it again when the pause ends.
 
     Options:
+        more_rooms(R): rooms after the thesis's four, with their tasks, such as
+            ``[room("study", [vacuum("Carpet")])]``; their numbers are 4, 5, and so on.
         match_timeout(S): how long the first task waits for a subscriber of ``/cleaning/task`` (3 s).
         unmatched(W): what happens when there is none by then: ``warn`` (the default; the task is published all the
             same) or ``fail``, with ``unmatched(Topic)``.
 
     Properties:
-        atRoom(N): number of the room, 0 (hallway) to 3 (bathroom).
+        atRoom(N): number of the room, 0 (hallway) to 3 (bathroom) or that of the last of `more_rooms`.
         vacuum(Object, Room), mop(Object, Room), scrub(Object, Room): the newest task of a kind; texts, empty
             before the first.
     """
 
-    known_options: ClassVar = MATCH_OPTIONS
+    known_options: ClassVar = {"more_rooms": more_rooms, **MATCH_OPTIONS}
     _tasks: Publisher | None = None
     _tools: Publisher | None = None
 
     def open(self) -> None:
         """Define the properties; the robot begins in the hallway."""
+        more = self.options.get("more_rooms", ())
+        assert isinstance(more, tuple)
+        self._rooms = (*ROOMS, *(name for name, _ in more))
+        self._tasks_of = (*TASKS, *(tasks for _, tasks in more))
         self.define_property("atRoom", 0)
-        for task in ("vacuum", "mop", "scrub"):
+        for task in KINDS:
             self.define_property(task, "", "")
         if self.resources.get("ros") is not None:
             self._tasks = self.publisher("cleaning/task", "std_msgs/msg/String")
@@ -68,12 +104,12 @@ class ArtCleaning(RosArtifact):
     def give_where_i_am(self, room: Out, name: Out) -> None:
         """Give number and name of the room to the caller."""
         room.set(self.value("atRoom"))
-        name.set(ROOMS[self.value("atRoom")])
+        name.set(self._rooms[self.value("atRoom")])
 
     @operation(name="updateWhereAmI")
     def update_where_am_i(self) -> None:
         """Go on to the next room; after the last comes the first."""
-        self.update_property("atRoom", (self.value("atRoom") + 1) % len(ROOMS))
+        self.update_property("atRoom", (self.value("atRoom") + 1) % len(self._rooms))
 
     @operation(pausable=True)
     async def clean(self, room: int) -> None:
@@ -82,20 +118,20 @@ class ArtCleaning(RosArtifact):
         While the intention is suspended the work rests: a robot that has left to recharge mops no floor.
         Fails with ``unknown_room(N)``.
         """
-        if room not in TASKS:
-            self.fail(f"there is no room {room}; rooms are 0 to {len(ROOMS) - 1}", "unknown_room", room)
-        if self._tasks is not None and TASKS[room]:
+        if not 0 <= room < len(self._rooms):
+            self.fail(f"there is no room {room}; rooms are 0 to {len(self._rooms) - 1}", "unknown_room", room)
+        if self._tasks is not None and self._tasks_of[room]:
             await self.matched(self._tasks)
         tool = ""
         self.current.on_pause(lambda: self._use(""))
         self.current.on_resume(lambda: self._use(tool))
         try:
-            for number, (task, thing) in enumerate(TASKS[room]):
+            for number, (task, thing) in enumerate(self._tasks_of[room]):
                 if number:
                     await self._work(BETWEEN_TASKS)
                 tool = task
-                self.update_property(task, thing, ROOMS[room])
-                self._publish(f"{task} {thing} {ROOMS[room].replace(' ', '_')}".lower())
+                self.update_property(task, thing, self._rooms[room])
+                self._publish(f"{task} {thing} {self._rooms[room].replace(' ', '_')}".lower())
             await self._work(CLEANING)
         finally:
             self._use("")
