@@ -29,7 +29,8 @@ class SimNode:
     """
 
     def __init__(self, world: World, backend: Backend, clock: Clock) -> None:
-        self._faulty = FaultyGraph(backend, world.faults, clock) if world.faults.topics else None
+        affected = world.faults.topics or world.faults.actions
+        self._faulty = FaultyGraph(backend, world.faults, clock) if affected else None
         self.world, self.clock = world, clock
         self.backend = backend if self._faulty is None else cast(Backend, self._faulty)
         self.time = WorldTime(world, clock)
@@ -47,7 +48,7 @@ class SimNode:
 
         Raises:
             RosError: the backend is not started, or a namespace or message type does not suit it.
-            UsageError: a fault concerns a topic that the world does not have.
+            UsageError: a fault concerns a topic or an action that the world does not have.
         """
         self.time = WorldTime(self.world, self.clock)
         self.robots = [RobotNode(self.time, robot, self.backend) for robot in self.world.robots.values()]

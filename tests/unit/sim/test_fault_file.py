@@ -48,6 +48,7 @@ robots:
         ("{kind: kidnapped_robot, robot: two, to: {x: 0.2, y: -2}}", "inside a box"),
         ("{kind: person}", "'f' lacks the key 'path'"),
         ("{kind: dead}", "'f' lacks the key 'topic'"),
+        ("{kind: aborted_action}", "'f' lacks the key 'action'"),
         ("{kind: dead, topic: /scan, at: -1}", "'at' is -1, but must be at least 0"),
     ],
 )

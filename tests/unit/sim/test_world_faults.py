@@ -253,6 +253,35 @@ def test_a_fault_of_a_topic_that_nobody_has_is_refused() -> None:
         heard("{kind: dead, topic: /skan}", *SCAN)
 
 
+def outcomes(fault: str, begins: list[float]) -> list[tuple[float, str, str]]:
+    """When goals end that begin at some times, how, and why."""
+    ended: list[tuple[float, str, str]] = []
+
+    async def body(backend: Backend, clock: VirtualClock) -> None:
+        client = backend.action_client("/navigate_to_pose", "nav2_msgs/action/NavigateToPose")
+        for begin in begins:
+            await clock.sleep(begin - clock.elapsed)
+            pose = {"header": {"frame_id": "map"}, "pose": {"position": {"x": 1.0}, "orientation": {"w": 1.0}}}
+            goal = await client.send({"pose": pose})
+            result = await goal.outcome()
+            ended.append((round(clock.elapsed, 1), result.status.name, result.result.error_msg))
+
+    in_graph(fault, body)
+    return ended
+
+
+def test_goals_of_an_action_are_aborted_while_the_fault_lasts() -> None:
+    ended = outcomes("{kind: aborted_action, action: navigate_to_pose, at: 1, for: 2}", [0.1, 2.0, 3.5])
+    assert ended[0] == (1.0, "ABORTED", "aborted by the fault f")
+    assert ended[1] == (2.0, "ABORTED", "aborted by the fault f")
+    assert ended[2][1] == "SUCCEEDED"
+
+
+def test_a_fault_of_an_action_that_nobody_offers_is_refused() -> None:
+    with pytest.raises(UsageError, match=r"fault f: unknown action /navigate_to; did you mean /navigate_to_pose\?"):
+        heard("{kind: aborted_action, action: /navigate_to}", *SCAN)
+
+
 def test_a_kidnapped_robot_is_lost_until_it_is_told_its_place() -> None:
     async def body(backend: Backend, clock: VirtualClock) -> None:
         backend.tf_listen()

@@ -10,6 +10,8 @@ WHEELS: Final = ("wheel_slip", "blocked_wheel")
 """Kinds that concern the wheels of a robot."""
 MESSAGES: Final = ("dead", "frozen", "nan", "lost", "delayed", "duplicated")
 """Kinds that concern the messages of a topic."""
+ACTIONS: Final = ("aborted_action",)
+"""Kinds that concern the goals of an action."""
 AT_ONCE: Final = ("kidnapped_robot", "battery_drop")
 """Kinds without duration."""
 
@@ -27,6 +29,7 @@ KEYS: Final[Mapping[str, tuple[str, ...]]] = {
     "lost": ("topic", "share"),
     "delayed": ("topic", "seconds", "jitter"),
     "duplicated": ("topic", "copies"),
+    "aborted_action": ("action",),
 }
 """Further keys by kind of fault; all kinds have ``at`` and ``for``, and those of wheels and of one moment ``robot``."""
 
@@ -41,7 +44,7 @@ class Fault:
         at: seconds of the world at which it begins; None: only on request.
         lasts: duration in seconds; None: until `Faults.end`.
         robot: name of the affected robot, "" for none.
-        topic: absolute name.
+        topic, action: absolute names.
         share: mean loss of slipping wheels, or of messages; 0 to 1.
         wheel: ``left``, ``right`` or ``both``.
         pose: new pose of a kidnapped robot.
@@ -58,6 +61,7 @@ class Fault:
     lasts: float | None = None
     robot: str = ""
     topic: str = ""
+    action: str = ""
     share: float = 1.0
     wheel: str = "both"
     pose: Pose = field(default=Pose(0.0, 0.0, 0.0))

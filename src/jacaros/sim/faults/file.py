@@ -14,6 +14,7 @@ Times are seconds of the world, lengths metres, angles degrees; ``robot`` is opt
       loss: {kind: lost, topic: /odom, share: 0.2}
       late: {kind: delayed, topic: /cmd_vel, seconds: 0.3, jitter: 0.1}
       twice: {kind: duplicated, topic: /odom, copies: 3}
+      astray: {kind: aborted_action, action: /navigate_to_pose, at: 25, for: 2}
 """
 
 import re
@@ -21,7 +22,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from jacaros.sim.description import PersonDescription, Pose, WorldDescription, WorldError
-from jacaros.sim.faults.description import AT_ONCE, KEYS, MESSAGES, WHEELS, Fault
+from jacaros.sim.faults.description import ACTIONS, AT_ONCE, KEYS, MESSAGES, WHEELS, Fault
 from jacaros.sim.files.people import read_path
 from jacaros.sim.files.places import place_problem
 from jacaros.sim.files.robot import read_pose
@@ -121,12 +122,14 @@ def _fault(key: Node, node: Node, world: WorldDescription | None) -> Fault:
 
 def _placed(fault: Fault, node: Node, entries: dict[str, Node], world: WorldDescription | None) -> Fault:
     """Complete a fault with its robot, topic or place."""
-    if fault.kind in (*WHEELS, *AT_ONCE, *MESSAGES):
+    if fault.kind in (*WHEELS, *AT_ONCE, *MESSAGES, *ACTIONS):
         fault = replace(fault, robot=_robot(node, entries.get("robot"), fault.kind, world))
     elif "robot" in entries:
         entries["robot"].wrong(f"'{fault.kind}' does not concern a robot", "remove 'robot'")
     if fault.kind in MESSAGES:
-        return replace(fault, topic=_topic(node, entries.get("topic"), fault.robot, world))
+        return replace(fault, topic=_name(node, entries.get("topic"), "topic", fault.robot, world))
+    if fault.kind in ACTIONS:
+        return replace(fault, action=_name(node, entries.get("action"), "action", fault.robot, world))
     docks = None if world is None else [dock.name for dock in world.docks]
     doors = None if world is None else [door.name for door in world.doors]
     if fault.kind == "closed_door":
@@ -170,12 +173,18 @@ _TO = {
 }
 
 
+_NAMES = {
+    "topic": "add a topic of the world, such as 'topic: /scan'",
+    "action": "add an action of the world, such as 'action: /navigate_to_pose'",
+}
+
+
 def _robot(node: Node, given: Node | None, kind: str, world: WorldDescription | None) -> str:
     if world is None:
         return ""
     names = [robot.name for robot in world.robots]
     if given is None:
-        if len(names) > 1 and kind not in MESSAGES:
+        if len(names) > 1 and kind not in (*MESSAGES, *ACTIONS):
             node.wrong(f"{node.what} lacks the key 'robot'", f"add a robot of the world: 'robot: {names[0]}'")
         return names[0] if len(names) == 1 else ""
     name = given.text()
@@ -184,10 +193,10 @@ def _robot(node: Node, given: Node | None, kind: str, world: WorldDescription | 
     return name
 
 
-def _topic(node: Node, given: Node | None, robot: str, world: WorldDescription | None) -> str:
-    """Return the absolute name of a topic; relative ones are in the robot's namespace."""
+def _name(node: Node, given: Node | None, key: str, robot: str, world: WorldDescription | None) -> str:
+    """Return the absolute name of a topic or an action; relative ones are in the robot's namespace."""
     if given is None:
-        node.wrong(f"{node.what} lacks the key 'topic'", "add a topic of the world, such as 'topic: /scan'")
+        node.wrong(f"{node.what} lacks the key '{key}'", _NAMES[key])
         return ""
     written = given.text()
     if written.startswith("/"):

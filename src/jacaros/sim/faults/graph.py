@@ -1,8 +1,9 @@
-"""The ROS graph of a world with faults: messages from and to the world can be lost, late or wrong.
+"""The ROS graph of a world with faults: messages from and to the world can be lost, late or wrong, and goals aborted.
 
 Faults act where the world joins the graph, so they affect agents and all other nodes alike.
 """
 
+import asyncio
 import difflib
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -11,12 +12,13 @@ from typing import Any, cast
 
 from jacaros.clock import Clock
 from jacaros.errors import UsageError
+from jacaros.ros.action import Abort, ActionServer, Execute, ServerGoal
 from jacaros.ros.backend import Backend, Publisher, Sample, Subscription
 from jacaros.sim.faults.schedule import Faults
 
 
 class FaultyGraph:
-    """A graph whose topics have faults; the rest is unchanged.
+    """A graph whose topics and actions have faults; the rest is unchanged.
 
     Args:
         backend: the graph.
@@ -27,6 +29,7 @@ class FaultyGraph:
     def __init__(self, backend: Backend, faults: Faults, clock: Clock) -> None:
         self._backend, self._faults, self._clock = backend, faults, clock
         self._made: set[str] = set()
+        self._offered: set[str] = set()
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._backend, name)
@@ -52,21 +55,48 @@ class FaultyGraph:
 
         return self._backend.subscription(topic, type_name, hear, *arguments, **keywords)
 
+    def action_server(
+        self,
+        action: str,
+        type_name: str,
+        execute: Execute,
+        *arguments: Any,
+        **keywords: Any,
+    ) -> ActionServer:
+        """Offer an action, a faulty one if its goals have faults."""
+        self._offered.add(action)
+        if action not in self._faults.actions:
+            return self._backend.action_server(action, type_name, execute, *arguments, **keywords)
+
+        async def carry_out(goal: ServerGoal) -> Any:
+            aborted: list[str] = []
+            work = asyncio.ensure_future(execute(goal))
+
+            def abort(fault: str) -> None:
+                aborted.append(f"aborted by the fault {fault}")
+                work.cancel()
+
+            end = self._faults.watch_goal(action, abort)
+            try:
+                return await work
+            except asyncio.CancelledError:
+                if not aborted:
+                    raise
+                raise Abort(aborted[0]) from None
+            finally:
+                end()
+
+        return self._backend.action_server(action, type_name, carry_out, *arguments, **keywords)
+
     def check(self) -> None:
-        """Check, after the world has joined all its topics, that the faults concern no others.
+        """Check, after the world has joined the graph, that the faults concern only its topics and actions.
 
         Raises:
-            UsageError: a fault has an unknown topic.
+            UsageError: a fault has an unknown topic or action.
         """
         for fault in self._faults.by_name.values():
-            if fault.topic and fault.topic not in self._made:
-                near = difflib.get_close_matches(fault.topic, self._made, 1)
-                cure = (
-                    f"did you mean {near[0]}?"
-                    if near
-                    else f"topics of the world: {', '.join(sorted(self._made))}"
-                )
-                raise UsageError(f"fault {fault.name}: unknown topic {fault.topic}; {cure}")
+            _check_name(fault.name, "topic", fault.topic, self._made)
+            _check_name(fault.name, "action", fault.action, self._offered)
 
     def _pass_on(self, topic: str, message: Any, send: Callable[[Any], None]) -> None:
         passing: Sequence[tuple[float, Any]] = ((0.0, message),)
@@ -77,6 +107,14 @@ class FaultyGraph:
                 self._clock.call_later(late, partial(send, each))
             else:
                 send(each)
+
+
+def _check_name(fault: str, what: str, name: str, known: set[str]) -> None:
+    if name and name not in known:
+        near = difflib.get_close_matches(name, known, 1)
+        listed = ", ".join(sorted(known)) or "none"
+        cure = f"did you mean {near[0]}?" if near else f"{what}s of the world: {listed}"
+        raise UsageError(f"fault {fault}: unknown {what} {name}; {cure}")
 
 
 class _FaultyPublisher:

@@ -8,11 +8,13 @@ from typing import Any, Protocol
 
 from jacaros.errors import UsageError
 from jacaros.sim.description import PersonDescription, WorldDescription
-from jacaros.sim.faults.description import MESSAGES, Fault
+from jacaros.sim.faults.description import ACTIONS, MESSAGES, Fault
 from jacaros.sim.faults.messages import Way, way_of
 from jacaros.sim.robot.robot import Robot
 
 Undo = Callable[[], object]
+Abort = Callable[[str], object]
+"""Aborts a goal, because of a fault."""
 
 
 class Stricken(Protocol):
@@ -47,17 +49,21 @@ class Faults:
     Attributes:
         by_name: the faults.
         next: time of the next beginning or end, in seconds of the world; infinite if there is none.
-        topics: all topics with faults, active or not.
+        topics, actions: all topics and actions with faults, active or not.
     """
 
     def __init__(self, world: Stricken, faults: Iterable[Fault] = ()) -> None:
         self._world = world
         self.by_name = {fault.name: fault for fault in faults}
         self.topics = frozenset(fault.topic for fault in self.by_name.values() if fault.topic)
+        self.actions = frozenset(fault.action for fault in self.by_name.values() if fault.action)
         self._begins = {fault.name: fault.at for fault in self.by_name.values() if fault.at is not None}
         self._ends: dict[str, float] = {}
         self._undo: dict[str, Undo] = {}
         self._ways: dict[str, dict[str, Way]] = {}
+        self._aborting: dict[str, str] = {}
+        """Active faults that abort goals, and their actions."""
+        self._goals: dict[Abort, str] = {}
         self._look_ahead()
 
     @property
@@ -68,6 +74,17 @@ class Faults:
     def ways(self, topic: str) -> Iterable[Way]:
         """Return the effects of active faults on messages of a topic, the oldest first."""
         return self._ways.get(topic, {}).values()
+
+    def watch_goal(self, action: str, abort: Abort) -> Undo:
+        """Have *abort* called with the name of a fault that aborts goals of *action*, at once if one is active.
+
+        Returns:
+            what ends that.
+        """
+        for name in [name for name, meant in self._aborting.items() if meant == action][:1]:
+            abort(name)
+        self._goals[abort] = action
+        return partial(self._goals.pop, abort, None)
 
     def step(self, time: float) -> None:
         """End and begin the faults that are due at *time* (seconds of the world), ends first."""
@@ -149,6 +166,11 @@ class Faults:
             ways = self._ways.setdefault(fault.topic, {})
             ways[fault.name] = way_of(fault, self._world.description.seed)
             return partial(ways.pop, fault.name)
+        if fault.kind in ACTIONS:
+            self._aborting[fault.name] = fault.action
+            for abort in [abort for abort, action in self._goals.items() if action == fault.action]:
+                abort(fault.name)
+            return partial(self._aborting.pop, fault.name)
         return _EFFECTS[fault.kind](self._world, fault)
 
 
