@@ -31,7 +31,7 @@ class Segment(NamedTuple):
 
     def gap(self, other: "Segment") -> float:
         """Metres between the nearest points of two pieces; 0 where they cross."""
-        if self._parts(other) and other._parts(self):
+        if self.crosses(other):
             return 0.0
         return min(
             self.distance(other.ax, other.ay),
@@ -39,6 +39,10 @@ class Segment(NamedTuple):
             other.distance(self.ax, self.ay),
             other.distance(self.bx, self.by),
         )
+
+    def crosses(self, other: "Segment") -> bool:
+        """Whether two pieces cross."""
+        return self._parts(other) and other._parts(self)
 
     def _parts(self, other: "Segment") -> bool:
         """Whether the ends of another piece are on different sides of the line through this one."""

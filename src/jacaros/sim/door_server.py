@@ -29,7 +29,11 @@ class DoorServer:
         self._service = SwitchService(time, backend, f"/doors/{name}/open", self._move)
 
     def _move(self, opened: bool) -> str | None:
-        problem = self._time.world.move_door(self._name, opened)
+        world = self._time.world
+        stuck = world.stuck_doors.get(self._name)
+        if stuck is not None and world.doors[self._name] != opened and stuck():
+            return f"the door '{self._name}' is stuck"
+        problem = world.move_door(self._name, opened)
         self.publish()
         return problem
 

@@ -6,7 +6,7 @@ They block neither robots nor lasers: only grippers touch them.
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from jacaros.sim.description import ObjectDescription
+from jacaros.sim.description import Door, ObjectDescription, Segment
 from jacaros.sim.robot.robot import Robot
 from jacaros.sim.trigonometry import sine_cosine
 
@@ -53,16 +53,20 @@ class Objects:
     Args:
         descriptions: how they are made.
         note: takes the events ``picked`` and ``placed`` of a robot.
+        closed_doors: gives the doors that are closed; no gripper reaches through one.
 
     Attributes:
         by_name: the objects, in the order of the file.
     """
 
     def __init__(
-        self, descriptions: Iterable[ObjectDescription], note: Callable[[Robot, str, dict[str, Any]], None]
+        self,
+        descriptions: Iterable[ObjectDescription],
+        note: Callable[[Robot, str, dict[str, Any]], None],
+        closed_doors: Callable[[], Iterable[Door]] = tuple,
     ) -> None:
         self.by_name = {each.name: Thing(each) for each in descriptions}
-        self._note = note
+        self._note, self._closed_doors = note, closed_doors
 
     def held_by(self, robot: Robot) -> Thing | None:
         """What a robot carries."""
@@ -75,9 +79,14 @@ class Objects:
         for each in self.by_name.values():
             dx, dy = each.place[0] - robot.x, each.place[1] - robot.y
             ahead, left = cosine * dx + sine * dy, cosine * dy - sine * dx
-            if each.carrier is None and abs(left) <= ahead and dx * dx + dy * dy <= least:
+            near = each.carrier is None and abs(left) <= ahead and dx * dx + dy * dy <= least
+            if near and not self._behind_door(robot, *each.place):
                 nearest, least = each, dx * dx + dy * dy
         return nearest
+
+    def _behind_door(self, robot: Robot, x: float, y: float) -> bool:
+        way = Segment(robot.x, robot.y, x, y)
+        return any(way.crosses(door.segment) for door in self._closed_doors())
 
     def pick(self, robot: Robot, thing: Thing) -> None:
         """Give an object to a robot."""

@@ -47,6 +47,7 @@ class World:
         objects: what robots with a gripper can carry.
         faults: what may go wrong.
         dead_docks: names of docks that give no current.
+        stuck_doors: doors with a fault, and whether the next request to move them fails.
     """
 
     def __init__(
@@ -60,6 +61,7 @@ class World:
         }
         self._row = tuple(self.robots.values())
         self.dead_docks: set[str] = set()
+        self.stuck_doors: dict[str, Callable[[], bool]] = {}
         for robot in self._row:
             robot.dead_docks = self.dead_docks
         self._lasers: dict[str, Laser] = {}
@@ -69,7 +71,7 @@ class World:
         self.people = self._people.by_name
         self.obstacles = Obstacles()
         self.cleaning = Cleaning(self.description, self.room_at, self._note)
-        self.objects = Objects(self.description.objects, self._note)
+        self.objects = Objects(self.description.objects, self._note, lambda: self._closed)
         self._truth = GroundTruth(self.robots, description.drawing())
         self._charge_shown = {robot.name: (False, math.ceil(robot.battery.level)) for robot in self._row}
         self._next_sample = 0.0

@@ -31,6 +31,8 @@ robots:
         ("{kind: wheel_slip, robot: one, share: 2}", "'share' is 2, but must lie between 0 and 1"),
         ("{kind: wheel_slip, robot: one, topic: /scan}", "'f' has no key 'topic'"),
         ("{kind: closed_door, door: hall}", "unknown door 'hall'"),
+        ("{kind: stuck_door, door: hall}", "unknown door 'hall'"),
+        ("{kind: stuck_door, door: kitchen, share: 2}", "'share' is 2, but must lie between 0 and 1"),
         ("{kind: closed_door}", "'f' lacks the key 'door'"),
         ("{kind: closed_door, door: kitchen, robot: one}", "'closed_door' does not concern a robot"),
         ("{kind: dead_dock, dock: home}", "unknown dock 'home'"),

@@ -101,6 +101,20 @@ def test_what_is_carried_moves_along_and_is_put_down_before_the_robot() -> None:
     with_hand(body)
 
 
+def test_no_gripper_reaches_through_a_closed_door() -> None:
+    text = TABLE + "doors:\n  - {name: locker, segment: [[0.2, -1], [0.2, 1]]}\n"
+
+    async def body(hand: Hand, backend: Backend) -> None:
+        hand.world.objects.by_name.pop("crate")
+        assert not (await hand.grip(0.0)).stalled
+        await hand.grip(0.1)
+        assert hand.world.move_door("locker", opened=True) is None
+        assert (await hand.grip(0.0)).stalled
+        assert hand.events() == [("robot", "picked", "cup")]
+
+    with_hand(body, text)
+
+
 def test_two_robots_do_not_take_the_same_object() -> None:
     text = """\
 robots:

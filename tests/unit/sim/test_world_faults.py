@@ -280,6 +280,47 @@ def test_goals_of_an_action_are_aborted_while_the_fault_lasts() -> None:
     assert ended[2][1] == "SUCCEEDED"
 
 
+def test_a_share_of_the_goals_is_aborted() -> None:
+    begins = [5.0 * n for n in range(1, 41)]
+    ended = outcomes("{kind: aborted_action, action: /navigate_to_pose, share: 0.25, at: 0}", begins)
+    aborted = [status for _, status, _ in ended].count("ABORTED")
+    assert 4 <= aborted <= 16
+    assert [status for _, status, _ in ended].count("SUCCEEDED") == 40 - aborted
+
+
+def door_replies(fault: str, requests: list[bool]) -> list[tuple[bool, str]]:
+    """What the service of a door that is open at first replies to requests to open (True) or close it."""
+    replies: list[tuple[bool, str]] = []
+
+    async def body(backend: Backend, clock: VirtualClock) -> None:
+        await clock.sleep(1.0)
+        client = backend.client("/doors/kitchen/open", "std_srvs/srv/SetBool")
+        for opened in requests:
+            reply = await client.call({"data": opened}, 5.0)
+            replies.append((reply.success, reply.message))
+
+    in_graph(fault, body)
+    return replies
+
+
+def test_a_stuck_door_does_not_move_and_the_reply_has_the_reason() -> None:
+    stuck = (False, "the door 'kitchen' is stuck")
+    assert door_replies("{kind: stuck_door, door: kitchen, at: 0}", [False, False, True]) == [
+        stuck,
+        stuck,
+        (True, ""),  # it is open
+    ]
+    assert door_replies("{kind: stuck_door, door: kitchen, at: 2}", [False, True]) == [(True, "")] * 2
+
+
+def test_a_door_is_stuck_for_a_share_of_the_requests() -> None:
+    replies = door_replies("{kind: stuck_door, door: kitchen, share: 0.25, at: 0}", [False, True] * 40)
+    failed = [success for success, _ in replies].count(False)
+    assert 5 <= failed <= 35
+    other = door_replies("{kind: stuck_door, door: kitchen, share: 0.25, at: 0}", [False, True] * 40)
+    assert other == replies, "the same seed"
+
+
 def test_a_fault_of_an_action_that_nobody_offers_is_refused() -> None:
     with pytest.raises(
         UsageError, match=r"fault f: unknown action /navigate_to; did you mean /navigate_to_pose\?"

@@ -22,6 +22,7 @@ KEYS: Final[Mapping[str, tuple[str, ...]]] = {
     "battery_drop": ("to",),
     "dead_dock": ("dock",),
     "closed_door": ("door",),
+    "stuck_door": ("door", "share"),
     "person": ("path", "radius", "speed", "loop", "careless"),
     "dead": ("topic",),
     "frozen": ("topic",),
@@ -29,7 +30,7 @@ KEYS: Final[Mapping[str, tuple[str, ...]]] = {
     "lost": ("topic", "share"),
     "delayed": ("topic", "seconds", "jitter"),
     "duplicated": ("topic", "copies"),
-    "aborted_action": ("action",),
+    "aborted_action": ("action", "share"),
 }
 """Further keys by kind of fault; all kinds have ``at`` and ``for``, and those of wheels and of one moment ``robot``."""
 
@@ -45,7 +46,7 @@ class Fault:
         lasts: duration in seconds; None: until `Faults.end`.
         robot: name of the affected robot, "" for none.
         topic, action: absolute names.
-        share: mean loss of slipping wheels, or of messages; 0 to 1.
+        share: mean loss of slipping wheels, or of messages, goals or requests; 0 to 1.
         wheel: ``left``, ``right`` or ``both``.
         pose: new pose of a kidnapped robot.
         level: remaining charge of the battery, in percent.

@@ -9,12 +9,14 @@ Times are seconds of the world, lengths metres, angles degrees; ``robot`` is opt
       tired: {kind: battery_drop, to: 15, at: 40}        # percent
       cold: {kind: dead_dock, dock: dock}
       shut: {kind: closed_door, door: kitchen, at: 20, for: 60}
+      jammed: {kind: stuck_door, door: kitchen, share: 0.25, at: 0}
       ann: {kind: person, path: [[1, 0]], at: 12, for: 30}
       blind: {kind: dead, topic: /scan, at: 15, for: 5}  # frozen, nan
       loss: {kind: lost, topic: /odom, share: 0.2}
       late: {kind: delayed, topic: /cmd_vel, seconds: 0.3, jitter: 0.1}
       twice: {kind: duplicated, topic: /odom, copies: 3}
       astray: {kind: aborted_action, action: /navigate_to_pose, at: 25, for: 2}
+      clumsy: {kind: aborted_action, action: /gripper_controller/gripper_cmd, share: 0.5, at: 0}
 """
 
 import re
@@ -132,7 +134,7 @@ def _placed(fault: Fault, node: Node, entries: dict[str, Node], world: WorldDesc
         return replace(fault, action=_name(node, entries.get("action"), "action", fault.robot, world))
     docks = None if world is None else [dock.name for dock in world.docks]
     doors = None if world is None else [door.name for door in world.doors]
-    if fault.kind == "closed_door":
+    if fault.kind in ("closed_door", "stuck_door"):
         return replace(
             fault,
             place=_one_of(node, entries, "door", doors),

@@ -24,6 +24,7 @@ class Stricken(Protocol):
     time: float
     doors: dict[str, bool]
     dead_docks: set[str]
+    stuck_doors: dict[str, Callable[[], bool]]
 
     def robot(self, name: str) -> Robot: ...
     def move_door(self, name: str, opened: bool) -> str | None: ...
@@ -61,8 +62,8 @@ class Faults:
         self._ends: dict[str, float] = {}
         self._undo: dict[str, Undo] = {}
         self._ways: dict[str, dict[str, Way]] = {}
-        self._aborting: dict[str, str] = {}
-        """Active faults that abort goals, and their actions."""
+        self._aborting: dict[str, tuple[str, Callable[[], bool]]] = {}
+        """Active faults that abort goals: their actions, and whether the next goal is aborted."""
         self._goals: dict[Abort, str] = {}
         self._look_ahead()
 
@@ -81,8 +82,10 @@ class Faults:
         Returns:
             what ends that.
         """
-        for name in [name for name, meant in self._aborting.items() if meant == action][:1]:
-            abort(name)
+        for name, (meant, happens) in self._aborting.items():
+            if meant == action and happens():
+                abort(name)
+                break
         self._goals[abort] = action
         return partial(self._goals.pop, abort, None)
 
@@ -167,11 +170,19 @@ class Faults:
             ways[fault.name] = way_of(fault, self._world.description.seed)
             return partial(ways.pop, fault.name)
         if fault.kind in ACTIONS:
-            self._aborting[fault.name] = fault.action
+            happens = _chance(self._world, fault)
+            self._aborting[fault.name] = fault.action, happens
             for abort in [abort for abort, action in self._goals.items() if action == fault.action]:
-                abort(fault.name)
+                if happens():
+                    abort(fault.name)
             return partial(self._aborting.pop, fault.name)
         return _EFFECTS[fault.kind](self._world, fault)
+
+
+def _chance(world: Stricken, fault: Fault) -> Callable[[], bool]:
+    """Return whether a fault happens the next time, for its share of all times."""
+    draw = random.Random(f"{world.description.seed}/{fault.name}/{fault.kind}").random
+    return lambda: draw() < fault.share
 
 
 def _slip(world: Stricken, fault: Fault) -> Undo:
@@ -210,6 +221,11 @@ def _close_door(world: Stricken, fault: Fault) -> Undo:
     return partial(world.move_door, fault.place, opened=True)
 
 
+def _jam_door(world: Stricken, fault: Fault) -> Undo:
+    world.stuck_doors[fault.place] = _chance(world, fault)
+    return partial(world.stuck_doors.pop, fault.place, None)
+
+
 def _let_come(world: Stricken, fault: Fault) -> Undo:
     assert fault.person is not None
     world.add_person(fault.person)
@@ -223,5 +239,6 @@ _EFFECTS: dict[str, Callable[[Stricken, Fault], Undo | None]] = {
     "battery_drop": _drop,
     "dead_dock": _cut_current,
     "closed_door": _close_door,
+    "stuck_door": _jam_door,
     "person": _let_come,
 }
