@@ -7,10 +7,10 @@ from jacaros.clock import Clock, Timer
 from jacaros.inspector.scene import RobotView, Scene
 from jacaros.mas.history.history import History
 
-PERIOD, LIVE_PERIOD = 0.2, 0.05
+PERIOD, LIVE_PERIOD = 0.3, 0.05
 """Seconds between two frames of a recording, and of a run in real time that is seen on a live page.
 
-Readers interpolate: a TurtleBot at full speed in its tightest curve is 5 mm off then."""
+Readers interpolate: a TurtleBot at full speed in its tightest curve is 11 mm off then."""
 REST = 1.0
 """Seconds between two frames of robots that rest, in a world that tells when they move."""
 
@@ -67,7 +67,7 @@ class Watch:
         self._scene, self._period = scene, period
         self._drawing: Mapping[str, Any] | None = None
         self._timer: Timer | None = None
-        self._looked = 0.0
+        self._looked = float("-inf")
         self._history = history
         self._stop_listening: list[Callable[[], None]] = []
 
@@ -91,11 +91,11 @@ class Watch:
 
     def _look(self) -> None:
         # On the virtual clock a timer costs as much as all else that a frame needs.
-        follows = self.clock.virtual and self._scene is not None and self._scene.follow(self._moved)
+        follows = self.clock.virtual and self._scene is not None and self._scene.follow(self._look_if_due)
         self._timer = self.clock.call_later(REST if follows else self._period, self._look)
-        self.look()
+        self._look_if_due()
 
-    def _moved(self) -> None:
+    def _look_if_due(self) -> None:
         """Look if the last look is a period ago: the world calls ten times a second while robots move."""
         if self.clock.elapsed - self._looked > 0.9 * self._period:
             self.look()

@@ -9,7 +9,7 @@ from jacaros.trace import Cause, Tracer
 
 _GENERATION = 4096
 """Causes that are remembered at least until something needs them, and at most twice as many."""
-COMMAND_PERIOD = 1.0
+COMMAND_PERIOD = 2.0
 """Seconds between two records of commands that one operation sends to one topic; the last one is recorded, too, and the
 first one to stand still."""
 RECORDED = ("event", "message")

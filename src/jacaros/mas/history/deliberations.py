@@ -152,8 +152,10 @@ class DeliberationRecords:
     def _options(
         self, goal: Goal, annotations: EventAnnotations, plans: list[Plan]
     ) -> list[dict[str, object]]:
-        contexts = FailingContexts(self._mind, goal, annotations)
         options: list[dict[str, object]] = []
+        if not plans:
+            return options
+        contexts = FailingContexts(self._mind, goal, annotations)
         for plan in plans[:MOST_OPTIONS]:
             if not (self._allowance.take() and self._in_all.take()):
                 break

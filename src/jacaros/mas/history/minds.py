@@ -68,6 +68,8 @@ class MindRecords:
         self._message: Cause | None = None
         self._told: dict[int, tuple[Annotations, str]] = {}
         """The texts of annotations, which many beliefs share."""
+        self._facts: dict[int, tuple[tuple[Term, ...], str]] = {}
+        """The texts of beliefs that were added, until they are deleted."""
         self._plans_changed = False
         self._record_beliefs()
         observe_mind(mind, self)
@@ -117,7 +119,7 @@ class MindRecords:
         record: dict[str, Any] = {
             "agent": self._mind.name,
             "op": operator,
-            "belief": shown(literal(symbol, row)) + self._shown_annotations(annotations),
+            "belief": self._shown_fact(operator, symbol, row) + self._shown_annotations(annotations),
         }
         if cause is not None:
             record["cause"] = cause.id
@@ -148,6 +150,15 @@ class MindRecords:
                     fact = entry.head() if isinstance(entry, OpenFact) else literal(symbol, entry)
                     told = shown(fact) + self._shown_annotations(annotations)
                     self._records.tell("belief", {"agent": self._mind.name, "op": "+", "belief": told})
+
+    def _shown_fact(self, operator: str, symbol: Functor, row: tuple[Term, ...]) -> str:
+        known = self._facts.pop(id(row), None)
+        told = known[1] if known is not None and known[0] is row else shown(literal(symbol, row))
+        if operator == "+" and row:
+            if len(self._facts) > MOST_BELIEFS:
+                self._facts.clear()
+            self._facts[id(row)] = row, told
+        return told
 
     def _shown_annotations(self, annotations: Annotations) -> str:
         if not annotations:
