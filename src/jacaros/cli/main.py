@@ -33,6 +33,7 @@ COMMANDS = {
     "guard": ("jacaros.cli.guard", "Stop the robot when its agents no longer can."),
     "ros": ("jacaros.cli.ros", "Inspect a live ROS graph, and write mapping files for it."),
     "describe": ("jacaros.cli.describe", "Describe what an artifact type, a mapping or a project offers."),
+    "metrics": ("jacaros.cli.metrics", "Count identifiers, lines and compressed bytes of programs."),
     "version": ("jacaros.cli.version", "Print the versions of jacaros and its dependencies."),
 }
 """Module and summary of each command."""

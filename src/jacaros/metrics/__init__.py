@@ -1,0 +1,39 @@
+"""The size of programs: identifiers, lines and compressed bytes, counted as docs/reference/metrics.md says.
+
+`measure` counts whole programs, `measure_table` and `measure_chart` show the counts.
+"""
+
+from jacaros.metrics.charts import Series, bar_chart, measure_chart
+from jacaros.metrics.counted_file import MEASURES, CountedFile, Counts, counts_of
+from jacaros.metrics.groups import Group, ProgramMetrics
+from jacaros.metrics.measuring import MetricsError, measure
+from jacaros.metrics.tables import (
+    Table,
+    as_csv,
+    as_markdown,
+    as_text,
+    file_table,
+    group_table,
+    measure_table,
+)
+
+__all__ = [
+    "MEASURES",
+    "CountedFile",
+    "Counts",
+    "Group",
+    "MetricsError",
+    "ProgramMetrics",
+    "Series",
+    "Table",
+    "as_csv",
+    "as_markdown",
+    "as_text",
+    "bar_chart",
+    "counts_of",
+    "file_table",
+    "group_table",
+    "measure",
+    "measure_chart",
+    "measure_table",
+]

@@ -1,0 +1,90 @@
+"""Names and comments of AgentSpeak programs."""
+
+from collections.abc import Iterator
+
+from jacaros.asl import nodes
+from jacaros.asl.checks.formulas import conditions, parts_of
+from jacaros.asl.lexer import Comment, tokenize
+from jacaros.asl.source import SourceFile
+from jacaros.asl.walk import walk
+from jacaros.metrics.comments import Stretch, line_starts
+
+
+def identifiers_of(clause: nodes.Node, is_goal: bool = False) -> frozenset[str]:
+    """Names of goals, events and operations in a clause of a program.
+
+    Args:
+        clause: a plan, rule, belief, initial goal or declaration.
+        is_goal: the clause is an initial goal.
+    """
+    return frozenset(_goals_events_operations(clause, is_goal))
+
+
+def names_of(clause: nodes.Node, is_goal: bool = False) -> frozenset[str]:
+    """The `identifiers_of` a clause, and its names of beliefs, rules, labels and variables."""
+    return frozenset((*_goals_events_operations(clause, is_goal), *_other_names(clause)))
+
+
+def _goals_events_operations(clause: nodes.Node, is_goal: bool) -> Iterator[str]:
+    if is_goal:
+        yield from _functor(clause)
+    for node in walk(clause):
+        if isinstance(node, nodes.Trigger):
+            yield from _functor(node.literal)
+        elif isinstance(node, nodes.Achieve):
+            yield from _functor(node.goal)
+        elif isinstance(node, nodes.Test):
+            # The test of a condition that is made of several posts no goal.
+            yield from _functor(node.formula)
+        elif isinstance(node, nodes.ExternalAction):
+            yield from _functor(node.action)
+        elif isinstance(node, nodes.Derivation):
+            yield node.name
+
+
+def _other_names(clause: nodes.Node) -> Iterator[str]:
+    if isinstance(clause, nodes.Literal):
+        yield from _functor(clause)
+    for node in walk(clause):
+        for condition in conditions(node):
+            for part in parts_of(condition):
+                yield from _functor(part)
+        if isinstance(node, nodes.Variable) and not node.unnamed:
+            yield node.name
+        elif isinstance(node, nodes.BeliefChange):
+            yield from _functor(node.operand)
+        elif isinstance(node, nodes.Rule):
+            yield from _functor(node.head)
+        elif isinstance(node, nodes.Plan) and node.label is not None:
+            yield from _functor(node.label)
+        elif isinstance(node, nodes.Derivation):
+            for stream in node.streams:
+                yield from _functor(stream)
+        elif isinstance(node, nodes.History):
+            yield from _functor(node.belief)
+
+
+def _functor(node: object) -> Iterator[str]:
+    """The name of a literal; nothing for a variable or a relation, or for ``true``."""
+    if isinstance(node, nodes.Literal) and node.functor not in ("true", "false"):
+        yield node.functor.strip("'")
+
+
+def clauses_of(program: nodes.Program) -> Iterator[tuple[nodes.Node, bool]]:
+    """All clauses of a program, each with whether it is an initial goal."""
+    for clause in (*program.beliefs, *program.plans, *program.derived, *program.histories):
+        yield clause, False
+    for goal in program.goals:
+        yield goal, True
+
+
+def comments_of(file: SourceFile) -> list[Stretch]:
+    """The comments of a program, as pairs of offsets in its text."""
+    comments: list[Comment] = []
+    tokenize(file, lambda _: None, comments)  # a program with wrong characters is not counted
+    starts = line_starts(file.text)
+    return [
+        (start, start + len(each.text))
+        for each in comments
+        for start in (starts[each.line - 1] + each.column - 1,)
+    ]

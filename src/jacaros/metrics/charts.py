@@ -1,0 +1,164 @@
+"""Bar charts as SVG, as figures 8.7 to 8.9 of the thesis.
+
+They look right on light and on dark pages, need nothing else, and are the same for the same numbers.
+"""
+
+import html
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from jacaros.metrics.counted_file import MEASURES
+from jacaros.metrics.groups import Group, ProgramMetrics
+
+_STYLE: Final = """
+  text{fill:#23282e;font:12px system-ui,sans-serif} .title{font-weight:600;font-size:14px}
+  .tick{fill:#77746a;font-size:11px} .grid{stroke:#dedbd2} .axis{stroke:#77746a}
+  .c0{fill:#1f6f8b} .c1{fill:#8fc1d1} .c2{fill:#b4572e} .c3{fill:#e0a98c} .c4{fill:#6b5aa8} .c5{fill:#b9aede}
+  @media (prefers-color-scheme: dark) {
+    text{fill:#e7e9ec} .tick{fill:#8b95a0} .grid{stroke:#313840} .axis{stroke:#8b95a0}
+  }
+"""
+_COLOURS: Final = 6
+_LEFT, _RIGHT, _TOP, _BOTTOM = 56, 12, 64, 28
+"""Margins in pixels; the title and the legend are in the upper one."""
+_HEIGHT: Final = 240
+"""Pixels of the plot."""
+_CATEGORY: Final = 128
+"""Pixels of a category, enough for the name of a program."""
+_NARROWEST: Final = 480
+_GAP: Final = 0.3
+"""The part of a category that stays free."""
+_TICKS: Final = 5
+
+
+@dataclass(frozen=True)
+class Series:
+    """One colour of a chart: a name for the legend, and a value for each category."""
+
+    name: str
+    values: tuple[int, ...]
+
+
+def measure_chart(programs: Sequence[ProgramMetrics], measure: str) -> str:
+    """The SVG text of the chart of one measure: for each program the artifacts on top of the agents, beside the baseline.
+
+    Args:
+        programs: the categories.
+        measure: one of `MEASURES`.
+    """
+
+    def series(name: str, group: Group) -> Series:
+        return Series(name, tuple(getattr(each.counts(group), measure) for each in programs))
+
+    stacks: list[Sequence[Series]] = [(series("agents", Group.AGENTS), series("artifacts", Group.ARTIFACTS))]
+    if any(each.files.get(Group.BASELINE) for each in programs):
+        stacks.append((series("baseline", Group.BASELINE),))
+    return bar_chart(MEASURES[measure], [each.name for each in programs], stacks)
+
+
+def bar_chart(title: str, categories: Sequence[str], stacks: Sequence[Sequence[Series]]) -> str:
+    """The SVG text of a bar chart.
+
+    Args:
+        title: above it.
+        categories: names below the bars.
+        stacks: bars beside each other in each category; the series of a stack stand on top of each other, the first one
+            below. Series of zeros only are left out of the legend.
+    """
+    width = max(_NARROWEST, _LEFT + _RIGHT + _CATEGORY * len(categories))
+    height = _TOP + _HEIGHT + _BOTTOM
+    step = _step(max((_height(stack, i) for stack in stacks for i in range(len(categories))), default=0))
+    plot = _Plot(width - _LEFT - _RIGHT, len(categories), len(stacks), step)
+    parts = [
+        f'<text class="title" x="{_LEFT}" y="20">{html.escape(title)}</text>',
+        *_legend(stacks),
+        *_axis(plot, width),
+        *_bars(plot, categories, stacks),
+        *_names(plot, categories),
+    ]
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" width="{width}" '
+        f'height="{height}" role="img" aria-label="{html.escape(title)}">\n'
+        f"<style>{_STYLE}</style>\n" + "\n".join(parts) + "\n</svg>\n"
+    )
+
+
+@dataclass(frozen=True)
+class _Plot:
+    """Where things are in the plot: *step* is the value of one tick of the axis."""
+
+    width: float
+    categories: int
+    stacks: int
+    step: int
+
+    def y(self, value: float) -> float:
+        return round(_TOP + _HEIGHT * (1 - value / (self.step * _TICKS)), 1)
+
+    def middle(self, category: int) -> float:
+        return round(_LEFT + self.width * (category + 0.5) / self.categories, 1)
+
+    def bar(self, category: int, stack: int) -> tuple[float, float]:
+        """The left side and the width of a bar."""
+        size = self.width / self.categories * (1 - _GAP)
+        left = self.middle(category) - size / 2 + size * stack / self.stacks
+        return round(left + 1, 1), round(size / self.stacks - 2, 1)
+
+
+def _height(stack: Sequence[Series], category: int) -> int:
+    return sum(each.values[category] for each in stack)
+
+
+def _step(highest: int) -> int:
+    """A round number, of which a few make the highest value."""
+    least = max(1, math.ceil(highest / _TICKS))
+    power = int(10 ** math.floor(math.log10(least)))
+    return next(power * factor for factor in (1, 2, 3, 4, 5, 6, 8, 10) if power * factor >= least)
+
+
+def _legend(stacks: Sequence[Sequence[Series]]) -> Iterator[str]:
+    x = _LEFT
+    for place, stack in enumerate(stacks):
+        for level, each in enumerate(stack):
+            if any(each.values):
+                yield f'<rect class="{_colour(place, level)}" x="{x}" y="34" width="12" height="12"/>'
+                yield f'<text x="{x + 17}" y="44">{html.escape(each.name)}</text>'
+                x += 40 + 7 * len(each.name)
+
+
+def _colour(stack: int, level: int) -> str:
+    """The class of a colour; each stack has two similar ones."""
+    return f"c{(2 * stack + level) % _COLOURS}"
+
+
+def _axis(plot: _Plot, width: int) -> Iterator[str]:
+    for tick in range(_TICKS + 1):
+        y = plot.y(tick * plot.step)
+        kind = "grid" if tick else "axis"
+        yield f'<path class="{kind}" d="M{_LEFT} {y}H{width - _RIGHT}"/>'
+        yield f'<text class="tick" text-anchor="end" x="{_LEFT - 6}" y="{y + 4:.1f}">{tick * plot.step}</text>'
+
+
+def _bars(plot: _Plot, categories: Sequence[str], stacks: Sequence[Sequence[Series]]) -> Iterator[str]:
+    for category, name in enumerate(categories):
+        for place, stack in enumerate(stacks):
+            left, width = plot.bar(category, place)
+            below = 0
+            for level, each in enumerate(stack):
+                value = each.values[category]
+                top, bottom = plot.y(below + value), plot.y(below)
+                below += value
+                if value:
+                    about = html.escape(f"{name}, {each.name}: {value}")
+                    size = f'x="{left}" y="{top}" width="{width}" height="{bottom - top:.1f}"'
+                    yield f'<rect class="{_colour(place, level)}" {size}><title>{about}</title></rect>'
+            x = round(left + width / 2, 1)
+            yield f'<text text-anchor="middle" x="{x}" y="{plot.y(below) - 4:.1f}">{below}</text>'
+
+
+def _names(plot: _Plot, categories: Sequence[str]) -> Iterator[str]:
+    for category, name in enumerate(categories):
+        shown = html.escape(name.replace("_", " "))
+        yield f'<text text-anchor="middle" x="{plot.middle(category)}" y="{_TOP + _HEIGHT + 18}">{shown}</text>'

@@ -1,0 +1,84 @@
+"""The modules of libraries that a program imports, and those that they import in turn."""
+
+from collections.abc import Iterable, Iterator, Sequence
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Final
+
+import jacaros
+from jacaros.metrics import python_source
+from jacaros.metrics.sources import PythonFile, Sources
+
+OWN: Final = ("jacaros.artifacts", "jacaros.behaviour_trees")
+"""Our packages that a program could bring along itself.  Language, middleware and simulator are the platform."""
+
+DEFAULT: Final = ("py_trees",)
+"""Packages of others that count as library code unless the caller names some."""
+
+
+class Library:
+    """Finds library code.
+
+    Args:
+        sources: reads the files.
+        packages: names of installed top-level packages that count, beside `OWN`.
+
+    Attributes:
+        missing: packages that a program imports and that are not installed.
+    """
+
+    def __init__(self, sources: Sources, packages: Sequence[str] = DEFAULT) -> None:
+        self._sources = sources
+        root = Path(jacaros.__file__).parent.parent
+        self._folders: dict[str, Path | None] = {name: root.joinpath(*name.split(".")) for name in OWN}
+        self._folders.update((name, _folder(name)) for name in packages)
+        self.missing: set[str] = set()
+
+    def files(self, modules: Iterable[str]) -> Iterator[PythonFile]:
+        """Yield the library files behind the names of modules, and behind all that they import within the libraries.
+
+        Args:
+            modules: as a program imports them; the last part may be a name in a module.
+        """
+        seen: set[Path] = set()
+        wanted = sorted(modules, reverse=True)
+        while wanted:
+            for module, path in self._found(wanted.pop()):
+                if path in seen:
+                    continue
+                seen.add(path)
+                file = self._sources.python(path)
+                if file is not None:
+                    yield file
+                    package = module if path.name == "__init__.py" else module.rpartition(".")[0]
+                    wanted += (each.absolute(package) for each in python_source.imports_of(file.tree))
+
+    def _found(self, name: str) -> Iterator[tuple[str, Path]]:
+        """The modules that are imported with *name*, as Python does: the packages that it is in, and itself."""
+        for package, folder in self._folders.items():
+            if name != package and not name.startswith(f"{package}."):
+                continue
+            if folder is None:
+                self.missing.add(package)
+                continue
+            module, place = package, folder
+            parts = name[len(package) + 1 :].split(".")
+            while (place / "__init__.py").is_file():
+                yield module, place / "__init__.py"
+                if not parts or not parts[0]:
+                    return
+                module, place = f"{module}.{parts[0]}", place / parts.pop(0)
+            if (file := place.with_name(f"{place.name}.py")).is_file():
+                yield module, file
+
+
+def _folder(package: str) -> Path | None:
+    """The folder of an installed package, or the path of a single module without its suffix; nothing is imported."""
+    try:
+        spec = find_spec(package)
+    except (ImportError, ValueError):
+        return None
+    if spec is None or spec.origin is None:
+        return None
+    origin = Path(spec.origin)
+    return origin.parent if origin.name == "__init__.py" else origin.with_suffix("")

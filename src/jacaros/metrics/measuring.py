@@ -1,0 +1,94 @@
+"""Count programs and single files."""
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+from jacaros.asl.diagnostics import Diagnostic, render_all
+from jacaros.asl.slips import close_matches
+from jacaros.errors import JacarosError
+from jacaros.metrics.baseline_files import read_baseline
+from jacaros.metrics.counted_file import CountedFile
+from jacaros.metrics.groups import Group, ProgramMetrics
+from jacaros.metrics.library import DEFAULT, Library
+from jacaros.metrics.program_files import ProgramFiles, no_programs
+from jacaros.metrics.sources import Sources
+
+
+class MetricsError(JacarosError):
+    """Source files that cannot be counted.  ``diagnostics`` holds all errors, ``str()`` shows them."""
+
+    def __init__(self, diagnostics: Sequence[Diagnostic]) -> None:
+        self.diagnostics = tuple(diagnostics)
+        super().__init__(render_all(self.diagnostics))
+
+
+def measure(
+    folders: Sequence[Path],
+    baselines: Sequence[Iterable[Path]] = (),
+    libraries: Sequence[str] = DEFAULT,
+) -> list[ProgramMetrics]:
+    """Count the programs in folders, each beside its baseline.
+
+    Args:
+        folders: one for each program.
+        baselines: for each program, the files and folders of its baseline; empty for no baselines at all.
+        libraries: names of installed Python packages that count as library code when a program imports them.
+
+    Raises:
+        ValueError: there are baselines, but not one for each program.
+        MetricsError: with the errors in all programs and baselines, and folders that do not exist or have no programs.
+    """
+    if baselines and len(baselines) != len(folders):
+        raise ValueError(f"expected {len(folders)} baselines, found {len(baselines)}")
+    sources = Sources()
+    library = Library(sources, libraries)
+    measured = []
+    for number, folder in enumerate(folders):
+        files = _program(folder, sources, library)
+        if baselines:
+            files |= read_baseline(baselines[number], sources, library)
+        measured.append(ProgramMetrics(_name(folder, folders), files))
+    sources.report(*map(_not_installed, sorted(library.missing)))
+    if sources.problems:
+        raise MetricsError(list(sources.problems))
+    return measured
+
+
+def _program(folder: Path, sources: Sources, library: Library) -> dict[Group, tuple[CountedFile, ...]]:
+    if not folder.is_dir():
+        sources.report(_no_folder(folder))
+        return {}
+    before = len(sources.problems)
+    try:
+        program = ProgramFiles(folder, sources, library)
+        files = program.read()
+    except OSError as error:
+        sources.report(Diagnostic("error", f"cannot read `{folder}`: {error.strerror or error}"))
+        return {}
+    if len(sources.problems) == before and not program.has_agents:
+        sources.report(no_programs(folder))
+    return files
+
+
+def _no_folder(path: Path) -> Diagnostic:
+    if path.exists():
+        return Diagnostic("error", f"not a folder: `{path}`", hint=f"name its folder: `{path.parent}`")
+    beside = [each.name for each in path.parent.glob("*/")]
+    near = close_matches(path.name, beside)
+    hint = f"did you mean `{path.with_name(near[0])}`?" if near else None
+    return Diagnostic("error", f"folder does not exist: `{path}`", hint=hint)
+
+
+def _name(folder: Path, folders: Sequence[Path]) -> str:
+    """The name of a folder, or all of its path if another folder has the same name."""
+    name = folder.resolve().name
+    return str(folder) if [each.resolve().name for each in folders].count(name) > 1 else name
+
+
+def _not_installed(package: str) -> Diagnostic:
+    return Diagnostic(
+        "error",
+        f"library not installed, so it cannot be counted: `{package}`",
+        None,
+        f"pip install {package}",
+    )

@@ -1,0 +1,75 @@
+"""Source files, read once however many programs use them."""
+
+import ast
+from pathlib import Path
+from typing import NamedTuple
+
+from jacaros.asl.diagnostics import AslError, Diagnostic
+from jacaros.asl.source import SourceFile
+from jacaros.mas.programs import text_of
+from jacaros.metrics import agentspeak, python_source
+from jacaros.metrics.comments import Stretch
+from jacaros.metrics.counted_file import CountedFile
+from jacaros.text_files import file_bytes
+
+
+class PythonFile(NamedTuple):
+    """A Python file that has been parsed."""
+
+    counted: CountedFile
+    tree: ast.Module
+
+
+class Sources:
+    """Reads source files, and keeps what is wrong with them.
+
+    Attributes:
+        problems: the errors of all files that were read, in this order, each once.
+    """
+
+    def __init__(self) -> None:
+        self.problems: dict[Diagnostic, None] = {}
+        self._python: dict[Path, PythonFile | None] = {}
+
+    def report(self, *problems: Diagnostic) -> None:
+        """Keep the errors among *problems*."""
+        self.problems.update(dict.fromkeys(each for each in problems if each.severity == "error"))
+
+    def text(self, path: Path) -> str | None:
+        """The text of a file; None after reporting that it cannot be read, or is not text."""
+        try:
+            return text_of(path)
+        except AslError as error:
+            self.report(*error.diagnostics)
+            return None
+
+    def python(self, path: Path) -> PythonFile | None:
+        """A Python file; None after reporting that it is not Python."""
+        key = path.resolve()
+        if key not in self._python:
+            self._python[key] = self._parsed(path)
+        return self._python[key]
+
+    def _parsed(self, path: Path) -> PythonFile | None:
+        text = self.text(path)
+        if text is None:
+            return None
+        try:
+            tree = python_source.parse(SourceFile(str(path), text))
+        except AslError as error:
+            self.report(*error.diagnostics)
+            return None
+        names = python_source.identifiers_of(tree)
+        return PythonFile(counted(path, text, python_source.comments_of(tree, text), names, names), tree)
+
+    def agentspeak(self, path: Path, identifiers: frozenset[str], names: frozenset[str]) -> CountedFile:
+        """The file of a program that has been parsed."""
+        text = text_of(path)
+        return counted(path, text, agentspeak.comments_of(SourceFile(str(path), text)), identifiers, names)
+
+
+def counted(
+    path: Path, text: str, comments: list[Stretch], identifiers: frozenset[str], names: frozenset[str]
+) -> CountedFile:
+    """A file with what is counted in it."""
+    return CountedFile(path, file_bytes(path), text, tuple(comments), identifiers, names)
