@@ -4,12 +4,14 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
+import change_requests
 import sizes
 import success
 from disturbed_runs import AGENTS, BASELINE, OVER_NAV2, Outcome
 from jacaros.metrics import ProgramMetrics, Table, as_markdown
 from jacaros.metrics.groups import Group
 from scenarios import FOLDER, SCENARIOS
+from workshop.published import size_table
 
 MARK = re.compile(r"<!-- (\w+) -->")
 
@@ -29,6 +31,8 @@ def all_tables(outcomes: Sequence[Outcome]) -> Mapping[str, Callable[[], Table]]
         **{kind: partial(sizes.size_table, examples, kind) for kind in kinds},
         "over_nav2": lambda: over_nav2_table(over_nav2),
         "library": lambda: sizes.library_table([*examples, *over_nav2]),
+        "changes": changes_table,
+        "workshop": size_table,
         "success": lambda: success.success_table(outcomes),
         "patrol_by_kind": lambda: success.kind_table(outcomes, "patrol"),
         "house_cleaning_by_kind": lambda: success.kind_table(outcomes, "house_cleaning"),
@@ -54,6 +58,18 @@ def over_nav2_table(programs: Sequence[ProgramMetrics]) -> Table:
         ("program", "identifiers", "with beliefs and variables", "code lines", "bytes compressed"),
         rows,
     )
+
+
+def changes_table() -> Table:
+    """Changed code lines of each request."""
+    rows = tuple(
+        (
+            row.request,
+            *(f"{each.changed} (+{each.added} -{each.removed})" for each in (row.agents, row.baseline)),
+        )
+        for row in change_requests.table()
+    )
+    return Table("Changed code lines", ("request", "agents", BASELINE), rows)
 
 
 def summary(outcomes: Sequence[Outcome]) -> str:
