@@ -1,9 +1,9 @@
 """Runs of all sides of the scenarios under disturbances, judged from the ground truth."""
 
-import contextlib
 import os
+import shutil
 import tempfile
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from typing import NamedTuple
@@ -28,11 +28,18 @@ doors:
 CYCLES = 2
 """Recharges after which a patrol ends here; the whole shift has ten."""
 
+SHIFTS = {"shift(10).": f"shift({CYCLES}).", "SHIFT = 10": f"SHIFT = {CYCLES}"}
+"""The lines of the programs that say how long a shift is, and what takes their place."""
+
+NEAR = 0.1
+"""Metres from a corner that count as a visit here: a robot that Nav2 stops within its tolerance of 5 cm and that slips a
+little must not count as one that leaves the corner and comes again."""
+
 LIMITS: Mapping[str, float] = {
     "out_and_back": 120.0,
     "square": 180.0,
     "fake_battery": 400.0,
-    "patrol": 240.0,
+    "patrol": 500.0,
     "house_cleaning": 900.0,
 }
 """Seconds of the virtual clock after which a run is ended."""
@@ -85,15 +92,10 @@ def run_all(wanted: list[Job], workers: int | None = None) -> list[Outcome]:
 
 def run_one(job: Job) -> Outcome:
     """Make one run, and judge it."""
-    scenario = SCENARIOS[job.scenario]
-    faults, limit = faults_for(job.scenario, job.seed), LIMITS[job.scenario]
-    with world_of(job.scenario) as world:
-        if job.side == BASELINE:
-            result = run_baseline(job.scenario, world, limit, job.seed, faults)
-        else:
-            project = scenario.project if job.side == AGENTS else _over_nav2(job.scenario)
-            result = run_project(project, world=str(world), seconds=limit, seed=job.seed, faults=faults)
-    complaints = _complaints(job.scenario, result)
+    with tempfile.TemporaryDirectory() as folder:
+        result = _run(job, Path(folder))
+    limits = {"cycles": CYCLES, "near": NEAR} if job.scenario == "patrol" else {}
+    complaints = SCENARIOS[job.scenario].judge(result, **limits).complaints
     return Outcome(
         job,
         kind_of(job.scenario, job.seed),
@@ -103,26 +105,37 @@ def run_one(job: Job) -> Outcome:
     )
 
 
-def _complaints(name: str, result: RunResult) -> list[str]:
-    scenario = SCENARIOS[name]
-    return (
-        scenario.judge(result, cycles=CYCLES).complaints
-        if name == "patrol"
-        else scenario.judge(result).complaints
-    )
+def _run(job: Job, folder: Path) -> RunResult:
+    faults, limit = faults_for(job.scenario, job.seed), LIMITS[job.scenario]
+    scenario, world = SCENARIOS[job.scenario], world_of(job.scenario, folder)
+    if job.side == BASELINE:
+        if job.scenario == "patrol":
+            scenario = scenario._replace(baseline=_shortened(scenario.baseline, folder))
+        return run_baseline(scenario, world, limit, job.seed, faults)
+    project = scenario.project if job.side == AGENTS else _over_nav2(job.scenario)
+    if job.scenario == "patrol":
+        _shortened(project.with_name("robot.asl"), folder)
+        project = Path(shutil.copy(project, folder))
+    return run_project(project, world=str(world), seconds=limit, seed=job.seed, faults=faults)
+
+
+def _shortened(program: Path, folder: Path) -> Path:
+    """Copy a program into *folder*, with a shorter shift."""
+    text = program.read_text(encoding="utf-8")
+    long = next(each for each in SHIFTS if each in text)
+    made = folder / program.name
+    made.write_text(text.replace(long, SHIFTS[long]), encoding="utf-8")
+    return made
 
 
 def _over_nav2(scenario: str) -> Path:
     return FOLDER / "agents" / scenario / f"{scenario}.jcm"
 
 
-@contextlib.contextmanager
-def world_of(scenario: str) -> Iterator[str | Path]:
-    """The world of a scenario; the house gets doors."""
+def world_of(scenario: str, folder: Path) -> str | Path:
+    """The world of a scenario; for the house a file in *folder*, as it gets doors."""
     if scenario != "house_cleaning":
-        yield SCENARIOS[scenario].world
-        return
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "house.yaml"
-        path.write_text(HOUSE.read_text(encoding="utf-8") + DOORS, encoding="utf-8")
-        yield path
+        return SCENARIOS[scenario].world
+    path = folder / "house.yaml"
+    path.write_text(HOUSE.read_text(encoding="utf-8") + DOORS, encoding="utf-8")
+    return path

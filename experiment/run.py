@@ -26,15 +26,18 @@ def main() -> int:
     parser.add_argument(
         "--quick", action="store_true", help="repeat some runs, and compare with what is recorded"
     )
+    parser.add_argument("--page", action="store_true", help="write the page anew from the recorded runs")
     parser.add_argument("--runs", type=int, default=RUNS, help=f"runs of each side (default {RUNS})")
     given = parser.parse_args()
-    return check() if given.quick else renew(given.runs)
+    if given.quick:
+        return check()
+    if not given.page:
+        RECORD.write_text(as_json(run_all(jobs(range(1, given.runs + 1)))), encoding="utf-8")
+    return write(from_json(RECORD.read_text(encoding="utf-8")))
 
 
-def renew(runs: int) -> int:
-    """Make all runs, and write record, page and charts."""
-    outcomes = run_all(jobs(range(1, runs + 1)))
-    RECORD.write_text(as_json(outcomes), encoding="utf-8")
+def write(outcomes: Sequence[Outcome]) -> int:
+    """Write the page and the charts."""
     PAGE.write_text(page(outcomes), encoding="utf-8")
     for kind, svg in sizes.charts(sizes.examples()).items():
         (IMAGES / f"experiment_{kind}.svg").write_text(svg, encoding="utf-8")

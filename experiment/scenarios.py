@@ -26,7 +26,7 @@ class Scenario(NamedTuple):
     world: str | Path
     parameters: Mapping[str, Any] = {}
 
-    def judge(self, result: RunResult, **limits: int) -> Verdict:
+    def judge(self, result: RunResult, **limits: float) -> Verdict:
         """Judge a run of either side by the checker of the example, with limits that it takes."""
         check = runpy.run_path(str(self.project.parent / "check.py"))["check"]
         output = () if self.world != WEAK_BATTERY else (result.lines,)

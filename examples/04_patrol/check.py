@@ -27,11 +27,11 @@ class Visit(NamedTuple):
     end: float
 
 
-def check(truth: GroundTruth, cycles: int = 10) -> Verdict:
-    """Judge a run of at least so many recharges."""
+def check(truth: GroundTruth, cycles: int = 10, near: float = REACHED) -> Verdict:
+    """Judge a run of at least so many recharges; corners are visited at most *near* metres off."""
     verdict = Verdict()
     path = [*truth.path(), truth.latest()]
-    found = visits(path)
+    found = visits(path, near)
     verdict.measure("corners", sum(before.corner != after.corner for before, after in pairwise(found)))
 
     stays = judge_recharging(verdict, truth)
@@ -48,12 +48,12 @@ def check(truth: GroundTruth, cycles: int = 10) -> Verdict:
     return verdict
 
 
-def visits(path: Sequence[Sample]) -> list[Visit]:
+def visits(path: Sequence[Sample], near: float = REACHED) -> list[Visit]:
     """All visits of corners, oldest first."""
     found: list[Visit] = []
     at = None
     for sample in path:
-        corner = next((n for n, (x, y) in enumerate(CORNERS) if distance(sample, x, y) <= REACHED), None)
+        corner = next((n for n, (x, y) in enumerate(CORNERS) if distance(sample, x, y) <= near), None)
         if corner is None or corner != at:
             at = corner
             if corner is not None:

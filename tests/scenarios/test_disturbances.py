@@ -1,6 +1,7 @@
 """The disturbances of the experiment: fault files that fit their worlds, the same for the same seed."""
 
 import sys
+from pathlib import Path
 
 import pytest
 from examples_lab import EXAMPLES
@@ -16,9 +17,8 @@ from scenarios import SCENARIOS
 
 
 @pytest.mark.parametrize("name", SCENARIOS)
-def test_all_faults_fit_the_world(name: str) -> None:
-    with world_of(name) as world:
-        description = load_world(world)
+def test_all_faults_fit_the_world(name: str, tmp_path: Path) -> None:
+    description = load_world(world_of(name, tmp_path))
     for seed in range(50):
         assert read_faults(faults_for(name, seed), description)
 
