@@ -109,7 +109,7 @@ def take_in(agent: Circumstance, percepts: list[Percept]) -> None:  # noqa: C901
         agent.library.selects,
         agent.events,
     )
-    derived, urgencies = agent.observers.derived, agent.selections.urgencies
+    derived, mind, urgencies = agent.observers.derived, agent.observers.mind, agent.selections.urgencies
     for percept in percepts:
         kept = percept.kept or _keep(agent, percept)
         symbol, row, change, event = kept
@@ -132,6 +132,8 @@ def take_in(agent: Circumstance, percepts: list[Percept]) -> None:  # noqa: C901
             del holders[literal]
         if derived is not None:
             derived.heard("-" if percept.kind == "remove" else "+", symbol, row, percept.cause)
+        if mind is not None and percept.kind in ("add", "remove"):
+            mind.changed("+" if percept.kind == "add" else "-", symbol, row, annotations, percept.cause)
         if selects[change] is not None:
             if event is None:
                 event = kept[3] = ((change, *row), None, annotations, percept.cause)
@@ -141,12 +143,11 @@ def take_in(agent: Circumstance, percepts: list[Percept]) -> None:  # noqa: C901
 
 
 def _is_usual(agent: Circumstance, count: int) -> bool:
-    """Whether that number of events need only be put into the queue, and nobody but derived beliefs hears of them."""
+    """Whether that number of events need only be put into the queue; derived beliefs and a `MindObserver` hear of them."""
     return (
         not agent.waits.events
         and not agent.waits.conditions
         and not agent.features.subplans
-        and agent.observers.mind is None
         and agent.observers.step is None
         and agent.options.events == "discard"
         and len(agent.events) + count <= agent.options.event_limit

@@ -1,7 +1,6 @@
 """Records of the agents' goals: each change once, and goals by numbers of their own."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import partial
 from itertools import count
 
@@ -21,14 +20,16 @@ _OVER = ("achieved", "dropped", "recovered", "replaced")
 _AT_WORK = ("pursued", "resumed")
 
 
-@dataclass(slots=True)
 class _Goal:
-    number: int
-    state: str = ""
-    text: str = ""
-    intention: int = 0
-    settled: Goal | None = None
-    """The goal, when it holds no variables: its text stays as it is."""
+    """An open goal; *settled* is the goal when it holds no variables, so that its text stays as it is."""
+
+    # Not a dataclass, which takes a millisecond to make.
+    __slots__ = ("intention", "number", "settled", "state", "text")
+
+    def __init__(self, number: int) -> None:
+        self.number, self.intention = number, 0
+        self.state = self.text = ""
+        self.settled: Goal | None = None
 
 
 class GoalRecords:
