@@ -138,7 +138,7 @@ def apply(diff: Path, folder: Path) -> None:
     Raises:
         JacarosError: it does not fit the files.
     """
-    # The folder can be inside a repository, of which it is no part.
+    # The folder can be inside another repository, which must not interfere.
     environment = {**os.environ, "GIT_CEILING_DIRECTORIES": str(folder.resolve().parent)}
     command = ["git", "apply", "--whitespace=nowarn", str(diff.resolve())]
     done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)

@@ -37,7 +37,7 @@ class Timer:
         self._wait()
 
     def cancel(self) -> None:
-        """Call it no more."""
+        """Stop the timer."""
         if self._timer is not None:
             self._timer.cancel()
             self._timer = None

@@ -168,7 +168,7 @@ def _of_beliefs(
     folders: tuple[Path, ...],
     unseen: set[Path] | None,
 ) -> list[Diagnostic]:
-    """Histories that nobody keeps, and misspelt names of beliefs, the latter not where classes of its own may make more."""
+    """Report histories that no agent keeps, and misspelt beliefs unless classes of the project may make more."""
     from jacaros.mas.action_check import made_types
     from jacaros.mas.belief_check import check_beliefs, check_histories  # here: see `_of_artifacts`
 

@@ -67,7 +67,7 @@ def read_agent(path: Path, folders: Sequence[Path], sources: Sources) -> AgentPr
     text = sources.text(path)
     if text is None:
         return None
-    # What is wrong with Python files is told by those who count them.
+    # Problems of Python files are reported where they are counted.
     code = PythonCode(ProjectModules(*folders, unseen=set()))
     programs = Programs(folders, lambda _: None, code)
     included: set[str] = set()
