@@ -17,11 +17,11 @@ _HEADER = ("width", "height", "largest value")
 
 
 class ImageError(Exception):
-    """An image that cannot be used; ``str()`` says why, `cure` what to do."""
+    """An image that cannot be used; ``str()`` says why, `help` what to do."""
 
-    def __init__(self, message: str, cure: str) -> None:
+    def __init__(self, message: str, help: str) -> None:
         super().__init__(message)
-        self.cure = cure
+        self.help = help
 
 
 @dataclass(frozen=True, slots=True)

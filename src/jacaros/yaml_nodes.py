@@ -27,7 +27,7 @@ LARGEST = 1_000_000
 
 
 class YamlFileError(JacarosError):
-    """A wrong YAML file; ``str()`` shows every mistake with its file, line, excerpt and cure.
+    """A wrong YAML file; ``str()`` shows every mistake with its file, line, excerpt and help.
 
     Attributes:
         file: name of the file.
@@ -51,8 +51,8 @@ def shown(file: str, lines: list[str], problem: Problem, level: str = "") -> str
         number = f"{problem.line:>5} | "
         excerpt, caret = marked(lines[problem.line - 1], problem.column)
         told += [number + excerpt, " " * len(number) + caret]
-    if problem.cure:
-        told.append(help_line(problem.cure))
+    if problem.help:
+        told.append(help_line(problem.help))
     return "\n".join(told)
 
 
@@ -70,9 +70,9 @@ class Node:
     def __init__(self, value: Any, line: int, column: int, problems: list[Problem], what: str) -> None:
         self.value, self.line, self.column, self.problems, self.what = value, line, column, problems, what
 
-    def wrong(self, message: str, cure: str = "") -> None:
+    def wrong(self, message: str, help: str = "") -> None:
         """Note a mistake at this value."""
-        self.problems.append(Problem(self.line, self.column, message, cure))
+        self.problems.append(Problem(self.line, self.column, message, help))
 
     def mapping(
         self, *known: str, required: tuple[str, ...] = (), anchors: bool = False
@@ -109,8 +109,8 @@ class Node:
         known_at = (self.value.lc.data or {}).get(key)  # None: a YAML merge (<<) brought it in
         line, column = (self.line - 1, self.column - 1) if known_at is None else known_at[:2]
         near = difflib.get_close_matches(str(key), known, 1)
-        cure = f"did you mean '{near[0]}'?" if near else f"known keys: {', '.join(known)}"
-        self.problems.append(Problem(line + 1, column + 1, f"{self.what} has no key '{key}'", cure))
+        help = f"did you mean '{near[0]}'?" if near else f"known keys: {', '.join(known)}"
+        self.problems.append(Problem(line + 1, column + 1, f"{self.what} has no key '{key}'", help))
 
     def entries(self) -> Iterator[tuple["Node", "Node"]]:
         """Names and values of a mapping whose keys are names of the author's choice; none for a missing value."""
@@ -306,8 +306,8 @@ def _twice(node: Any, seen_nodes: set[int]) -> Iterator[Problem]:
             line, column = key.start_mark.line + 1, key.start_mark.column + 1
             if isinstance(key.value, str) and key.value in seen and key.value != "<<":
                 first = seen[key.value]
-                cure = "rename one of them, or remove it"
-                yield Problem(line, column, f"duplicate key '{key.value}', first in line {first}", cure)
+                help = "rename one of them, or remove it"
+                yield Problem(line, column, f"duplicate key '{key.value}', first in line {first}", help)
             else:
                 seen[str(key.value)] = line
     for part in _parts(node):

@@ -16,7 +16,7 @@ class Problem:
     line: int
     column: int
     message: str
-    cure: str = ""
+    help: str = ""
 
 
 _TOP_KEY = re.compile(r"^([\w-]+)[ \t]*:", re.MULTILINE)
@@ -79,11 +79,11 @@ def syntax_problem(error: YAMLError, text: str) -> Problem:
 
 
 def _explained(told: str, line: int, column: int) -> Problem:
-    for pattern, message, cure in _EXPLAINED:
+    for pattern, message, help in _EXPLAINED:
         if (found := re.search(pattern, told)) is not None:
             parts = found.groups()
             return Problem(
-                line, column, f"not YAML: {message.format(*parts, problem=told)}", cure.format(*parts)
+                line, column, f"not YAML: {message.format(*parts, problem=told)}", help.format(*parts)
             )
     return Problem(line, column, f"not YAML: {told.splitlines()[0]}", "mind indents, colons and quotes")
 

@@ -69,7 +69,7 @@ def test_a_server_that_starts_later_is_awaited(request: pytest.FixtureRequest) -
         client.subscribe("/a", STRING)
         client.advertise("/a", STRING)
         graph.wait_until(
-            lambda: any("rosbridge_websocket_launch.xml" in line for line in client.log()), "the cure is told"
+            lambda: any("rosbridge_websocket_launch.xml" in line for line in client.log()), "the help is told"
         )
         graph.server = BridgeServer("ros2", port=first.port)
         graph.wait_until(client.connected, "the server is found")

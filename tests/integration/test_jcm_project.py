@@ -172,4 +172,4 @@ def test_a_misspelt_operation_is_found(project: Path) -> None:
     program.write_text(program.read_text().replace("announce(Name)", "anounce(Name)"), encoding="utf-8")
     (found,) = [each for each in check_files([project]).diagnostics if each.code != "no-effect"]
     assert found.message == "no artifact of the project offers anounce/1"
-    assert found.hint == "did you mean announce?"
+    assert found.help == "did you mean announce?"

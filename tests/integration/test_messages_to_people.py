@@ -1,4 +1,4 @@
-"""Mistakes, and what people read about them: the whole text on standard error, with place and cure."""
+"""Mistakes, and what people read about them: the whole text on standard error, with place and help."""
 
 import os
 import subprocess

@@ -20,7 +20,7 @@ def problems(text: str) -> list[Problem]:
 
 
 @pytest.mark.parametrize(
-    ("text", "place", "message", "cure"),
+    ("text", "place", "message", "help"),
     [
         ("a:\n\tb: c\n", (2, 1), "a tab in the indent", "spaces"),
         ("a:\n  b: 1\n c: 2\n", (3, 2), "the indent fits none of the lines above", "same column"),
@@ -40,11 +40,11 @@ def problems(text: str) -> list[Problem]:
         ("a: " + "[" * 5000, (1, 1), "nested too deeply", "brackets"),
     ],
 )
-def test_mistakes_of_syntax(text: str, place: tuple[int, int], message: str, cure: str) -> None:
+def test_mistakes_of_syntax(text: str, place: tuple[int, int], message: str, help: str) -> None:
     (problem,) = problems(text)
     assert (problem.line, problem.column) == place
     assert message in problem.message
-    assert cure in problem.cure
+    assert help in problem.help
 
 
 @pytest.mark.parametrize(

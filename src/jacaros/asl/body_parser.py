@@ -65,11 +65,11 @@ class BodyParser(TermParser):
             return False
         slip = self.slip()
         if slip is not None:
-            self.fail(slip.code, slip.message, self._blame(slip), slip.hint)
+            self.fail(slip.code, slip.message, self._blame(slip), slip.help)
         self.report(
             "missing-semicolon",
             "a ';' is missing before this step",
-            hint="steps are separated by ';', the last one is followed by '.'",
+            help="steps are separated by ';', the last one is followed by '.'",
         )
         return True
 
@@ -219,7 +219,7 @@ class BodyParser(TermParser):
             self.fail(
                 "missing-condition",
                 f"'(' and the condition of '{word.kind}' is expected, not '{opener.text}'",
-                hint=f"{word.kind} (condition) {{ steps }}",
+                help=f"{word.kind} (condition) {{ steps }}",
             )
         self.advance()
         condition = self.condition()
@@ -262,7 +262,7 @@ class BodyParser(TermParser):
             self.fail(
                 "else-without-if",
                 f"'{kind}' without an 'if' before it",
-                hint="'if' and 'else' are not separated by ';'",
+                help="'if' and 'else' are not separated by ';'",
             )
         return self._formula_step(self.expression())
 
@@ -332,14 +332,14 @@ class BodyParser(TermParser):
         """A bare condition is an action of that name in the language; people mean a test."""
         word = term.operator
         if term.span is not None:
-            hint = (
+            help = (
                 "to test the condition write ?(not f)" if word == "not" else f"to test it write ?(a {word} b)"
             )
             self.warn(
                 "condition-as-step",
                 f"'{word}' here is an action of the environment and no test",
                 term.span,
-                hint,
+                help,
             )
         return nodes.ExternalAction(nodes.Literal(word, term.operands, span=term.span), span=term.span)
 

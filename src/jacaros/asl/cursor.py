@@ -118,7 +118,7 @@ class Cursor:
             self.fail(
                 "nested-too-deeply",
                 "this is nested too deeply",
-                hint=f"at most {MAX_NESTING} levels of brackets are read",
+                help=f"at most {MAX_NESTING} levels of brackets are read",
             )
 
     def leave(self) -> None:
@@ -138,7 +138,7 @@ class Cursor:
         code: str,
         message: str,
         span: Span | None = None,
-        hint: str | None = None,
+        help: str | None = None,
         opened: Span | None = None,
     ) -> None:
         """Record an error, unless there is one for the same place; reading goes on."""
@@ -148,24 +148,24 @@ class Cursor:
         place = (span.line, span.column)
         if place not in self._blamed:
             self._blamed.add(place)
-            self.diagnostics.append(Diagnostic("error", message, span, hint, code, opened))
+            self.diagnostics.append(Diagnostic("error", message, span, help, code, opened))
 
-    def forgive(self, code: str, message: str, span: Span, hint: str | None = None) -> None:
+    def forgive(self, code: str, message: str, span: Span, help: str | None = None) -> None:
         """Record what Jason refuses and the JaCaROS thesis prints: a warning in programs that name the artifact
         classes of the thesis, an error in all others."""
         if any(_THESIS in token.text for token in self.tokens):
-            self.warn(code, message, span, hint)
+            self.warn(code, message, span, help)
         else:
-            self.report(code, message, span, hint)
+            self.report(code, message, span, help)
 
-    def warn(self, code: str, message: str, span: Span, hint: str | None = None) -> None:
+    def warn(self, code: str, message: str, span: Span, help: str | None = None) -> None:
         """Record a warning."""
-        self.diagnostics.append(Diagnostic("warning", message, span, hint, code))
+        self.diagnostics.append(Diagnostic("warning", message, span, help, code))
 
-    def fail(self, code: str, message: str, span: Span | None = None, hint: str | None = None) -> NoReturn:
+    def fail(self, code: str, message: str, span: Span | None = None, help: str | None = None) -> NoReturn:
         """Record an error, unless the lexer already reported this token, and give up the statement."""
         if self.token.kind != "error":
-            self.report(code, message, span, hint)
+            self.report(code, message, span, help)
         raise SyntaxPanic
 
     def unexpected(self, wanted: str, code: str = "unexpected-token") -> NoReturn:
@@ -175,7 +175,7 @@ class Cursor:
             self.fail("unexpected-end", f"the file ends where {wanted} is expected")
         slip = self.slip()
         if slip is not None:
-            self.fail(slip.code, slip.message, self._blame(slip), slip.hint)
+            self.fail(slip.code, slip.message, self._blame(slip), slip.help)
         self.fail(code, f"{wanted} is expected, not '{token.text}'")
 
     def slip(self) -> Slip | None:
@@ -197,7 +197,7 @@ class Cursor:
             self.report(
                 "mismatched-bracket",
                 f"'{opener.kind}' is closed by '{token.kind}'",
-                hint=f"{where}; close it with '{closer}'",
+                help=f"{where}; close it with '{closer}'",
                 opened=self.span_of(opener),
             )
             if not self._closes_outer(opener) or self.peek().kind == token.kind:
@@ -206,12 +206,12 @@ class Cursor:
         found = "the end of the file" if token.kind == "end" else f"'{token.text}'"
         slip = self.slip()
         if slip is not None:
-            self.fail(slip.code, slip.message, self._blame(slip), slip.hint)
+            self.fail(slip.code, slip.message, self._blame(slip), slip.help)
         if token.kind != "error":
             self.report(
                 "unclosed-bracket",
                 f"'{opener.kind}' is not closed: '{closer}' is expected before {found}",
-                hint=where,
+                help=where,
                 opened=self.span_of(opener),
             )
         raise SyntaxPanic

@@ -24,7 +24,7 @@ class Diagnostic:
     severity: Severity
     message: str
     span: Span | None = None
-    hint: str | None = None
+    help: str | None = None
     code: str = ""
     opened: Span | None = None
 
@@ -39,8 +39,8 @@ class Diagnostic:
             if self.opened is not None and self.opened.line != self.span.line:
                 lines.extend(excerpt(self.opened))
             lines.extend(excerpt(self.span))
-        if self.hint is not None:
-            lines.append(help_line(self.hint))
+        if self.help is not None:
+            lines.append(help_line(self.help))
         return "\n".join(lines)
 
     def place(self) -> str:

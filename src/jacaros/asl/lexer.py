@@ -131,23 +131,23 @@ def _unusual(
     if group in ("quoted", "word"):
         return "atom"
     end = column + len(text.rstrip())
-    hint: str | None = None
+    help: str | None = None
     code = "unclosed-string"
     if group == "open_string":
-        message, hint = "the string does not end on its line", r'close it: "text"; a line break inside is \n'
+        message, help = "the string does not end on its line", r'close it: "text"; a line break inside is \n'
     elif group == "open_quoted":
-        message, hint = "the quoted atom does not end on its line", "close it: 'an atom'"
+        message, help = "the quoted atom does not end on its line", "close it: 'an atom'"
     elif group == "open_comment":
-        message, hint, end = "the comment is not closed", "end it with */", column + 2
+        message, help, end = "the comment is not closed", "end it with */", column + 2
         code = "unclosed-comment"
     elif text == "\\":
         code = "wrong-operator"
-        message, hint = r"'\' does not begin anything", r"'not equal' is written \==, 'not' is written not"
+        message, help = r"'\' does not begin anything", r"'not equal' is written \==, 'not' is written not"
     else:
         code = "unknown-character"
         message = f"the character {text!r} does not belong to the language"
-        hint = "a comment begins with //" if text in "#%" else None
-    report(Diagnostic("error", message, Span(file, line, column, line, end), hint, code))
+        help = "a comment begins with //" if text in "#%" else None
+    report(Diagnostic("error", message, Span(file, line, column, line, end), help, code))
     return "error"
 
 

@@ -127,7 +127,7 @@ class LiteralParser(Cursor, ABC):
             self.report(
                 "annotated-action",
                 f"'{name}' is an internal action, which cannot have annotations",
-                hint="a plan ends with a '.' followed by a blank" if name[0] == "." and start.first else None,
+                help="a plan ends with a '.' followed by a blank" if name[0] == "." and start.first else None,
             )
             self._annotations()
         span = self.span_from(start)

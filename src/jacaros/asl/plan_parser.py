@@ -40,7 +40,7 @@ class PlanParser(BodyParser):
         """Report what cannot stand behind the head of a plan; what begins a line may be the next clause."""
         kind = self.token.kind
         if kind == "," and not self.token.first:
-            self.fail("wrong-separator", "conditions are not joined by ','", hint="write & for 'and'")
+            self.fail("wrong-separator", "conditions are not joined by ','", help="write & for 'and'")
         if kind not in _BEHIND_HEAD and not self.token.first and not self.at_plan():
             self.unexpected("'<-' or '.'")
 
@@ -62,13 +62,13 @@ class PlanParser(BodyParser):
         start = self.advance()
         kind = self.advance().kind if self.token.kind in ("!", "?") else ""
         if self.token.kind == "!!":
-            self.fail("wrong-trigger", "a trigger has one '!'", hint="'!!' posts a goal in a body")
+            self.fail("wrong-trigger", "a trigger has one '!'", help="'!!' posts a goal in a body")
         if self.token.kind not in ("atom", "variable", "~", "::"):
             self.unexpected("a literal")
         literal = self.operand(formula=True)
         if not isinstance(literal, nodes.Literal | nodes.Variable):
-            hint = "a '.' that ends a plan has a blank or a line end behind it"
-            self.fail("wrong-trigger", "an internal action cannot trigger a plan", literal.span, hint)
+            help = "a '.' that ends a plan has a blank or a line end behind it"
+            self.fail("wrong-trigger", "an internal action cannot trigger a plan", literal.span, help)
         return nodes.Trigger(start.kind, kind, literal, span=self.span_from(start))
 
     def _label(self, as_term: bool) -> nodes.Literal | nodes.Variable:
@@ -92,7 +92,7 @@ class PlanParser(BodyParser):
             self.report(
                 "wrong-operator",
                 "':-' belongs to rules",
-                hint="a plan is written +!goal : condition <- steps.",
+                help="a plan is written +!goal : condition <- steps.",
             )
             self.advance()
             return self.condition()
@@ -109,7 +109,7 @@ class PlanParser(BodyParser):
             return None
         context = self._part("context")
         while self.token.kind == ":":
-            self.report("second-context", "a plan has only one context", hint="join the conditions with &")
+            self.report("second-context", "a plan has only one context", help="join the conditions with &")
             self._part("context")
         return context
 
@@ -128,7 +128,7 @@ class PlanParser(BodyParser):
                 self.fail(
                     "unexpected-token",
                     f"'<-' is expected before '{arrow.text}'",
-                    hint="the steps of a plan stand behind '<-'",
+                    help="the steps of a plan stand behind '<-'",
                 )
             return nodes.Body(span=self.span_of(arrow))
         if self.token.kind in (".", "}", "end") or self.at_plan():
@@ -144,7 +144,7 @@ class PlanParser(BodyParser):
             self.fail(
                 "second-body",
                 "a plan has only one '<-'",
-                hint="is the final '.' of a plan missing before this one?",
+                help="is the final '.' of a plan missing before this one?",
             )
         return body
 

@@ -56,7 +56,7 @@ class ProgramParser(PlanParser):
         while self.token.kind != "end":
             if self._at_end_directive():
                 self.report(
-                    "end-without-begin", "'{ end }' without a '{ begin ... }' before it", hint="remove it"
+                    "end-without-begin", "'{ end }' without a '{ begin ... }' before it", help="remove it"
                 )
                 self._take_end_directive()
             else:
@@ -109,11 +109,11 @@ class ProgramParser(PlanParser):
     def _no_clause(self) -> None:
         kind = self.token.kind
         if kind == "!!":
-            self.fail("wrong-goal", "an initial goal has one '!'", hint="write !goal.")
+            self.fail("wrong-goal", "an initial goal has one '!'", help="write !goal.")
         if kind == "?":
-            self.fail("wrong-goal", "an initial goal is an achievement goal", hint="write !goal.")
+            self.fail("wrong-goal", "an initial goal is an achievement goal", help="write !goal.")
         if kind in (".", ";"):
-            self.report("empty-clause", f"there is nothing before this '{kind}'", hint="remove it")
+            self.report("empty-clause", f"there is nothing before this '{kind}'", help="remove it")
             self.advance()
             return
         self.unexpected("a belief, a goal or a plan")
@@ -188,19 +188,19 @@ class ProgramParser(PlanParser):
         if self.accept(".") or (token.kind == "end" and self._last_dot_optional):
             return
         if token.kind == "end":
-            self.report("missing-dot", f"the {what} has no final '.'", hint="the file ends here")
+            self.report("missing-dot", f"the {what} has no final '.'", help="the file ends here")
         elif self._begins_clause(self.index) or (what != "plan" and token.first and token.kind in _STARTS):
             self.report(
                 "missing-dot",
                 f"the {what} before has no final '.'; {_naming(token)} begins here",
-                hint=f"put a '.' behind line {self.previous().line}",
+                help=f"put a '.' behind line {self.previous().line}",
             )
         elif token.kind == "," and what in ("belief", "goal"):
-            self.fail("wrong-separator", f"a {what} ends with '.', not with ','", hint="write p(1). p(2).")
+            self.fail("wrong-separator", f"a {what} ends with '.', not with ','", help="write p(1). p(2).")
         elif token.kind == ",":
-            self.fail("wrong-separator", "conditions are not joined by ','", hint="write & for 'and'")
+            self.fail("wrong-separator", "conditions are not joined by ','", help="write & for 'and'")
         elif token.kind == ";" and what == "rule":
-            self.fail("wrong-separator", "conditions are not joined by ';'", hint="'or' is written |")
+            self.fail("wrong-separator", "conditions are not joined by ';'", help="'or' is written |")
         elif token.kind in CLOSERS.values():
             self.fail("unopened-bracket", f"nothing is open that this '{token.kind}' closes")
         else:

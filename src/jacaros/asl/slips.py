@@ -51,7 +51,7 @@ class Slip(NamedTuple):
 
     code: str
     message: str
-    hint: str
+    help: str
     token: Token | None = None
 
 
@@ -116,8 +116,8 @@ def _counting(tokens: Sequence[Token], index: int) -> Slip | None:
     if run[2].kind != run[1].kind or run[1].end != run[2].column:
         return None
     sign = run[1].kind
-    hint = f"a variable keeps its value: write Y = X {sign} 1; a belief is changed by -+b(Y)"
-    return Slip("wrong-operator", f"there is no '{sign}{sign}' behind a variable", hint, run[1])
+    help = f"a variable keeps its value: write Y = X {sign} 1; a belief is changed by -+b(Y)"
+    return Slip("wrong-operator", f"there is no '{sign}{sign}' behind a variable", help, run[1])
 
 
 def _missing_blank(tokens: Sequence[Token], index: int) -> Slip | None:
@@ -150,8 +150,8 @@ def _python(tokens: Sequence[Token], index: int) -> Slip | None:
         return None
     if index > 1 and tokens[index - 2].kind not in (".", "}"):
         return None
-    hint = "this is an agent program; Python code stands in a .py file, such as artifacts.py"
-    return Slip("foreign-word", f"'{before.text}' is a word of Python", hint, before)
+    help = "this is an agent program; Python code stands in a .py file, such as artifacts.py"
+    return Slip("foreign-word", f"'{before.text}' is a word of Python", help, before)
 
 
 def _open_block(tokens: Sequence[Token], index: int) -> Slip | None:
@@ -163,8 +163,8 @@ def _open_block(tokens: Sequence[Token], index: int) -> Slip | None:
         depth += (token.kind == "}") - (token.kind == "{")
         if depth < 0:
             word = tokens[index].text
-            hint = f"the block before it was opened at line {token.line}, column {token.column}"
-            return Slip("unclosed-bracket", f"'}}' is missing before '{word}'", hint)
+            help = f"the block before it was opened at line {token.line}, column {token.column}"
+            return Slip("unclosed-bracket", f"'}}' is missing before '{word}'", help)
         if token.kind == ".":
             break
     return None

@@ -49,7 +49,7 @@ class TermParser(LiteralParser):
                     self.fail(
                         "nested-too-deeply",
                         "this sum has too many parts",
-                        hint=f"at most {MAX_CHAIN} operators follow each other without brackets",
+                        help=f"at most {MAX_CHAIN} operators follow each other without brackets",
                     )
                 left = self._arithmetic(left, found)
             elif found.kind == RELATION:
@@ -150,23 +150,23 @@ class TermParser(LiteralParser):
         """Whether *operand* may be a number; reports it otherwise."""
         if isinstance(operand, _NUMERIC):
             return True
-        hint = None
+        help = None
         if isinstance(operand, nodes.InternalAction):
             what = f"'{operand.name}' with {len(operand.arguments)} arguments is not a function"
             close = close_matches(operand.name, [*ARITIES, *self.names.functions])
             if close and close[0] != operand.name:
-                hint = f"did you mean {close[0]}?"
+                help = f"did you mean {close[0]}?"
             elif close:
-                hint = f"{close[0]} takes {_arity_text(close[0])}"
+                help = f"{close[0]} takes {_arity_text(close[0])}"
         else:
             what = f"'{operator.text}' needs numbers"
             if isinstance(operand, nodes.String | nodes.ListTerm):
-                hint = "strings and lists are joined by .concat(A, B, Result)"
+                help = "strings and lists are joined by .concat(A, B, Result)"
             elif operator.first:
-                hint = "or is a ';' missing before this line?"
+                help = "or is a ';' missing before this line?"
             elif isinstance(operand, nodes.Literal):
-                hint = "a belief gives its value through a variable: ask ?b(X) first, then count with X"
-        self.report("not-a-number", what, operand.span or self.span_of(operator), hint)
+                help = "a belief gives its value through a variable: ask ?b(X) first, then count with X"
+        self.report("not-a-number", what, operand.span or self.span_of(operator), help)
         return False
 
     def _relation(self, left: nodes.Term) -> nodes.Term:

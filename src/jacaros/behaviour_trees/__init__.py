@@ -5,7 +5,7 @@ py_trees, which the extra ``behaviour-trees`` of the package installs.
 """
 
 try:
-    import py_trees as _py_trees  # noqa: F401 - told with its cure before anything else needs it
+    import py_trees as _py_trees  # noqa: F401 - told with its help before anything else needs it
 except ModuleNotFoundError as missing:
     if missing.name != "py_trees":
         raise

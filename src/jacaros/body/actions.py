@@ -150,8 +150,8 @@ def _artifact(situation: Situation, call: Call) -> ArtifactId:
     term = bare(call.arguments[0])
     artifact = term.value if term.__class__ is Reference else None
     if not isinstance(artifact, ArtifactId):
-        hint = " (lookupArtifact gives the id for a name)" if name_of(term) is not None else ""
-        what = f"argument 1 wants the id of an artifact{hint}"
+        help = " (lookupArtifact gives the id for a name)" if name_of(term) is not None else ""
+        what = f"argument 1 wants the id of an artifact{help}"
         raise _wrong(call, situation.focused.body_in(_base(situation, call)), what, 0)
     if not situation.workspaces.has_joined(artifact.workspace):
         raise not_joined(artifact.workspace)
@@ -178,8 +178,8 @@ def make_artifact(situation: Situation, call: Call, finish: Finish) -> UnderWay 
     name, type_name = _name(call, 0, holder), _name(call, 1, holder, "the name of a type")
     parameters = bare(call.arguments[2]) if len(call.arguments) > 2 else NIL
     if not is_list(parameters):
-        hint = "; the id is the fourth argument" if parameters.__class__ is Var else ""
-        raise _wrong(call, holder, f"argument 3 wants a list of parameters{hint}", 2)
+        help = "; the id is the fourth argument" if parameters.__class__ is Var else ""
+        raise _wrong(call, holder, f"argument 3 wants a list of parameters{help}", 2)
     _give(situation, call, holder, 3, holder)
     workspace, plain_name = _place(situation, here, name)
 

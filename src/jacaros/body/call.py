@@ -91,9 +91,9 @@ def _direction(act: Act) -> Direction:
             continue
         if len(annotation) != 2 or (name not in _BY_ARTIFACT and name not in _BY_WORKSPACE):
             message = f"the annotation {text(annotation)} of {act.functor!r} says nothing to the environment"
-            hint = spelling_hint(name, _DIRECTIONS)
+            help = spelling_hint(name, _DIRECTIONS)
             raise unknown_annotation(
-                act, annotation, f"{message}{hint or f'; an action can be directed by {_DIRECTING}'}"
+                act, annotation, f"{message}{help or f'; an action can be directed by {_DIRECTING}'}"
             )
         try:
             if name in _BY_ARTIFACT:

@@ -32,8 +32,8 @@ def existing(path: Path, kinds: tuple[str, ...] = _KINDS) -> Path:
     if not is_file(path):
         beside = [each.name for each in path.parent.glob("*.*") if each.suffix in kinds]
         near = difflib.get_close_matches(path.name, beside, n=2)
-        hint = f"; did you mean {' or '.join(str(path.parent / name) for name in near)}?" if near else ""
-        raise UsageError(f"file not found: {path}{hint}")
+        help = f"; did you mean {' or '.join(str(path.parent / name) for name in near)}?" if near else ""
+        raise UsageError(f"file not found: {path}{help}")
     if path.suffix not in kinds:
         raise UsageError(f"unsupported file type: {path} (expected {', '.join(kinds)})")
     return path
@@ -52,8 +52,8 @@ def read_recording(path: Path) -> "Recording":
     if not is_file(path):
         beside = [each.name for each in path.parent.glob("*.*") if _RECORDINGS.intersection(each.suffixes)]
         near = difflib.get_close_matches(path.name, beside, n=1)
-        cure = f"did you mean `{path.parent / near[0]}`?" if near else f"jacaros run FILE --record {path}"
-        raise UsageError(f"error: recording not found: `{path}`\n  = help: {cure}")
+        help = f"did you mean `{path.parent / near[0]}`?" if near else f"jacaros run FILE --record {path}"
+        raise UsageError(f"error: recording not found: `{path}`\n  = help: {help}")
     from jacaros.inspector.recording import Recording  # here: numpy and the simulator come with it
 
     recording = Recording.read(path)

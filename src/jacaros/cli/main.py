@@ -73,8 +73,8 @@ def _unknown_command(name: str) -> UsageError:
     import difflib  # here: only for a command that does not exist
 
     near = difflib.get_close_matches(name, COMMANDS, 1)
-    cure = f"did you mean `{near[0]}`?" if near else "`jacaros --help` lists the commands"
-    return UsageError(f"error: unknown command: `{printable(name)}`\n{help_line(cure)}")
+    help = f"did you mean `{near[0]}`?" if near else "`jacaros --help` lists the commands"
+    return UsageError(f"error: unknown command: `{printable(name)}`\n{help_line(help)}")
 
 
 def _tell_version(ctx: click.Context, _: click.Parameter, wanted: bool) -> None:

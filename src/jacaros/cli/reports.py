@@ -39,7 +39,7 @@ def _plain(diagnostic: Diagnostic) -> Object:
         "level": diagnostic.severity,
         "code": diagnostic.code,
         "message": printable(diagnostic.message),
-        "hint": None if diagnostic.hint is None else printable(diagnostic.hint),
+        "help": None if diagnostic.help is None else printable(diagnostic.help),
         "opened": None if diagnostic.opened is None else [diagnostic.opened.line, diagnostic.opened.column],
     }
 
@@ -67,7 +67,7 @@ def _rule(code: str) -> Object:
 
 
 def _result(diagnostic: Diagnostic, codes: list[str]) -> Object:
-    text = diagnostic.message if diagnostic.hint is None else f"{diagnostic.message}. {diagnostic.hint}"
+    text = diagnostic.message if diagnostic.help is None else f"{diagnostic.message}. {diagnostic.help}"
     text = printable(text)
     result: Object = {
         "ruleId": diagnostic.code,

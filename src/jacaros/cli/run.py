@@ -331,5 +331,5 @@ def check_file(file: Path) -> None:
 
     near = [f"{file.name}{suffix}" for suffix in SUFFIXES if f"{file.name}{suffix}" in beside]
     near = near or difflib.get_close_matches(file.name, beside, n=2)
-    hint = f"; did you mean {' or '.join(str(file.parent / name) for name in near)}?" if near else ""
-    raise UsageError(f"file not found: {file}{hint}")
+    help = f"; did you mean {' or '.join(str(file.parent / name) for name in near)}?" if near else ""
+    raise UsageError(f"file not found: {file}{help}")

@@ -33,7 +33,7 @@ class UnknownArtifactType(WorkspaceError):
 
     Args:
         type_name: the type that was asked for.
-        candidates: names of known types, for the spelling hint.
+        candidates: names of known types, for a spelling suggestion.
         text: the message, when more can be said than that the type is unknown.
     """
 

@@ -249,8 +249,8 @@ class PropertyStore:
             )
         names = [each for each, properties in self._by_name.items() if properties]
         known = f" (it has {', '.join(names)})" if names else " (it has none)"
-        hint = spelling_hint(name, names) or f'; self.define_property("{name}", ...) makes one'
-        return UnknownProperty(f"no observable property {name}{known}{hint}")
+        help = spelling_hint(name, names) or f'; self.define_property("{name}", ...) makes one'
+        return UnknownProperty(f"no observable property {name}{known}{help}")
 
     @staticmethod
     def _unlike(name: str, template: tuple[object, ...], counts: list[int]) -> str:

@@ -39,9 +39,9 @@ class WorkspaceTree:
         """
         found = self._workspaces.get(path) or self._workspaces.get(self._without_links(path))
         if found is None:
-            hint = spelling_hint(path, (*self._workspaces, *self._links))
+            help = spelling_hint(path, (*self._workspaces, *self._links))
             reason = Structure("unknown_workspace", (str.__str__(path),))
-            raise UnknownWorkspace(f"there is no workspace {path}{hint}", reason)
+            raise UnknownWorkspace(f"there is no workspace {path}{help}", reason)
         return found
 
     def _without_links(self, path: str) -> str:

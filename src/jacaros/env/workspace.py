@@ -210,8 +210,8 @@ class Workspace(ports.Workspace):
         """
         found = self._artifacts.get(name) or self._personal.get(name)
         if found is None:
-            hint = spelling_hint(name, self._artifacts)
-            message = f"workspace {self.path} has no artifact {name}{hint}"
+            help = spelling_hint(name, self._artifacts)
+            message = f"workspace {self.path} has no artifact {name}{help}"
             raise UnknownArtifact(message, Structure("artifact_not_available", (str.__str__(name),)))
         return found
 

@@ -190,7 +190,7 @@ class Additions:
         except Undeclarable as wrong:
             raise ModuleUnreadable(f"{place}: {name}: {wrong}") from wrong
 
-    def hint(self, name: str) -> str | None:
+    def help(self, name: str) -> str | None:
         """What may help somebody who writes the name of an internal action that there is not."""
         if name in self.plain:
             return f"the function {name} exists: put @internal_action before it"

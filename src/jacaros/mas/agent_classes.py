@@ -183,8 +183,8 @@ class AgentClasses:
             module, _, last = name.rpartition(".")
             file = f"{module.replace('.', '/')}.py"
             own = bool(module) and not name.startswith("jason.")
-            hint = f"write it in Python: a class {last}(jacaros.{kind.__name__}) in {file}" if own else None
-            self._warn(Diagnostic("warning", f"the Java class {name} has no effect", spec.span, hint))
+            help = f"write it in Python: a class {last}(jacaros.{kind.__name__}) in {file}" if own else None
+            self._warn(Diagnostic("warning", f"the Java class {name} has no effect", spec.span, help))
         return made
 
     def _warn_once(self, warning: Diagnostic) -> None:

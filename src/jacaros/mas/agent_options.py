@@ -53,13 +53,13 @@ def check_option(name: str, value: str, span: Span | None) -> Diagnostic | None:
     choices = _CHOICES.get(name)
     if choices is not None and value not in choices:
         close = close_matches(value, choices)
-        hint = f"did you mean {close[0]}?" if close else None
-        return Diagnostic("error", f"{name} is one of {', '.join(choices)}, not '{value}'", span, hint)
+        help = f"did you mean {close[0]}?" if close else None
+        return Diagnostic("error", f"{name} is one of {', '.join(choices)}, not '{value}'", span, help)
     if name in _NUMBERS and not (value.isdigit() and int(value) > 0):
         return Diagnostic("error", f"{name} is a whole number from 1 on, not '{value}'", span)
     if name == "urgency" and read_urgencies(value) is None:
-        hint = 'write names of events with whole numbers from 0 on: urgency="bumped=10, battery_low=5"'
-        return Diagnostic("error", f"'{value}' does not say how urgent events are", span, hint)
+        help = 'write names of events with whole numbers from 0 on: urgency="bumped=10, battery_low=5"'
+        return Diagnostic("error", f"'{value}' does not say how urgent events are", span, help)
     if name in _WITHOUT_EFFECT:
         why = _WITHOUT_EFFECT[name]
         return Diagnostic("warning", f"the option '{name}' has no effect: {why}", span, code="no-effect")

@@ -158,11 +158,11 @@ def _wrong_source(sign: str, literal: nodes.Literal, is_percept: bool) -> Diagno
     key = f"{literal.functor}/{len(literal.arguments)}"
     if is_percept:
         why = f"no artifact has `{literal.functor}`, so its source is never `percept`"
-        cure = "the agent notes it itself: write [source(self)], or leave the source out"
+        help = "the agent notes it itself: write [source(self)], or leave the source out"
     else:
         why = f"only artifacts make `{literal.functor}`, so its source is never `self`"
-        cure = "write [source(percept)], or leave the source out"
-    return Diagnostic("warning", f"the event {sign}{key} never happens: {why}", literal.span, cure, NEVER)
+        help = "write [source(percept)], or leave the source out"
+    return Diagnostic("warning", f"the event {sign}{key} never happens: {why}", literal.span, help, NEVER)
 
 
 def _never_happening(
@@ -203,11 +203,11 @@ def _never(sign: str, literal: nodes.Literal, rule: nodes.Rule | None, other: Se
         asked = next((part for part in parts_of(rule.body) if isinstance(part, nodes.Literal)), None)
         example = "" if asked is None else f", as in +{format_term(asked)} : {format_term(rule.head)}"
         why = f"{key} is the conclusion of a rule"
-        hint = f"conclusions cause no events; react to a belief that the rule asks for{example}"
+        help = f"conclusions cause no events; react to a belief that the rule asks for{example}"
     else:
         why = f"nobody makes a belief {key}"
-        hint = f"did you mean {' or '.join(f'{literal.functor}/{size}' for size in other)}?"
-    return Diagnostic("warning", f"the event {sign}{key} never happens: {why}", literal.span, hint, NEVER)
+        help = f"did you mean {' or '.join(f'{literal.functor}/{size}' for size in other)}?"
+    return Diagnostic("warning", f"the event {sign}{key} never happens: {why}", literal.span, help, NEVER)
 
 
 def _is_own(literal: nodes.Literal) -> bool:

@@ -211,7 +211,7 @@ def _check_lone_artifacts(
     if any(map(artifact_types, (program for _, program in programs))):
         told = _of_artifacts(lone, programs, folders, findings.unseen)
         # A run may add artifacts by --mapping: an operation that is like none of the known ones may be theirs.
-        findings.diagnostics += [each for each in told if each.code != "unknown-operation" or each.hint]
+        findings.diagnostics += [each for each in told if each.code != "unknown-operation" or each.help]
 
 
 def _of_artifacts(
@@ -280,7 +280,7 @@ def _check_world(deployment: Deployment, findings: Findings) -> None:
         _check_world_file(find_world(deployment.world), findings, world_problems)
     except UnknownWorld as unknown:
         findings.diagnostics.append(
-            Diagnostic("error", unknown.message, deployment.world_span, unknown.cure, "wrong-project")
+            Diagnostic("error", unknown.message, deployment.world_span, unknown.help, "wrong-project")
         )
 
 
@@ -413,7 +413,7 @@ def _check_program(
     program, diagnostics = read_program(sources[0], include, code.functions, code.actions)
     diagnostics += [replace(error, code="unreadable-file") for error in code.take_errors()]
     errors = [diagnostic for diagnostic in diagnostics if diagnostic.severity == "error"]
-    known = KnownActions(code.actions, code.hint, code.is_unseen)
+    known = KnownActions(code.actions, code.help, code.is_unseen)
     whole = _with_additions(program, agent)
     own = [*diagnostics, *check(whole, known, errors)]
     if not errors:

@@ -242,8 +242,8 @@ def types_of(
             continue
         except Exception as error:
             told = str(error) or type(error).__name__
-            hint = None if "did you mean" in told else _where(artifact.type_name)
-            wrong.append(Diagnostic("error", told, artifact.type_span or artifact.span, hint))
+            help = None if "did you mean" in told else _where(artifact.type_name)
+            wrong.append(Diagnostic("error", told, artifact.type_span or artifact.span, help))
     if wrong:
         raise ProjectError(wrong)
     return found

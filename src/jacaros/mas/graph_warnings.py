@@ -203,12 +203,12 @@ def _text(unknown: Sequence[str], known: Sequence[str]) -> str:
     several = len(unknown) > 1
     listed = ", ".join(unknown[:_FEW]) + (f" and {len(unknown) - _FEW} more" if len(unknown) > _FEW else "")
     near = [found[0] for name in unknown if (found := close_matches(name, known))]
-    cure = (
+    help = (
         f"did you mean {', '.join(dict.fromkeys(near))}?"
         if near
         else f"a mapping file does that, parameters: {{{unknown[0].rpartition('.')[2]}: {{default: ...}}}}"
     )
     return (
         f"the parameter{'s' if several else ''} {listed} {'have' if several else 'has'} no effect: nothing here declares "
-        f"{'them' if several else 'it'}; {cure}"
+        f"{'them' if several else 'it'}; {help}"
     )

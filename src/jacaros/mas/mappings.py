@@ -35,8 +35,8 @@ def read_mapping_file(
     if path is None:
         known = [each.name for folder in folders for each in folder.glob("*.y*ml")] + shipped_mappings()
         near = close_matches(name, known)
-        hint = f"did you mean {near[0]}?" if near else f"expected in {folders[0]}"
-        return [], [Diagnostic("error", f"mapping file not found: {name}", span, hint)]
+        help = f"did you mean {near[0]}?" if near else f"expected in {folders[0]}"
+        return [], [Diagnostic("error", f"mapping file not found: {name}", span, help)]
     mapping, problems = read_with_problems(path)
     specs = [
         ArtifactSpec(each, f"{path.resolve()}#{each}", span=span, type_span=span)
@@ -59,10 +59,10 @@ def _diagnostic(source: SourceFile, problem: Problem, wrong: str) -> Diagnostic:
         end = problem.column + max(1, len(word))
     span = Span(source, problem.line, problem.column, problem.line, end)
     # The robot's own middleware may know more types than the package.
-    uncertain = UNCERTAIN in problem.message and "did you mean" not in problem.cure
+    uncertain = UNCERTAIN in problem.message and "did you mean" not in problem.help
     level, code = ("warning", UNKNOWN_TYPE) if uncertain else ("error", wrong)
     return Diagnostic(
-        "warning" if level == "warning" else "error", problem.message, span, problem.cure or None, code
+        "warning" if level == "warning" else "error", problem.message, span, problem.help or None, code
     )
 
 
@@ -118,8 +118,8 @@ def _repeated(deployment: Deployment, artifacts: Sequence[ArtifactSpec]) -> list
     found = []
     for artifact in artifacts:
         if artifact.name in seen:
-            hint = "name the artifacts of a file below 'artifacts:'"
-            found.append(Diagnostic("error", f"two artifacts have the name '{artifact.name}'", None, hint))
+            help = "name the artifacts of a file below 'artifacts:'"
+            found.append(Diagnostic("error", f"two artifacts have the name '{artifact.name}'", None, help))
         seen.add(artifact.name)
     return found
 

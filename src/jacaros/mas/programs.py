@@ -140,7 +140,7 @@ class Programs:
         program, warnings = self._parse(path, written)
         if self._prepare is not None:
             program = self._prepare(program, self._code)
-        found = check_for_run(program, KnownActions(self._code.actions, self._code.hint))
+        found = check_for_run(program, KnownActions(self._code.actions, self._code.help))
         for warning in wanted([*warnings, *found]):
             if _concerns_author(warning, path) and not (chooses and warning.code == NEVER_SELECTED):
                 self._warn(warning.render())

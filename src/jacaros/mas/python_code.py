@@ -109,9 +109,9 @@ class PythonCode:
         self._met.clear()
         return [Diagnostic("error", str(error), None, "no program that uses it can run") for error in wrong]
 
-    def hint(self, name: str) -> str | None:
+    def help(self, name: str) -> str | None:
         """What to do about an internal action that is not there."""
-        known = self._additions.hint(name) if self._additions is not None else None
+        known = self._additions.help(name) if self._additions is not None else None
         if known is not None or name.startswith("."):
             return known
         module, _, function = name.rpartition(".")

@@ -98,8 +98,8 @@ class _Classes:
         except InternalError:
             raise
         except FAULTS as error:
-            hint = "; only Python classes are supported" if name.startswith(("java.", "javax.")) else ""
-            raise ActionError(f"unknown class {name}: {_said(error)}{hint}") from error
+            help = "; only Python classes are supported" if name.startswith(("java.", "javax.")) else ""
+            raise ActionError(f"unknown class {name}: {_said(error)}{help}") from error
 
 
 def _installed(name: str) -> Any:

@@ -89,7 +89,7 @@ class RosGraph:
         On a real graph the world of the project is left out, and only one given for this run is made.
 
         Raises:
-            BackendUnavailable: the library for the graph is missing; the text tells the cure.
+            BackendUnavailable: the library for the graph is missing; the text tells the help.
             WorldError: the world file is wrong.
             ProjectError: the project names a world that does not exist.
             UsageError: there are faults, and no world.
@@ -251,7 +251,7 @@ class RosGraph:
             if self._source_span is None:
                 raise
             raise ProjectError(
-                [Diagnostic("error", unknown.message, self._source_span, unknown.cure)]
+                [Diagnostic("error", unknown.message, self._source_span, unknown.help)]
             ) from unknown
         self.world.ground_truth.keep = None if self._options.keep_ground_truth else _GROUND_TRUTH
         self._node = SimNode(self.world, backend, self._clock)

@@ -72,11 +72,11 @@ def _program(folder: Path, sources: Sources, library: Library) -> dict[Group, tu
 
 def _no_folder(path: Path) -> Diagnostic:
     if path.exists():
-        return Diagnostic("error", f"not a folder: `{path}`", hint=f"name its folder: `{path.parent}`")
+        return Diagnostic("error", f"not a folder: `{path}`", help=f"name its folder: `{path.parent}`")
     beside = [each.name for each in path.parent.glob("*/")]
     near = close_matches(path.name, beside)
-    hint = f"did you mean `{path.with_name(near[0])}`?" if near else None
-    return Diagnostic("error", f"folder does not exist: `{path}`", hint=hint)
+    help = f"did you mean `{path.with_name(near[0])}`?" if near else None
+    return Diagnostic("error", f"folder does not exist: `{path}`", help=help)
 
 
 def _name(folder: Path, folders: Sequence[Path]) -> str:

@@ -266,5 +266,5 @@ def no_programs(folder: Path) -> Diagnostic:
     return Diagnostic(
         "error",
         f"no agent programs in `{folder}`",
-        hint="name the folder of a program; Python programs without agents are given by --baseline",
+        help="name the folder of a program; Python programs without agents are given by --baseline",
     )

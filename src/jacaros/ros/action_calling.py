@@ -334,8 +334,8 @@ class GoalSender:
         if self.wire.offered:
             self._absence.end(self._log, self._described)
             return
-        cure = "Is the node that offers it running?"
-        with Waiting(self.clock, self._log, self._described, cure, absence=self._absence):
+        help = "Is the node that offers it running?"
+        with Waiting(self.clock, self._log, self._described, help, absence=self._absence):
             while not self.wire.offered:
                 arrival: asyncio.Future[None] = asyncio.get_running_loop().create_future()
                 self._arrivals.append(arrival)

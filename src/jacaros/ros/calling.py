@@ -128,8 +128,8 @@ async def call_when_offered(
                     absence.end(log, what)
                 return response
             if waiting is None:
-                cure = "Is the node that offers it running?"
-                waiting = Waiting(clock, log, what, cure, absence=absence).__enter__()
+                help = "Is the node that offers it running?"
+                waiting = Waiting(clock, log, what, help, absence=absence).__enter__()
             await clock.sleep(RETRY)
     finally:
         if waiting is not None:

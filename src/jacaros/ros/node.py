@@ -206,15 +206,15 @@ class Node:
         self.set_connected(True)
         self.looked()
 
-    def missing(self, what: str, cure: str) -> None:
+    def missing(self, what: str, help: str) -> None:
         """Note, on the loop, that the graph is not there, or there no more, and is awaited.
 
         Args:
             what: what people call it.
-            cure: what a person can do about it.
+            help: what a person can do about it.
         """
         if self._waiting is None and not self.lifetime.leaving:
-            self._waiting = Waiting(self.clock, self.log, what, cure).__enter__()
+            self._waiting = Waiting(self.clock, self.log, what, help).__enter__()
         self.set_connected(False)
         self.looked()
 

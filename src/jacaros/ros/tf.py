@@ -103,8 +103,8 @@ class TransformListener:
             if problem.reason == "too_old":  # the past does not come back
                 raise
         what = f"transform from {source} to {target}"
-        cure = "Is the node that sends it running?"
-        with Waiting(self._node.clock, self._node.log, what, cure, quiet=QUIET):
+        help = "Is the node that sends it running?"
+        with Waiting(self._node.clock, self._node.log, what, help, quiet=QUIET):
             return await self._arrival(target, source, stamp, timeout)
 
     async def _arrival(

@@ -1,4 +1,4 @@
-"""Visible waiting: told at once, called missing after a few seconds with the cure, told when over."""
+"""Visible waiting: told at once, called missing after a few seconds with the help, told when over."""
 
 import asyncio
 from collections.abc import Callable
@@ -44,7 +44,7 @@ class Waiting:
         clock: measures the wait.
         log: takes one line.
         what: the thing, as in ``service /add (example_interfaces/srv/AddTwoInts)``.
-        cure: what a person can do about it.
+        help: what a person can do about it.
         quiet: seconds in which nothing is said: for what is awaited again and again, and comes soon as a rule.
         absence: what was waited in vain before.
     """
@@ -54,14 +54,14 @@ class Waiting:
         clock: Clock,
         log: Callable[[str], None],
         what: str,
-        cure: str,
+        help: str,
         quiet: float = 0.0,
         absence: Absence | None = None,
     ) -> None:
         self._clock = clock
         self._log = log
         self._what = what
-        self._cure = cure
+        self._cure = help
         self._quiet = quiet
         self._absence = absence if absence is not None else Absence()
         self._timer: Timer | None = None

@@ -367,13 +367,13 @@ class UnknownWorld(WorldError):
 
     Attributes:
         message: what is wrong, without the help.
-        cure: the world that was probably meant, or the known ones.
+        help: the world that was probably meant, or the known ones.
     """
 
-    def __init__(self, name: str, cure: str) -> None:
+    def __init__(self, name: str, help: str) -> None:
         super().__init__(name, "", [])
         self.message = f"world not found: `{printable(name)}`"
-        self.cure = cure
+        self.help = help
 
     def __str__(self) -> str:
-        return f"error: {self.message}\n{help_line(self.cure)}"
+        return f"error: {self.message}\n{help_line(self.help)}"

@@ -140,8 +140,8 @@ class FakeGraph:
         if found := topics.get(name):
             return found
         near = difflib.get_close_matches(name, topics, 2)
-        cure = f"did you mean {' or '.join(near)}?" if near else "write its type as the second argument"
-        raise ValueError(f"nobody listens to {name}, so that its type is not known; {cure}")
+        help = f"did you mean {' or '.join(near)}?" if near else "write its type as the second argument"
+        raise ValueError(f"nobody listens to {name}, so that its type is not known; {help}")
 
     def _fields(self, fields: str | Mapping[str, Any], type_name: str) -> dict[str, Any]:
         if not isinstance(fields, str):
@@ -151,7 +151,7 @@ class FakeGraph:
         fill = filler(values, type_name, self.node, problems) if not problems else None
         if fill is None:
             told = "; ".join(
-                f"{each.message}: {each.cure}" if each.cure else each.message for each in problems
+                f"{each.message}: {each.help}" if each.help else each.message for each in problems
             )
             raise ValueError(f"{fields}: {told}")
         return fill((), self.node.clock.now())

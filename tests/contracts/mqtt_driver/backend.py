@@ -126,8 +126,8 @@ class MqttBackend(Node):
                     await self._serve(client)
             except aiomqtt.MqttError:
                 self.others.clear()
-                cure = "Start it with `mosquitto -p 1883`, or set MQTT_BROKER to where it runs."
-                self.missing(f"MQTT broker at {self.broker}", cure)
+                help = "Start it with `mosquitto -p 1883`, or set MQTT_BROKER to where it runs."
+                self.missing(f"MQTT broker at {self.broker}", help)
             finally:
                 self._client = None
             await asyncio.sleep(RETRY)

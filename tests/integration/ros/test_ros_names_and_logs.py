@@ -96,10 +96,10 @@ def test_who_does_not_follow_a_simulator_is_told_once(
     simulator = peer("simulator")
     simulator.advertise("/clock", "rosgraph_msgs/msg/Clock")
 
-    def hint() -> bool:
+    def help() -> bool:
         simulator.publish("/clock", {"clock": 5.0})
         return any("to follow the simulator run with --clock ros" in line for line in agents.errors)
 
-    wait_until(hint, "the hint at the simulator's clock")
+    wait_until(help, "the help at the simulator's clock")
     wait_until(lambda: simulator.subscription_count("/clock") == 0, "nobody listens any more")
     assert sum("--clock ros" in line for line in agents.errors) == 1

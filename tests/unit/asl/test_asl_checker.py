@@ -45,7 +45,7 @@ def test_a_good_program_has_no_warning():
 def test_an_unknown_internal_action_is_named_with_what_may_be_meant():
     (warning,) = warnings("+!g <- .prnt(a).")
     assert warning.message == "there is no internal action .prnt"
-    assert warning.hint == "did you mean .print?"
+    assert warning.help == "did you mean .print?"
 
 
 def test_internal_actions_are_checked_in_rules_terms_and_conditions():
@@ -66,7 +66,7 @@ def test_an_atom_with_a_dot_is_no_internal_action():
 
 def test_a_goal_without_a_plan_is_named_once_with_what_may_be_meant():
     found = warnings("!paterol. +!patrol <- !paterol; !go(1,2). +!go(X) <- .print(X).")
-    assert [(warning.message, warning.hint) for warning in found] == [
+    assert [(warning.message, warning.help) for warning in found] == [
         ("no plan for !paterol/0", "did you mean !patrol?"),
         ("no plan for !go/2", "did you mean !go/1?"),
     ]
@@ -81,14 +81,14 @@ def test_tests_need_no_plans_for_the_goals_that_all_tests_have():
 
 def test_goals_in_another_namespace_are_other_goals():
     (warning,) = warnings("!m::g. +!g.")
-    assert (warning.message, warning.hint) == ("no plan for !m::g/0", "did you mean !g?")
+    assert (warning.message, warning.help) == ("no plan for !m::g/0", "did you mean !g?")
 
 
 def test_a_goal_of_a_local_namespace_is_shown_as_written_and_not_proposed_elsewhere():
     local = "{ begin namespace(own, local) } +!show. !own::shw. { end }"
     inside, outside = warnings(f"{local} !m::show.")
-    assert (inside.message, inside.hint) == ("no plan for !own::shw/0", "did you mean !own::show?")
-    assert (outside.message, outside.hint) == ("no plan for !m::show/0", "write a plan for it: +!m::show")
+    assert (inside.message, inside.help) == ("no plan for !own::shw/0", "did you mean !own::show?")
+    assert (outside.message, outside.help) == ("no plan for !m::show/0", "write a plan for it: +!m::show")
 
 
 def test_a_handler_or_a_plan_inside_a_plan_counts_as_a_plan():
@@ -106,7 +106,7 @@ def test_plans_for_all_goals_and_added_plans_silence_the_check_of_goals():
 def test_a_variable_that_occurs_once_may_be_a_slip():
     (warning,) = warnings("+!go(Room) <- move(Rom).")
     assert warning.message == "the variable Rom occurs only once in this plan"
-    assert warning.hint == "did you mean Room? Otherwise write _Rom"
+    assert warning.help == "did you mean Room? Otherwise write _Rom"
     assert messages("r(X) :- q(Y).") == ["the variable Y occurs only once in this rule"]
 
 
@@ -128,11 +128,11 @@ def test_warnings_come_in_the_order_of_the_text():
 
 def test_who_knows_more_of_an_action_gives_the_hint():
     (warning,) = warnings("+!g <- my.act(1).")
-    assert warning.hint == "write my.act"
+    assert warning.help == "write my.act"
 
 
 @pytest.mark.parametrize(
-    ("text", "message", "hint"),
+    ("text", "message", "help"),
     [
         (
             "+!g <- .findall(a, b).",
@@ -156,9 +156,9 @@ def test_who_knows_more_of_an_action_gives_the_hint():
         ),
     ],
 )
-def test_wrong_numbers_of_arguments(text: str, message: str, hint: str):
+def test_wrong_numbers_of_arguments(text: str, message: str, help: str):
     (found,) = [each for each in warnings(text) if each.code == "wrong-arguments"]
-    assert (found.message, found.hint) == (message, hint)
+    assert (found.message, found.help) == (message, help)
 
 
 @pytest.mark.parametrize(
@@ -179,7 +179,7 @@ def test_performatives_that_are_nearly_known():
     assert codes("+!g <- .send(bob, tel, p); .send(bob, tell, p); .send(bob, propose, p).") == [
         "unknown-performative"
     ]
-    assert warnings("+!g <- .send(bob, askone, p).")[0].hint == "did you mean askOne?"
+    assert warnings("+!g <- .send(bob, askone, p).")[0].help == "did you mean askOne?"
 
 
 @pytest.mark.parametrize(
@@ -281,12 +281,12 @@ def test_names_with_a_capital_letter_in_beliefs_and_goals_of_the_beginning():
         (7, "singleton-variable"),
         (text.index("Hall") + 1, "singleton-variable"),
     ]
-    assert "kitchen; if any value is meant write _Kitchen" in warnings(text)[0].hint
+    assert "kitchen; if any value is meant write _Kitchen" in warnings(text)[0].help
 
 
 def test_true_and_none_of_python_are_variables():
     (found,) = warnings("+!g <- a(True).")
-    assert (found.code, found.hint) == ("capital-constant", "true is written in lower case")
+    assert (found.code, found.help) == ("capital-constant", "true is written in lower case")
 
 
 def test_annotations_of_labels_that_are_nearly_known():
@@ -381,7 +381,7 @@ RETRY = "write how often, and milliseconds before the second attempt, such as re
 )
 def test_annotations_that_act_are_valid_and_at_their_places(text, help_):
     (found,) = warnings(text)
-    assert (found.code, found.hint) == ("wrong-supervision", help_)
+    assert (found.code, found.help) == ("wrong-supervision", help_)
 
 
 def test_valid_annotations_that_act_are_not_reported():

@@ -1,4 +1,4 @@
-"""What people see when a program is wrong: place, excerpt, hint, and all errors at once."""
+"""What people see when a program is wrong: place, excerpt, help, and all errors at once."""
 
 from textwrap import dedent
 
@@ -88,7 +88,7 @@ def test_carets_stand_under_the_mistake_also_behind_tabs():
 
 
 @pytest.mark.parametrize(
-    ("text", "line", "message", "hint"),
+    ("text", "line", "message", "help"),
     [
         (
             "+!g\n<- X = else.",
@@ -181,14 +181,14 @@ def test_carets_stand_under_the_mistake_also_behind_tabs():
         ("p[a|b].", 1, "the tail of annotations is a variable", "as in"),
     ],
 )
-def test_common_mistakes(text: str, line: int, message: str, hint: str | None):
+def test_common_mistakes(text: str, line: int, message: str, help: str | None):
     first = errors(text)[0]
     assert first.span is not None
     assert first.span.line == line
     assert first.message.startswith(message)
-    if hint is not None:
-        assert first.hint is not None
-        assert first.hint.startswith(hint)
+    if help is not None:
+        assert first.help is not None
+        assert first.help.startswith(help)
 
 
 def test_a_context_refuses_an_internal_action_that_is_declared_to_act():

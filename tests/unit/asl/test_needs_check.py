@@ -9,11 +9,11 @@ from jacaros.asl.walk import walk
 
 def told(program: str) -> list[tuple[str, str | None]]:
     read, _ = load_program("test.asl", program)
-    return [(each.message, each.hint) for each in wrong_needs(list(walk(*read.plans)))]
+    return [(each.message, each.help) for each in wrong_needs(list(walk(*read.plans)))]
 
 
 @pytest.mark.parametrize(
-    ("needs", "message", "hint"),
+    ("needs", "message", "help"),
     [
         ("needs(arm,arm)", "2 units of `arm` are needed, and there is 1", "name `arm` once"),
         ("needs(lift(2),lift,lift)", "3 units of `lift` are needed, and there are 2", "lift(3)"),
@@ -21,12 +21,12 @@ def told(program: str) -> list[tuple[str, str | None]]:
         ("needs(arm), policy(refusse)", "unknown policy `refusse`", "did you mean refuse?"),
     ],
 )
-def test_what_can_never_be_met_is_told_of_plans_and_goals(needs: str, message: str, hint: str) -> None:
+def test_what_can_never_be_met_is_told_of_plans_and_goals(needs: str, message: str, help: str) -> None:
     for program in (f"@a[{needs}] +!g <- b.", f"+!f <- !g[{needs}]."):
-        ((found, cure),) = told(program)
+        ((found, help),) = told(program)
         assert message in found
-        assert cure is not None
-        assert hint in cure
+        assert help is not None
+        assert help in help
 
 
 def test_what_can_be_met_is_not_told() -> None:

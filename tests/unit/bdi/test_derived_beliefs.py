@@ -348,7 +348,7 @@ def test_an_agent_without_declarations_listens_to_nothing(tmp_path: Path) -> Non
 def test_wrong_patterns_are_told_with_help(derived: str, message: str, help_: str | None) -> None:
     with pytest.raises(AslError) as caught:
         load_program("a.asl", f"{{ derive(d, {derived}) }}\n!s. +!s.")
-    told = {each.message: each.hint for each in caught.value.diagnostics}
+    told = {each.message: each.help for each in caught.value.diagnostics}
     assert message in told, told
     assert help_ is None or told[message] == help_
 

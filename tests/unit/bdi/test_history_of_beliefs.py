@@ -212,14 +212,14 @@ def test_wrong_declarations_are_reported(declared: str, message: str) -> None:
     with pytest.raises(AslError) as caught:
         load_program("a.asl", f"{{ history({declared}) }}\n!s. +!s.")
     assert [each.message for each in caught.value.diagnostics] == [message]
-    assert caught.value.diagnostics[0].hint
+    assert caught.value.diagnostics[0].help
 
 
 def test_check_reports_a_history_that_is_not_kept(tmp_path: Path) -> None:
     file = tmp_path / "a.asl"
     file.write_text("{ history(a(_), within(5)) } !s. +!s : a(_)[ago(1)] & not b(_,_)[ago(1)] <- ?c[ago(2)].")
     told = [
-        (each.message, each.hint) for each in check_files([file]).diagnostics if each.code == "no-history"
+        (each.message, each.help) for each in check_files([file]).diagnostics if each.code == "no-history"
     ]
     assert told == [
         (

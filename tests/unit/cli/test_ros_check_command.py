@@ -33,7 +33,7 @@ def test_a_type_that_is_not_known_and_not_that_of_the_topic_is_told_once(
 
 
 @pytest.mark.parametrize(
-    ("text", "problem", "cure"),
+    ("text", "problem", "help"),
     [
         (
             "properties:\n  pose: {topic: odm}\n",
@@ -103,11 +103,11 @@ def test_a_type_that_is_not_known_and_not_that_of_the_topic_is_told_once(
     ],
 )
 def test_what_would_not_work_is_told_with_its_place_and_what_to_write(
-    capsys: pytest.CaptureFixture[str], tmp_path: Path, text: str, problem: str, cure: str
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, text: str, problem: str, help: str
 ) -> None:
     told = checked(capsys, tmp_path, text)
     assert problem in told
-    assert cure in told
+    assert help in told
 
 
 def test_a_robot_without_namespace_is_found_by_the_last_part_of_names(

@@ -1,4 +1,4 @@
-"""Mistakes of an artifact's author that once were silent, or told without their cure."""
+"""Mistakes of an artifact's author that once were silent, or told without their help."""
 
 import asyncio
 

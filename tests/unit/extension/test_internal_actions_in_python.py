@@ -417,7 +417,7 @@ def test_a_declaration_that_cannot_be_is_told_with_its_line(
 
 
 @pytest.mark.parametrize(
-    ("call", "hint"),
+    ("call", "help"),
     [
         ("my.nrom(1, X)", "did you mean my.norm?"),
         ("my.plain(1, X)", "the function my.plain exists: put @internal_action before it"),
@@ -425,13 +425,13 @@ def test_a_declaration_that_cannot_be_is_told_with_its_line(
         ("your.norm(1, X)", "a function norm with @internal_action in your.py beside the project"),
     ],
 )
-def test_a_name_that_leads_nowhere_gets_a_hint_and_is_an_action(tmp_path: Path, call: str, hint: str) -> None:
+def test_a_name_that_leads_nowhere_gets_a_hint_and_is_an_action(tmp_path: Path, call: str, help: str) -> None:
     python = HEAD + "@internal_action\ndef norm(x) -> int:\n    return x\n\ndef plain(x):\n    return x\n"
     result = run(tmp_path, f"!go. +!go <- {call}. -!go[error(E)] <- .print(E).", python)
     assert result.of("t") == ["action_failed"]
     assert len(result.errors) == 1
     assert f"there is no internal action {call.partition('(')[0]}" in result.errors[0]
-    assert f"  = help: {hint}" in result.errors[0] or hint in result.errors[0]
+    assert f"  = help: {help}" in result.errors[0] or help in result.errors[0]
 
 
 def test_an_agent_made_later_brings_its_modules(tmp_path: Path) -> None:

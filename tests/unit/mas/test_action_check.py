@@ -44,7 +44,7 @@ def check(folder: Path, program: str, project: str = PROJECT) -> list[Diagnostic
 
 
 def told(diagnostics: list[Diagnostic]) -> list[tuple[str, str, str | None]]:
-    return [(each.code, each.message, each.hint) for each in diagnostics]
+    return [(each.code, each.message, each.help) for each in diagnostics]
 
 
 def test_actions_that_nobody_offers_are_told(folder: Path) -> None:
@@ -190,7 +190,7 @@ def test_operations_are_checked_in_a_lone_program(folder: Path, make: str) -> No
         f'{{ include("$jacaros/artifacts.asl") }}\n!go.\n+!go <- {make}; inc; inc(1, 2); incc; offered_by_a_mapping.',
         encoding="utf-8",
     )
-    assert [(each.message, each.hint) for each in check_files([lone]).diagnostics] == [
+    assert [(each.message, each.help) for each in check_files([lone]).diagnostics] == [
         ("no artifact of the project offers inc/2", "there is inc/0, inc/1"),
         ("no artifact of the project offers incc/0", "did you mean inc?"),
     ]

@@ -43,7 +43,7 @@ def folder(tmp_path: Path) -> Path:
 def told(folder: Path, program: str, project: str = "", mappings: tuple[str, ...] = ()) -> list[str]:
     """The misspelt names of a program, or of a project that it belongs to, with what is meant."""
     return [
-        f"{each.message.split()[-1]} {(each.hint or '').split()[-1]}"
+        f"{each.message.split()[-1]} {(each.help or '').split()[-1]}"
         for each in warnings(folder, program, project, mappings)
         if each.code == "misspelt-belief"
     ]
@@ -52,7 +52,7 @@ def told(folder: Path, program: str, project: str = "", mappings: tuple[str, ...
 def never(folder: Path, program: str, project: str = "", mappings: tuple[str, ...] = ()) -> list[str]:
     """What is said of events that never happen, the help behind a semicolon."""
     return [
-        f"{each.message.removeprefix('the event ')}; {each.hint}"
+        f"{each.message.removeprefix('the event ')}; {each.help}"
         for each in warnings(folder, program, project, mappings)
         if each.code == "event-never-happens"
     ]
@@ -106,7 +106,7 @@ def test_the_warning_names_place_and_cure(folder: Path) -> None:
     (found,) = check_files([folder / "a.asl"]).diagnostics
     assert found.span is not None
     assert (found.severity, found.span.line, found.span.column) == ("warning", 2, 2)
-    assert (found.message, found.hint) == ("nobody makes a belief obstacel/1", "did you mean obstacle?")
+    assert (found.message, found.help) == ("nobody makes a belief obstacel/1", "did you mean obstacle?")
 
 
 def test_a_mapping_file_makes_properties_and_signals(folder: Path) -> None:

@@ -157,7 +157,7 @@ def test_a_png_image_needs_pillow(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     monkeypatch.setitem(sys.modules, "PIL.Image", None)
     (problem,) = world_problems(write_map(tmp_path, b"\x89PNG\r\n"))[1]
     assert "Pillow, which reads PNG images, is not installed" in problem.message
-    assert problem.cure.startswith("pip install 'jacaros[maps]', or magick ")
+    assert problem.help.startswith("pip install 'jacaros[maps]', or magick ")
 
 
 def test_a_png_image_is_read_with_pillow(tmp_path: Path) -> None:
@@ -211,7 +211,7 @@ def test_mistakes_of_a_map_are_reported_in_the_world_file_too(tmp_path: Path) ->
     ]
     path.write_text("name: x\nmap: n.yaml\nrobots:\n  - {}\n")
     (problem,) = world_problems(path)[1]
-    assert (problem.message, problem.cure) == (
+    assert (problem.message, problem.help) == (
         f"map not found: `{tmp_path / 'n.yaml'}`",
         "did you mean `m.yaml`?",
     )

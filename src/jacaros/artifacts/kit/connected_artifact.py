@@ -154,11 +154,11 @@ class ConnectedArtifact(Artifact):
             if again or not self.ros.connected:
                 return  # a graph that cannot be reached is reported by its backend
             message = f"no subscriber on {topic}{waited}; publishing anyway"
-            cure = "start the node that subscribes to it; `jacaros ros list` shows the topics of the graph"
+            help = "start the node that subscribes to it; `jacaros ros list` shows the topics of the graph"
             if warn is not None:
-                warn(message, cure)
+                warn(message, help)
             else:
-                self.log(f"warning: {message}\n  help: {cure}")
+                self.log(f"warning: {message}\n  help: {help}")
 
         return Matching(publisher, found if DISCOVERY in self.ros.capabilities else 0.0, missed)
 

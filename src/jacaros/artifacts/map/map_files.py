@@ -100,7 +100,7 @@ def load(file: Path) -> Saved:
             raise YamlFileError(file.name, text, problems)
         image = read_image(file.parent / header.image)
     except ImageError as error:
-        raise MapFileError(f"cannot read the map {file}: {error}; {error.cure}") from None
+        raise MapFileError(f"cannot read the map {file}: {error}; {error.help}") from None
     except (OSError, ValueError, JacarosError) as error:
         raise MapFileError(f"cannot read the map {file}: {error}") from None
     width, rows = image.width, range(image.height - 1, -1, -1)

@@ -181,12 +181,12 @@ class MappedArtifact(RosArtifact):
 
     # ---- reports
 
-    def tell_once(self, key: object, place: Place, message: str, cure: str = "") -> None:
+    def tell_once(self, key: object, place: Place, message: str, help: str = "") -> None:
         """Tell people what is wrong, with the line of the mapping, the first time only."""
         if key in self._told:
             return
         self._told.add(key)
-        self.tell([place.problem(message, cure)])
+        self.tell([place.problem(message, help)])
 
     def tell(self, problems: list[Problem]) -> None:
         """Tell people what is wrong."""
@@ -199,8 +199,8 @@ class MappedArtifact(RosArtifact):
 
         def tell(event: TopicEvent) -> None:
             weak = event.trouble is TopicTrouble.INCOMPATIBLE_QOS
-            cure = "write qos: sensor_data, which hears any publisher" if weak else ""
-            self.tell_once((topic, event.trouble), place, event.text, cure)
+            help = "write qos: sensor_data, which hears any publisher" if weak else ""
+            self.tell_once((topic, event.trouble), place, event.text, help)
 
         return tell
 

@@ -132,4 +132,4 @@ def _tried(place: Place, make: Callable[..., Any], problems: list[Problem]) -> N
     try:
         make()
     except (WrongPath, UnknownInterface) as error:
-        problems.append(place.problem(str(error), getattr(error, "cure", "")))
+        problems.append(place.problem(str(error), getattr(error, "help", "")))

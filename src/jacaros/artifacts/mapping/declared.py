@@ -24,9 +24,9 @@ class Place(NamedTuple):
     line: int
     column: int
 
-    def problem(self, message: str, cure: str = "") -> Problem:
+    def problem(self, message: str, help: str = "") -> Problem:
         """A mistake here."""
-        return Problem(self.line, self.column, message, cure)
+        return Problem(self.line, self.column, message, help)
 
 
 START = Place(1, 1)

@@ -30,13 +30,13 @@ class Unshowable(Exception):
 
     Attributes:
         path: of the field.
-        cure: what to write into the mapping.
+        help: what to write into the mapping.
         functor: of the reason for programs.
     """
 
-    def __init__(self, path: str, message: str, cure: str, functor: str = "not_finite") -> None:
+    def __init__(self, path: str, message: str, help: str, functor: str = "not_finite") -> None:
         super().__init__(message)
-        self.path, self.cure, self.functor = path, cure, functor
+        self.path, self.help, self.functor = path, help, functor
 
 
 def taker(field: FieldPart, message: FieldType, element: FieldType | None, interfaces: Interfaces) -> Take:
@@ -68,10 +68,10 @@ def taker(field: FieldPart, message: FieldType, element: FieldType | None, inter
         except IndexError:
             if has_spare:
                 return values(math.nan, whole)
-            cure = "ask for the list, or for an element that is always there"
+            help = "ask for the list, or for an element that is always there"
             if is_number:
-                cure = f'say what to show instead: {{path: "{path}", otherwise: 0}}'
-            raise Unshowable(path, f"{path} is not there: the list is shorter", cure, "no_element") from None
+                help = f'say what to show instead: {{path: "{path}", otherwise: 0}}'
+            raise Unshowable(path, f"{path} is not there: the list is shorter", help, "no_element") from None
         return values(raw, whole)
 
     return take
@@ -201,8 +201,8 @@ def _check_conversion(field: FieldPart, single: FieldType) -> None:
     kind = conversion.kind
     number = single.base in FLOATS or single.base in INTEGER_RANGES or single.base in TIMES
     if kind in ANGLES and single.base != QUATERNION:
-        cure = "name the field that is a geometry_msgs/msg/Quaternion, such as pose.pose.orientation"
-        raise WrongPath(f"'as: {kind}' is for quaternions, and {path} is {single}", cure)
+        help = "name the field that is a geometry_msgs/msg/Quaternion, such as pose.pose.orientation"
+        raise WrongPath(f"'as: {kind}' is for quaternions, and {path} is {single}", help)
     if kind == "atom" and single.base != "string":
         raise WrongPath(f"'as: atom' is for strings, and {path} is {single}", "leave 'as' out")
     if kind not in (*ANGLES, "count") and not number:
@@ -226,8 +226,8 @@ def check_names(conversion: Conversion, path: str, base: str) -> None:
         if wanted is not None and (
             not isinstance(value, wanted) or isinstance(value, bool) != (base == "bool")
         ):
-            cure = f"write names: {{true: {name}}}" if base == "bool" else f"write values of {base}"
-            raise WrongPath(f"'names' has {value!r}, and {path} is {base}", cure)
+            help = f"write names: {{true: {name}}}" if base == "bool" else f"write values of {base}"
+            raise WrongPath(f"'names' has {value!r}, and {path} is {base}", help)
         low, high = INTEGER_RANGES.get(base, (-math.inf, math.inf))
         if isinstance(value, int) and not low <= value <= high:
             raise WrongPath(
@@ -286,8 +286,8 @@ def _otherwise(
     if otherwise is None:
 
         def refuse(value: float, _: Any) -> object:
-            cure = f"say what to show instead: {{path: {path}, otherwise: 0}}"
-            raise Unshowable(path, f"{path} is {value:g}", cure)
+            help = f"say what to show instead: {{path: {path}, otherwise: 0}}"
+            raise Unshowable(path, f"{path} is {value:g}", help)
 
         return refuse
     if isinstance(otherwise, Path):

@@ -63,7 +63,7 @@ def filler(
         try:
             made.append((part, _give(part, type_name, interfaces, problems, adapt)))
         except (WrongPath, UnknownInterface, MessageMismatch) as error:
-            problems.append(part.place.problem(str(error), getattr(error, "cure", "")))
+            problems.append(part.place.problem(str(error), getattr(error, "help", "")))
     problems += _gaps(values)
     if len(problems) > before:
         return None
@@ -220,8 +220,8 @@ def _check(part: ValuePart, leaf: FieldType) -> None:
     if kind not in ANGLES:
         check_names(part.conversion, path, leaf.base)
     if kind in ANGLES and (leaf.base != QUATERNION or leaf.array):
-        cure = "name the field that is a geometry_msgs/msg/Quaternion, such as pose.pose.orientation"
-        raise WrongPath(f"'as: {kind}' gives a quaternion, and {path} is {leaf}", cure)
+        help = "name the field that is a geometry_msgs/msg/Quaternion, such as pose.pose.orientation"
+        raise WrongPath(f"'as: {kind}' gives a quaternion, and {path} is {leaf}", help)
     number = leaf.base in FLOATS or leaf.base in INTEGER_RANGES or leaf.base in TIMES
     if part.conversion.line is not None and not number and kind not in ANGLES:
         raise WrongPath(f"unit, scale or offset needs a number, and {path} is {leaf}", "leave it out")

@@ -217,7 +217,7 @@ class Feed:
     def _refuse(self, error: Unshowable, topic: str) -> None:
         """Tell that a message was left out: people once, with the line; agents by a signal."""
         part, host = self.part, self._host
-        host.tell_once((part.name, error.path), part.place, f"{part.name} is not shown: {error}", error.cure)
+        host.tell_once((part.name, error.path), part.place, f"{part.name} is not shown: {error}", error.help)
         if self._faults is None:
 
             def tell(why: Structure, text: str) -> None:

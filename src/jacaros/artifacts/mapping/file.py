@@ -83,8 +83,8 @@ def read_with_problems(path: Path) -> tuple[MappingFile, list[Problem]]:
     try:
         text, wrong = read_text(path)
     except FileNotFoundError:
-        cure = f"give the path of a mapping file, or one that comes with jacaros: {', '.join(shipped_mappings())}"
-        return MappingFile(name, ""), [Problem(1, 1, "mapping file not found", cure)]
+        help = f"give the path of a mapping file, or one that comes with jacaros: {', '.join(shipped_mappings())}"
+        return MappingFile(name, ""), [Problem(1, 1, "mapping file not found", help)]
     except OSError as error:
         return MappingFile(name, ""), [Problem(1, 1, f"cannot read the file: {error}")]
     if wrong is not None:
@@ -205,8 +205,8 @@ def _connected(node: Node) -> bool | float:
     value = node.value
     if isinstance(value, int | float) and 0.0 < value < float("inf"):
         return float(value)
-    cure = "write true" if str(value).lower() in ("yes", "on") else "write true, or a number such as 2"
-    node.wrong("'connected' must be true, false, or a number of seconds above zero", cure)
+    help = "write true" if str(value).lower() in ("yes", "on") else "write true, or a number such as 2"
+    node.wrong("'connected' must be true, false, or a number of seconds above zero", help)
     return True
 
 

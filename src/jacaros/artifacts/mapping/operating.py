@@ -340,7 +340,7 @@ class _Getting(_OfNode):
             try:
                 outs[0].set(parameter_converter(field.conversion, self._name)(value))
             except Unshowable as error:
-                self._host.fail(f"{error}: {error.cure}", error.functor, error.path)
+                self._host.fail(f"{error}: {error.help}", error.functor, error.path)
 
 
 class _Asking:

@@ -248,7 +248,7 @@ class NodeParameter:
             self._withdraw()
             part = self._part
             told = f"{part.name} is not shown: {error}"
-            self._host.tell_once((part.name, error.functor), part.place, told, error.cure)
+            self._host.tell_once((part.name, error.functor), part.place, told, error.help)
 
     def _withdraw(self) -> None:
         if self._reading.newest is not None:

@@ -27,9 +27,9 @@ Fields = Callable[[str], Mapping[str, FieldType]]
 class WrongPath(ValueError):
     """A path that cannot be, with what to write."""
 
-    def __init__(self, message: str, cure: str = "") -> None:
+    def __init__(self, message: str, help: str = "") -> None:
         super().__init__(message)
-        self.cure = cure
+        self.help = help
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,8 +122,8 @@ def _field(path: Path, name: str, here: FieldType, shown: str, fields: Fields) -
     if name not in known:
         near = difflib.get_close_matches(name, known, 1)
         listed = ", ".join(f"{field} ({kind})" for field, kind in known.items()) or "none"
-        cure = f"did you mean '{near[0]}'? Its fields: {listed}" if near else f"its fields: {listed}"
-        raise WrongPath(f"'{path.text}': {here.base} has no field '{name}'", cure)
+        help = f"did you mean '{near[0]}'? Its fields: {listed}" if near else f"its fields: {listed}"
+        raise WrongPath(f"'{path.text}': {here.base} has no field '{name}'", help)
     return known[name]
 
 

@@ -177,10 +177,10 @@ class Publishing:
             holding.rest()
         return not execution.paused
 
-    def _warn_unmatched(self, message: str, cure: str) -> None:
+    def _warn_unmatched(self, message: str, help: str) -> None:
         """Warn once of a topic without subscribers: its name or type may be wrong."""
         assert self._publisher is not None
-        self._host.tell_once((self._publisher.topic, "unmatched"), self._part.target.place, message, cure)
+        self._host.tell_once((self._publisher.topic, "unmatched"), self._part.target.place, message, help)
 
     def _filled(self, inputs: Sequence[object]) -> tuple[Any, bool]:
         """The fields of the message, and whether it sets a robot in motion."""

@@ -21,18 +21,18 @@ def place_of(node: Node) -> Place:
     return Place(node.line, node.column)
 
 
-def path_of(node: Node, hint: str = "") -> Path:
+def path_of(node: Node, help: str = "") -> Path:
     """A path; the whole message after a mistake."""
     if not isinstance(node.value, str):
         node.wrong(
             f"{node.what} must be a path, not {shown(node.value)}",
-            hint or "write the path of a field, as in pose.x",
+            help or "write the path of a field, as in pose.x",
         )
         return WHOLE
     try:
         return read_path(node.value)
     except WrongPath as error:
-        node.wrong(str(error), error.cure)
+        node.wrong(str(error), error.help)
         return WHOLE
 
 

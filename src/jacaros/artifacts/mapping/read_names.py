@@ -34,8 +34,8 @@ def belief_name(node: Node) -> str:
             node.wrong(f"{str(node.value).lower()} is no name that agents can write", "write another name")
             return UNNAMED
         near = re.sub(r"\W", "_", str(node.value)).lstrip("_0123456789")
-        cure = f"write {near[0].lower()}{near[1:]}" if near else "begin with a lower-case letter"
-        node.wrong(f"{shown(node.value)} is no name that agents can write", cure)
+        help = f"write {near[0].lower()}{near[1:]}" if near else "begin with a lower-case letter"
+        node.wrong(f"{shown(node.value)} is no name that agents can write", help)
         return UNNAMED
     if node.value in RESERVED:
         node.wrong(
@@ -50,8 +50,8 @@ def ros_name(node: Node) -> Written:
     value = node.value
     if not isinstance(value, str) or not _ROS.fullmatch(value):
         glued = _GLUED.fullmatch(value) if isinstance(value, str) else None
-        cure = f"write a space behind the colon: {glued[1]}: {glued[2]}" if glued else ""
-        node.wrong(f"{shown(value)} is no ROS name", cure or "write it like cmd_vel or /robot/cmd_vel")
+        help = f"write a space behind the colon: {glued[1]}: {glued[2]}" if glued else ""
+        node.wrong(f"{shown(value)} is no ROS name", help or "write it like cmd_vel or /robot/cmd_vel")
         return Written("unnamed", place_of(node))
     return Written(str(value), place_of(node))
 

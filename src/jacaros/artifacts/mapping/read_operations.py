@@ -64,8 +64,8 @@ def read_operation(name: Node, node: Node) -> OperationPart:
         found = f"has {' and '.join(kinds)}" if kinds else "does not say what it does"
         unknown = [] if kinds else [key for key in _keys(node) if key not in _ALL_KEYS]
         near = [each for key in unknown for each in difflib.get_close_matches(key, KEYS, 1)]
-        hint = f"did you mean '{near[0]}'?" if near else f"write one of {', '.join(KEYS)}"
-        name.wrong(f"the operation '{part.name}' {found}", hint)
+        help = f"did you mean '{near[0]}'?" if near else f"write one of {', '.join(KEYS)}"
+        name.wrong(f"the operation '{part.name}' {found}", help)
         return part
     kind = OperationKind(kinds[0])
     entries = node.mapping(kind.value, *_COMMON, *KEYS[kind.value], required=_required(kind))
@@ -424,8 +424,8 @@ def _parameter(node: Node, name: str, parameters: tuple[str, ...], within_list: 
 
     near = difflib.get_close_matches(name, parameters, 1)
     listed = ", ".join((*parameters, name))
-    cure = f"did you mean ${near[0]}?" if near else f"write it into 'parameters': [{listed}]"
-    node.wrong(f"the operation has no parameter '{name}'", cure)
+    help = f"did you mean ${near[0]}?" if near else f"write it into 'parameters': [{listed}]"
+    node.wrong(f"the operation has no parameter '{name}'", help)
     return 0
 
 

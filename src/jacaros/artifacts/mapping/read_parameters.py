@@ -72,7 +72,7 @@ def _require_shown(node: Node, field: FieldPart, default: ParameterValue) -> Non
     try:
         parameter_converter(unnamed, node.what.strip("'"))([""] if default == [] else default)
     except Unshowable as wrong:
-        node.wrong(str(wrong), wrong.cure)
+        node.wrong(str(wrong), wrong.help)
 
 
 def _declaration(node: Node, entries: dict[str, Node]) -> Declaration:

@@ -94,7 +94,7 @@ class _Maker:
     def wrong(self, place: Any, error: Exception) -> None:
         """Note what is wrong."""
         self.good = False
-        self.problems.append(place.problem(str(error), getattr(error, "cure", "")))
+        self.problems.append(place.problem(str(error), getattr(error, "help", "")))
 
     def make(self) -> Extract:
         """The function; of no use if something is wrong."""

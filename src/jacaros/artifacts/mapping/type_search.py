@@ -120,6 +120,6 @@ async def ask_type(host: Host, kind: str, written: Written) -> str:
         host.fail(str(error), "type_unknown", name)
     if not found:
         where = host.mapping.where(written.place)
-        cure = f"start the node that has it, or write its type in {where}: type: package/{_EXAMPLES[kind]}"
-        host.fail(f"there is no {kind} {name}, so that its type is not known; {cure}", "type_unknown", name)
+        help = f"start the node that has it, or write its type in {where}: type: package/{_EXAMPLES[kind]}"
+        host.fail(f"there is no {kind} {name}, so that its type is not known; {help}", "type_unknown", name)
     return found

@@ -27,12 +27,12 @@ class KnownActions:
 
     Attributes:
         declared: by name; those of the language have a leading dot.
-        hint: what to do about a name that is not among them, as far as that is known.
+        help: what to do about a name that is not among them, as far as that is known.
         is_unseen: whether a name may be among them when the project's Python code runs.
     """
 
     declared: Mapping[str, Declaration]
-    hint: Callable[[str], str | None] = _no_hint
+    help: Callable[[str], str | None] = _no_hint
     is_unseen: Callable[[str], bool] = lambda _: False
 
     def of(self, call: nodes.InternalAction) -> Declaration:
@@ -74,7 +74,7 @@ def unknown_actions(
 
 def _meant_action(name: str, known: KnownActions) -> str | None:
     close = close_matches(name, known.declared)
-    return known.hint(name) or (f"did you mean {close[0]}?" if close else None)
+    return known.help(name) or (f"did you mean {close[0]}?" if close else None)
 
 
 def _wrong_function(node: nodes.InternalAction) -> Diagnostic:
@@ -91,7 +91,7 @@ def wrong_arguments(found: Sequence[nodes.Node], known: KnownActions) -> Iterato
             if action is not None and not action.takes(count):
                 told = _arguments_message(node, action.minimum, action.maximum, "the internal action")
                 if action.maximum is not None and count == action.maximum + 1 and action.result_hint:
-                    told = replace(told, hint=f"{told.hint}; {action.result_hint}")
+                    told = replace(told, help=f"{told.help}; {action.result_hint}")
                 yield told
 
 

@@ -103,5 +103,5 @@ def _wrong_policies(items: Sequence[nodes.Literal]) -> Iterator[Diagnostic]:
             )
 
 
-def _wrong(item: nodes.Literal, message: str, hint: str) -> Diagnostic:
-    return Diagnostic("warning", message, item.span, hint, "wrong-needs")
+def _wrong(item: nodes.Literal, message: str, help: str) -> Diagnostic:
+    return Diagnostic("warning", message, item.span, help, "wrong-needs")

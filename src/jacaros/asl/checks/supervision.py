@@ -120,7 +120,7 @@ def _invalid(item: nodes.Literal) -> Diagnostic:
     )
 
 
-def _misplaced(item: nodes.Literal, where: str, cure: str) -> Diagnostic:
+def _misplaced(item: nodes.Literal, where: str, help: str) -> Diagnostic:
     return Diagnostic(
-        "warning", f"`{item.functor}` has no effect on {where}", item.span, cure, "wrong-supervision"
+        "warning", f"`{item.functor}` has no effect on {where}", item.span, help, "wrong-supervision"
     )

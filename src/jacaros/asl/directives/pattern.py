@@ -15,11 +15,11 @@ TRUE = nodes.Literal("true")
 
 
 class PatternError(Exception):
-    """A pattern is used wrongly; the message and the hint are for people."""
+    """A pattern is used wrongly; the message and the help are for people."""
 
-    def __init__(self, message: str, hint: str | None = None) -> None:
+    def __init__(self, message: str, help: str | None = None) -> None:
         super().__init__(message)
-        self.hint = hint
+        self.help = help
 
 
 @dataclass(frozen=True)

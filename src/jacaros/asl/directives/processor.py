@@ -110,9 +110,9 @@ class DirectiveProcessor:
             parser.namespaces.current = outside
             return
         if name not in PATTERNS:
-            hint = f"write {{ {name}(...) }} without begin" if name in _SIMPLE else _meant(name)
+            help = f"write {{ {name}(...) }} without begin" if name in _SIMPLE else _meant(name)
             parser.report(
-                "unknown-directive", f"there is no directive '{name}' with a block", directive.span, hint
+                "unknown-directive", f"there is no directive '{name}' with a block", directive.span, help
             )
             section.extend(parser.block(directive))
             return
@@ -120,7 +120,7 @@ class DirectiveProcessor:
         try:
             section.extend(PATTERNS[name](self._call(parser, directive), block))
         except PatternError as error:
-            parser.report("wrong-directive", str(error), directive.span, error.hint)
+            parser.report("wrong-directive", str(error), directive.span, error.help)
             section.extend(block)
 
     # include
@@ -143,16 +143,16 @@ class DirectiveProcessor:
         if found is None:
             return nodes.Section()
         if found.name in self._open_files:
-            wrong, hint = f"'{path}' includes itself", "files cannot include each other in a circle"
+            wrong, help = f"'{path}' includes itself", "files cannot include each other in a circle"
         elif len(self._open_files) > _DEEPEST:
             wrong = f"'{path}' is included more than {_DEEPEST} files deep"
-            hint = "include it from a file further up"
+            help = "include it from a file further up"
         elif self._included >= _MOST_INCLUDES:
-            wrong, hint = f"this program includes more than {_MOST_INCLUDES} files", "include each file once"
+            wrong, help = f"this program includes more than {_MOST_INCLUDES} files", "include each file once"
         else:
-            wrong = hint = ""
+            wrong = help = ""
         if wrong:
-            parser.report("include-circle", wrong, directive.span, hint)
+            parser.report("include-circle", wrong, directive.span, help)
             return nodes.Section()
         self._included += 1
         return self.read_file(found, namespaces)
@@ -277,8 +277,8 @@ class DirectiveProcessor:
     def _derive(self, parser: ProgramParser, directive: nodes.Literal, section: nodes.Section) -> None:
         from jacaros.asl.directives.derive import circle, read_derivation  # here: few programs derive
 
-        def report(message: str, span: Span | None, hint: str) -> None:
-            parser.report("wrong-directive", message, span or directive.span, hint)
+        def report(message: str, span: Span | None, help: str) -> None:
+            parser.report("wrong-directive", message, span or directive.span, help)
 
         def placed(term: nodes.Term) -> nodes.Term:
             return self._placed(parser.namespaces, term)
@@ -296,8 +296,8 @@ class DirectiveProcessor:
     def _keep_history(self, parser: ProgramParser, directive: nodes.Literal, section: nodes.Section) -> None:
         from jacaros.asl.directives.history import read_history  # here: few programs keep histories
 
-        def report(message: str, span: Span | None, hint: str) -> None:
-            parser.report("wrong-directive", message, span or directive.span, hint)
+        def report(message: str, span: Span | None, help: str) -> None:
+            parser.report("wrong-directive", message, span or directive.span, help)
 
         def placed(term: nodes.Term) -> nodes.Term:
             return self._placed(parser.namespaces, term)

@@ -57,8 +57,8 @@ def _convert(value: float | str | bool, conversion: str, flags: str, width: int,
             raise ValueError(f"%{conversion} needs a number, not {value}")
         piece = _signed(value, lower, flags, width, 6 if places is None else places)
     else:
-        hint = ": numbers are doubles, use %.0f" if lower in "dxo" else ""
-        raise ValueError(f"%{conversion} is not known{hint}")
+        help = ": numbers are doubles, use %.0f" if lower in "dxo" else ""
+        raise ValueError(f"%{conversion} is not known{help}")
     return piece.upper() if conversion.isupper() else piece
 
 

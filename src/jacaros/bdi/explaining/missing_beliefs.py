@@ -28,8 +28,8 @@ def missing_belief(tables: Mapping[Functor, Table], wanted: Functor) -> str:
     if not near and not wanted.arity:
         return ""
     sign = "~" if wanted.negated else ""
-    hint = f"; did you mean `{sign}{near[0]}`?" if near else ""
-    return f"no belief `{sign}{wanted.name}`{hint}"
+    help = f"; did you mean `{sign}{near[0]}`?" if near else ""
+    return f"no belief `{sign}{wanted.name}`{help}"
 
 
 def _held(tables: Mapping[Functor, Table], wanted: Functor) -> Iterator[Functor]:

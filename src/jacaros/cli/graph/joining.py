@@ -84,8 +84,8 @@ async def _look(backend: Backend, clock: Clock, options: RunOptions, timeout: fl
     except RosError as error:
         raise NothingThere(f"{error}. {kind.unreachable}".rstrip()) from error
     if not (seen.topics or seen.services or seen.actions or seen.nodes):
-        cure = kind.deserted or kind.unreachable
-        raise NothingThere(f"no other node is in the {_graph_name(options)}. {cure}".rstrip())
+        help = kind.deserted or kind.unreachable
+        raise NothingThere(f"no other node is in the {_graph_name(options)}. {help}".rstrip())
     return seen
 
 

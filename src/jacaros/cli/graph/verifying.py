@@ -177,19 +177,19 @@ def _of_publishing(names: Names, operation: OperationPart) -> Iterator[Problem]:
             continue
         why = incompatibility(operation.qos or DEFAULT_QOS, subscription.qos)
         if why is not None:
-            cure = "qos: latched" if subscription.qos.durability == "transient_local" else "qos: default"
+            help = "qos: latched" if subscription.qos.durability == "transient_local" else "qos: default"
             node = subscription.node or "a subscription"
-            yield written.place.problem(f"{node} would receive nothing on {name}: {why}", f"write {cure}")
+            yield written.place.problem(f"{node} would receive nothing on {name}: {why}", f"write {help}")
 
 
 def _absent(names: Names, written: Written, name: str, what: str, things: Iterable[str]) -> Problem:
     """What is not in the graph, with what may be meant."""
     near = near_names(name, list(things))
     if near:
-        cure = f"did you mean {' or '.join(_as_written(names, each) for each in near)}?"
+        help = f"did you mean {' or '.join(_as_written(names, each) for each in near)}?"
     else:
-        cure = "start its node; `jacaros ros list` shows all names"
-    return written.place.problem(f"{what} {name}", cure)
+        help = "start its node; `jacaros ros list` shows all names"
+    return written.place.problem(f"{what} {name}", help)
 
 
 def _as_written(names: Names, name: str) -> str:
@@ -240,8 +240,8 @@ async def _of_parameter(names: Names, node: str, parameter: str, place: Place) -
     if parameter in there:
         return []
     near = near_names(parameter, there)
-    cure = f"did you mean {' or '.join(near)}?" if near else f"it has {', '.join(there) or 'none'}"
-    return [place.problem(f"node {name} has no parameter {parameter}", cure)]
+    help = f"did you mean {' or '.join(near)}?" if near else f"it has {', '.join(there) or 'none'}"
+    return [place.problem(f"node {name} has no parameter {parameter}", help)]
 
 
 def _nodes(endpoints: Iterable[Endpoint]) -> str:

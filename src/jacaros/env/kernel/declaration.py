@@ -64,8 +64,8 @@ def declare_method(
         guard = getattr(owner, mark.guard, None)
         if not callable(guard):
             methods = [name for name in dir(owner) if not name.startswith("_")]
-            hint = spelling_hint(mark.guard, methods)
-            raise InvalidArtifact(f"{function.__qualname__}: the guard {mark.guard} is not a method{hint}")
+            help = spelling_hint(mark.guard, methods)
+            raise InvalidArtifact(f"{function.__qualname__}: the guard {mark.guard} is not a method{help}")
     signature = signature_of(function, skip_first=True)
     if guard is not None:
         guard = _suited(guard, signature_of(guard, skip_first=True), signature, function)

@@ -67,11 +67,11 @@ def unknown_operation(request: OperationRequest, kind: str, interface: Interface
     name, arity, artifact = request.operation, len(request.arguments), request.artifact
     for other in (OPERATION, LINK, INTERNAL):
         if other != kind and interface.table(other).find(name, arity) is not None:
-            hint = f"; its {other} of that name is for {_CALLERS[other]}"
+            help = f"; its {other} of that name is for {_CALLERS[other]}"
             break
     else:
-        hint = interface.table(kind).explain(name)
-    message = f"artifact {artifact.name} ({artifact.type_name}) has no {kind} {key(request)}{hint}"
+        help = interface.table(kind).explain(name)
+    message = f"artifact {artifact.name} ({artifact.type_name}) has no {kind} {key(request)}{help}"
     return OperationOutcome(False, message, Structure("unknown_operation", (artifact, name)))
 
 

@@ -21,8 +21,8 @@ class UnknownAgent(JacarosError):
         names = list(known)
         near = get_close_matches(name, names, n=3, cutoff=0.6)
         listed = ", ".join(names[:10]) + (", …" if len(names) > 10 else "")
-        hint = f"did you mean {' or '.join(near)}?" if near else f"agents: {listed}" if names else ""
-        super().__init__(f"unknown agent {name}{'; ' * bool(hint)}{hint}")
+        help = f"did you mean {' or '.join(near)}?" if near else f"agents: {listed}" if names else ""
+        super().__init__(f"unknown agent {name}{'; ' * bool(help)}{help}")
         self.name = name
 
 

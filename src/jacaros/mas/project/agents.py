@@ -64,10 +64,10 @@ class ProjectAgents:
                     return folder / file
         if Path(files[0]).name in TEST_LIBRARY:
             return library_file(Path(files[0]).name)
-        hint = "expected in " + ", ".join(str(folder) for folder in agent.folders)
+        help = "expected in " + ", ".join(str(folder) for folder in agent.folders)
         if "://" in written:
-            hint = "programs are read from files, not over the network"
-        self._remarks.error(f"program of agent '{agent.name}' not found: {files[0]}", span, hint)
+            help = "programs are read from files, not over the network"
+        self._remarks.error(f"program of agent '{agent.name}' not found: {files[0]}", span, help)
         return (agent.folders or (Path(),))[0] / files[0]
 
     def _literals(self, written: list[Written], what: str) -> str:
@@ -77,8 +77,8 @@ class ProjectAgents:
                 parse_literals(_literal(text))
             except AslError as error:
                 message = error.diagnostics[0].message
-                hint = "write rules in the program of the agent" if ":-" in text else None
-                self._remarks.error(f"'{_first_line(text)}' is not a {what}: {message}", span, hint)
+                help = "write rules in the program of the agent" if ":-" in text else None
+                self._remarks.error(f"'{_first_line(text)}' is not a {what}: {message}", span, help)
             else:
                 if text.startswith("!") and what == "belief":
                     self._remarks.error(f"'{text}' is a goal", span, f"goals: {text[1:]}")

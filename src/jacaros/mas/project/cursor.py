@@ -102,11 +102,11 @@ class ProjectCursor:
         self.advance()
         return True
 
-    def expect(self, text: str, hint: str | None = None) -> Token:
+    def expect(self, text: str, help: str | None = None) -> Token:
         """Take this sign or word."""
         token = self.token
         if not self.accept(text):
-            self.fail(f"'{text}' is expected, not {token}", hint=hint)
+            self.fail(f"'{text}' is expected, not {token}", help=help)
         return token
 
     def name(self, what: str) -> Token:
@@ -127,22 +127,22 @@ class ProjectCursor:
         """The place of one token."""
         return Span(self.file, token.line, token.column, token.line, token.column + len(token.text))
 
-    def report(self, message: str, span: Span | None = None, hint: str | None = None) -> None:
+    def report(self, message: str, span: Span | None = None, help: str | None = None) -> None:
         """Record an error; reading goes on."""
-        self.diagnostics.append(Diagnostic("error", message, span or self.span_of(self.token), hint))
+        self.diagnostics.append(Diagnostic("error", message, span or self.span_of(self.token), help))
 
-    def warn(self, message: str, span: Span, hint: str | None = None) -> None:
+    def warn(self, message: str, span: Span, help: str | None = None) -> None:
         """Record something that is read and has no effect."""
-        self.diagnostics.append(Diagnostic("warning", message, span, hint))
+        self.diagnostics.append(Diagnostic("warning", message, span, help))
 
-    def fail(self, message: str, span: Span | None = None, hint: str | None = None) -> NoReturn:
+    def fail(self, message: str, span: Span | None = None, help: str | None = None) -> NoReturn:
         """Record an error and give up the declaration."""
-        self.report(message, span, hint)
+        self.report(message, span, help)
         raise ProjectPanic
 
-    def fail_unclosed(self, opener: Token, hint: str | None = None) -> NoReturn:
+    def fail_unclosed(self, opener: Token, help: str | None = None) -> NoReturn:
         """Blame a bracket that is not closed."""
-        self.report(f"'{opener.kind}' is not closed", self.span_of(opener), hint)
+        self.report(f"'{opener.kind}' is not closed", self.span_of(opener), help)
         raise UnclosedPanic
 
     @contextmanager

@@ -63,7 +63,7 @@ class _JcmReader(JcmValues):
         if cursor.token.kind != "end":
             cursor.report(
                 f"{cursor.token} after the end of the system",
-                hint="there may be an extra '}' before it",
+                help="there may be an extra '}' before it",
             )
 
     def _section(self) -> None:
@@ -95,7 +95,7 @@ class _JcmReader(JcmValues):
         close = close_matches(token.text, sections)
         self.cursor.fail(
             f"unknown section {token} of a .jcm file",
-            hint=f"did you mean '{close[0]}'?" if close else f"the sections are {', '.join(sections)}",
+            help=f"did you mean '{close[0]}'?" if close else f"the sections are {', '.join(sections)}",
         )
 
     def _to_next_section(self, start: int) -> None:

@@ -32,7 +32,7 @@ class JcmAgents(JcmValues):
         elif not (cursor.token.first or self.at_end()):
             cursor.fail(
                 f"{cursor.token} does not belong to agent '{agent.name}'",
-                hint="agent name : file.asl { ... }; quote file names with blanks",
+                help="agent name : file.asl { ... }; quote file names with blanks",
             )
 
     def _entry(self, agent: AgentPart) -> None:

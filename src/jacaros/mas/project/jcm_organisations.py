@@ -90,7 +90,7 @@ class JcmOrganisations(JcmValues):
             if cursor.token.kind != "word" or cursor.token.first or self.at_end():
                 cursor.fail(
                     f"the role of '{agent.text}' is expected, not {cursor.token}",
-                    hint="players are written: agent role, agent role",
+                    help="players are written: agent role, agent role",
                 )
             role = cursor.advance()
             span = cursor.span_of(agent).to(cursor.span_of(role))

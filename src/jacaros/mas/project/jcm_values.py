@@ -126,10 +126,10 @@ class JcmValues:
         if token.kind == "word" and not cursor.at_key():
             known = list(known)
             close = close_matches(token.text, known)
-            hint = f"did you mean '{close[0]}'?" if close and close[0] != token.text else None
+            help = f"did you mean '{close[0]}'?" if close and close[0] != token.text else None
             keys = [f"{each}:" for each in known if each not in self.entries]
-            hint = hint or f"{what} has {', '.join([*self.entries, *keys])}"
-            cursor.fail(f"a ':' is missing behind '{token.text}'", hint=hint)
+            help = help or f"{what} has {', '.join([*self.entries, *keys])}"
+            cursor.fail(f"a ':' is missing behind '{token.text}'", help=help)
         if token.kind != "word":
             cursor.fail(f"'key:' is expected, not '{token.text}'")
         cursor.advance()
@@ -140,8 +140,8 @@ class JcmValues:
         """Blame a key that has no meaning, and read its value."""
         known = list(known)
         close = close_matches(key.text, known)
-        hint = f"did you mean '{close[0]}'?" if close else f"{what} has {', '.join(known)}"
-        self.cursor.report(f"unknown key '{key.text}' of {what}", self.cursor.span_of(key), hint)
+        help = f"did you mean '{close[0]}'?" if close else f"{what} has {', '.join(known)}"
+        self.cursor.report(f"unknown key '{key.text}' of {what}", self.cursor.span_of(key), help)
         self.pieces()
 
     # values
@@ -252,10 +252,10 @@ class JcmValues:
             return cursor.number(token)
         if token.kind not in ("word", "string", "quoted"):
             cursor.fail(
-                "a value is expected", hint=f"the '{opener.kind}' of line {opener.line} is not closed"
+                "a value is expected", help=f"the '{opener.kind}' of line {opener.line} is not closed"
             )
         if token.kind == "word" and not (token.text[0].isalpha() or token.text[0] in "_$"):
-            cursor.fail(f"'{token.text}' is not a value", hint="write a number, or a text in quotes")
+            cursor.fail(f"'{token.text}' is not a value", help="write a number, or a text in quotes")
         cursor.advance()
         if token.kind == "string":
             return text_of(token)

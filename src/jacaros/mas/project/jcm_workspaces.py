@@ -38,7 +38,7 @@ class JcmWorkspaces(JcmValues):
             return
         if token.kind == "word" and cursor.peek().kind == "word" and not cursor.at_key():
             cursor.fail(
-                f"an artifact or a key is expected, not {token}", hint="artifact name : Class(arguments)"
+                f"an artifact or a key is expected, not {token}", help="artifact name : Class(arguments)"
             )
         key = self.key(_KEYS, "a workspace")
         match key.text:
@@ -67,7 +67,7 @@ class JcmWorkspaces(JcmValues):
         if cursor.token.kind not in NAME:
             cursor.fail(
                 f"the class of the artifact is expected, not {cursor.token}",
-                hint="artifact name : Class(arguments)",
+                help="artifact name : Class(arguments)",
             )
         type_token = cursor.advance()
         arguments = self.arguments() if cursor.token.kind == "(" else ()

@@ -57,7 +57,7 @@ class _Mas2jReader:
         if cursor.token.kind != "end":
             cursor.report(
                 f"{cursor.token} after the end of the system",
-                hint="there may be an extra '}' before it",
+                help="there may be an extra '}' before it",
             )
 
     def section(self) -> None:
@@ -110,8 +110,8 @@ class _Mas2jReader:
     def no_section(self) -> NoReturn:
         token = self.cursor.token
         close = close_matches(token.text, _SECTIONS)
-        hint = f"did you mean '{close[0]}'?" if close else f"the sections are {', '.join(_SECTIONS)}"
-        self.cursor.fail(f"unknown section {token} of a .mas2j file", hint=hint)
+        help = f"did you mean '{close[0]}'?" if close else f"the sections are {', '.join(_SECTIONS)}"
+        self.cursor.fail(f"unknown section {token} of a .mas2j file", help=help)
 
     def to_next_section(self, start: int) -> None:
         """After an error in the section that began at *start*: to the next one or the end."""
@@ -194,7 +194,7 @@ class _Mas2jReader:
             close_matches(cursor.token.text, _AGENT_KEYS[:3], 0.8) if cursor.peek().kind == "word" else []
         )
         if meant and cursor.token.kind == "word":
-            cursor.fail(f"{cursor.token} does not belong here", hint=f"did you mean '{meant[0]}'?")
+            cursor.fail(f"{cursor.token} does not belong here", help=f"did you mean '{meant[0]}'?")
 
     def source(self, agent: AgentPart) -> None:
         token = self.cursor.advance()
@@ -216,8 +216,8 @@ class _Mas2jReader:
             return
         if key.text not in _AGENT_KEYS or key.kind != "word":
             close = close_matches(key.text, _AGENT_KEYS) if key.kind == "word" else []
-            hint = f"did you mean '{close[0]}'?" if close else "each agent of the list ends with ';'"
-            cursor.fail(f"a ';' is expected behind the agent '{agent.name}'", hint=hint)
+            help = f"did you mean '{close[0]}'?" if close else "each agent of the list ends with ';'"
+            cursor.fail(f"a ';' is expected behind the agent '{agent.name}'", help=help)
         cursor.advance()
         if key.text == "at":
             agent.host = text_of(self.value("the name of a host"))

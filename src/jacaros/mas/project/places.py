@@ -178,9 +178,9 @@ class ProjectPlaces:
             if not wanted.elsewhere:
                 every = {name for path in self._paths for name in self._artifacts(path, defaults=False)}
                 message = f"the artifact '{wanted.artifact}' is not declared in the project"
-                hint = meant(wanted.artifact, every)
-                hint = hint or f"if an agent makes it, write its workspace too: w.{wanted.artifact}"
-                self._remarks.error(message, wanted.span, hint)
+                help = meant(wanted.artifact, every)
+                help = help or f"if an agent makes it, write its workspace too: w.{wanted.artifact}"
+                self._remarks.error(message, wanted.span, help)
             return None
         if len(found) > 1:
             self._remarks.warn(

@@ -13,13 +13,13 @@ class Remarks:
     def __init__(self, diagnostics: list[Diagnostic]) -> None:
         self.diagnostics = diagnostics
 
-    def error(self, message: str, span: Span | None, hint: str | None = None) -> None:
+    def error(self, message: str, span: Span | None, help: str | None = None) -> None:
         """Record an error."""
-        self.add(Diagnostic("error", message, span, hint))
+        self.add(Diagnostic("error", message, span, help))
 
-    def warn(self, message: str, span: Span | None, hint: str | None = None) -> None:
+    def warn(self, message: str, span: Span | None, help: str | None = None) -> None:
         """Record a warning."""
-        self.add(Diagnostic("warning", message, span, hint))
+        self.add(Diagnostic("warning", message, span, help))
 
     def add(self, diagnostic: Diagnostic) -> None:
         """Record a diagnostic."""
@@ -32,12 +32,12 @@ class Remarks:
         for name, span in names:
             if name in seen:
                 first = seen[name]
-                hint = None if first is None else f"the first is in {first.file.name}, line {first.line}"
-                self.error(f"two {what} have the name '{name}'", span, hint)
+                help = None if first is None else f"the first is in {first.file.name}, line {first.line}"
+                self.error(f"two {what} have the name '{name}'", span, help)
             seen.setdefault(name, span)
 
 
 def meant(name: str, known: Iterable[str]) -> str | None:
-    """A hint at the known name that is most like *name*."""
+    """A suggestion of the known name that is most like *name*."""
     close = close_matches(name, sorted(known))
     return f"did you mean '{close[0]}'?" if close else None

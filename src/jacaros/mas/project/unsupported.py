@@ -16,7 +16,7 @@ class Topic(NamedTuple):
 
     plural: str
     why: str
-    hint: str | None = None
+    help: str | None = None
 
 
 ROLES: Final = Topic(
@@ -64,7 +64,7 @@ def each(found: Sequence[Unsupported]) -> list[Diagnostic]:
     return [
         Diagnostic("note", _message(one), one.span, None, CODE)
         if one.detail
-        else Diagnostic("warning", _message(one), one.span, one.topic.hint, CODE)
+        else Diagnostic("warning", _message(one), one.span, one.topic.help, CODE)
         for one in found
     ]
 
@@ -90,7 +90,7 @@ def _together(topic: Topic, group: Sequence[Unsupported]) -> Diagnostic:
     )
     where = f" (lines {', '.join(lines)})" if len(lines) > 1 else ""
     message = f"{what} have no effect: {topic.why}{where}"
-    return Diagnostic("warning", message, group[0].span, topic.hint, CODE)
+    return Diagnostic("warning", message, group[0].span, topic.help, CODE)
 
 
 def _message(one: Unsupported) -> str:

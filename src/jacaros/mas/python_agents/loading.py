@@ -53,8 +53,8 @@ def agent_class(modules: ProjectModules, spec: AgentSpec) -> type[PythonAgent]:
         if wanted.rpartition(".")[2] in found:
             return found[wanted.rpartition(".")[2]]
         close = close_matches(wanted, found)
-        hint = f"did you mean {close[0]}?" if close else f"it has {', '.join(found)}"
-        raise _wrong(spec, f"{file} has no class {wanted} derived from jacaros.PythonAgent", hint)
+        help = f"did you mean {close[0]}?" if close else f"it has {', '.join(found)}"
+        raise _wrong(spec, f"{file} has no class {wanted} derived from jacaros.PythonAgent", help)
     if len(found) == 1:
         return next(iter(found.values()))
     for name in (spec.declared_name, spec.name, file.stem):
@@ -147,5 +147,5 @@ def _beliefs(spec: AgentSpec) -> tuple[Literal, ...]:
     )
 
 
-def _wrong(spec: AgentSpec, message: str, hint: str | None = None) -> ProjectError:
-    return ProjectError([Diagnostic("error", message, spec.span, hint)])
+def _wrong(spec: AgentSpec, message: str, help: str | None = None) -> ProjectError:
+    return ProjectError([Diagnostic("error", message, spec.span, help)])

@@ -129,8 +129,8 @@ class TransformBuffer:
         if not known:
             return "no transforms have come so far"
         close = difflib.get_close_matches(frame, known, 1)
-        hint = f"; did you mean {close[0]}?" if close else ""
-        return f"no frame {frame} is known{hint or '.'} Known: {', '.join(known)}"
+        help = f"; did you mean {close[0]}?" if close else ""
+        return f"no frame {frame} is known{help or '.'} Known: {', '.join(known)}"
 
     def _outdated(self, parent: str, child: str, transform: Transform) -> None:
         """Leave out what is older than anything kept; when nothing else comes any more, begin again with it."""

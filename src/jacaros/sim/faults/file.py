@@ -75,8 +75,8 @@ def _read(path: Path, world: WorldDescription | None) -> tuple[str, list[Problem
     try:
         text, wrong = read_text(path)
     except OSError as error:
-        cure = "give the path of a file that begins with `faults:`"
-        return "", [Problem(1, 1, f"cannot read the file: {error.strerror}", cure)], ()
+        help = "give the path of a file that begins with `faults:`"
+        return "", [Problem(1, 1, f"cannot read the file: {error.strerror}", help)], ()
     return (text, [wrong], ()) if wrong is not None else (text, *_faults(text, world))
 
 
@@ -162,10 +162,10 @@ def _landing(node: Node, name: str, world: WorldDescription | None) -> Pose:
     robots = () if world is None or len(node.problems) > mistakes else world.robots
     for robot in robots:
         if world is not None and robot.name == name:
-            problem, cure = place_problem(robot, pose, world, world.segments)
+            problem, help = place_problem(robot, pose, world, world.segments)
             if problem:
                 where = f"it puts the robot '{name}' at [{pose.x:g}, {pose.y:g}], {problem}"
-                node.wrong(where, cure or "write another place under 'to'")
+                node.wrong(where, help or "write another place under 'to'")
     return pose
 
 

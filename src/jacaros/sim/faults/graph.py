@@ -113,8 +113,8 @@ def _check_name(fault: str, what: str, name: str, known: set[str]) -> None:
     if name and name not in known:
         near = difflib.get_close_matches(name, known, 1)
         listed = ", ".join(sorted(known)) or "none"
-        cure = f"did you mean {near[0]}?" if near else f"{what}s of the world: {listed}"
-        raise UsageError(f"fault {fault}: unknown {what} {name}; {cure}")
+        help = f"did you mean {near[0]}?" if near else f"{what}s of the world: {listed}"
+        raise UsageError(f"fault {fault}: unknown {what} {name}; {help}")
 
 
 class _FaultyPublisher:

@@ -208,7 +208,7 @@ def _image(node: Node, path: Path) -> GreyImage | None:
     except OSError as error:
         node.wrong(f"cannot read the image `{path}`: {error}", "check its permissions")
     except ImageError as error:
-        node.wrong(f"image `{path}`: {error}", error.cure)
+        node.wrong(f"image `{path}`: {error}", error.help)
     return None
 
 

@@ -13,7 +13,7 @@ _TOUCHING = 0.001
 def place_problem(
     robot: RobotDescription, pose: Pose, world: WorldDescription, solid: Iterable[Segment]
 ) -> tuple[str, str]:
-    """Return what is wrong with putting a *robot* at *pose* and a hint, both empty if it fits.
+    """Return what is wrong with putting a *robot* at *pose* and a help, both empty if it fits.
 
     Args:
         robot: its radius or footprint counts, not its own pose.

@@ -224,13 +224,13 @@ def _check_places(items: list[Node], world: WorldDescription) -> None:
     solid = (*world.segments, *(door.segment for door in world.doors if not door.open))
     for item, robot in zip(items, world.robots, strict=True):
         x, y, _ = robot.pose
-        problem, cure = place_problem(robot, robot.pose, world, solid)
+        problem, help = place_problem(robot, robot.pose, world, solid)
         if not problem and any(cliff.contains(x, y) for cliff in world.cliffs):
             problem = "over a cliff"
         if problem:
             item.wrong(
                 f"the robot '{robot.name}' is at [{x:g}, {y:g}], {problem}",
-                cure or "write another place under 'pose'",
+                help or "write another place under 'pose'",
             )
 
 
@@ -246,7 +246,7 @@ def _map(node: Node, folder: Path) -> OccupancyMap | None:
         return None
     _, problems, found = read_map(path)
     for each in problems:
-        node.wrong(f"{path}:{each.line}:{each.column}: {each.message}", each.cure)
+        node.wrong(f"{path}:{each.line}:{each.column}: {each.message}", each.help)
     return found
 
 

@@ -305,7 +305,7 @@ def _off(
 def _problems(entry: str) -> list[str]:
     with pytest.raises(MappingError) as caught:
         read_mapping(f"{MAPPING}derived:\n  {entry}\n", "m.yaml")
-    return [f"{p.column}: {p.message} | {p.cure}" for p in caught.value.problems]
+    return [f"{p.column}: {p.message} | {p.help}" for p in caught.value.problems]
 
 
 @pytest.mark.parametrize(

@@ -74,7 +74,7 @@ def test_check_reports_the_past_of_a_property_without_a_history(tmp_path: Path) 
         "no-history",
     )
     assert (
-        told.hint
+        told.help
         == "declare { history(other(_), within(2000)) }, or `history: 2` in the mapping file of a property"
     )
 
@@ -107,6 +107,6 @@ def test_check_reports_the_past_of_a_property_without_a_history(tmp_path: Path) 
 def test_what_is_wrong_with_a_history_is_reported(text: str, told: str) -> None:
     with pytest.raises(MappingError) as caught:
         read_mapping(text)
-    found = [f"{each.message} | {each.cure}" for each in caught.value.problems]
+    found = [f"{each.message} | {each.help}" for each in caught.value.problems]
     assert len(found) == 1
     assert found[0].startswith(told), found

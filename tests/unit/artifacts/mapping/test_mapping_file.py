@@ -13,10 +13,10 @@ MESSAGE = "std_msgs/msg/Float64"
 
 
 def told(text: str) -> list[str]:
-    """What is told of a file: `line:column: message | cure`."""
+    """What is told of a file: `line:column: message | help`."""
     with pytest.raises(MappingError) as caught:
         read_mapping(text, "m.yaml")
-    return [f"{p.line}:{p.column}: {p.message} | {p.cure}" for p in caught.value.problems]
+    return [f"{p.line}:{p.column}: {p.message} | {p.help}" for p in caught.value.problems]
 
 
 def properties(text: str) -> MappingFile:

@@ -1,4 +1,4 @@
-"""Mapping files compared with message types: what does not fit is told with place and cure."""
+"""Mapping files compared with message types: what does not fit is told with place and help."""
 
 from pathlib import Path
 
@@ -219,7 +219,7 @@ WRONG = {
 def told(text: str) -> list[str]:
     with pytest.raises(MappingError) as caught:
         check_mapping(read_mapping(text, "m.yaml"), stored_interfaces())
-    return [f"{p.line}:{p.column}: {p.message} | {p.cure}" for p in caught.value.problems]
+    return [f"{p.line}:{p.column}: {p.message} | {p.help}" for p in caught.value.problems]
 
 
 @pytest.mark.parametrize("name", WRONG)

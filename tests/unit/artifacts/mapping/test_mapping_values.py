@@ -166,7 +166,7 @@ def test_a_number_that_is_not_finite_is_not_shown(
     with pytest.raises(Unshowable) as caught:
         taken("geometry_msgs/msg/Point", fields, **message)
     assert (caught.value.path, caught.value.functor) == (path, functor)
-    assert "otherwise: 0" in caught.value.cure
+    assert "otherwise: 0" in caught.value.help
 
 
 def test_a_nested_number_that_is_not_finite_is_not_shown() -> None:

@@ -78,12 +78,12 @@ def test_an_asl_path_takes_the_place_of_the_usual_ones(folder: Path) -> None:
     text = 'mas m {\n agent dora\n agent bob\n asl-path: own, "more"\n "$jacamoJar/test/jacamo/inc"\n}'
     (found,) = diagnostics(folder, text)
     assert found.message == "program of agent 'bob' not found: bob.asl"
-    assert found.hint == f"expected in {folder / 'own'}, {folder / 'more'}, {folder}"
+    assert found.help == f"expected in {folder / 'own'}, {folder / 'more'}, {folder}"
 
 
 def test_programs_are_not_read_over_the_network(folder: Path) -> None:
     (found,) = diagnostics(folder, 'mas m {\n agent bob : "http://far.example/bob.asl"\n}')
-    assert found.hint == "programs are read from files, not over the network"
+    assert found.help == "programs are read from files, not over the network"
 
 
 def test_used_projects_have_folders_of_their_own(folder: Path) -> None:
@@ -352,7 +352,7 @@ def test_misspelt_words_of_a_mas2j_file_are_told(folder: Path) -> None:
     text = "MAS m {\n agents:\n bob agentarchclass x.Y;\n alice agentclas x.Y;\n}"
     with pytest.raises(ProjectError) as refused:
         load(folder, text, "p.mas2j")
-    assert [(each.message, each.hint) for each in refused.value.diagnostics] == [
+    assert [(each.message, each.help) for each in refused.value.diagnostics] == [
         ("'agentarchclass' does not belong here", "did you mean 'agentArchClass'?"),
         ("'agentclas' does not belong here", "did you mean 'agentClass'?"),
     ]
@@ -360,7 +360,7 @@ def test_misspelt_words_of_a_mas2j_file_are_told(folder: Path) -> None:
 
 def test_words_that_are_nearly_keys_are_told(folder: Path) -> None:
     found = diagnostics(folder, "mas m {\n agent bob { goal: start verbose: 1 verbose: 2 }\n asl-pth: x\n}")
-    assert [(each.severity, each.message, each.hint) for each in found] == [
+    assert [(each.severity, each.message, each.help) for each in found] == [
         ("warning", "'goal' is kept as a parameter of your own", "did you mean 'goals'?"),
         ("warning", "'verbose' is given twice; the last one counts", None),
         ("error", "unknown section 'asl-pth' of a .jcm file", "did you mean 'asl-path'?"),

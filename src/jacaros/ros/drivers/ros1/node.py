@@ -121,8 +121,8 @@ class Ros1Node(Node):
         if present:
             self.found()
         else:
-            cure = "Start it with `roscore`, or set ROS_MASTER_URI to where it runs."
-            self.missing(f"ROS master at {self.master_uri}", cure)
+            help = "Start it with `roscore`, or set ROS_MASTER_URI to where it runs."
+            self.missing(f"ROS master at {self.master_uri}", help)
 
     def _note_again(self, names: list[str], all_of_them: bool) -> None:
         text = f"the ROS master had forgotten {', '.join(sorted(names))}: registered again"

@@ -126,11 +126,11 @@ class GenpySchema:
             return self.action_class(action, part)
         found = _imported(package, kind, name) or self._generated_message(package, name)
         if found is None:
-            cure = f"install {package}"
+            help = f"install {package}"
             if package in _ON_DEBIAN:
-                cure += f" (on Debian: apt-get install python3-{package.replace('_', '-')})"
+                help += f" (on Debian: apt-get install python3-{package.replace('_', '-')})"
             raise UnknownInterface(
-                f"message type {type_name} is not installed for ROS 1; {cure}, or put its definition into a folder and "
+                f"message type {type_name} is not installed for ROS 1; {help}, or put its definition into a folder and "
                 f"name that folder in interface_paths (in a mapping file: interfaces): {type_name}.msg"
             )
         return found
@@ -168,9 +168,9 @@ class GenpySchema:
         installed = _imported(package, "msg", f"{name}Action") is not None
         if not installed and definition(type_name, self._roots) is None:
             guess = name.removesuffix("Action")
-            hint = "" if guess == name else f"; is it {package}/action/{guess}?"
+            help = "" if guess == name else f"; is it {package}/action/{guess}?"
             raise UnknownInterface(
-                f"action type {type_name} is not installed for ROS 1 ({package}.msg has no {name}Action){hint}; "
+                f"action type {type_name} is not installed for ROS 1 ({package}.msg has no {name}Action){help}; "
                 "install its package, or put its definition into a folder and name that folder in "
                 f"interface_paths (in a mapping file: interfaces): {type_name}.action"
             )
