@@ -25,7 +25,7 @@ INSTEAD = {
     r"needs not": "need not",
     r"can not": "cannot",
     r"of (?:its|their) own accord": "automatically",
-    r"so (?:it|that) is": "cut it",
+    r"so (?:it|that) is(?=[.,;:])": "cut it",
     r"(?:goes|went|gets|got) on(?= (?:as|with|from|to|where|after|until|without|driving|running)\b|[.,;:)])": "continue",
     r"passed over": "skipped",
     r"given up(?= (?:after|by|when|as)\b)": "dropped, abandoned",
