@@ -1,5 +1,4 @@
-"""Write the reference pages that the code itself knows best: docs/reference/cli.md, artifacts.md and the index of internal
-actions.
+"""Generate reference pages from the code: docs/reference/cli.md, artifacts.md and the index of internal actions.
 
 make_reference.py [FOLDER]      FOLDER instead of docs/reference; a test compares the two
 """
@@ -27,46 +26,43 @@ ROOT = Path(__file__).resolve().parent.parent
 NOTE = "<!-- Written by tools/make_reference.py from the code; change it there. -->\n"
 READING = """## Reading sensors
 
-Artifacts that show what a sensor says take these options. Without any, every message that says something new becomes an
-event.
+Artifacts that show the values of a sensor take these options. By default, every message with a new value becomes an event.
 
-* `mode(verbose)`: tell by itself. `mode(on_demand)`: tell only when asked, by operations such as `getCurrentOdom`.
-* `rate(Hz)`: at most so many updates a second. The newest value of a pause is told when the pause is over, so the last
-  message of a burst is late at most, never lost.
-* `dead_band(D)`: tell a value only when a number in it differs by more than D from the one told before; a list has one
-  figure for each number. Equal values are never told twice.
-* `latest_only(true)`: while an agent has still to take up the value before, nothing is told, and then the newest is: an
-  agent that is slower than its sensor reacts to what is now. So it is by default where a value is a state;
-  `latest_only(false)` tells all.
-* `expire(S)`: the property goes when no message came for S seconds, and comes back with the next one. Then there is none
-  before the first message either.
+| option | meaning |
+|---|---|
+| `mode(verbose)` | update on messages (default) |
+| `mode(on_demand)` | update only when an operation such as `getCurrentOdom` asks for it |
+| `rate(Hz)` | maximum updates per second. The newest value is published after the pause, so the last message of a burst can be late but is never lost |
+| `dead_band(D)` | ignore values whose numbers differ by at most D from the last published ones; a list has one entry per number. Equal values never cause an update |
+| `latest_only(true)` | newest-only delivery: while an agent still handles the previous value, keep only the newest, so that a slow agent reacts to the present. Default for values that are states; `latest_only(false)` delivers all |
+| `expire(S)` | remove the property after S seconds without a message, until the next one. The property then also does not exist before the first message |
 
-A value with NaN or an infinite number in it is never told, see [bad messages](#bad-messages).
+A value with NaN or infinity is never published; see [bad messages](#bad-messages).
 """
 BAD_MESSAGES = """## Bad messages
 
-Robot artifacts do not believe all that they are sent. They tell of a bad message in the log and by the signal
-`bad_message(Topic,Why)`: of the first of a kind, the tenth, the hundredth and so on.
+Robot artifacts validate their messages. They report a bad message in the log and with the signal
+`bad_message(Topic,Why)`, on its first, 10th, 100th … occurrence.
 
-| Why | what is wrong | the message is |
+| Why | problem | the message is |
 |---|---|---|
 | `not_finite(What)` | a number is NaN or infinite; What is its field, or the property | dropped |
-| `wrong_frame(Frame)` | it is given in another frame than the messages before, or than the option `frame` wants | dropped |
-| `out_of_order(S)` | its stamp is S seconds older than that of a message before | dropped |
+| `wrong_frame(Frame)` | it is in another frame than the messages before, or than the option `frame` | dropped |
+| `out_of_order(S)` | its stamp is S seconds older than that of an earlier message | dropped |
 | `clock_jumped(S)` | all stamps are S seconds older than before: the sender's clock was set back | used |
-| `stamp_off(S)` | its stamp is S seconds (10 or more) off our clock, minus: in the past | used |
-| `late(S)` | it came S seconds (0.5 or more) later after its stamp than others before | used, but not for driving |
-| `out_of_range(What)` | a number cannot be true, such as a negative charge | dropped |
+| `stamp_off(S)` | its stamp differs by S seconds (10 or more) from the agents' clock; negative: in the past | used |
+| `late(S)` | its delay is S seconds (0.5 or more) longer than that of earlier messages | used, but not for driving |
+| `out_of_range(What)` | a number is impossible, such as a negative charge | dropped |
 
-A motion stops the robot at once when odometry is no number any more, and fails with `no_odometry(S)` if that lasts, or if
-odometry goes on in another frame: there, its goal is another place. A beam of a laser without an echo is no bad message,
-whatever the driver writes for it. See also [when things go wrong](../how-to/when_things_go_wrong.md).
+If odometry contains NaN, a motion stops the robot immediately. It fails with `no_odometry(S)` if this lasts, or if
+odometry continues in another frame, where the goal would be another place. A laser beam without an echo is not a bad
+message, whatever value the driver uses for it. See also [when things go wrong](../how-to/when_things_go_wrong.md).
 """
 LINKS = {
     "ReadingPolicy": "[reading sensors](#reading-sensors)",
     "WheeledArtifact": "[all artifacts that drive](#all-artifacts-that-drive)",
 }
-"""Classes that only authors of artifacts know."""
+"""Links that replace classes for authors of artifacts."""
 ACTIONS = Path("internal_actions")
 GROUPS = (
     "beliefs",
@@ -134,20 +130,20 @@ def _usage(command: click.Command, context: click.Context) -> Iterator[str]:
 
 
 def _option(option: click.Option) -> str:
-    """A row of a table; written here, so that it does not depend on the version of the library."""
+    """A row of a table. Written here, so that it does not depend on the version of Click."""
     if isinstance(option.type, click.Choice):
         value = " " + "\\|".join(map(str, option.type.choices))
     else:
         value = "" if option.is_flag else f" {option.metavar or 'N'}"
     default = (
-        f" By default `{option.default}`."
-        if option.show_default
-        else " Must be given."
+        f" Default: `{option.default}`."
+        if option.show_default and "(default:" not in (option.help or "")
+        else " Required."
         if option.required
         else ""
     )
     if option.show_envvar:
-        default += f" The variable `{option.envvar}` of the environment says it, too."
+        default += f" Environment variable: `{option.envvar}`."
     names = "`, `".join([f"{option.opts[0]}{value}", *option.secondary_opts])
     return f"| `{names}` | {_cell(option.help or '')}{default} |"
 
@@ -157,7 +153,7 @@ def _cell(text: str) -> str:
 
 
 def internal_actions() -> Iterator[str]:
-    """The index of internal actions and functions: where their entries stand, and what the registry knows of them."""
+    """The index of internal actions and functions: links to their entries, and their properties from the registry."""
     yield NOTE
     yield "# Internal actions and functions\n"
     yield (ROOT / "tools" / "internal_actions.md").read_text(encoding="utf-8")
@@ -199,13 +195,12 @@ def _arguments(least: float, most: float) -> str:
 def artifacts() -> Iterator[str]:
     """The page about the ready-made artifacts."""
     yield NOTE
-    yield "# Artifacts that come with the package\n"
+    yield "# Ready-made artifacts\n"
     yield (
         'An agent makes one by its name: `makeArtifact("wheels", "ArtCmdVel", [rate(5)], Id)`. The names of the thesis, '
-        "such as `jason.architecture.ArtCmdVel`, mean the same. Outputs are marked with a minus sign. In another project's "
-        "folder, `jacaros describe NAME` tells the same of its own artifacts. A robot "
-        "with other topics, services and actions needs no class: a [mapping file](mapping.md) will do, and those of some "
-        "robots come [with the package](navigation.md), too.\n"
+        "such as `jason.architecture.ArtCmdVel`, also work. A minus sign marks an output. `jacaros describe NAME` shows "
+        "the same for the artifacts of your own project. For a robot with other topics, services and actions, write a "
+        "[mapping file](mapping.md) instead of a class; some are [shipped with JaCaROS](navigation.md).\n"
     )
     yield READING
     yield BAD_MESSAGES
@@ -227,7 +222,7 @@ def _operations(artifact_type: type[Artifact]) -> Iterator[str]:
         own = [each for each in own if each.usage not in inherited]
         yield f"It has all operations of [{shared.__name__}](#{shared.__name__.lower()}).\n"
     if own:
-        yield "| operation | what it does |\n|---|---|"
+        yield "| operation | effect |\n|---|---|"
         rows = [
             f"| `{_cell(each.usage)}` | {_cell(_prose(each.text))} |"
             for each in sorted(own, key=lambda o: o.usage)
@@ -236,12 +231,12 @@ def _operations(artifact_type: type[Artifact]) -> Iterator[str]:
 
 
 def _shared_with(artifact_type: type[Artifact]) -> type[Artifact] | None:
-    """The nearest ready-made artifact that it extends."""
+    """The nearest ready-made artifact that *artifact_type* extends."""
     return next((each for each in artifact_type.__mro__[1:] if each.__name__ in BUILT_IN), None)
 
 
 def _documentation(artifact_type: type[Artifact]) -> Iterator[str]:
-    """The docstring of a class as Markdown; what is for authors of artifacts only is left out."""
+    """The docstring of a class as Markdown, without the parts for authors of artifacts."""
     for part in inspect.cleandoc(artifact_type.__doc__ or "").split("\n\n"):
         head, _, rest = part.partition("\n")
         if head in ("Attributes:",) or part.startswith("A subclass"):
@@ -254,7 +249,7 @@ def _documentation(artifact_type: type[Artifact]) -> Iterator[str]:
 
 
 def _entries(text: str) -> Iterator[str]:
-    """The entries of a section: lines that are indented further belong to the entry before."""
+    """The entries of a section. Indented lines continue the entry before."""
     entries: list[str] = []
     for line in textwrap.dedent(text).splitlines():
         if line.startswith(" ") and entries:
@@ -267,7 +262,7 @@ def _entries(text: str) -> Iterator[str]:
 
 
 def _prose(text: str) -> str:
-    """From the marks of docstrings to those of Markdown."""
+    """Convert the markup of docstrings to Markdown."""
     text = re.sub(r"``([^`]+)``", r"`\1`", text).replace(".  ", ". ")
     for name, link in LINKS.items():
         text = text.replace(f"`{name}`", link)
