@@ -24,40 +24,6 @@ from jacaros.terms.functions import ARITIES
 
 ROOT = Path(__file__).resolve().parent.parent
 NOTE = "<!-- Written by tools/make_reference.py from the code; change it there. -->\n"
-READING = """## Reading sensors
-
-Artifacts that show the values of a sensor take these options. By default, every message with a new value becomes an event.
-
-| option | meaning |
-|---|---|
-| `mode(verbose)` | update on messages (default) |
-| `mode(on_demand)` | update only when an operation such as `getCurrentOdom` asks for it |
-| `rate(Hz)` | maximum updates per second. The newest value is published after the pause, so the last message of a burst can be late but is never lost |
-| `dead_band(D)` | ignore values whose numbers differ by at most D from the last published ones; a list has one entry per number. Equal values never cause an update |
-| `latest_only(true)` | newest-only delivery: while an agent still handles the previous value, keep only the newest, so that a slow agent reacts to the present. Default for values that are states; `latest_only(false)` delivers all |
-| `expire(S)` | remove the property after S seconds without a message, until the next one. The property then also does not exist before the first message |
-
-A value with NaN or infinity is never published; see [bad messages](#bad-messages).
-"""
-BAD_MESSAGES = """## Bad messages
-
-Robot artifacts validate their messages. They report a bad message in the log and with the signal
-`bad_message(Topic,Why)`, on its first, 10th, 100th … occurrence.
-
-| Why | problem | the message is |
-|---|---|---|
-| `not_finite(What)` | a number is NaN or infinite; What is its field, or the property | dropped |
-| `wrong_frame(Frame)` | it is in another frame than the messages before, or than the option `frame` | dropped |
-| `out_of_order(S)` | its stamp is S seconds older than that of an earlier message | dropped |
-| `clock_jumped(S)` | all stamps are S seconds older than before: the sender's clock was set back | used |
-| `stamp_off(S)` | its stamp differs by S seconds (10 or more) from the agents' clock; negative: in the past | used |
-| `late(S)` | its delay is S seconds (0.5 or more) longer than that of earlier messages | used, but not for driving |
-| `out_of_range(What)` | a number is impossible, such as a negative charge | dropped |
-
-If odometry contains NaN, a motion stops the robot immediately. It fails with `no_odometry(S)` if this lasts, or if
-odometry continues in another frame, where the goal would be another place. A laser beam without an echo is not a bad
-message, whatever value the driver uses for it. See also [when things go wrong](../how-to/when_things_go_wrong.md).
-"""
 LINKS = {
     "ReadingPolicy": "[reading sensors](#reading-sensors)",
     "WheeledArtifact": "[all artifacts that drive](#all-artifacts-that-drive)",
@@ -196,14 +162,7 @@ def artifacts() -> Iterator[str]:
     """The page about the ready-made artifacts."""
     yield NOTE
     yield "# Ready-made artifacts\n"
-    yield (
-        'An agent makes one by its name: `makeArtifact("wheels", "ArtCmdVel", [rate(5)], Id)`. The names of the thesis, '
-        "such as `jason.architecture.ArtCmdVel`, also work. A minus sign marks an output. `jacaros describe NAME` shows "
-        "the same for the artifacts of your own project. For a robot with other topics, services and actions, write a "
-        "[mapping file](mapping.md) instead of a class; some are [shipped with JaCaROS](navigation.md).\n"
-    )
-    yield READING
-    yield BAD_MESSAGES
+    yield (ROOT / "tools" / "artifacts.md").read_text(encoding="utf-8")
     yield "## All artifacts for robots\n"
     yield from _documentation(RosArtifact)
     yield "## All artifacts that drive\n"
