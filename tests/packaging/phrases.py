@@ -16,8 +16,8 @@ ROOT = Path(__file__).parents[2]
 
 INSTEAD = {
     r"(?:is|are|was|were|be|been|being|gets?) (?:\w+ )?told": "log, warn, report, raise, notify: name the actor",
-    r"(?:is|are|was|were) no (?!longer\b|more than\b)": "is not a, does not exist, unknown",
-    r"(?:is|are|was|were) none": "is not one, does not exist, is invalid",
+    r"(?<!there )(?:is|are|was|were) no(?! longer\b| more\b| matter\b|[.,:;)`\'\"])": "is not a, does not exist, unknown",
+    r"(?-i:(?:is|are|was|were) none)": "is not one, does not exist, is invalid",
     r"that there (?:is|are) not": "unknown",
     r"(?:whoever|nobody|somebody|everybody)": "you, the caller, no agent, every agent",
     r"who(?:ever)? wants": "to …",
@@ -41,7 +41,9 @@ INSTEAD = {
 }
 """Patterns of phrases, and what to write instead."""
 
-PHRASES = re.compile("|".join(rf"(?P<p{n}>\b{pattern}(?!\w))" for n, pattern in enumerate(INSTEAD)))
+PHRASES = re.compile(
+    "|".join(rf"(?P<p{n}>\b{pattern}(?!\w))" for n, pattern in enumerate(INSTEAD)), re.IGNORECASE
+)
 
 TEXTS = {".md", ".py", ".asl", ".jcm", ".mas2j", ".yaml", ".toml", ".js", ".html", ".css", ".sh", ".cff"}
 
