@@ -20,8 +20,8 @@ from jacaros.bdi.rules import (
     plan_changes,
     plan_terms,
     preemption,
-    pursuits,
     query,
+    supervised_goals,
     supervision,
     waits,
 )
@@ -208,7 +208,7 @@ class Mind(Circumstance):
         kind = trigger("+", "!", symbol)
         event = ((kind, *arguments), None, own_annotations(annotations), goal_cause)
         needs.note(self, event[2])
-        pursuits.adopt(self, event)
+        supervised_goals.adopt(self, event)
         self.architecture.ready()
 
     def run(self, fuel: int) -> bool:
@@ -349,7 +349,7 @@ class Mind(Circumstance):
         """A goal that is posted with annotations."""
         annotations = own_annotations(items, tail)
         needs.note(self, annotations)
-        return Posted(goal, annotations) if separate else pursuits.posted(self, goal, annotations)
+        return Posted(goal, annotations) if separate else supervised_goals.posted(self, goal, annotations)
 
     def goal_from(self, operator: str, kind: str, term: Term, separate: bool = False) -> Goal | Posted:
         """The goal that a term denotes.
@@ -368,7 +368,7 @@ class Mind(Circumstance):
         if kind != "!":
             return Posted(goal, annotations)
         needs.note(self, annotations)
-        return Posted(goal, annotations) if separate else pursuits.posted(self, goal, annotations)
+        return Posted(goal, annotations) if separate else supervised_goals.posted(self, goal, annotations)
 
     def test_goal_from(self, term: Term) -> Goal | Posted:
         """The test goal for a query known only at run time; fails without plans for it."""
@@ -385,7 +385,7 @@ class Mind(Circumstance):
             annotations, goal = goal.annotations, goal.goal
         current = self.current
         cause = self.cause_now() or (current.cause if current else None)
-        adopt = meta_events.post_new_goal if annotations is BY_SELF else pursuits.adopt
+        adopt = meta_events.post_new_goal if annotations is BY_SELF else supervised_goals.adopt
         adopt(self, (apart(goal), None, annotations, cause))
 
     def begin_act(

@@ -21,7 +21,7 @@ from jacaros.bdi.state.belief_base import take_away
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.event import EVENT_INTENTION
 from jacaros.bdi.state.intention import Intention
-from jacaros.bdi.state.supervision import SUPERVISION, Pursuit, is_supervision
+from jacaros.bdi.state.supervision import SUPERVISION, GoalSupervision, is_supervision
 from jacaros.bdi.state.waiting import TimedWait
 from jacaros.terms.values import SOURCE_PERCEPT, String, atom, functor
 
@@ -157,18 +157,18 @@ def _wait_again(mind: Mind, held: dict[str, Any]) -> None:
     for intention in mind.alive.values():
         if isinstance(intention.waiting, TimedWait):
             intention.waiting.began -= set_back
-    for pursuit in _pursuits(mind):
-        pursuit.began -= set_back
+    for supervision in _goal_supervisions(mind):
+        supervision.began -= set_back
     for alarm in mind.waits.alarms.values():
         alarm.due -= set_back
         start_alarm(mind, alarm, max(0.0, alarm.due - now))
 
 
-def _pursuits(mind: Mind) -> set[Pursuit]:
+def _goal_supervisions(mind: Mind) -> set[GoalSupervision]:
     """The pursuits of goals, each once: the branches of a fork share them."""
     frames = (frame for intention in mind.alive.values() for frame in intention.frames)
     held = (frame[SUPERVISION] for frame in frames if is_supervision(frame))
-    return {each for each in held if isinstance(each, Pursuit)}
+    return {each for each in held if isinstance(each, GoalSupervision)}
 
 
 def knowledge(agent: Circumstance) -> dict[str, Any]:

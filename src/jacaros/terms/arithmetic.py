@@ -60,7 +60,7 @@ def _evaluate(term: Term) -> Term:
     try:
         operands = [settle(a) for a in term[1:]]
     except RecursionError:
-        return _evaluate_deep(term)
+        return _evaluate_iteratively(term)
     return _apply(term, operands)
 
 
@@ -68,7 +68,7 @@ _TOO_MANY = 1_000_000
 """Operations that wait for their operands at the same time."""
 
 
-def _evaluate_deep(term: Term) -> Term:
+def _evaluate_iteratively(term: Term) -> Term:
     """The value of arithmetic that is nested too deeply for Python's stack; calls of functions inside stay as they are.
 
     Raises:

@@ -11,7 +11,7 @@ from operator import itemgetter, ne
 from typing import Any
 
 from jacaros.terms.arithmetic import settle
-from jacaros.terms.deep import MANY_TURNS
+from jacaros.terms.iterative import MANY_TURNS
 from jacaros.terms.values import (
     ARITHMETIC,
     CONS,
@@ -88,7 +88,7 @@ def compare(left: Term, right: Term) -> int:
             return 0
     except RecursionError:
         pass
-    return _compare_deep(left, right)
+    return _compare_iteratively(left, right)
 
 
 def _compare_plain(left: Term, right: Term) -> int:
@@ -108,7 +108,7 @@ def _compare_plain(left: Term, right: Term) -> int:
     return int(first.arity - second.arity)
 
 
-def _compare_deep(left: Term, right: Term) -> int:
+def _compare_iteratively(left: Term, right: Term) -> int:
     """`compare` of terms that are nested too deeply for Python's stack, or without end."""
     todo: list[Any] = [(left, right)]
     met: set[tuple[int, int]] = set()

@@ -5,7 +5,7 @@ from typing import Any
 
 from jacaros.terms import values
 from jacaros.terms.arithmetic import settle
-from jacaros.terms.deep import Turns, rebuild
+from jacaros.terms.iterative import Turns, rebuild
 from jacaros.terms.operators import BINARY
 from jacaros.terms.order import annotation_set, compare
 from jacaros.terms.values import (

@@ -8,7 +8,7 @@ subset of those of the right one.
 from collections.abc import Iterator
 
 from jacaros.terms.arithmetic import settle
-from jacaros.terms.deep import MANY_TURNS
+from jacaros.terms.iterative import MANY_TURNS
 from jacaros.terms.negation import positive_form, qualify
 from jacaros.terms.order import annotation_set
 from jacaros.terms.plans import TWINS
@@ -121,7 +121,7 @@ def unify(left: Term, right: Term, trail: Trail) -> bool:  # noqa: C901 - the in
             raise
     trail.deep = True
     try:
-        return _unify_deep(left, right, trail)
+        return _unify_iteratively(left, right, trail)
     finally:
         trail.deep = False
 
@@ -137,7 +137,7 @@ def _unify_lists(left: List, right: List, trail: Trail) -> bool:
     return all(unify(a, b, trail) for a, b in zip(left.elements(), right.elements(), strict=True))
 
 
-def _unify_deep(left: Term, right: Term, trail: Trail) -> bool:
+def _unify_iteratively(left: Term, right: Term, trail: Trail) -> bool:
     """`unify` of terms that are nested too deeply for Python's stack, or without end.
 
     Raises:

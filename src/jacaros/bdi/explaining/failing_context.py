@@ -29,8 +29,8 @@ from jacaros.bdi.state.plan import Plan
 from jacaros.bdi.state.rule import Answers, Rule
 from jacaros.bdi.state.triggers import Goal
 from jacaros.terms.arithmetic import RUNNING
-from jacaros.terms.deep import CyclicTerm, excerpt
 from jacaros.terms.functions import FUNCTIONS
+from jacaros.terms.iterative import CyclicTerm, excerpt
 from jacaros.terms.operators import ArithmeticFault
 from jacaros.terms.substitution import resolve
 from jacaros.terms.text import text

@@ -11,7 +11,7 @@ from jacaros.bdi.state.intention import GOAL, PLAN, STEP, Frame
 from jacaros.bdi.state.literals import EventAnnotations, annotations_of_event, literal_of
 from jacaros.bdi.state.plan import Plan, StepInfo
 from jacaros.bdi.state.triggers import Goal
-from jacaros.terms.deep import CyclicTerm, excerpt
+from jacaros.terms.iterative import CyclicTerm, excerpt
 from jacaros.terms.operators import ArithmeticFault
 from jacaros.terms.order import annotation_set
 from jacaros.terms.substitution import resolve

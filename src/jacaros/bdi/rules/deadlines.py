@@ -10,7 +10,7 @@ from jacaros.bdi.state.intention import ANNOTATIONS, GOAL, SERIAL, Intention
 from jacaros.bdi.state.literals import EventAnnotations
 from jacaros.bdi.state.supervision import (
     SUPERVISION,
-    Pursuit,
+    GoalSupervision,
     Supervision,
     is_pause,
     is_supervision,
@@ -51,7 +51,7 @@ def _fail_late(agent: Circumstance, supervision: Supervision, number: int, reaso
         index = None if intention.dropped else place_of(intention, supervision)
         if index is None:
             continue
-        if isinstance(supervision, Pursuit):
+        if isinstance(supervision, GoalSupervision):
             _fail_goal(agent, intention, index, nowhere(*reason))
         elif index + 1 < len(intention.frames):
             interrupt_plan(agent, intention, index, nowhere(*reason))
@@ -60,8 +60,8 @@ def _fail_late(agent: Circumstance, supervision: Supervision, number: int, reaso
 def _fail_goal(agent: Circumstance, intention: Intention, index: int, reason: FailureReason) -> None:
     """The goal whose pursuit is at *index* fails, whatever its plans are at; it is not tried again."""
     frame = intention.frames[index]
-    pursuit: Pursuit = frame[SUPERVISION]
-    goal: Goal = (pursuit.kind, *frame[SUPERVISION + 1 :])
+    supervised: GoalSupervision = frame[SUPERVISION]
+    goal: Goal = (supervised.kind, *frame[SUPERVISION + 1 :])
     annotations: EventAnnotations = frame[ANNOTATIONS]
     number = -1
     frames = intention.frames

@@ -17,7 +17,7 @@ from jacaros.bdi.state.plan import Fail, Failure, StepInfo
 from jacaros.bdi.state.supervision import SUPERVISED
 from jacaros.bdi.state.triggers import Goal
 from jacaros.errors import InternalError
-from jacaros.terms.deep import CyclicTerm
+from jacaros.terms.iterative import CyclicTerm
 from jacaros.terms.operators import ArithmeticFault
 from jacaros.terms.substitution import ATOMIC, resolve
 from jacaros.terms.text import display, text

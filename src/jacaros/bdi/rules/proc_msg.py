@@ -7,9 +7,9 @@ from jacaros.asl.diagnostics import AslError
 from jacaros.asl.lowering import fresh_names, lower_plan
 from jacaros.bdi.rules import belief_update, failure, waits
 from jacaros.bdi.rules.plan_terms import relevant_plans
-from jacaros.bdi.rules.pursuits import adopt
 from jacaros.bdi.rules.query import solve_formula
 from jacaros.bdi.rules.searching import run
+from jacaros.bdi.rules.supervised_goals import adopt
 from jacaros.bdi.state.belief_base import is_source, parts
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.speech_act import SpeechAct

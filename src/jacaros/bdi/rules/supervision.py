@@ -13,8 +13,8 @@ from jacaros.bdi.state.supervision import (
     PAUSE,
     SUPERVISED,
     SUPERVISION,
+    GoalSupervision,
     PlanGuard,
-    Pursuit,
     Supervision,
     is_supervision,
     supervisions_below,
@@ -64,7 +64,7 @@ def end_below(agent: Circumstance, intention: Intention, index: int) -> None:
 def end_periods(intention: Intention, index: int) -> None:
     """The goal at *index*, or the one about to get a frame there, is not pursued again after its present pursuit."""
     for supervision in supervisions_below(intention, index):
-        if isinstance(supervision, Pursuit):
+        if isinstance(supervision, GoalSupervision):
             supervision.period = None
 
 
@@ -92,7 +92,7 @@ def has_attempt(intention: Intention, index: int) -> bool:
 
 
 def _has_attempt(supervision: Supervision) -> bool:
-    return isinstance(supervision, Pursuit) and supervision.failed < supervision.retries
+    return isinstance(supervision, GoalSupervision) and supervision.failed < supervision.retries
 
 
 def fails(agent: Circumstance, intention: Intention, index: int, reason: FailureReason) -> bool:
@@ -101,7 +101,7 @@ def fails(agent: Circumstance, intention: Intention, index: int, reason: Failure
         if _has_attempt(supervision):
             return True
         end(agent, supervision)
-        if isinstance(supervision, Pursuit) and supervision.retries:
+        if isinstance(supervision, GoalSupervision) and supervision.retries:
             reason.add((ATTEMPTS, float(supervision.failed + 1)))
         elif isinstance(supervision, PlanGuard) and supervision.lost is not None:
             reason.add(*supervision.lost.others())
@@ -118,16 +118,16 @@ def try_again(
 ) -> Posted | None:
     """Give up the plan at *index* and post its goal again; None when it is posted later."""
     frames = intention.frames
-    while not isinstance(pursuit := frames[index - 1][SUPERVISION], Pursuit):
+    while not isinstance(supervised := frames[index - 1][SUPERVISION], GoalSupervision):
         index -= 1
     end_above(agent, intention, index)
     del frames[index:]
     if agent.atomic is intention and not intention.is_atomic():
         agent.atomic, agent.atomic_over = None, False
-    pursuit.failed += 1
+    supervised.failed += 1
     if agent.features.meta:
         meta_events.goal_state(agent, goal, annotations, "retried", atom(error))
-    delay = pursuit.back_off * 2.0 ** (pursuit.failed - 1)
+    delay = supervised.back_off * 2.0 ** (supervised.failed - 1)
     if delay <= 0:
         return Posted(goal, annotations)
     wait_for(agent, intention, (goal, annotations), delay, post_again, structure("retry", delay * 1000))

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from jacaros.asl import nodes
 from jacaros.bdi.actions.internal_action import ActionError
 from jacaros.bdi.explaining.failure_reason import FailureReason
-from jacaros.bdi.rules.pursuits import begin_watched
+from jacaros.bdi.rules.supervised_goals import begin_watched
 from jacaros.bdi.state.belief_base import parts
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.intention import GOAL, Frame, Intention

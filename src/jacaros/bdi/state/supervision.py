@@ -33,7 +33,7 @@ class Supervision:
         self.alarm: Alarm | None = None
 
 
-class Pursuit(Supervision):
+class GoalSupervision(Supervision):
     """How a goal is pursued: ``!g[within(Ms), retry(N, Ms), every(Ms)]``.
 
     Attributes:

@@ -4,7 +4,7 @@ import re
 
 from jacaros.bdi.state.literals import EventAnnotations, literal_of
 from jacaros.bdi.state.triggers import Goal
-from jacaros.terms.deep import CyclicTerm, excerpt
+from jacaros.terms.iterative import CyclicTerm, excerpt
 from jacaros.terms.operators import ArithmeticFault
 from jacaros.terms.substitution import is_flat
 from jacaros.terms.text import text

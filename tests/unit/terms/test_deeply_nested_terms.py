@@ -5,7 +5,7 @@ from collections.abc import Callable
 import pytest
 
 from jacaros.terms.collections import MapValue, SetValue
-from jacaros.terms.deep import CyclicTerm
+from jacaros.terms.iterative import CyclicTerm
 from jacaros.terms.operators import BINARY
 from jacaros.terms.order import annotation_set, compare, sorted_terms
 from jacaros.terms.substitution import equal, free_variables, is_ground, is_key, rename, resolve
