@@ -1,1 +1,1 @@
-"""The front end: AgentSpeak text to syntax trees, with messages about what is wrong."""
+"""The front end: from AgentSpeak text to syntax trees and diagnostics."""

@@ -1,6 +1,6 @@
-"""Plan bodies: steps, control statements, forks and groups.
+"""Parse plan bodies: steps, control statements, forks and groups.
 
-Control statements can also be written as the internal actions that they are in Jason: ``.foreach(F, { steps })``.
+Control statements can also be written as Jason's internal actions: ``.foreach(F, { steps })``.
 """
 
 from typing import Final, NoReturn
@@ -18,18 +18,18 @@ _STEP_STARTS: Final = _CONTROL | frozenset(
 )
 _CHANGES: Final = frozenset({"+", "-", "-+", "++", "--", "+<", "+>", "-++"})
 _ENDS: Final = frozenset({".", "}", ")", "]", "{", "<-", "end", "error"})
-"""What may stand behind a body, and what is reported better where it is found."""
+"""Tokens that may follow a body, and tokens that are reported better by the caller."""
 _FORMULA_AFTER_GROUP: Final = frozenset(BINARY) - {"+", "-"}
-"""What shows that the round brackets before it held a formula and not a group of steps."""
+"""Operators that show that the preceding round brackets held a formula, not a group of steps."""
 
 
 class BodyParser(TermParser):
-    """Reads what stands behind ``<-`` and in the braces of statements."""
+    """Parse what follows ``<-`` and the blocks of statements."""
 
     def body(self) -> nodes.Body:
-        """Steps up to what cannot be part of a body; a last ``;`` is allowed.
+        """Parse steps up to the first token that cannot be part of a body; a trailing ``;`` is allowed.
 
-        After an error reading goes on behind the next ``;`` of the body.
+        After an error, parsing resumes after the next ``;`` of the body.
         """
         start = self.token
         nesting = self.nesting
@@ -47,16 +47,16 @@ class BodyParser(TermParser):
         return nodes.Body(tuple(steps), span=self.span_from(start) if steps else self.span_of(start))
 
     def _separator(self) -> bool:
-        """Take what stands between two steps; False at the end of the body."""
+        """Consume the separator of two steps; return False at the end of the body."""
         token = self.token
         if token.kind == ";":
             self.advance()
             if self.token.kind == ";":
-                self.report("empty-step", "there is no step between the two ';'")
+                self.report("empty-step", "empty step between two `;`")
                 self.advance()
             return True
         if token.kind == ",":
-            self.report("wrong-separator", "steps are separated by ';', not by ','")
+            self.report("wrong-separator", "expected `;` between steps, found `,`")
             self.advance()
             return True
         if self._after_statement():
@@ -68,18 +68,19 @@ class BodyParser(TermParser):
             self.fail(slip.code, slip.message, self._blame(slip), slip.help)
         self.report(
             "missing-semicolon",
-            "a ';' is missing before this step",
-            help="steps are separated by ';', the last one is followed by '.'",
+            "missing `;` before this step",
+            help="separate steps with `;` and end the last one with `.`",
         )
         return True
 
     def _require_end(self) -> None:
-        """Report what can neither go on with a body nor end it."""
+        """Report a token that can neither continue nor end a body."""
         if self.token.kind not in _ENDS and not self.token.first and not self.at_plan():
-            self.unexpected("';' or '.'")
+            self.unexpected("`;` or `.`")
 
     def _next_statement(self) -> bool:
-        """After an error go behind the next ``;`` of this body; False before the bracket that closes the body.
+        """Recover from an error: skip past the next ``;`` of this body; return False at the bracket that
+        closes the body.
 
         Raises:
             SyntaxPanic: the clause ends first.
@@ -103,16 +104,16 @@ class BodyParser(TermParser):
         raise SyntaxPanic
 
     def _torn_statement(self) -> bool:
-        """Pass a string without an end; whether the next line goes on with a statement.
+        """Skip an unterminated string; return whether the next line continues with a statement.
 
-        The rest of the line has got lost in the string, with the ``;`` and brackets that stood there.
+        The string has swallowed the rest of its line, including any ``;`` and brackets in it.
         """
         self.advance()
         self.torn = True
         return self.token.first and self.token.kind in _STEP_STARTS and not self.at_plan()
 
     def _after_statement(self) -> bool:
-        """Whether a control statement has just ended: behind it the ``;`` may be left out."""
+        """Return whether a control statement has just ended: the ``;`` after it is optional."""
         return self._statement_end == self.index
 
     _statement_end = -1
@@ -126,7 +127,7 @@ class BodyParser(TermParser):
         return self._fork("|||", "or")
 
     def _fork(self, symbol: str, operator: str) -> list[nodes.Step]:
-        """Branches joined by *symbol*; ``|&|`` binds tighter than ``|||``."""
+        """Parse branches joined by *symbol*; ``|&|`` binds tighter than ``|||``."""
         start = self.token
         steps = self._branch(symbol)
         if self.token.kind != symbol:
@@ -164,7 +165,7 @@ class BodyParser(TermParser):
         opener = self.advance()
         self.enter()
         if self.token.kind == ")":
-            self.report("empty-step", "the brackets hold no step", self.span_of(opener))
+            self.report("empty-step", "expected a step, found empty brackets", self.span_of(opener))
         group = self.body()
         self.leave()
         self.close(opener)
@@ -192,14 +193,14 @@ class BodyParser(TermParser):
         return step
 
     def _if(self, start: Token, condition: nodes.Term, then: nodes.Body) -> nodes.If:
-        """The rest of an ``if``; the chain of ``elif`` is read in a loop and folded from its end."""
+        """Parse the rest of an ``if``. A loop reads the chain of ``elif``, then folds it from the end."""
         cases = [(start, condition, then)]
         otherwise: nodes.Body | None = None
         while self.token.kind in ("elif", "else"):
             word = self.advance()
             if word.kind == "else" and self.token.kind == "if":
                 self.report(
-                    "else-if", "'else if' is written elif", self.span_of(word), "elif (condition) { ... }"
+                    "else-if", "write `elif` for `else if`", self.span_of(word), "elif (condition) { ... }"
                 )
                 self.advance()
             elif word.kind == "else":
@@ -218,8 +219,8 @@ class BodyParser(TermParser):
         if opener.kind != "(":
             self.fail(
                 "missing-condition",
-                f"'(' and the condition of '{word.kind}' is expected, not '{opener.text}'",
-                help=f"{word.kind} (condition) {{ steps }}",
+                f"expected `(` and the condition of `{word.kind}`, found {self.found()}",
+                help=f"write `{word.kind} (condition) {{ steps }}`",
             )
         self.advance()
         condition = self.condition()
@@ -229,7 +230,7 @@ class BodyParser(TermParser):
     def _block(self, word: Token) -> nodes.Body:
         opener = self.token
         if opener.kind != "{":
-            self.unexpected(f"'{{' and the steps of '{word.kind}'", "missing-block")
+            self.unexpected(f"`{{` and the steps of `{word.kind}`", "missing-block")
         self.advance()
         body = self.body()
         self.close(opener)
@@ -238,7 +239,7 @@ class BodyParser(TermParser):
     # steps
 
     def _step(self) -> nodes.Step | None:
-        """One simple step; None for ``true``, which does nothing."""
+        """Parse one simple step; return None for ``true``, which does nothing."""
         start = self.token
         kind = start.kind
         if kind in ("!", "!!"):
@@ -251,9 +252,9 @@ class BodyParser(TermParser):
             if isinstance(formula, nodes.InternalAction):
                 self.report(
                     "tested-action",
-                    f"'{formula.name}' is an internal action and no test goal",
+                    f"internal action `{formula.name}` cannot be a test goal",
                     formula.span,
-                    "write it without '?'",
+                    "remove the `?`",
                 )
             return nodes.Test(formula, span=self.span_from(start))
         if kind in ("+", "-", "^"):
@@ -261,8 +262,8 @@ class BodyParser(TermParser):
         if kind in ("else", "elif"):
             self.fail(
                 "else-without-if",
-                f"'{kind}' without an 'if' before it",
-                help="'if' and 'else' are not separated by ';'",
+                f"`{kind}` without `if`",
+                help="remove the `;` before it",
             )
         return self._formula_step(self.expression())
 
@@ -271,7 +272,7 @@ class BodyParser(TermParser):
             self.unexpected("a goal")
         goal = self.operand(formula=True)
         if not isinstance(goal, nodes.Literal | nodes.Variable):
-            self.fail("wrong-goal", "an internal action cannot be a goal", goal.span, "write it without '!'")
+            self.fail("wrong-goal", "an internal action cannot be a goal", goal.span, "remove the `!`")
         return goal
 
     def _belief_change(self) -> nodes.BeliefChange:
@@ -282,17 +283,17 @@ class BodyParser(TermParser):
         if operator not in _CHANGES:
             self.fail(
                 "wrong-belief-change",
-                f"there is no '{operator}'",
+                f"unknown operator `{operator}`",
                 self.span_from(start),
-                "beliefs are changed by +b, -b and -+b",
+                "change beliefs with `+b`, `-b` or `-+b`",
             )
         if self.token.kind in ("!", "?", "!!"):
             sign = self.token.kind
             self.report(
                 "trigger-in-body",
-                f"'{operator}{sign}' begins a plan and is no step of a body",
+                f"expected a step, found the trigger `{operator}{sign}`",
                 self.span_from(start).to(self.span_of(self.token)),
-                f"a goal is posted by {sign}g, and dropped by .drop_desire(g)",
+                f"post a goal with `{sign}g`; drop it with `.drop_desire(g)`",
             )
             self.advance()
         if self.token.kind not in ("atom", "variable", "~", "::", "{"):
@@ -303,11 +304,13 @@ class BodyParser(TermParser):
             operand = nodes.PlanTerm(plan, span=operand.span)
         allowed = (nodes.Literal, nodes.Variable, nodes.PlanTerm, nodes.RuleTerm)
         if not isinstance(operand, allowed):
-            self.report("wrong-belief-change", f"'{operator}' needs a belief, a plan or a rule", operand.span)
+            self.report(
+                "wrong-belief-change", f"`{operator}` expects a belief, a plan or a rule", operand.span
+            )
         return nodes.BeliefChange(operator, operand, span=self.span_from(start))
 
     def _formula_step(self, term: nodes.Term) -> nodes.Step | None:
-        """An expression as a step: action, internal action, relation or variable."""
+        """Convert an expression to a step: an action, an internal action, a relation or a variable."""
         if isinstance(term, nodes.Literal):
             if term.functor == "true" and term.span is not None and not term.arguments:
                 return None
@@ -326,18 +329,20 @@ class BodyParser(TermParser):
         return self._no_step(term)
 
     def _no_step(self, term: nodes.Term) -> NoReturn:
-        self.fail("not-a-step", "this is a term and no step of a body", term.span)
+        self.fail("not-a-step", "expected a step, found a term", term.span)
 
     def _condition_as_action(self, term: nodes.Connective) -> nodes.ExternalAction:
-        """A bare condition is an action of that name in the language; people mean a test."""
+        """Warn about a bare condition: the language reads it as an action, but a test is usually meant."""
         word = term.operator
         if term.span is not None:
             help = (
-                "to test the condition write ?(not f)" if word == "not" else f"to test it write ?(a {word} b)"
+                "to test the condition, write `?(not f)`"
+                if word == "not"
+                else f"to test the condition, write `?(a {word} b)`"
             )
             self.warn(
                 "condition-as-step",
-                f"'{word}' here is an action of the environment and no test",
+                f"`{word}` is an action of the environment here, not a test",
                 term.span,
                 help,
             )
@@ -345,11 +350,11 @@ class BodyParser(TermParser):
 
 
 CONTROL: Final = frozenset({".if_then_else", ".foreach", ".loop", ".fork", ".join"})
-"""The internal actions of Jason that are statements here, and what waits for their branches."""
+"""Jason's internal actions that are statements here, and the one that waits for their branches."""
 
 
 def control_statement(action: nodes.InternalAction) -> nodes.Step | None:
-    """The statement that an internal action means; None when it is none of these.
+    """Return the statement that an internal action stands for, or None if it is not a control statement.
 
     ``.if_then_else(F, {..}[, {..}])``, ``.foreach(F, {..})``, ``.loop(F, {..})``, ``.fork(and, {..}, {..})``.
     """

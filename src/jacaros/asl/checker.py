@@ -1,4 +1,4 @@
-"""Warnings about programs that can be run but probably do not do what is meant."""
+"""Warnings about programs that run but probably do not do what you mean."""
 
 from bisect import bisect_left
 from collections.abc import Mapping, Sequence
@@ -35,13 +35,13 @@ _LOOKED_AT: Final = (
 
 
 def check(program: nodes.Program, known: KnownActions, errors: Sequence[Diagnostic] = ()) -> list[Diagnostic]:
-    """Warnings and notes about *program*, in the order of the text.
+    """Return warnings and notes about *program*, in source order.
 
     Args:
-        program: what could be read.
-        known: the internal actions that it may use.
-        errors: what is wrong in it.  Clauses with errors are passed over, and so are the checks that need all
-            clauses, since what is missing may stand in those with errors.
+        program: the clauses that could be parsed.
+        known: the internal actions that the program may use.
+        errors: its syntax errors. Clauses with errors are skipped. So are the checks that need all clauses,
+            because a definition that seems to be missing may be in a clause with errors.
     """
     warnings = _mistakes(program, known, errors)
     for clause in _sound(program, errors):
@@ -54,14 +54,14 @@ def check(program: nodes.Program, known: KnownActions, errors: Sequence[Diagnost
 
 
 def check_for_run(program: nodes.Program, known: KnownActions) -> list[Diagnostic]:
-    """The warnings of `check` that are nearly always mistakes: what is a matter of style is left out."""
+    """Return the warnings of `check` that nearly always point to a mistake; matters of style are left out."""
     return sorted(dict.fromkeys(_mistakes(program, known, ())), key=place)
 
 
 def _mistakes(program: nodes.Program, known: KnownActions, errors: Sequence[Diagnostic]) -> list[Diagnostic]:
     clauses = _sound(program, errors)
     facts = [belief for belief in program.beliefs if not isinstance(belief, nodes.Rule)]
-    # One walk for all: a program may have many thousand beliefs.
+    # One walk for all checks: a program may have many thousands of beliefs.
     found = [node for node in walk(*facts, *clauses) if isinstance(node, _LOOKED_AT)]
     warnings = [
         *unknown_actions(program, found, known),
@@ -82,7 +82,7 @@ def _mistakes(program: nodes.Program, known: KnownActions, errors: Sequence[Diag
 
 
 def _sound(program: nodes.Program, errors: Sequence[Diagnostic]) -> list[nodes.Plan | nodes.Rule]:
-    """The plans and rules without errors in them."""
+    """Return the plans and rules without errors."""
     wrong: dict[int, list[int]] = {}
     for error in errors:
         if error.span is not None:
@@ -93,13 +93,13 @@ def _sound(program: nodes.Program, errors: Sequence[Diagnostic]) -> list[nodes.P
 
 
 def place(diagnostic: Diagnostic) -> tuple[str, int, int]:
-    """What diagnostics are sorted by: file, line, column."""
+    """Sort key of diagnostics: file, line, column."""
     span = diagnostic.span
     return ("", 0, 0) if span is None else (span.file.name, span.line, span.column)
 
 
 def _holds_any(span: Span | None, wrong: Mapping[int, Sequence[int]]) -> bool:
-    """Whether one of the lines with errors, sorted for each file, belongs to a clause."""
+    """Return whether a line with errors (sorted, by file) belongs to the clause."""
     lines = wrong.get(id(span.file)) if span is not None else None
     if span is None or lines is None:
         return False

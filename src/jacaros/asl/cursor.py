@@ -1,4 +1,4 @@
-"""The place of the parser in the tokens, and how it reports what is wrong there."""
+"""The parser's position in the tokens, and its error reporting."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -12,7 +12,7 @@ from jacaros.asl.source import SourceFile, Span
 from jacaros.terms.functions import is_function
 
 MAX_NESTING: Final = 150
-"""How deep brackets and statements may be nested: far more than people write, and safe for the call stack."""
+"""Maximum nesting of brackets and statements: far deeper than real programs, and safe for the call stack."""
 
 CLOSERS: Final = {"(": ")", "[": "]", "{": "}"}
 _MATCHING: Final = {closer: opener for opener, closer in CLOSERS.items()}
@@ -21,23 +21,23 @@ _MATCHING: Final = {closer: opener for opener, closer in CLOSERS.items()}
 _AFTER_TEAR: Final = frozenset(
     {"missing-dot", "missing-semicolon", "unclosed-bracket", "unopened-bracket", "mismatched-bracket"}
 )
-"""What need not be wrong in a clause of which a string without an end has taken a piece."""
+"""Errors that an unterminated string may cause in the rest of its clause; they are not reported."""
 
 _THESIS = "jason.architecture."
 """Package of the artifact classes in the programs of the JaCaROS thesis."""
 
 
 class SyntaxPanic(Exception):
-    """The clause cannot be read any further; what is wrong has been reported."""
+    """Raised when the rest of a clause cannot be parsed; the error has been reported."""
 
 
 @dataclass
 class Names:
-    """What all files of one program share: the numbers given out, and the functions that are registered.
+    """State shared by all files of one program: counters for unique names, and registered functions.
 
     Attributes:
-        functions: those that the program registers, with their numbers of arguments.
-        known: those of the project, with their least and greatest numbers of arguments.
+        functions: the functions that the program registers, with their numbers of arguments.
+        known: the functions of the project, with their minimum and maximum numbers of arguments.
         actions: internal actions by name.
     """
 
@@ -49,7 +49,9 @@ class Names:
     actions: Mapping[str, Declaration] = field(default_factory=dict)
 
     def is_function(self, name: str, arity: int) -> bool:
-        """Whether *name* with so many arguments is an arithmetic function: of the language, program or project."""
+        """Return whether *name* is an arithmetic function of the language, program or project with that
+        *arity*.
+        """
         if is_function(name, arity, self.functions):
             return True
         limits = self.known.get(name)
@@ -57,7 +59,7 @@ class Names:
 
 
 class Cursor:
-    """The tokens of one file and a place in them; collects the diagnostics."""
+    """The tokens of one file and a position in them; collects diagnostics."""
 
     def __init__(self, file: SourceFile, tokens: list[Token], diagnostics: list[Diagnostic]) -> None:
         self.file = file
@@ -68,17 +70,17 @@ class Cursor:
         self.nesting = 0
         self.torn = False
         self._clause_start = 0
-        # One error for a place is enough; what follows from it would only confuse.
+        # One error per position is enough: further ones follow from the first and would only confuse.
         self._blamed = {
             (diagnostic.span.line, diagnostic.span.column)
             for diagnostic in diagnostics
             if diagnostic.span is not None and diagnostic.span.file is file
         }
 
-    # places
+    # positions
 
     def advance(self) -> Token:
-        """Take the current token (the last one, of kind ``end``, is never passed)."""
+        """Consume and return the current token; the final ``end`` token is never passed."""
         token = self.token
         if token.kind != "end":
             self.index = index = self.index + 1
@@ -86,47 +88,47 @@ class Cursor:
         return token
 
     def peek(self) -> Token:
-        """The token behind the current one."""
+        """Return the token after the current one."""
         return self.tokens[self.index + 1]
 
     def previous(self) -> Token:
-        """The token before the current one."""
+        """Return the token before the current one."""
         return self.tokens[max(self.index - 1, 0)]
 
     def accept(self, kind: str) -> bool:
-        """Take the current token if it is of that *kind*."""
+        """Consume the current token if it is of that *kind*; return whether it was."""
         if self.token.kind != kind:
             return False
         self.advance()
         return True
 
     def span_of(self, token: Token) -> Span:
-        """The place of one token."""
+        """Return the span of one token."""
         return Span(self.file, token.line, token.column, token.line, token.end)
 
     def span_from(self, start: Token) -> Span:
-        """The stretch from *start* to the token taken last."""
+        """Return the span from *start* to the last consumed token."""
         last = self.tokens[self.index - 1] if self.index else start
         return Span(self.file, start.line, start.column, last.line, last.end)
 
     # nesting
 
     def enter(self) -> None:
-        """Go one level deeper into brackets or statements; a clause that is given up does not come back."""
+        """Enter a bracket or statement; raises SyntaxPanic if they are nested too deeply."""
         self.nesting += 1
         if self.nesting > MAX_NESTING:
             self.fail(
                 "nested-too-deeply",
-                "this is nested too deeply",
-                help=f"at most {MAX_NESTING} levels of brackets are read",
+                "nested too deeply",
+                help=f"use at most {MAX_NESTING} levels of brackets",
             )
 
     def leave(self) -> None:
-        """Come back from one level."""
+        """Leave a bracket or statement."""
         self.nesting -= 1
 
     def begin_clause(self) -> None:
-        """A clause begins here, at the outermost level."""
+        """Start a clause at the outermost level."""
         self.nesting = 0
         self.torn = False
         self._clause_start = self.index
@@ -141,7 +143,7 @@ class Cursor:
         help: str | None = None,
         opened: Span | None = None,
     ) -> None:
-        """Record an error, unless there is one for the same place; reading goes on."""
+        """Record an error, unless one is recorded for the same position; parsing continues."""
         if self.torn and code in _AFTER_TEAR:
             return
         span = span or self.span_of(self.token)
@@ -151,8 +153,10 @@ class Cursor:
             self.diagnostics.append(Diagnostic("error", message, span, help, code, opened))
 
     def forgive(self, code: str, message: str, span: Span, help: str | None = None) -> None:
-        """Record what Jason refuses and the JaCaROS thesis prints: a warning in programs that name the artifact
-        classes of the thesis, an error in all others."""
+        """Record syntax that Jason rejects but the JaCaROS thesis prints.
+
+        It is a warning in programs that name artifact classes of the thesis, and an error in all others.
+        """
         if any(_THESIS in token.text for token in self.tokens):
             self.warn(code, message, span, help)
         else:
@@ -163,61 +167,64 @@ class Cursor:
         self.diagnostics.append(Diagnostic("warning", message, span, help, code))
 
     def fail(self, code: str, message: str, span: Span | None = None, help: str | None = None) -> NoReturn:
-        """Record an error, unless the lexer already reported this token, and give up the statement."""
+        """Record an error, unless the lexer has already reported this token, and abandon the statement."""
         if self.token.kind != "error":
             self.report(code, message, span, help)
         raise SyntaxPanic
 
     def unexpected(self, wanted: str, code: str = "unexpected-token") -> NoReturn:
-        """The current token does not fit."""
+        """Fail at the current token; *wanted* describes what was expected."""
         token = self.token
         if token.kind == "end":
-            self.fail("unexpected-end", f"the file ends where {wanted} is expected")
+            self.fail("unexpected-end", f"expected {wanted}, found {self.found()}")
         slip = self.slip()
         if slip is not None:
             self.fail(slip.code, slip.message, self._blame(slip), slip.help)
-        self.fail(code, f"{wanted} is expected, not '{token.text}'")
+        self.fail(code, f"expected {wanted}, found {self.found()}")
+
+    def found(self) -> str:
+        """Describe the current token in a message."""
+        return "the end of the file" if self.token.kind == "end" else f"`{self.token.text}`"
 
     def slip(self) -> Slip | None:
-        """What is probably meant, when the current token does not fit."""
+        """Return the likely mistake if the current token is a known one."""
         return known_slip(self.tokens, self.index)
 
     def _blame(self, slip: Slip) -> Span:
         return self.span_of(slip.token or self.token)
 
     def close(self, opener: Token) -> None:
-        """Take the bracket that closes *opener*.  A wrong bracket is reported and taken for the right one."""
+        """Consume the bracket that closes *opener*. A bracket of another kind is reported and accepted."""
         closer = CLOSERS[opener.kind]
         token = self.token
         if token.kind == closer:
             self.advance()
             return
-        where = f"it was opened at line {opener.line}, column {opener.column}"
+        where = f"opened at line {opener.line}, column {opener.column}"
         if token.kind in _MATCHING:
             self.report(
                 "mismatched-bracket",
-                f"'{opener.kind}' is closed by '{token.kind}'",
-                help=f"{where}; close it with '{closer}'",
+                f"`{opener.kind}` is closed by `{token.kind}`",
+                help=f"close it with `{closer}`; it was {where}",
                 opened=self.span_of(opener),
             )
             if not self._closes_outer(opener) or self.peek().kind == token.kind:
                 self.advance()
             return
-        found = "the end of the file" if token.kind == "end" else f"'{token.text}'"
         slip = self.slip()
         if slip is not None:
             self.fail(slip.code, slip.message, self._blame(slip), slip.help)
         if token.kind != "error":
             self.report(
                 "unclosed-bracket",
-                f"'{opener.kind}' is not closed: '{closer}' is expected before {found}",
-                help=where,
+                f"unclosed `{opener.kind}`: expected `{closer}`, found {self.found()}",
+                help=f"close it with `{closer}`; it was {where}",
                 opened=self.span_of(opener),
             )
         raise SyntaxPanic
 
     def _closes_outer(self, opener: Token) -> bool:
-        """Whether the bracket here closes one that was opened before *opener* in this clause."""
+        """Return whether this bracket closes one that was opened before *opener* in this clause."""
         wanted = _MATCHING[self.token.kind]
         open_brackets: list[str] = []
         for token in self.tokens[self._clause_start : self.index]:
@@ -230,14 +237,14 @@ class Cursor:
         return wanted in open_brackets
 
     def unclosed_braces(self) -> int:
-        """How many ``{`` of this clause are open here."""
+        """Return the number of unclosed ``{`` in this clause."""
         kinds = [token.kind for token in self.tokens[self._clause_start : self.index]]
         return kinds.count("{") - kinds.count("}")
 
-    # looking ahead
+    # lookahead
 
     def after_brackets(self, index: int) -> int:
-        """The index behind the bracket that closes the one at *index* (or of the end of the file)."""
+        """Return the index after the bracket that closes the one at *index* (or the end of the file)."""
         depth = 0
         tokens = self.tokens
         while tokens[index].kind != "end":
@@ -252,7 +259,7 @@ class Cursor:
         return index
 
     def after_literal(self, index: int) -> int:
-        """The index behind the literal or variable at *index*, or *index* itself if there is none."""
+        """Return the index after the literal or variable at *index*, or *index* if there is neither."""
         tokens, start = self.tokens, index
         if tokens[index].kind == "::":
             index += 1
@@ -269,8 +276,11 @@ class Cursor:
         return index
 
     def at_plan(self, index: int | None = None) -> bool:
-        """Whether a plan begins at *index*: a label, a goal trigger that begins a line, or any trigger with a
-        context, a goal condition or a body behind it (a belief trigger alone looks like a step, ``+b(X)``).
+        """Return whether a plan begins at *index*.
+
+        A plan begins with a label, with a goal trigger at the start of a line, or with any trigger followed
+        by a
+        context, a goal condition or a body. A belief trigger alone looks like a step (``+b(X)``).
         """
         at = self.index if index is None else index
         token = self.tokens[at]

@@ -1,23 +1,23 @@
-"""What parser, checker, compiler and mind know of an internal action, apart from its code."""
+"""Declarations of internal actions, as the parser, checker, compiler and mind see them."""
 
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Declaration:
-    """What is declared of an internal action for readers of programs.
+    """What is known of an internal action without its code.
 
     Attributes:
-        arity: number of arguments, or least and most of them (None: any number).
-        suspends: it may suspend the intention, or acts on it: as a condition it is probably a mistake.
-        body_only: it acts or waits: it never holds as a condition, and contexts refuse those of the language.
-        condition: place of the argument that is a condition, counted from 0.
-        performative: place of the performative, for those that send messages; what they say is the last argument.
+        arity: number of arguments, or their minimum and maximum (None: any number).
+        suspends: it may suspend the intention, or acts on it; as a condition it is probably a mistake.
+        body_only: it acts or waits, so it never holds as a condition; contexts reject those of the language.
+        condition: index of the argument that is a condition.
+        performative: index of the performative, for actions that send messages; the last argument is the content.
         awaits: its arguments in braces are events that it waits for.
-        prints: it only shows its arguments.
-        brings_in: it brings in plans or agents that do not appear in the program.
-        changes_plans: it adds plans or removes them.
-        result_hint: how its author gives it one argument more, for the result; empty when it has all or is not in Python.
+        prints: it only prints its arguments.
+        brings_in: it adds plans or agents that do not appear in the program.
+        changes_plans: it adds or removes plans.
+        result_hint: how its author adds an argument for the result; empty for actions that have one or are not in Python.
     """
 
     arity: int | tuple[int, int | None] = (0, None)
@@ -33,16 +33,16 @@ class Declaration:
 
     @property
     def minimum(self) -> int:
-        """The least number of arguments."""
+        """The minimum number of arguments."""
         return self.arity if isinstance(self.arity, int) else self.arity[0]
 
     @property
     def maximum(self) -> int | None:
-        """The greatest number of arguments; None for any number."""
+        """The maximum number of arguments; None for any number."""
         return self.arity if isinstance(self.arity, int) else self.arity[1]
 
     def takes(self, count: int) -> bool:
-        """Return whether it may have that number of arguments."""
+        """Return whether it accepts that number of arguments."""
         if isinstance(self.arity, int):
             return count == self.arity
         least, most = self.arity
@@ -50,4 +50,4 @@ class Declaration:
 
 
 UNDECLARED = Declaration()
-"""What is known of a name that is not declared."""
+"""Declaration of a name that nothing declares."""

@@ -1,4 +1,4 @@
-"""Messages about a program: what is wrong, where, and what to do; and the list of their kinds."""
+"""Diagnostics: what is wrong in a program, where, and how to fix it; and the list of their codes."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,14 +10,15 @@ from jacaros.errors import JacarosError
 from jacaros.excerpts import MOST, escaped, help_line, marked, printable
 
 Severity = OneOf["error", "warning", "note"]
-"""An error refuses the program; a warning is nearly always a mistake; a note is worth knowing."""
+"""Errors reject the program; warnings are nearly always mistakes; notes are worth knowing."""
 
 
 @dataclass(frozen=True, slots=True)
 class Diagnostic:
-    """One message about a program text; ``span`` is None when no single place is to blame.
+    """One message about a program text; ``span`` is None if no single place is at fault.
 
-    ``code`` names the kind of the problem; docs/reference/diagnostics.md lists them.  ``opened`` is the bracket that is
+    ``code`` is the kind of problem; docs/reference/diagnostics.md lists them. ``opened`` is the bracket that
+    is
     not closed.
     """
 
@@ -29,9 +30,10 @@ class Diagnostic:
     opened: Span | None = None
 
     def render(self, with_code: bool = False) -> str:
-        """Return the message as printed: place, message (with its code, if wanted), excerpt with carets, help.
+        """Return the message as printed: location, message (with its code, if wanted), excerpt with carets,
+        help.
 
-        Characters that a terminal would obey are escaped, and long lines are cut: see `jacaros.excerpts`.
+        Control characters are escaped, and long lines are cut: see `jacaros.excerpts`.
         """
         code = f" [{self.code}]" if with_code and self.code else ""
         lines = [f"{self.place()}{self.severity}: {printable(self.message)}{code}"]
@@ -44,14 +46,14 @@ class Diagnostic:
         return "\n".join(lines)
 
     def place(self) -> str:
-        """``file:line:column: ``, or nothing without a place."""
+        """Return ``file:line:column: ``, or an empty string without a span."""
         if self.span is None:
             return ""
         return f"{escaped(self.span.file.name)}:{self.span.line}:{self.span.column}: "
 
 
 def excerpt(span: Span) -> list[str]:
-    """The first line of *span* and a line of carets under the part that is meant."""
+    """Return the first line of *span*, and a line of carets under the marked part."""
     lines = span.file.lines
     if not 1 <= span.line <= len(lines):
         return []
@@ -63,9 +65,9 @@ def excerpt(span: Span) -> list[str]:
 
 
 def bounded(diagnostics: Sequence[Diagnostic]) -> list[Diagnostic]:
-    """Return the diagnostics, at most `MOST` of each file; one more per file states the number of the others.
+    """Return the diagnostics, at most `MOST` per file, and one more that counts the rest.
 
-    Errors are kept before warnings, warnings before notes.
+    Errors are kept before warnings, and warnings before notes.
     """
     if len(diagnostics) <= MOST:
         return list(diagnostics)
@@ -87,19 +89,21 @@ _LEVELS = ("error", "warning", "note")
 
 def _others(name: str, others: Sequence[Diagnostic]) -> Diagnostic:
     counts = [(level, sum(each.severity == level for each in others)) for level in _LEVELS]
-    told = " and ".join(f"{count} more {level}{'s'[: count > 1]}" for level, count in counts if count)
+    rest = " and ".join(f"{count} more {level}{'s'[: count > 1]}" for level, count in counts if count)
     where = f" in {name}" if name else ""
     severity = others[0].severity
-    return Diagnostic(severity, f"{told}{where}", None, "correct the first ones, and check again", "too-many")
+    return Diagnostic(severity, f"{rest}{where}", None, "fix these first, then check again", "too-many")
 
 
 def render_all(diagnostics: Sequence[Diagnostic]) -> str:
-    """Return all messages in the order given, a blank line between two; of very many only the first ones."""
+    """Return all messages in the given order, separated by blank lines, limited as by `bounded`."""
     return "\n\n".join(diagnostic.render() for diagnostic in bounded(diagnostics))
 
 
 class AslError(JacarosError):
-    """A program with errors.  ``diagnostics`` holds all of them (and the warnings), ``str()`` shows them."""
+    """Raised for a program with errors. ``diagnostics`` holds all errors and warnings; ``str()`` shows
+    them.
+    """
 
     def __init__(self, diagnostics: Sequence[Diagnostic]) -> None:
         self.diagnostics = tuple(diagnostics)
@@ -107,107 +111,108 @@ class AslError(JacarosError):
 
 
 class Kind(NamedTuple):
-    """A kind of problem, as a list of rules shows it."""
+    """The level and meaning of a diagnostic code."""
 
     level: Severity
     meaning: str
 
 
 KINDS: Final[dict[str, Kind]] = {
-    "acting-condition": Kind("warning", "an internal action that acts or waits is asked whether it holds"),
-    "action-in-context": Kind("error", "an internal action that acts or waits stands in a context"),
+    "acting-condition": Kind("warning", "an internal action that acts or waits is used as a condition"),
+    "action-in-context": Kind("error", "an internal action that acts or waits is in a context"),
     "annotated-action": Kind("error", "an internal action has annotations"),
-    "capital-constant": Kind("warning", "True, False or None are variables here"),
-    "chained-relation": Kind("error", "two relations without an operator between them"),
-    "changed-variable": Kind("warning", "a variable cannot get another value"),
-    "comparison-without-value": Kind("warning", "a variable without a value is compared by =="),
-    "condition-as-step": Kind("warning", "a condition stands where an action is expected"),
-    "context-never-true": Kind("warning", "the condition of a plan contradicts itself"),
-    "duplicate-label": Kind("error", "two different plans have one label"),
-    "else-if": Kind("error", "'else if' is written elif"),
-    "else-without-if": Kind("error", "'else' or 'elif' without an 'if' before it"),
-    "empty-brackets": Kind("error", "round brackets with nothing in them"),
-    "empty-clause": Kind("error", "a '.' or ';' with nothing before it"),
-    "empty-step": Kind("error", "no step where one is expected"),
-    "end-without-begin": Kind("error", "{ end } without a { begin ... }"),
-    "event-never-happens": Kind("warning", "a plan for an event of beliefs that nothing causes"),
-    "foreign-word": Kind("error", "a word of another language"),
+    "capital-constant": Kind("warning", "`True`, `False` or `None`, which are variables here"),
+    "chained-relation": Kind("error", "chained relations, such as `1 < X < 5`"),
+    "changed-variable": Kind("warning", "an assignment to a variable that already has a value"),
+    "comparison-without-value": Kind("warning", "a comparison with a variable that has no value"),
+    "condition-as-step": Kind("warning", "a condition where an action is expected"),
+    "context-never-true": Kind("warning", "a context that contradicts itself"),
+    "duplicate-label": Kind("error", "two different plans with the same label"),
+    "else-if": Kind("error", "`else if` instead of `elif`"),
+    "else-without-if": Kind("error", "`else` or `elif` without `if`"),
+    "empty-brackets": Kind("error", "empty round brackets"),
+    "empty-clause": Kind("error", "`.` or `;` with nothing before it"),
+    "empty-step": Kind("error", "a missing step"),
+    "end-without-begin": Kind("error", "`{ end }` without `{ begin ... }`"),
+    "event-never-happens": Kind("warning", "a plan for a belief event that nothing causes"),
+    "foreign-word": Kind("error", "a keyword of another language"),
     "formula-in-list": Kind("error", "a relation or another formula as an element of a list"),
     "include-circle": Kind("error", "files that include each other"),
-    "include-not-found": Kind("error", "an included file that is not there"),
-    "java-function": Kind("warning", "a function that is written in Java"),
-    "mismatched-bracket": Kind("error", "a bracket is closed by another kind of bracket"),
-    "misplaced-action": Kind("error", "an internal action outside of plans"),
-    "missing-blank": Kind("error", "a final '.' that is read as part of the next word"),
+    "include-not-found": Kind("error", "an included file that does not exist"),
+    "java-function": Kind("warning", "a function written in Java"),
+    "mismatched-bracket": Kind("error", "a bracket closed by another kind of bracket"),
+    "misplaced-action": Kind("error", "an internal action outside a plan"),
+    "missing-blank": Kind("error", "a final `.` that is read as part of the next word"),
     "missing-block": Kind("error", "a statement without its braces"),
-    "missing-body": Kind("error", "no steps behind '<-'"),
-    "missing-condition": Kind("error", "a statement without its condition in brackets"),
-    "missing-context": Kind("error", "no condition behind ':'"),
-    "missing-dot": Kind("error", "a clause without its final '.'"),
-    "missing-semicolon": Kind("error", "two steps without ';' between them"),
+    "missing-body": Kind("error", "no steps after `<-`"),
+    "missing-condition": Kind("error", "a statement without its condition"),
+    "missing-context": Kind("error", "no condition after `:`"),
+    "missing-dot": Kind("error", "a clause without its final `.`"),
+    "missing-semicolon": Kind("error", "two steps without `;` between them"),
     "missing-trigger": Kind("error", "a plan without its trigger"),
-    "misspelt-annotation": Kind("warning", "an annotation of a label that is nearly one with a meaning"),
-    "misspelt-belief": Kind("warning", "a belief that nobody makes, and nearly one that somebody makes"),
-    "misspelt-word": Kind("error", "nearly a reserved word"),
-    "narrow-handler": Kind("note", "plans for a failure that all have conditions"),
-    "nested-too-deeply": Kind("error", "too many brackets in each other"),
-    "no-effect": Kind("warning", "something in a project file that has no effect here"),
-    "non-ascii-name": Kind("error", "a name with other letters than a to z"),
-    "not-imported": Kind("note", "names that only running the Python code of the project can tell"),
-    "ordered-atom": Kind("warning", "an atom is compared with a number"),
-    "not-a-belief": Kind("error", "a clause that is neither belief, rule, goal nor plan"),
-    "not-a-number": Kind("error", "arithmetic with something that is no number"),
+    "misspelt-annotation": Kind("warning", "a label annotation that looks like a misspelt one"),
+    "misspelt-belief": Kind("warning", "a belief that nothing adds, with a name close to one that is added"),
+    "misspelt-word": Kind("error", "a misspelt reserved word"),
+    "narrow-handler": Kind("note", "failure plans that all have contexts"),
+    "nested-too-deeply": Kind("error", "brackets nested too deeply"),
+    "no-effect": Kind("warning", "something in a project file that has no effect"),
+    "non-ascii-name": Kind("error", "a name with letters other than a to z"),
+    "not-imported": Kind("note", "names that only running the project's Python code can reveal"),
+    "ordered-atom": Kind("warning", "an atom compared with a number"),
+    "not-a-belief": Kind("error", "a clause that is not a belief, rule, goal or plan"),
+    "not-a-number": Kind("error", "arithmetic with something that is not a number"),
     "not-a-step": Kind("error", "a term where a step is expected"),
     "organisation-library": Kind("warning", "a library for organisations, which are not supported"),
-    "plan-never-selected": Kind("warning", "a plan behind one that is always taken before it"),
-    "plan-too-large": Kind("warning", "a plan that Python cannot compile"),
-    "prefixed-action": Kind("error", "an internal action with '~' or a namespace"),
-    "reserved-word": Kind("error", "a reserved word as a name"),
-    "second-body": Kind("error", "a plan with two '<-'"),
+    "plan-never-selected": Kind("warning", "an unreachable plan: an earlier one is always selected"),
+    "plan-too-large": Kind("warning", "a plan that is too large for Python to compile"),
+    "prefixed-action": Kind("error", "an internal action with `~` or a namespace"),
+    "reserved-word": Kind("error", "a reserved word used as a name"),
+    "second-body": Kind("error", "a plan with two `<-`"),
     "second-context": Kind("error", "a plan with two contexts"),
     "singleton-variable": Kind("warning", "a variable that occurs only once"),
-    "tested-action": Kind("error", "an internal action behind '?'"),
-    "trigger-in-body": Kind("error", "'+!', '-!' or '+?' as a step"),
-    "too-many": Kind("warning", "how many more problems a file has; only the first 100 are printed"),
+    "tested-action": Kind("error", "an internal action after `?`"),
+    "trigger-in-body": Kind("error", "`+!`, `-!` or `+?` as a step"),
+    "too-many": Kind("warning", "the number of further problems; only the first 100 per file are printed"),
     "unclosed-block": Kind("error", "a { begin ... } without { end }"),
     "unclosed-bracket": Kind("error", "a bracket that is not closed"),
-    "unclosed-comment": Kind("error", "a comment without its end"),
-    "unclosed-string": Kind("error", "a string or quoted atom without its end"),
-    "unexpected-end": Kind("error", "the file ends too early"),
-    "unexpected-token": Kind("error", "something else is expected here"),
-    "unknown-artifact-type": Kind("warning", "a type of artifacts that there is not"),
-    "unknown-character": Kind("error", "a character that does not belong to the language"),
-    "unknown-code": Kind("warning", "a comment ignores a code that there is not"),
-    "unknown-directive": Kind("error", "a directive that there is not"),
-    "unknown-goal": Kind("warning", "a goal that no plan is for"),
-    "unknown-internal-action": Kind("warning", "an internal action that there is not"),
-    "unknown-library": Kind("warning", "a library of another system that is not known here"),
+    "unclosed-comment": Kind("error", "a comment that is not closed"),
+    "unclosed-string": Kind("error", "a string or quoted atom that is not closed"),
+    "unexpected-end": Kind("error", "an unexpected end of the file"),
+    "unexpected-token": Kind("error", "an unexpected token"),
+    "unknown-artifact-type": Kind("warning", "an unknown artifact type"),
+    "unknown-character": Kind("error", "a character that is not part of the language"),
+    "unknown-code": Kind("warning", "a comment that ignores an unknown code"),
+    "unknown-directive": Kind("error", "an unknown directive"),
+    "unknown-goal": Kind("warning", "a goal without a plan"),
+    "unknown-internal-action": Kind("warning", "an unknown internal action"),
+    "unknown-library": Kind("warning", "an unknown library of another system"),
     "unknown-message-type": Kind("warning", "a message type that only the robot's middleware may know"),
-    "unknown-operation": Kind("warning", "an action that no artifact of the project offers"),
-    "unknown-performative": Kind("warning", "nearly a performative"),
+    "unknown-operation": Kind("warning", "an action that no artifact of the project provides"),
+    "unknown-performative": Kind("warning", "a misspelt performative"),
     "unknown-resource": Kind("warning", "a resource that no artifact of the project uses"),
     "unopened-bracket": Kind("error", "a closing bracket without an opening one"),
-    "unreadable-file": Kind("error", "a file that is not there or no text"),
+    "unreadable-file": Kind("error", "a file that does not exist or is not text"),
     "upper-case-functor": Kind("error", "a name with arguments that begins with an upper-case letter"),
     "wrong-arguments": Kind("warning", "an internal action with too few or too many arguments"),
-    "wrong-belief-change": Kind("error", "a sign that does not change beliefs, or no belief behind it"),
-    "wrong-directive": Kind("error", "a directive with wrong arguments"),
-    "wrong-escape": Kind("error", "a backslash in a string before a character that it does not go with"),
+    "wrong-belief-change": Kind("error", "an operator that does not change beliefs, or no belief after it"),
+    "wrong-directive": Kind("error", "a directive with invalid arguments"),
+    "wrong-escape": Kind("error", "an invalid escape in a string"),
     "wrong-goal": Kind("error", "something that cannot be a goal"),
     "wrong-label": Kind("error", "something that cannot be a label"),
-    "wrong-mapping": Kind("error", "a mistake in a mapping file"),
-    "wrong-world": Kind("error", "a mistake in a world file or a fault file"),
+    "wrong-mapping": Kind("error", "an error in a mapping file"),
+    "wrong-world": Kind("error", "an error in a world file or a fault file"),
     "wrong-operator": Kind("error", "an operator of another language"),
-    "wrong-project": Kind("error", "a mistake in a project file"),
-    "wrong-separator": Kind("error", "',' in place of another sign"),
+    "wrong-project": Kind("error", "an error in a project file"),
+    "wrong-separator": Kind("error", "`,` where another separator is expected"),
     "wrong-supervision": Kind("warning", "an invalid or misplaced annotation such as `within` or `retry`"),
-    "wrong-tail": Kind("error", "the tail of a list or of annotations is no variable"),
-    "wrong-trigger": Kind("error", "something that cannot trigger a plan"),
-    "no-history": Kind("warning", "a condition asks with `ago` for a history that is not kept"),
+    "wrong-tail": Kind("error", "a tail of a list or of annotations that is not a variable"),
+    "wrong-trigger": Kind("error", "something that cannot be a trigger"),
+    "no-history": Kind("warning", "a condition with `ago` on a belief without a history"),
     "wrong-needs": Kind("warning", "needs of a plan or goal that can never be met"),
-    "wrong-urgency": Kind("warning", "an urgency of a plan that is no whole number from 0 on"),
+    "wrong-urgency": Kind("warning", "an urgency that is not a non-negative integer"),
 }
-"""All kinds, by code.  docs/reference/diagnostics.md shows an example of each.
+"""All diagnostic codes. docs/reference/diagnostics.md shows an example of each.
 
-The level is the usual one: what the thesis writes and Jason refuses is only a warning in programs of the thesis.
+The level is the usual one: what the thesis prints and Jason rejects is only a warning in programs of the
+thesis.
 """

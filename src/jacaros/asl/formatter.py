@@ -1,8 +1,9 @@
-"""The tree as AgentSpeak text, in the style in which `.print` shows terms.
+"""Syntax trees as AgentSpeak text, in the style in which `.print` shows terms.
 
-Expressions are fully bracketed (``(X > 3)``, ``(A & (B | C))``), so the text reads back as the same tree.  It differs
-from the text of the tree's term (`jacaros.terms.text`) as a program differs from what `.print` shows: strings are
-escaped, control statements have their own syntax, annotations keep their order and nothing is evaluated.
+Expressions are fully bracketed (``(X > 3)``, ``(A & (B | C))``), so the text parses to the same tree. It
+differs
+from the text of the tree's term (`jacaros.terms.text`), which `.print` shows: strings are escaped, control
+statements have their own syntax, annotations keep their order and nothing is evaluated.
 """
 
 from collections.abc import Callable, Iterable
@@ -15,7 +16,7 @@ from jacaros.terms.text import number_text, quoted, text
 
 
 def format_term(node: nodes.Node) -> str:
-    """A term (or formula, trigger, step, rule) as text.
+    """Format a term, formula, trigger, step or rule.
 
     Raises:
         TypeError: the node is of another kind.
@@ -27,14 +28,14 @@ def format_term(node: nodes.Node) -> str:
 
 
 def format_body(body: nodes.Body | nodes.Variable) -> str:
-    """The steps of a body, ``; `` between them; nothing for an empty body."""
+    """Format the steps of a body, separated by ``; ``; an empty body gives an empty string."""
     if isinstance(body, nodes.Variable):
         return format_term(body)
     return _joined(body.steps, "; ")
 
 
 def format_plan(plan: nodes.Plan) -> str:
-    """A plan with its final '.' and its sub-plans, on one line."""
+    """Format a plan with its final '.' and its sub-plans, on one line."""
     parts = [] if plan.label is None else [f"@{format_term(plan.label)}"]
     parts.append(format_term(plan.trigger))
     if plan.context is not None:
@@ -52,7 +53,7 @@ def _joined(parts: Iterable[nodes.Node], separator: str = ",") -> str:
 
 
 def _bare(formula: nodes.Term) -> str:
-    """A formula without the outermost pair of brackets."""
+    """Format a formula without its outermost brackets."""
     written = format_term(formula)
     return written[1:-1] if isinstance(formula, nodes.Relation | nodes.And | nodes.Or) else written
 
@@ -69,7 +70,7 @@ def _block(body: nodes.Body) -> str:
 
 
 def _named(node: nodes.Variable | nodes.Literal, name: str) -> str:
-    """A name with its namespace and negation."""
+    """Format a name with its namespace and negation."""
     namespace = format_term(node.namespace) if isinstance(node.namespace, nodes.Variable) else node.namespace
     return f"{'' if namespace is None else f'{namespace}::'}{'~' if node.negated else ''}{name}"
 

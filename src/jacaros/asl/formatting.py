@@ -1,4 +1,4 @@
-"""The text of a program in the one style of the project."""
+"""Format programs in the project's one style (`jacaros format`)."""
 
 from collections.abc import Mapping
 from typing import Final
@@ -18,14 +18,18 @@ _MOST_ROUNDS: Final = 4
 
 
 def format_program(name: str, text: str, actions: Mapping[str, Declaration] | None = None) -> str:
-    """The program *text* in the one style; its tokens and comments stay what they are.
+    """Format the program *text*; tokens and comments are kept.
 
-    *name* is what diagnostics call the file; *actions* are the internal actions, as for `load_program`.
     Included files are not read.
+
+    Args:
+        name: the file name in diagnostics.
+        text: the AgentSpeak source.
+        actions: the internal actions, as for `load_program`.
 
     Raises:
         AslError: the program has errors.
-        InternalError: the style would change the program.
+        InternalError: formatting would change the meaning of the program.
     """
     meaning = _meaning(name, text, actions)
     try:
@@ -53,7 +57,7 @@ def _meaning(name: str, text: str, actions: Mapping[str, Declaration] | None) ->
 
 
 def _substance(text: str) -> tuple[list[tuple[str, str]], list[str]]:
-    """The tokens of a text, and the words of its comments, sorted: two comments may have become one line."""
+    """Return the tokens of a text, and the sorted words of its comments: formatting may join two comments."""
     comments: list[Comment] = []
     tokens = tokenize(SourceFile("", text), lambda _: None, comments)
     words = sorted(word for comment in comments for word in comment.text.split())

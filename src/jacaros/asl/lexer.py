@@ -1,9 +1,9 @@
 """Program text to tokens.
 
-One compiled expression finds all tokens.  Wrong characters are reported here and never stop the lexer: an
-identifier with letters outside ASCII is handed on as if it were right, and what cannot be used at all (a
-string without an end) becomes a token of kind ``error``, at which the parser gives up the clause and reports
-no more.
+One compiled expression finds all tokens. Wrong characters are reported here and never stop the lexer. An
+identifier with letters outside ASCII is passed on as if it were valid. What is unusable (such as an
+unterminated
+string) becomes a token of kind ``error``: there the parser abandons the clause without a further report.
 """
 
 import re
@@ -15,13 +15,13 @@ from jacaros.asl.source import SourceFile, Span
 from jacaros.terms.operators import BINARY, WORDS
 
 RESERVED: Final = WORDS | {"true", "false", "if", "else", "elif", "for", "while"}
-"""Words that can never be atoms."""
+"""Words that cannot be atoms."""
 
 _OPERATORS: Final = "|".join(
     re.escape(s) for s in sorted(BINARY, key=len, reverse=True) if len(s) > 1 and s not in WORDS
 )
 _SIGNS: Final = re.escape("".join(each for each in BINARY if len(each) == 1))
-# The groups that begin with "open" are beginnings without an end.  Blanks before a token belong to its match.
+# Groups named "open..." match unterminated strings and comments. Blanks before a token belong to its match.
 _TOKEN: Final = re.compile(
     rf"""
     [^\S\n]*
@@ -45,7 +45,7 @@ _TOKEN: Final = re.compile(
     re.VERBOSE,
 )
 _ESCAPES: Final = re.compile(r"""\\[ntbrf\\'"0-7]|\\(?P<wrong>.)""")
-"""The escapes that a string may hold; what becomes of them is another matter."""
+"""The escapes that a string may contain; they are converted elsewhere."""
 _UNUSUAL: Final = frozenset({"quoted", "word", "open_string", "open_quoted", "open_comment", "wrong"})
 
 
@@ -53,8 +53,8 @@ class Token:
     """One token.
 
     ``kind`` is ``atom``, ``variable``, ``number``, ``string``, ``error`` or ``end``, and otherwise
-    (punctuation and reserved words) the text itself.  ``end`` is the column behind the token; tokens never
-    span lines.  ``first`` tells whether the token is the first one of its line.
+    (punctuation and reserved words) the text itself. ``end`` is the column after the token; tokens never
+    span lines. ``first`` marks the first token of a line.
     """
 
     __slots__ = ("column", "end", "first", "kind", "line", "text")
@@ -72,7 +72,7 @@ class Token:
 
 
 class Comment(NamedTuple):
-    """A comment with its marks; ``next_token`` is the index of the token behind it."""
+    """A comment with its marks; ``next_token`` is the index of the token after it."""
 
     text: str
     line: int
@@ -83,9 +83,9 @@ class Comment(NamedTuple):
 def tokenize(
     file: SourceFile, report: Callable[[Diagnostic], None], comments: list[Comment] | None = None
 ) -> list[Token]:
-    """The tokens of *file*, closed by two of kind ``end`` that stand right behind the last of the others.
+    """Return the tokens of *file*, followed by two of kind ``end`` right after the last one.
 
-    Comments are put into *comments*, if it is given.
+    If *comments* is given, comments are added to it.
     """
     tokens: list[Token] = []
     append = tokens.append
@@ -127,26 +127,29 @@ def tokenize(
 def _unusual(
     file: SourceFile, group: str, text: str, line: int, column: int, report: Callable[[Diagnostic], None]
 ) -> str:
-    """The kind of a token of one of the rarer groups; reports what is wrong with it."""
+    """Return the kind of a token of one of the rarer groups, and report what is wrong with it."""
     if group in ("quoted", "word"):
         return "atom"
     end = column + len(text.rstrip())
     help: str | None = None
     code = "unclosed-string"
     if group == "open_string":
-        message, help = "the string does not end on its line", r'close it: "text"; a line break inside is \n'
+        message, help = (
+            "unterminated string",
+            r'close it on the same line: "text"; write a line break as `\n`',
+        )
     elif group == "open_quoted":
-        message, help = "the quoted atom does not end on its line", "close it: 'an atom'"
+        message, help = "unterminated quoted atom", "close it on the same line: 'an atom'"
     elif group == "open_comment":
-        message, help, end = "the comment is not closed", "end it with */", column + 2
+        message, help, end = "unterminated comment", "end it with `*/`", column + 2
         code = "unclosed-comment"
     elif text == "\\":
         code = "wrong-operator"
-        message, help = r"'\' does not begin anything", r"'not equal' is written \==, 'not' is written not"
+        message, help = r"unexpected `\`", r"write `\==` for 'not equal' and `not` for 'not'"
     else:
         code = "unknown-character"
-        message = f"the character {text!r} does not belong to the language"
-        help = "a comment begins with //" if text in "#%" else None
+        message = f"unexpected character {text!r}"
+        help = "begin comments with `//`" if text in "#%" else None
     report(Diagnostic("error", message, Span(file, line, column, line, end), help, code))
     return "error"
 
@@ -155,9 +158,9 @@ def _wrong_escape(file: SourceFile, escape: re.Match[str], line: int, column: in
     begin, end = column + escape.start(), column + escape.end()
     return Diagnostic(
         "error",
-        f"'{escape.group()}' is no escape of a string",
+        f"invalid escape `{escape.group()}` in a string",
         Span(file, line, begin, line, end),
-        r"only \n and \" are converted, and a backslash is written \\",
+        r"only `\n` and `\"` are converted; write a backslash as `\\`",
         "wrong-escape",
     )
 
@@ -166,8 +169,8 @@ def _not_ascii(file: SourceFile, lexeme: str, line: int, column: int) -> Diagnos
     letter = next(char for char in lexeme if not char.isascii())
     return Diagnostic(
         "error",
-        f"'{lexeme}' holds the letter '{letter}'; names are made of the letters a to z, digits and '_'",
+        f"name `{lexeme}` contains the letter `{letter}`; names consist of the letters a to z, digits and `_`",
         Span(file, line, column, line, column + len(lexeme)),
-        f"rename it, or put it between single quotes to make it an atom: '{lexeme}'",
+        f"rename it, or quote it as an atom: '{lexeme}'",
         "non-ascii-name",
     )

@@ -1,4 +1,4 @@
-"""Literals, variables, lists and annotations, and the namespaces that a file gives them."""
+"""Parse literals, variables, lists and annotations, and resolve their namespaces."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
@@ -31,10 +31,10 @@ KEYWORDS: Final = frozenset(
 
 @dataclass
 class Namespaces:
-    """The namespace in force (None: the default one) and the private names of local namespaces.
+    """The current namespace (None: the default one) and the unique names of local namespaces.
 
     Attributes:
-        in_term: what is read is the argument of something; its literals, also those of plans in braces, stay in the
+        in_term: the parser is inside an argument. Literals there, also those of plans in braces, stay in the
             default namespace.
     """
 
@@ -43,7 +43,7 @@ class Namespaces:
     in_term: bool = False
 
     def resolve(self, written: str) -> str | None:
-        """The namespace that *written* means here (``default`` and ``this_ns`` have their meaning)."""
+        """Return the namespace that *written* names here, resolving ``default`` and ``this_ns``."""
         if written == "default":
             return None
         if written == "this_ns":
@@ -51,44 +51,44 @@ class Namespaces:
         return self.local.get(written, written)
 
     def of_literal(self, functor: str) -> str | None:
-        """The namespace of a belief, goal or condition that is written without one."""
+        """Return the namespace of a belief, goal or condition that is written without one."""
         return None if self.in_term or functor in KEYWORDS else self.current
 
 
 _UNSET: Final = "(unset)"
-"""No namespace is written; compared by identity."""
+"""Marks that no namespace is written; compared by identity."""
 
 
 class LiteralParser(Cursor, ABC):
-    """Reads literals; the expressions inside are read by the parser of terms.
+    """Parse literals; the term parser reads the expressions inside.
 
-    *formula* says that a literal is a condition, so that it belongs to the namespace of the block; literals
-    that are arguments or operands of relations stay in the default namespace.
+    *formula* marks a literal as a condition, which belongs to the namespace of the block. Literals that are
+    arguments or operands of relations stay in the default namespace.
     """
 
     def __init__(self, file: SourceFile, names: Names, diagnostics: list[Diagnostic]) -> None:
         super().__init__(file, tokenize(file, diagnostics.append), diagnostics)
         self.names = names
         self.namespaces = Namespaces()
-        # The condition that got its namespace last: taken back if it is an operand of a relation.
+        # The last condition that got a namespace: undone if it turns out to be an operand of a relation.
         self._placed: nodes.Term | None = None
 
     @abstractmethod
     def expression(self, loosest: int = 1, formula: bool = False) -> nodes.Term:
-        """An expression whose operators bind at least as tightly as *loosest*."""
+        """Parse an expression whose operators bind at least as tightly as *loosest*."""
 
     @abstractmethod
     def element(self) -> nodes.Term:
-        """An element of a list: an expression that ends before ``|``."""
+        """Parse an element of a list: an expression that ends before ``|``."""
 
     @abstractmethod
     def operand(self, formula: bool = False) -> nodes.Term:
-        """What stands between binary operators."""
+        """Parse an operand of a binary operator."""
 
     # literals and variables
 
     def literal(self, formula: bool = False) -> nodes.Term:
-        """A literal, or what a name with a dot means: internal action or arithmetic function."""
+        """Parse a literal, or the internal action or arithmetic function that a name with a dot denotes."""
         start = self.token
         namespace = self._namespace()
         negated = self.accept("~")
@@ -119,15 +119,17 @@ class LiteralParser(Cursor, ABC):
         if prefixed:
             self.report(
                 "prefixed-action",
-                f"'{name}' is an internal action: it can be neither negated by '~' nor put into a namespace",
+                f"internal action `{name}` cannot be negated with `~` or put into a namespace",
                 self.span_from(start),
-                "to ask that it does not hold write 'not'",
+                "to ask whether it does not hold, write `not`",
             )
         if self.token.kind == "[":
             self.report(
                 "annotated-action",
-                f"'{name}' is an internal action, which cannot have annotations",
-                help="a plan ends with a '.' followed by a blank" if name[0] == "." and start.first else None,
+                f"internal action `{name}` cannot have annotations",
+                help="if the `.` ends a plan, put a blank after it"
+                if name[0] == "." and start.first
+                else None,
             )
             self._annotations()
         span = self.span_from(start)
@@ -136,7 +138,7 @@ class LiteralParser(Cursor, ABC):
         return nodes.InternalAction(name, arguments, span=span)
 
     def variable(self, formula: bool = False) -> nodes.Term:
-        """A variable, or a literal in a namespace given by a variable (``N::p``)."""
+        """Parse a variable, or a literal whose namespace is a variable (``N::p``)."""
         if self.peek().kind == "::":
             return self.literal(formula)
         return self._variable(self.token, _UNSET, False, formula)
@@ -149,9 +151,9 @@ class LiteralParser(Cursor, ABC):
             name = token.text.lstrip("_")
             self.report(
                 "upper-case-functor",
-                f"'{token.text}' is a variable and cannot have arguments",
+                f"variable `{token.text}` cannot have arguments",
                 self.span_of(token),
-                f"names of beliefs, goals and actions begin with a lower-case letter: {name[:1].lower()}{name[1:]}(...)",
+                f"begin names of beliefs, goals and actions with a lower-case letter: `{name[:1].lower()}{name[1:]}(...)`",
             )
             self._arguments()
         name, unnamed = self._variable_name(token.text)
@@ -161,7 +163,7 @@ class LiteralParser(Cursor, ABC):
         return nodes.Variable(name, annotations, namespace, negated, unnamed, span=self.span_from(start))
 
     def _variable_name(self, text: str) -> tuple[str, bool]:
-        """The name, and whether the variable is unnamed; ``_12Any`` is the variable of the name ``_12``."""
+        """Return the name, and whether the variable is unnamed; ``_12Any`` is the variable named ``_12``."""
         if text[0] != "_":
             return text, False
         digits = len(text) - 1 - len(text[1:].lstrip("0123456789"))
@@ -170,7 +172,7 @@ class LiteralParser(Cursor, ABC):
         return f"_{next(self.names.unnamed)}", True
 
     def _namespace(self) -> "str | nodes.Variable | None":
-        """A namespace prefix, if there is one, and `_UNSET` otherwise."""
+        """Parse a namespace prefix; return `_UNSET` if there is none."""
         token = self.token
         if token.kind == "::":
             self.advance()
@@ -191,9 +193,9 @@ class LiteralParser(Cursor, ABC):
         if self.token.kind == ")":
             self.forgive(
                 "empty-brackets",
-                "the brackets are empty",
+                "empty brackets",
                 self.span_of(opener),
-                "without arguments leave them out: p, not p()",
+                "write `p`, not `p()`",
             )
             self.advance()
             return ()
@@ -206,7 +208,7 @@ class LiteralParser(Cursor, ABC):
         return tuple(arguments)
 
     def _enter_term(self) -> bool:
-        """What follows is part of a term; returns whether that was so before."""
+        """Mark the following tokens as part of a term; return whether they already were."""
         self.enter()
         outside, self.namespaces.in_term = self.namespaces.in_term, True
         return outside
@@ -216,22 +218,22 @@ class LiteralParser(Cursor, ABC):
         self.namespaces.in_term = outside
 
     def begin_clause(self) -> None:
-        """A clause begins here, at the outermost level."""
+        """Start a clause at the outermost level."""
         super().begin_clause()
         self.namespaces.in_term = False
 
     # lists and annotations
 
     def list_term(self) -> nodes.ListTerm:
-        """``[a, b | T]``."""
+        """Parse ``[a, b | T]``."""
         start = self.token
         items, tail = self._elements()
         if tail is not None and not isinstance(tail, nodes.Variable):
             self.report(
                 "wrong-tail",
-                "the tail of a list is a variable or a list",
+                "expected a variable or a list as the tail of a list",
                 tail.span,
-                "as in [H|T] or [a|[b,c]]",
+                "write `[H|T]` or `[a|[b,c]]`",
             )
             tail = None
         return nodes.ListTerm(tuple(items), tail, span=self.span_from(start))
@@ -245,13 +247,16 @@ class LiteralParser(Cursor, ABC):
             return None
         if tail is not None and not isinstance(tail, nodes.Variable):
             self.report(
-                "wrong-tail", "the tail of annotations is a variable", tail.span, "as in p(X)[source(S)|R]"
+                "wrong-tail",
+                "expected a variable as the tail of annotations",
+                tail.span,
+                "write `p(X)[source(S)|R]`",
             )
             tail = None
         return nodes.Annotations(tuple(items), tail, span=self.span_from(start))
 
     def _annotation(self) -> nodes.Term:
-        """An annotation: an element, or ``while(Condition)`` of a label."""
+        """Parse an annotation: an element, or ``while(Condition)`` of a label."""
         start = self.token
         if start.kind != "while" or self.peek().kind != "(":
             return self.element()
@@ -261,7 +266,7 @@ class LiteralParser(Cursor, ABC):
     def _elements(
         self, element: Callable[[], nodes.Term] | None = None
     ) -> tuple[list[nodes.Term], nodes.Term | None]:
-        """The elements and the tail of what stands in brackets; a tail that is a list is spliced in."""
+        """Parse the elements and the tail of bracketed contents; a tail that is a list is spliced in."""
         element = element or self.element
         opener = self.advance()
         items: list[nodes.Term] = []

@@ -1,4 +1,4 @@
-"""Program texts to programs: the entry points of the front end."""
+"""The entry points of the front end: from program texts to programs."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -19,7 +19,7 @@ from jacaros.terms.functions import FunctionNames
 Result = TypeVar("Result")
 
 _run_time_names = Names(count(1_000_000), count(1_000_000), count(1_000_000))
-"""Numbers for what is read at run time, apart from those of programs."""
+"""Counters for terms parsed at run time, distinct from those of programs."""
 
 
 def load_program(
@@ -29,15 +29,15 @@ def load_program(
     functions: Mapping[str, tuple[int, int | None]] | None = None,
     actions: Mapping[str, Declaration] | None = None,
 ) -> tuple[nodes.Program, list[Diagnostic]]:
-    """The program in *text*, with its includes, and the warnings.
+    """Parse the program in *text* with its includes; return it and its warnings.
 
     Args:
-        name: what diagnostics call the file; also given to *read* as the including file.
+        name: the file name in diagnostics; also passed to *read* as the including file.
         text: the AgentSpeak source.
         read: ``read(path, including_name) -> (name, text)`` finds an included file; raises FileNotFoundError.
-        functions: arithmetic functions of the project, with their least and greatest numbers of arguments; it is
-            asked for every name with a dot that is met.
-        actions: internal actions by name; contexts refuse those that act or wait.
+        functions: arithmetic functions of the project, with their minimum and maximum numbers of arguments;
+            looked up for every name with a dot.
+        actions: internal actions by name; contexts reject those that act or wait.
 
     Raises:
         AslError: with all errors of all files.
@@ -53,9 +53,11 @@ def read_program(
     functions: Mapping[str, tuple[int, int | None]] | None = None,
     actions: Mapping[str, Declaration] | None = None,
 ) -> tuple[nodes.Program, list[Diagnostic]]:
-    """What can be read of the program in *file*, and all errors and warnings; as `load_program`."""
+    """Parse what is valid of the program in *file*; return it with all errors and warnings. See
+    `load_program`.
+    """
     diagnostics: list[Diagnostic] = []
-    # An empty mapping may be one that fills while names are met.
+    # Keep the caller's mapping even if it is empty: it may fill up as names are looked up.
     known = {} if functions is None else functions
     names = Names(count(1), count(1), count(1), known=known, actions={} if actions is None else actions)
     section = DirectiveProcessor(read, names, diagnostics).read_file(file)
@@ -70,16 +72,16 @@ def include_program(
     actions: Mapping[str, Declaration],
     namespace: str | None = None,
 ) -> nodes.Program:
-    """A program file that is included at run time, in *namespace* (None: the default one).
+    """Parse a program file that is included at run time, in *namespace* (None: the default one).
 
     Args:
-        path: as the program writes it.
+        path: as written in the program.
         read: ``read(path) -> (name, text)`` finds it; raises FileNotFoundError.
         functions: registered arithmetic functions with their numbers of arguments.
-        actions: internal actions by name; contexts refuse those that act or wait.
+        actions: internal actions by name; contexts reject those that act or wait.
 
     Raises:
-        FileNotFoundError: the file is not there.
+        FileNotFoundError: the file does not exist.
         AslError: with all errors.
     """
     name, text = read(path)
@@ -92,45 +94,45 @@ def include_program(
 
 
 def parse_term(text: str, name: str = TEXT, functions: Mapping[str, int] | None = None) -> nodes.Term:
-    """The term in *text*; a final '.' is allowed.
+    """Parse the term in *text*; a final '.' is allowed.
 
-    *functions* are the registered arithmetic functions with their numbers of arguments.  Unnamed variables
-    get numbers that no program has.
+    *functions* are the registered arithmetic functions with their numbers of arguments. Unnamed variables
+    get numbers that no program uses.
 
     Raises:
-        AslError: if the text is no term.
+        AslError: the text is not a term.
     """
     return _parse(text, name, functions, PlanParser.expression)
 
 
 def parse_formula(text: str, name: str = TEXT, functions: Mapping[str, int] | None = None) -> nodes.Term:
-    """The condition in *text*; as `parse_term`."""
+    """Parse the condition in *text*; see `parse_term`."""
     return _parse(text, name, functions, PlanParser.condition)
 
 
 def parse_literal(text: str, name: str = TEXT, functions: Mapping[str, int] | None = None) -> nodes.Literal:
-    """The literal in *text*; as `parse_term`."""
+    """Parse the literal in *text*; see `parse_term`."""
 
     def literal(parser: PlanParser) -> nodes.Literal:
         start = parser.token
         term = parser.operand(formula=True)
         if not isinstance(term, nodes.Literal):
-            parser.fail("unexpected-token", "a literal is expected", parser.span_from(start))
+            parser.fail("unexpected-token", "expected a literal", parser.span_from(start))
         return term
 
     return _parse(text, name, functions, literal)
 
 
 def parse_trigger(text: str, name: str = TEXT, functions: Mapping[str, int] | None = None) -> nodes.Trigger:
-    """The trigger in *text* (``+!g(X)``); as `parse_term`."""
+    """Parse the trigger in *text* (``+!g(X)``); see `parse_term`."""
     return _parse(text, name, functions, PlanParser.trigger)
 
 
 def parse_plan(text: str, name: str = TEXT, functions: Mapping[str, int] | None = None) -> nodes.Plan:
-    """The one plan in *text*, with or without its final '.' and with or without braces around it.
+    """Parse the one plan in *text*, with or without its final '.' and with or without braces around it.
 
     Raises:
-        AslError: if the text is no plan.
+        AslError: the text is not a plan.
     """
 
     def plan(parser: PlanParser) -> nodes.Plan:
@@ -139,7 +141,7 @@ def parse_plan(text: str, name: str = TEXT, functions: Mapping[str, int] | None 
         start = parser.token
         term = parser.braces()
         if not isinstance(term, nodes.PlanTerm):
-            parser.fail("unexpected-token", "a plan is expected", parser.span_from(start))
+            parser.fail("unexpected-token", "expected a plan", parser.span_from(start))
         return term.plan
 
     return _parse(text, name, functions, plan)
@@ -151,27 +153,25 @@ def parse_plans(
     functions: Mapping[str, int] | None = None,
     actions: Mapping[str, Declaration] | None = None,
 ) -> tuple[nodes.Plan, ...]:
-    """The plans in *text*, each with its final '.' (the last one may lack it).
+    """Parse the plans in *text*, each with its final '.' (optional after the last one).
 
     Raises:
-        AslError: with all errors, also when the text holds beliefs or goals.
+        AslError: with all errors; also if the text contains beliefs or goals.
     """
     diagnostics: list[Diagnostic] = []
     processor = DirectiveProcessor(None, _names_with(functions, actions), diagnostics)
     section = processor.read_file(SourceFile(name, text), last_dot_optional=True)
     for clause in (*section.beliefs, *section.goals):
-        diagnostics.append(
-            Diagnostic("error", "only plans are expected", clause.span, None, "unexpected-token")
-        )
+        diagnostics.append(Diagnostic("error", "expected only plans", clause.span, None, "unexpected-token"))
     _settled(diagnostics)
     return tuple(section.plans)
 
 
 def parse_literals(text: str, name: str = TEXT) -> tuple[nodes.Literal, ...]:
-    """The literals in *text*, with ',' between them, as in the options of project files.
+    """Parse the literals in *text*, separated by ',', as in the options of project files.
 
     Raises:
-        AslError: if the text is anything else.
+        AslError: the text is anything else.
     """
 
     def literals(parser: PlanParser) -> tuple[nodes.Literal, ...]:
@@ -181,7 +181,7 @@ def parse_literals(text: str, name: str = TEXT) -> tuple[nodes.Literal, ...]:
             parser.accept("!")
             term = parser.operand(formula=True)
             if not isinstance(term, nodes.Literal):
-                parser.fail("unexpected-token", "a literal is expected", parser.span_from(start))
+                parser.fail("unexpected-token", "expected a literal", parser.span_from(start))
             found.append(term)
             if not (parser.accept(",") or parser.accept(".") or parser.accept(";")):
                 break
@@ -193,7 +193,7 @@ def parse_literals(text: str, name: str = TEXT) -> tuple[nodes.Literal, ...]:
 def _parse(
     text: str, name: str, functions: Mapping[str, int] | None, read: Callable[[PlanParser], Result]
 ) -> Result:
-    """What *read* makes of the whole of *text*."""
+    """Parse the whole of *text* with *read*."""
     diagnostics: list[Diagnostic] = []
     parser = PlanParser(SourceFile(name, text), _names_with(functions), diagnostics)
     result: Result | None = None
@@ -201,11 +201,11 @@ def _parse(
         result = read(parser)
         parser.accept(".")
         if parser.token.kind != "end":
-            parser.unexpected("the end")
+            parser.unexpected("the end of the text")
     except SyntaxPanic:
         pass
     except RecursionError:
-        parser.report("nested-too-deeply", "this is nested too deeply")
+        parser.report("nested-too-deeply", "nested too deeply")
     _settled(diagnostics)
     assert result is not None
     return result
@@ -219,7 +219,7 @@ def _names_with(
 
 
 def _settled(diagnostics: list[Diagnostic]) -> None:
-    """Refuse a text with errors; the diagnostics are put into the order of the text, file by file."""
+    """Sort the diagnostics by file and position, and raise AslError if there are errors."""
     _refuse_errors(_ordered(diagnostics))
 
 
@@ -229,7 +229,7 @@ def _refuse_errors(diagnostics: list[Diagnostic]) -> None:
 
 
 def _ordered(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
-    """In the order of the text, file by file."""
+    """Return the diagnostics sorted by position, file by file."""
     files: dict[str, int] = {}
     for diagnostic in diagnostics:
         if diagnostic.span is not None:
@@ -243,9 +243,9 @@ def _ordered(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
 
 
 def _check_labels(plans: list[nodes.Plan], diagnostics: list[Diagnostic]) -> None:
-    """Report labels that two different plans have; repetitions of one and the same plan are taken out.
+    """Report labels that two different plans share, and drop repetitions of the same plan from *plans*.
 
-    Repetitions come about when a file is included twice.  *plans* is changed in place.
+    Repetitions occur when a file is included twice.
     """
     known: dict[tuple[object, str], nodes.Plan] = {}
     repeated: list[int] = []
@@ -274,8 +274,8 @@ def _two_plans(first: nodes.Plan, second: nodes.Plan) -> Diagnostic:
         where = f"; the first one is at {f'{file}, ' if elsewhere else ''}line {first.span.line}"
     return Diagnostic(
         "error",
-        f"two different plans have one label, @{second.label.functor}{where}",
+        f"two different plans have the label `@{second.label.functor}`{where}",
         second.label.span or second.span,
-        "give one of them another label",
+        "rename one of the labels",
         "duplicate-label",
     )

@@ -1,4 +1,4 @@
-"""Syntax tree to terms: for beliefs, messages, and formulae shown to people."""
+"""Syntax trees to terms: for beliefs, messages, and formulae shown to users."""
 
 from collections.abc import Callable
 from typing import Final
@@ -25,11 +25,11 @@ from jacaros.terms.values import (
 )
 
 Lookup = Callable[[str], Term]
-"""Value of the variable of that name."""
+"""Return the value of the variable of that name."""
 
 
 class Names(dict[str, Term]):
-    """Variables by name, made when first asked for."""
+    """Variables by name, created on first use."""
 
     def __missing__(self, name: str) -> Var:
         variable = self[name] = Var(name)
@@ -37,17 +37,17 @@ class Names(dict[str, Term]):
 
 
 def fresh_names() -> Lookup:
-    """A look-up that makes a new variable for every name."""
+    """Return a lookup that creates a new variable for every name."""
     return Names().__getitem__
 
 
 def lower(node: nodes.Node, lookup: Lookup) -> Term:
-    """The term of a syntax tree; variables are given by *lookup*, nothing is evaluated."""
+    """Return the term of a syntax tree; *lookup* gives the variables, nothing is evaluated."""
     return _LOWER[type(node)](node, lookup)
 
 
 def lower_value(node: nodes.Node, lookup: Lookup | None = None) -> Term:
-    """The term with bindings applied and arithmetic evaluated."""
+    """Return the term with bindings applied and arithmetic evaluated."""
     return resolve(lower(node, lookup or fresh_names()))
 
 
@@ -101,14 +101,14 @@ def _call(node: nodes.FunctionCall | nodes.InternalAction, lookup: Lookup) -> Te
 
 
 def lower_plan(plan: nodes.Plan, lookup: Lookup) -> Term:
-    """The term of a plan."""
+    """Return the term of a plan."""
     label = plans.NO_LABEL if plan.label is None else lower(plan.label, lookup)
     context = atom("true") if plan.context is None else lower(plan.context, lookup)
     return (plans.PLAN, label, lower_trigger(plan.trigger, lookup), context, lower(plan.body, lookup))
 
 
 def lower_trigger(trigger: nodes.Trigger, lookup: Lookup) -> Term:
-    """The term of a trigger."""
+    """Return the term of a trigger."""
     return plans.trigger(trigger.operator + trigger.kind, lower(trigger.literal, lookup))
 
 
@@ -119,7 +119,7 @@ def _rule_term(node: nodes.RuleTerm, lookup: Lookup) -> Term:
 def _body(node: nodes.Body, lookup: Lookup, symbol: Functor = plans.BODY_SEQUENCE) -> Term:
     *steps, last = node.steps or (None,)
     if steps and isinstance(last, nodes.ExternalAction) and isinstance(last.action, nodes.Variable):
-        # A variable at the end stands for all that follows.
+        # A variable at the end stands for the rest of the body.
         return plans.make_body([lower(s, lookup) for s in steps], lower(last.action, lookup), symbol)
     return plans.make_body([lower(s, lookup) for s in node.steps], symbol=symbol)
 
@@ -130,7 +130,7 @@ def _step(node: nodes.Step, lookup: Lookup) -> Term:
 
 
 def step_parts(node: nodes.Step) -> tuple[str, tuple[nodes.Node, ...]]:
-    """The operator and the operands of a step, as in its term (see `jacaros.terms.plans`)."""
+    """Return the operator and operands of a step, as in its term (see `jacaros.terms.plans`)."""
     match node:
         case nodes.Achieve(goal, separate):
             return "!!" if separate else "!", (goal,)
@@ -153,7 +153,7 @@ def step_parts(node: nodes.Step) -> tuple[str, tuple[nodes.Node, ...]]:
 
 
 FORKS: Final = {"and": "|&|", "or": "|||"}
-"""How forks are written."""
+"""The operators of forks."""
 
 
 def _external(node: nodes.ExternalAction, lookup: Lookup) -> Term:
@@ -184,5 +184,5 @@ _LOWER: dict[type, Callable[..., Term]] = {
 
 
 def settled(node: nodes.Node, lookup: Lookup) -> Term:
-    """The term, evaluated at its top only."""
+    """Return the term, evaluated at its top level only."""
     return settle(lower(node, lookup))

@@ -1,7 +1,6 @@
 """The syntax tree of AgentSpeak: plain frozen data, each node with its place in the source.
 
-Terms, logical formulae and body formulae share `Term`, as in the language, where plans and conditions may be
-passed as arguments.
+Terms, logical formulae and body formulae share `Term`, as plans and conditions may be arguments.
 """
 
 from __future__ import annotations
@@ -15,9 +14,9 @@ from jacaros.terms.values import Term as Value
 
 @dataclass_transform(frozen_default=True)
 class _NodeType(type):
-    """Gives a class slots and ``__init__`` for its annotations, as `dataclass` does.
+    """Give a class slots and ``__init__`` for its annotations, as `dataclass` does.
 
-    Thirty dataclasses would take a fifth of the time in which a program starts, these take a millisecond.
+    Thirty dataclasses would take a fifth of a program's start-up time; these take a millisecond.
     """
 
     def __new__(cls, name: str, bases: tuple[type, ...], body: dict[str, Any]) -> _NodeType:
@@ -41,19 +40,19 @@ class _NodeType(type):
 
 
 class Node(metaclass=_NodeType):
-    """What all nodes have: a place in the source (None for nodes made at run time).
+    """A node with its place in the source (None for nodes made at run time).
 
-    Two nodes are equal when they are of one class and their parts are; the place does not count.
+    Two nodes are equal if they have the same class and equal parts; the place is not compared.
     """
 
     __match_args__: ClassVar[tuple[str, ...]] = ()
-    """The names of the parts, in the order of the text."""
+    """The names of the parts, in source order."""
 
     _: KW_ONLY
     span: Span | None = None
 
     def parts(self) -> tuple[Any, ...]:
-        """The values of the parts, in the order of the text."""
+        """The values of the parts, in source order."""
         return tuple([getattr(self, name) for name in self.__match_args__])
 
     def __eq__(self, other: object) -> bool:
@@ -73,7 +72,7 @@ Some = TypeVar("Some", bound=Node)
 
 
 def replace(node: Some, **parts: Any) -> Some:
-    """The same node with other *parts*, or at another place (``span``)."""
+    """Return a copy of the node with other *parts*, or at another place (``span``)."""
     kept = dict(zip(node.__match_args__, node.parts(), strict=True))
     return type(node)(**{**kept, "span": node.span, **parts})
 
@@ -91,7 +90,7 @@ class String(Node):
 
 
 class Variable(Node):
-    """A variable.  Every occurrence of an unnamed one (``_``, ``_X``) has its own ``name`` (``_7``)."""
+    """A variable. Every occurrence of an unnamed one (``_``, ``_X``) has its own ``name`` (``_7``)."""
 
     name: str
     annotations: Annotations | None = None
@@ -110,8 +109,8 @@ class Annotations(Node):
 class Literal(Node):
     """An atom, structure, or literal: ``ns::~f(a, b)[annots]``.
 
-    ``functor`` keeps the quotes of a quoted atom.  ``namespace`` is None for the default namespace, a name,
-    or a variable; namespace directives are already applied by the parser.
+    ``functor`` keeps the quotes of a quoted atom. ``namespace`` is None for the default namespace, a name,
+    or a variable; the parser has already applied namespace directives.
     """
 
     functor: str
@@ -156,7 +155,7 @@ class Relation(Node):
 
 
 class _Junction(Node):
-    """Two formulae with a connective between them."""
+    """Two formulae and a connective."""
 
     left: Term
     right: Term
@@ -193,7 +192,7 @@ class Not(Node):
 
 Connective = And | Or | Not
 CONNECTIVES: Final[dict[str, Any]] = {kind.operator: kind for kind in (And, Or, Not)}
-"""The classes of the connectives by their operators."""
+"""The classes of the connectives by operator."""
 
 
 class InternalAction(Node):
@@ -228,7 +227,7 @@ class BodyTerm(Node):
 
 
 class Constant(Node):
-    """A value that is no text, in a tree made at run time: a shared variable, a map, a reference."""
+    """A value without a textual form, in a tree made at run time: a shared variable, a map, a reference."""
 
     value: Value
 
@@ -251,7 +250,7 @@ Term = (
     | TriggerTerm
     | BodyTerm
 )
-"""Any term.  ``true`` and ``false`` are `Literal`s of those names, also as formulae."""
+"""Any term. ``true`` and ``false`` are `Literal`s of those names, also as formulae."""
 
 
 class Achieve(Node):
@@ -355,9 +354,9 @@ class Rule(Node):
 
 
 class RegisteredFunction(Node):
-    """``{ register_function("name.x", Arity, "rule") }``: an arithmetic function of the program's own.
+    """``{ register_function("name.x", Arity, "rule") }``: an arithmetic function that the program defines.
 
-    The rule (or internal action) ``implementation`` has one argument more, for the result.
+    The rule (or internal action) ``implementation`` has one more argument, for the result.
     """
 
     name: str
@@ -369,7 +368,7 @@ class Derivation(Node):
     """``{ derive(name, operator(streams, options)) }``: a belief or event composed of changes of beliefs.
 
     ``options`` are pairs of a name and a number (or a tuple of numbers), times in seconds;
-    ``turns`` are the whole turns of values that are angles, for `interpolated`.
+    ``turns`` are the full turns of values that are angles, for `interpolated`.
     """
 
     name: str
@@ -381,7 +380,7 @@ class Derivation(Node):
 
 
 class History(Node):
-    """``{ history(b(_), within(Ms)) }``: what a belief was is kept for ``window`` seconds."""
+    """``{ history(b(_), within(Ms)) }``: past values of a belief are kept for ``window`` seconds."""
 
     belief: Literal
     window: float
@@ -389,7 +388,7 @@ class History(Node):
 
 @dataclass(frozen=True, slots=True)
 class Program:
-    """One agent program with its includes already in place, in source order per kind."""
+    """An agent program with its includes resolved, in source order per kind."""
 
     beliefs: tuple[Literal | Rule, ...] = ()
     goals: tuple[Literal, ...] = ()
@@ -401,7 +400,7 @@ class Program:
 
 @dataclass
 class Section:
-    """The clauses of a file or of a directive's block in source order per kind, while they are put together."""
+    """The clauses of a file or of a directive's block while they are collected, in source order per kind."""
 
     beliefs: list[Literal | Rule] = field(default_factory=list)
     goals: list[Literal] = field(default_factory=list)
@@ -411,7 +410,7 @@ class Section:
     histories: list[History] = field(default_factory=list)
 
     def extend(self, other: Section) -> None:
-        """Put the clauses of *other* behind those of this one."""
+        """Append the clauses of *other*."""
         self.beliefs.extend(other.beliefs)
         self.goals.extend(other.goals)
         self.plans.extend(other.plans)
@@ -420,7 +419,7 @@ class Section:
         self.histories.extend(other.histories)
 
     def program(self) -> Program:
-        """The finished program."""
+        """Return the finished program."""
         return Program(
             tuple(self.beliefs),
             tuple(self.goals),

@@ -1,4 +1,4 @@
-"""Plans, triggers, rules, and the terms in braces that hold them."""
+"""Parse plans, triggers, rules, and the terms in braces that hold them."""
 
 from typing import Final
 
@@ -10,12 +10,12 @@ _BEHIND_HEAD: Final = frozenset({"<-", ".", "{", "}", ")", "]", "end", "error"})
 
 
 class PlanParser(BodyParser):
-    """Reads plans and all that may stand in braces."""
+    """Parse plans and terms in braces."""
 
     def plan(self, as_term: bool = False) -> nodes.Plan:
-        """A plan up to its final '.', which is not taken.
+        """Parse a plan up to its final '.', which is not consumed.
 
-        *as_term*: the plan stands in braces, where label, context and body may be variables.
+        *as_term*: the plan is in braces, where label, context and body may be variables.
         """
         start = self.token
         label: nodes.Literal | nodes.Variable | None = None
@@ -28,7 +28,7 @@ class PlanParser(BodyParser):
             goal_condition = self._part("goal condition") if self.token.kind == "<:" else None
             self._require_body_or_end()
         except SyntaxPanic:
-            # The error has been reported; there may be more of them in the body.
+            # The error has been reported; the body may have more of them.
             self._skip_to_body()
         body = self._plan_body()
         inner: nodes.Body | nodes.Variable = body
@@ -37,18 +37,22 @@ class PlanParser(BodyParser):
         return nodes.Plan(label, trigger, context, inner, goal_condition, span=self.span_from(start))
 
     def _require_body_or_end(self) -> None:
-        """Report what cannot stand behind the head of a plan; what begins a line may be the next clause."""
+        """Report a token that cannot follow the head of a plan; a token that begins a line may be the next
+        clause.
+        """
         kind = self.token.kind
         if kind == "," and not self.token.first:
-            self.fail("wrong-separator", "conditions are not joined by ','", help="write & for 'and'")
+            self.fail(
+                "wrong-separator", "expected `&` between conditions, found `,`", help="write `&` for 'and'"
+            )
         if kind not in _BEHIND_HEAD and not self.token.first and not self.at_plan():
-            self.unexpected("'<-' or '.'")
+            self.unexpected("`<-` or `.`")
 
     def _skip_to_body(self) -> None:
-        """Go to the ``<-`` of this plan.
+        """Skip to the ``<-`` of this plan.
 
         Raises:
-            SyntaxPanic: there is none.
+            SyntaxPanic: the plan has no ``<-``.
         """
         while self.token.kind != "<-":
             self.advance()
@@ -56,26 +60,30 @@ class PlanParser(BodyParser):
                 raise SyntaxPanic
 
     def trigger(self) -> nodes.Trigger:
-        """``+!g(X)``, ``-b``, ``^!g[state(S)]``, with a variable instead of the literal, too."""
+        """Parse ``+!g(X)``, ``-b``, ``^!g[state(S)]``; a variable may take the place of the literal."""
         if self.token.kind not in ("+", "-", "^"):
-            self.unexpected("a trigger such as +!goal")
+            self.unexpected("a trigger such as `+!goal`")
         start = self.advance()
         kind = self.advance().kind if self.token.kind in ("!", "?") else ""
         if self.token.kind == "!!":
-            self.fail("wrong-trigger", "a trigger has one '!'", help="'!!' posts a goal in a body")
+            self.fail(
+                "wrong-trigger",
+                "expected a trigger with one `!`",
+                help="write `+!goal`; `!!` posts a goal in a body",
+            )
         if self.token.kind not in ("atom", "variable", "~", "::"):
             self.unexpected("a literal")
         literal = self.operand(formula=True)
         if not isinstance(literal, nodes.Literal | nodes.Variable):
-            help = "a '.' that ends a plan has a blank or a line end behind it"
-            self.fail("wrong-trigger", "an internal action cannot trigger a plan", literal.span, help)
+            help = "if the `.` ends a plan, put a blank or a line end after it"
+            self.fail("wrong-trigger", "an internal action cannot be a trigger", literal.span, help)
         return nodes.Trigger(start.kind, kind, literal, span=self.span_from(start))
 
     def _label(self, as_term: bool) -> nodes.Literal | nodes.Variable:
         at = self.advance()
         if self.token.kind == "[":
             annotations = self._annotations()
-            # The name only has to differ from those people and other plans have.
+            # Only needs to differ from the names of other plans.
             return nodes.Literal(
                 f"p__a{next(self.names.labels)}", annotations=annotations, span=self.span_from(at)
             )
@@ -84,15 +92,15 @@ class PlanParser(BodyParser):
         label = self.operand(formula=True)
         if isinstance(label, nodes.Literal) or (as_term and isinstance(label, nodes.Variable)):
             return label
-        what = "a label is an atom, with annotations if need be"
-        return self.fail("wrong-label", what, label.span, "as in @stop[atomic] +!stop <- ...")
+        what = "expected an atom as label, optionally with annotations"
+        return self.fail("wrong-label", what, label.span, "write `@stop[atomic] +!stop <- ...`")
 
     def _context(self) -> nodes.Term | None:
         if self.token.kind == ":-":
             self.report(
                 "wrong-operator",
-                "':-' belongs to rules",
-                help="a plan is written +!goal : condition <- steps.",
+                "unexpected `:-` in a plan",
+                help="write a plan as `+!goal : condition <- steps.`",
             )
             self.advance()
             return self.condition()
@@ -102,22 +110,22 @@ class PlanParser(BodyParser):
             colon = self.advance()
             self.forgive(
                 "missing-context",
-                "the context behind ':' is missing",
+                "missing context after `:`",
                 self.span_of(colon),
-                "leave out the ':', or write ': true'",
+                "remove the `:`, or write `: true`",
             )
             return None
         context = self._part("context")
         while self.token.kind == ":":
-            self.report("second-context", "a plan has only one context", help="join the conditions with &")
+            self.report("second-context", "second context of a plan", help="join the conditions with `&`")
             self._part("context")
         return context
 
     def _part(self, what: str) -> nodes.Term:
-        """The condition behind ``:`` or ``<:``."""
+        """Parse the condition after ``:`` or ``<:``."""
         sign = self.advance()
         if self.token.kind in ("<-", "<:", ".", "}", "end"):
-            self.report("missing-context", f"the {what} behind '{sign.kind}' is missing", self.span_of(sign))
+            self.report("missing-context", f"missing {what} after `{sign.kind}`", self.span_of(sign))
             return nodes.Literal("true", span=self.span_of(sign))
         return self.condition()
 
@@ -127,31 +135,31 @@ class PlanParser(BodyParser):
             if self.token.kind in ("atom", "!", "!!", "?", "if", "for", "while") and self.slip() is None:
                 self.fail(
                     "unexpected-token",
-                    f"'<-' is expected before '{arrow.text}'",
-                    help="the steps of a plan stand behind '<-'",
+                    f"expected `<-`, found `{arrow.text}`",
+                    help="write `<-` before the steps of a plan",
                 )
             return nodes.Body(span=self.span_of(arrow))
         if self.token.kind in (".", "}", "end") or self.at_plan():
             self.report(
                 "missing-body",
-                "the body behind '<-' is missing",
+                "missing body after `<-`",
                 self.span_of(arrow),
-                "write the steps, or leave out '<-' if there is nothing to do",
+                "write the steps, or remove `<-` if there is nothing to do",
             )
             return nodes.Body(span=self.span_of(arrow))
         body = self.body()
         if self.token.kind == "<-":
             self.fail(
                 "second-body",
-                "a plan has only one '<-'",
-                help="is the final '.' of a plan missing before this one?",
+                "second `<-` in a plan",
+                help="if this is a new plan, end the one before it with `.`",
             )
         return body
 
     # terms in braces
 
     def braces(self) -> nodes.Term:
-        """``{ }``, ``{ +!g }``, ``{ @l +!g : c <- b }``, ``{ h :- b }`` or ``{ a; !b }``."""
+        """Parse ``{ }``, ``{ +!g }``, ``{ @l +!g : c <- b }``, ``{ h :- b }`` or ``{ a; !b }``."""
         opener = self.advance()
         self.enter()
         term = self._in_braces()
@@ -178,18 +186,18 @@ class PlanParser(BodyParser):
         return nodes.PlanTerm(self.plan(as_term=True))
 
     def rule(self) -> nodes.Rule:
-        """``head :- body`` without the final '.'."""
+        """Parse ``head :- body`` without the final '.'."""
         start = self.token
         head = self.operand(formula=True)
         if not isinstance(head, nodes.Literal):
-            self.fail("not-a-belief", "the head of a rule is a literal", head.span)
+            self.fail("not-a-belief", "expected a literal as the head of a rule", head.span)
         if not self.accept(":-"):
-            self.unexpected("':-'")
+            self.unexpected("`:-`")
         return nodes.Rule(head, self.condition(), span=self.span_from(start))
 
 
 def _body_variable(step: nodes.Step) -> nodes.Variable | None:
-    """The variable that is this step, if it is one."""
+    """Return the variable that this step consists of, if it does."""
     if isinstance(step, nodes.ExternalAction) and isinstance(step.action, nodes.Variable):
         return step.action
     return None

@@ -1,4 +1,4 @@
-"""Whole files: beliefs, rules, initial goals, plans and directives, with recovery after errors."""
+"""Parse whole files: beliefs, rules, initial goals, plans and directives, with recovery after errors."""
 
 from collections.abc import Callable
 from typing import Final, Protocol
@@ -17,23 +17,23 @@ _DIRECTIVE_WORDS: Final = frozenset(
     {"begin", "derive", "end", "history", "include", "namespace", "register_function"}
 )
 _STARTS: Final = frozenset({"atom", "variable", "~", "!", "{", "@", "+", "-", "^"})
-"""What a clause may begin with."""
+"""Tokens that may begin a clause."""
 
 
 class Directives(Protocol):
-    """What carries out the directives of a file; it reports what is wrong with them through the parser."""
+    """Port to the code that runs the directives of a file; it reports errors through the parser."""
 
     def apply(self, parser: "ProgramParser", directive: nodes.Literal, section: nodes.Section) -> None:
-        """Carry out ``{ directive }``, which stands behind the clauses of *section*."""
+        """Run ``{ directive }``, which follows the clauses of *section*."""
 
     def apply_to_block(
         self, parser: "ProgramParser", directive: nodes.Literal, section: nodes.Section
     ) -> None:
-        """Read the block behind ``{ begin directive }`` and put what becomes of it into *section*."""
+        """Parse the block of ``{ begin directive }`` and add the resulting clauses to *section*."""
 
 
 class ProgramParser(PlanParser):
-    """Reads the clauses of one file."""
+    """Parse the clauses of one file."""
 
     def __init__(
         self,
@@ -51,28 +51,28 @@ class ProgramParser(PlanParser):
             self.namespaces = namespaces
 
     def file_clauses(self) -> nodes.Section:
-        """All clauses of the file."""
+        """Parse all clauses of the file."""
         section = nodes.Section()
         while self.token.kind != "end":
             if self._at_end_directive():
-                self.report(
-                    "end-without-begin", "'{ end }' without a '{ begin ... }' before it", help="remove it"
-                )
+                self.report("end-without-begin", "`{ end }` without `{ begin ... }`", help="remove it")
                 self._take_end_directive()
             else:
                 self._recovering(self._clause, section)
         return section
 
     def block(self, begin: nodes.Literal) -> nodes.Section:
-        """The clauses up to ``{ end }``, which is taken; *begin* is the directive that opened the block."""
+        """Parse the clauses up to ``{ end }``, which is consumed; *begin* is the directive that opened the
+        block.
+        """
         section = nodes.Section()
         while not self._at_end_directive():
             if self.token.kind == "end":
                 self.report(
                     "unclosed-block",
-                    f"the block of '{begin.functor}' has no end",
+                    f"block of `{begin.functor}` without `{{ end }}`",
                     begin.span,
-                    f"close it with {{ end }}; the file ends at line {self.token.line}",
+                    f"close it with `{{ end }}`; the file ends at line {self.token.line}",
                 )
                 return section
             self._recovering(self._clause, section)
@@ -82,7 +82,7 @@ class ProgramParser(PlanParser):
     # clauses
 
     def _recovering(self, read: Callable[[nodes.Section], None], section: nodes.Section) -> None:
-        """Read one clause; after an error go on with the next one."""
+        """Parse one clause; after an error, resume at the next one."""
         start = self.index
         self.begin_clause()
         try:
@@ -90,7 +90,7 @@ class ProgramParser(PlanParser):
         except SyntaxPanic:
             self._synchronise(start)
         except RecursionError:
-            self.report("nested-too-deeply", "this is nested too deeply", self.span_of(self.tokens[start]))
+            self.report("nested-too-deeply", "nested too deeply", self.span_of(self.tokens[start]))
             self._synchronise(start)
 
     def _clause(self, section: nodes.Section) -> None:
@@ -109,11 +109,11 @@ class ProgramParser(PlanParser):
     def _no_clause(self) -> None:
         kind = self.token.kind
         if kind == "!!":
-            self.fail("wrong-goal", "an initial goal has one '!'", help="write !goal.")
+            self.fail("wrong-goal", "expected one `!` before an initial goal", help="write `!goal.`")
         if kind == "?":
-            self.fail("wrong-goal", "an initial goal is an achievement goal", help="write !goal.")
+            self.fail("wrong-goal", "a test goal cannot be an initial goal", help="write `!goal.`")
         if kind in (".", ";"):
-            self.report("empty-clause", f"there is nothing before this '{kind}'", help="remove it")
+            self.report("empty-clause", f"nothing before this `{kind}`", help="remove it")
             self.advance()
             return
         self.unexpected("a belief, a goal or a plan")
@@ -132,9 +132,9 @@ class ProgramParser(PlanParser):
         if self.token.kind in ("<-", ":") and not isinstance(head, nodes.InternalAction):
             self.fail(
                 "missing-trigger",
-                "a plan begins with its trigger",
+                "expected the trigger of a plan",
                 self.span_from(start),
-                "put +! before it: +!goal : condition <- steps; a rule has ':-' in place of '<-'",
+                "write a plan as `+!goal : condition <- steps.`; a rule has `:-` in place of `<-`",
             )
         if not isinstance(head, nodes.Literal):
             self._no_belief(head)
@@ -149,17 +149,17 @@ class ProgramParser(PlanParser):
         if isinstance(term, nodes.InternalAction | nodes.FunctionCall):
             self.fail(
                 "misplaced-action",
-                f"'{term.name}' cannot stand outside a plan",
+                f"internal action `{term.name}` outside a plan",
                 term.span,
-                "is it a step of the plan before, which ends too early with a '.'?",
+                "if it is a step of the plan before, end the step before it with `;`, not `.`",
             )
-        self.fail("not-a-belief", "a belief is a literal", term.span)
+        self.fail("not-a-belief", "expected a literal as belief", term.span)
 
     def _plan_clause(self) -> nodes.Plan:
         plan = self.plan()
         _check_context(self, plan.context)
         if self._at_subplans() or (self.token.kind == "{" and self.peek().kind == "}"):
-            # Sub-plans may also stand in place of the final '.'.
+            # Sub-plans may also follow in place of the final '.'.
             plan = nodes.replace(plan, subplans=self._subplans())
             self.accept(".")
             return plan
@@ -174,7 +174,7 @@ class ProgramParser(PlanParser):
         while self.token.kind not in ("}", "end"):
             self._recovering(self._subplan, section)
         if not self.accept("}"):
-            self.report("unclosed-bracket", "the '{' of the sub-plans is not closed", self.span_of(opener))
+            self.report("unclosed-bracket", "unclosed `{` of sub-plans", self.span_of(opener))
         return tuple(section.plans)
 
     def _subplan(self, section: nodes.Section) -> None:
@@ -183,33 +183,45 @@ class ProgramParser(PlanParser):
         section.plans.append(self._plan_clause())
 
     def _finish(self, what: str) -> None:
-        """The final '.' of a clause; where the next line begins a clause reading goes on without it."""
+        """Parse the final '.' of a clause. If it is missing and the next line begins a clause, continue
+        there.
+        """
         token = self.token
         if self.accept(".") or (token.kind == "end" and self._last_dot_optional):
             return
         if token.kind == "end":
-            self.report("missing-dot", f"the {what} has no final '.'", help="the file ends here")
+            self.report("missing-dot", f"{what} without a final `.`", help="put a `.` at the end of the file")
         elif self._begins_clause(self.index) or (what != "plan" and token.first and token.kind in _STARTS):
             self.report(
                 "missing-dot",
-                f"the {what} before has no final '.'; {_naming(token)} begins here",
-                help=f"put a '.' behind line {self.previous().line}",
+                f"{what} without a final `.` before {_naming(token)}",
+                help=f"put a `.` at the end of line {self.previous().line}",
             )
         elif token.kind == "," and what in ("belief", "goal"):
-            self.fail("wrong-separator", f"a {what} ends with '.', not with ','", help="write p(1). p(2).")
+            self.fail(
+                "wrong-separator", f"expected `.` after a {what}, found `,`", help="write `p(1). p(2).`"
+            )
         elif token.kind == ",":
-            self.fail("wrong-separator", "conditions are not joined by ','", help="write & for 'and'")
+            self.fail(
+                "wrong-separator", "expected `&` between conditions, found `,`", help="write `&` for 'and'"
+            )
         elif token.kind == ";" and what == "rule":
-            self.fail("wrong-separator", "conditions are not joined by ';'", help="'or' is written |")
+            self.fail(
+                "wrong-separator",
+                "expected `&` or `|` between conditions, found `;`",
+                help="write `|` for 'or'",
+            )
         elif token.kind in CLOSERS.values():
-            self.fail("unopened-bracket", f"nothing is open that this '{token.kind}' closes")
+            self.fail("unopened-bracket", f"unmatched `{token.kind}`")
         else:
-            self.unexpected("';' or '.'" if what == "plan" else "'.'")
+            self.unexpected("`;` or `.`" if what == "plan" else "`.`")
 
     # recovery
 
     def _begins_clause(self, index: int) -> bool:
-        """Whether a new clause is likely to begin at *index*, which must be the first token of its line."""
+        """Return whether a clause is likely to begin at *index*, which must be the first token of its
+        line.
+        """
         token = self.tokens[index]
         if not token.first:
             return self.at_plan(index) and token.kind != "@"
@@ -225,7 +237,7 @@ class ProgramParser(PlanParser):
         return behind > index and self.tokens[behind].kind in (".", ":-")
 
     def _synchronise(self, start: int) -> None:
-        """Skip to behind the next final '.', or to the next line that begins a clause."""
+        """Skip past the next final '.', or to the next line that begins a clause."""
         if self.index == start:
             self.advance()
         while self.token.kind != "end":
@@ -247,7 +259,7 @@ class ProgramParser(PlanParser):
             self.unexpected("the name of a directive")
         directive = self.operand()
         if not isinstance(directive, nodes.Literal):
-            self.fail("unknown-directive", "this is no directive", directive.span)
+            self.fail("unknown-directive", "expected a directive", directive.span)
         self.accept(".")
         self.close(opener)
         directive = nodes.replace(directive, span=self.span_from(opener))
@@ -266,18 +278,18 @@ class ProgramParser(PlanParser):
         if self.token.kind == "}":
             self.advance()
         else:
-            self.report("unclosed-bracket", "'}' is expected behind '{ end'", self.span_of(opener))
+            self.report("unclosed-bracket", "expected `}` after `{ end`", self.span_of(opener))
 
 
 def _naming(token: Token) -> str:
-    """What begins with *token*, for messages."""
+    """Describe what begins with *token*."""
     if token.kind in ("@", "+", "-", "^"):
         return "the next plan"
     return {"!": "a goal", "{": "a directive"}.get(token.kind, "the next belief")
 
 
 def _check_context(parser: ProgramParser, formula: nodes.Term | None) -> None:
-    """Internal actions that act or wait cannot be asked whether they hold."""
+    """Report internal actions in a context that act or wait: they cannot be asked whether they hold."""
     stack = [formula]
     while stack:
         term = stack.pop()
@@ -286,14 +298,16 @@ def _check_context(parser: ProgramParser, formula: nodes.Term | None) -> None:
         elif isinstance(term, nodes.InternalAction) and _acts(term.name, parser.names):
             parser.report(
                 "action-in-context",
-                f"'{term.name}' acts and cannot stand in a context",
+                f"internal action `{term.name}` acts and cannot be in a context",
                 term.span,
-                "do it in the body",
+                "move it into the body",
             )
 
 
 def _acts(name: str, names: Names) -> bool:
-    """Whether an internal action of the language acts or waits; projects are only warned of their own in contexts."""
+    """Return whether an internal action of the language acts or waits. Those of projects only cause a
+    warning.
+    """
     if name in CONTROL:
         return True
     return name.startswith(".") and names.actions.get(name, UNDECLARED).body_only

@@ -1,7 +1,7 @@
-"""Terms back to the syntax tree, so that plans and bodies made at run time are compiled like any other.
+"""Convert terms back to syntax trees, so that plans and bodies made at run time are compiled like any other.
 
-A variable that has no value either stands for itself (a body that shares variables with the plan that wrote
-it: `Shared`), or becomes a variable of the new plan (`Closing`), for plans added to the library.
+An unbound variable either stands for itself (a body that shares variables with the plan that created it:
+`Shared`), or becomes a variable of the new plan (`Closing`), for plans added to the library.
 """
 
 from typing import cast
@@ -30,11 +30,11 @@ from jacaros.terms.values import (
 
 
 class NotAPlan(Exception):
-    """The term is no plan, body or formula."""
+    """Raised when the term is not a plan, body or formula."""
 
 
 class Reflection:
-    """Turns terms into syntax; *shared* tells what becomes of variables without value."""
+    """Convert terms to syntax; *shared* selects what unbound variables become."""
 
     def __init__(self, shared: bool) -> None:
         self.shared = shared
@@ -42,7 +42,7 @@ class Reflection:
         self._kept: list[Var] = []
 
     def term(self, term: Term) -> nodes.Term:
-        """Any term."""
+        """Convert any term."""
         term = deref(term)
         kind = term.__class__
         if kind is float:
@@ -73,7 +73,7 @@ class Reflection:
         return nodes.Variable(name)
 
     def _free_name(self, written: str) -> str:
-        """The name of a variable, with a number when another one has it already or when it is unnamed."""
+        """Return the name of a variable, with a number if the name is taken or the variable is unnamed."""
         if written[0] != "_" and written not in self._names.values():
             return written
         return f"{written.lstrip('_') or 'V'}_{len(self._names) + 1}".title()
@@ -127,14 +127,14 @@ class Reflection:
         return nodes.ListTerm(tuple(map(self.term, items)), None if end is NIL else self.term(end))
 
     def plan(self, term: Term) -> nodes.Plan:
-        """A plan term.
+        """Convert a plan term.
 
         Raises:
-            NotAPlan: when it is none.
+            NotAPlan: the term is not a plan.
         """
         term = deref(term)
         if term.__class__ is not tuple or term[0] is not plans.PLAN:
-            raise NotAPlan(f"{text(term)} is no plan")
+            raise NotAPlan(f"not a plan: {text(term)}")
         label = self.term(term[1])
         if not isinstance(label, nodes.Literal) or label.functor == "nolabel":
             label = None  # type: ignore[assignment]
@@ -143,22 +143,22 @@ class Reflection:
         return nodes.Plan(label, self.trigger(deref(term[2])), context_node, self.body(term[4]))  # type: ignore[arg-type]
 
     def trigger(self, term: Term) -> nodes.Trigger:
-        """A trigger term."""
+        """Convert a trigger term."""
         operator, literal = trigger_parts(deref(term))
         return nodes.Trigger(operator[:1], operator[1:], self._goal(literal))
 
     def rule(self, term: Term) -> nodes.Rule:
-        """A rule term."""
+        """Convert a rule term."""
         head = self.term(term[1])
         if not isinstance(head, nodes.Literal):
-            raise NotAPlan(f"{text(term[1])} cannot be the head of a rule")
+            raise NotAPlan(f"not the head of a rule: {text(term[1])}")
         return nodes.Rule(head, self.term(term[2]))
 
     def _goal(self, term: Term) -> nodes.Literal | nodes.Variable:
         return cast("nodes.Literal | nodes.Variable", self.term(term))
 
     def body(self, term: Term) -> nodes.Body:
-        """A body term; a single step counts as a body."""
+        """Convert a body term; a single step counts as a body."""
         return nodes.Body(tuple(self._step(s) for s in body_steps(term)))
 
     def _step(self, step: Term) -> nodes.Step:

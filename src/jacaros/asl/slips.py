@@ -1,4 +1,6 @@
-"""How like two words are, and slips known from other languages: better messages than "is expected, not"."""
+"""Similarity of words, and mistakes known from other languages, for better messages than "expected X, found
+Y".
+"""
 
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import islice, pairwise
@@ -9,36 +11,36 @@ from jacaros.terms.operators import WORDS, symbols_of
 from jacaros.terms.values import ARITHMETIC
 
 _FUSED: Final = {
-    "&&": "'and' is &, 'or' is |: write one '&'",
-    "||": "'and' is &, 'or' is |: write one '|'",
-    "=<": "write <=",
+    "&&": "write one `&` for 'and', one `|` for 'or'",
+    "||": "write one `&` for 'and', one `|` for 'or'",
+    "=<": "write `<=`",
     "=>": "write >=",
-    "->": "the body of a plan begins with <-",
-    "!=": r"'not equal' is written \==",
-    "!==": r"'not equal' is written \==",
-    "~=": r"'not equal' is written \==",
-    "<>": r"'not equal' is written \==",
-    ":=": "a variable gets its value by =, as in X = 3",
-    "=:=": "'equal' is written ==",
-    "===": "'equal' is written ==",
-    "+=": "a variable keeps its value: write Y = X + 1; a belief is changed by -+b(Y)",
-    "-=": "a variable keeps its value: write Y = X - 1; a belief is changed by -+b(Y)",
-    "*=": "a variable keeps its value: write Y = X * 2",
-    "/=": "a variable keeps its value: write Y = X / 2",
+    "->": "begin the body of a plan with `<-`",
+    "!=": r"write `\==` for 'not equal'",
+    "!==": r"write `\==` for 'not equal'",
+    "~=": r"write `\==` for 'not equal'",
+    "<>": r"write `\==` for 'not equal'",
+    ":=": "bind a variable with `=`, as in `X = 3`",
+    "=:=": "write `==` for 'equal'",
+    "===": "write `==` for 'equal'",
+    "+=": "variables keep their value: write `Y = X + 1`, or change a belief with `-+b(Y)`",
+    "-=": "variables keep their value: write `Y = X - 1`, or change a belief with `-+b(Y)`",
+    "*=": "variables keep their value: write `Y = X * 2`",
+    "/=": "variables keep their value: write `Y = X / 2`",
 }
-"""Operators that the language does not have, made of signs that it has."""
+"""Operators of other languages, which the lexer reads as several tokens."""
 
 _WORDS: Final = {
-    "and": "'and' is written &",
-    "or": "'or' is written |",
-    "is": "a variable gets its value by =, as in X = Y + 1",
-    "in": "an element of a list is found by .member, as in for (.member(X, L)) { steps }",
-    "then": "the steps stand in braces: if (condition) { steps }",
-    "do": "the steps stand in braces: while (condition) { steps }",
-    "elsif": "write elif (condition) { steps }",
-    "elseif": "write elif (condition) { steps }",
+    "and": "write `&` for 'and'",
+    "or": "write `|` for 'or'",
+    "is": "bind a variable with `=`, as in `X = Y + 1`",
+    "in": "find elements of a list with `.member`, as in `for (.member(X, L)) { steps }`",
+    "then": "put the steps in braces: `if (condition) { steps }`",
+    "do": "put the steps in braces: `while (condition) { steps }`",
+    "elsif": "write `elif (condition) { steps }`",
+    "elseif": "write `elif (condition) { steps }`",
 }
-"""Words that other languages have."""
+"""Keywords of other languages."""
 
 _PYTHON: Final = frozenset({"class", "def", "from", "import"})
 _CONTROL: Final = ("if", "while", "for", "elif")
@@ -47,7 +49,7 @@ _BEGINS_OPERAND: Final = frozenset({"atom", "variable", "number", "string", "(",
 
 
 class Slip(NamedTuple):
-    """A better explanation; ``token`` is the one to blame, None for the current one."""
+    """A likely mistake; ``token`` is the one at fault, None for the current one."""
 
     code: str
     message: str
@@ -56,7 +58,7 @@ class Slip(NamedTuple):
 
 
 def known_slip(tokens: Sequence[Token], index: int) -> Slip | None:
-    """What is probably meant where the token at *index* does not fit."""
+    """Return the likely mistake where the token at *index* does not fit, if it is a known one."""
     return (
         _misspelt(tokens, index)
         or _foreign_word(tokens, index)
@@ -75,13 +77,13 @@ def _reserved(token: Token) -> Slip | None:
         return None
     return Slip(
         "reserved-word",
-        f"'{token.text}' is a reserved word and cannot be used here",
-        f"as an atom it is written between single quotes: '{token.text}'",
+        f"reserved word `{token.text}` used as a name",
+        f"quote it as an atom: '{token.text}'",
     )
 
 
 def _fused(tokens: Sequence[Token], index: int) -> Slip | None:
-    """Signs without a blank between them, around *index*, that are an operator elsewhere; the longest wins."""
+    """Find the longest run of adjacent signs around *index* that is an operator of another language."""
     for length in (3, 2):
         for start in range(index - length + 1, index + 1):
             if start < 0 or start + length > len(tokens):
@@ -90,10 +92,10 @@ def _fused(tokens: Sequence[Token], index: int) -> Slip | None:
             text = "".join(token.text for token in run)
             joined = all(one.end == two.column and one.line == two.line for one, two in pairwise(run))
             if joined and text in _FUSED:
-                return Slip("wrong-operator", f"there is no '{text}'", _FUSED[text])
+                return Slip("wrong-operator", f"unknown operator `{text}`", _FUSED[text])
     if tokens[index].text in _FUSED:
         text = tokens[index].text
-        return Slip("wrong-operator", f"there is no '{text}'", _FUSED[text])
+        return Slip("wrong-operator", f"unknown operator `{text}`", _FUSED[text])
     return None
 
 
@@ -103,8 +105,8 @@ def _cut(tokens: Sequence[Token], index: int) -> Slip | None:
         return None
     return Slip(
         "wrong-operator",
-        "there is no cut",
-        "a plan takes the first solution of its condition; rules need conditions that exclude each other",
+        "unknown operator `!` (cut)",
+        "a plan takes the first solution of its context; give rules conditions that exclude each other",
     )
 
 
@@ -116,19 +118,19 @@ def _counting(tokens: Sequence[Token], index: int) -> Slip | None:
     if run[2].kind != run[1].kind or run[1].end != run[2].column:
         return None
     sign = run[1].kind
-    help = f"a variable keeps its value: write Y = X {sign} 1; a belief is changed by -+b(Y)"
-    return Slip("wrong-operator", f"there is no '{sign}{sign}' behind a variable", help, run[1])
+    help = f"variables keep their value: write `Y = X {sign} 1`, or change a belief with `-+b(Y)`"
+    return Slip("wrong-operator", f"unknown operator `{sign}{sign}`", help, run[1])
 
 
 def _missing_blank(tokens: Sequence[Token], index: int) -> Slip | None:
-    """``p.q``: the final dot of a clause and the next word read as one."""
+    """``p.q``: the final dot of a clause and the next word, read as one."""
     token, before = tokens[index], tokens[max(index - 1, 0)]
     joined = before.line == token.line and before.end == token.column
     if joined and token.kind == "atom" and token.text.startswith(".") and before.kind in (")", "]", "atom"):
         return Slip(
             "missing-blank",
-            f"'{token.text}' is read as one word",
-            "put a blank or a line end after the final '.'",
+            f"`{token.text}` is read as one word",
+            "put a blank or a line end after the final `.`",
         )
     return None
 
@@ -140,18 +142,18 @@ def _foreign_word(tokens: Sequence[Token], index: int) -> Slip | None:
         return None
     if tokens[index - 1].kind not in _ENDS_OPERAND:
         return None
-    return Slip("foreign-word", f"there is no '{token.text}'", _WORDS[token.text])
+    return Slip("foreign-word", f"unknown keyword `{token.text}`", _WORDS[token.text])
 
 
 def _python(tokens: Sequence[Token], index: int) -> Slip | None:
-    """``def go(): pass`` in the place of a clause."""
+    """``def go(): pass`` in place of a clause."""
     before = tokens[index - 1] if index else None
     if before is None or before.text not in _PYTHON or tokens[index].kind not in ("atom", "variable"):
         return None
     if index > 1 and tokens[index - 2].kind not in (".", "}"):
         return None
-    help = "this is an agent program; Python code stands in a .py file, such as artifacts.py"
-    return Slip("foreign-word", f"'{before.text}' is a word of Python", help, before)
+    help = "this is an agent program; put Python code into a .py file, such as artifacts.py"
+    return Slip("foreign-word", f"Python keyword `{before.text}` in an agent program", help, before)
 
 
 def _open_block(tokens: Sequence[Token], index: int) -> Slip | None:
@@ -163,8 +165,8 @@ def _open_block(tokens: Sequence[Token], index: int) -> Slip | None:
         depth += (token.kind == "}") - (token.kind == "{")
         if depth < 0:
             word = tokens[index].text
-            help = f"the block before it was opened at line {token.line}, column {token.column}"
-            return Slip("unclosed-bracket", f"'}}' is missing before '{word}'", help)
+            help = f"close the block that was opened at line {token.line}, column {token.column}"
+            return Slip("unclosed-bracket", f"missing `}}` before `{word}`", help)
         if token.kind == ".":
             break
     return None
@@ -199,12 +201,12 @@ def _meant(word: Token, wanted: Sequence[str]) -> Slip | None:
         return None
     for each in wanted:
         if is_slip_of(word.text, each):
-            return Slip("misspelt-word", f"'{word.text}' does not fit here", f"did you mean '{each}'?", word)
+            return Slip("misspelt-word", f"unexpected `{word.text}`", f"did you mean `{each}`?", word)
     return None
 
 
 def _opening(tokens: Sequence[Token], index: int) -> int:
-    """The index of the bracket that the ``)`` at *index* closes."""
+    """Return the index of the bracket that the ``)`` at *index* closes."""
     depth = 0
     while index > 0:
         depth += (tokens[index].kind == ")") - (tokens[index].kind == "(")
@@ -215,20 +217,22 @@ def _opening(tokens: Sequence[Token], index: int) -> int:
 
 
 MOST_ASKED: Final = 25
-"""Mistakes of one kind for which a like word is looked for: a comparison of words takes long."""
+"""Mistakes of one kind for which a similar word is searched: comparing words is slow."""
 MOST_KNOWN: Final = 2000
-"""Words that one word is compared with."""
+"""Maximum number of words that one word is compared with."""
 
 
 def close_matches(word: str, known: Iterable[str], cutoff: float = 0.6) -> list[str]:
-    """Return the one of the (first) *known* words that is most like *word*, in a list; an empty one below *cutoff*."""
-    from difflib import get_close_matches  # here: only for programs that are wrong
+    """Return the one of the first `MOST_KNOWN` *known* words most similar to *word*, in a list; empty below
+    *cutoff*.
+    """
+    from difflib import get_close_matches  # imported here: only incorrect programs need it
 
     return get_close_matches(word, list(islice(known, MOST_KNOWN)), 1, cutoff)
 
 
 class Slips:
-    """Words, found by any slip of one of them: so that the time does not grow with the product of two numbers of words."""
+    """An index of words that finds those one slip away, without comparing every pair of words."""
 
     def __init__(self, words: Iterable[str]) -> None:
         self._words: dict[str, list[str]] = {}
@@ -237,23 +241,25 @@ class Slips:
                 self._words.setdefault(part, []).append(word)
 
     def of(self, written: str) -> list[str]:
-        """Return the words that *written* may be a slip of (see `is_slip_of`), each once."""
+        """Return the words of which *written* may be a slip (see `is_slip_of`), each once."""
         return list(dict.fromkeys(word for part in _shortened(written) for word in self._words.get(part, ())))
 
 
 def _shortened(word: str) -> Iterator[str]:
-    """A word, and what is left without one of its letters; words that differ by a slip have one of these in common."""
+    """Yield a word and its forms without one letter; words that differ by a slip share one of these."""
     yield word
     for place in range(min(len(word), _LONGEST)):
         yield word[:place] + word[place + 1 :]
 
 
 _LONGEST: Final = 60
-"""Letters of a word in which a slip is looked for."""
+"""Words longer than this number of letters are not checked for slips."""
 
 
 def is_slip_of(written: str, meant: str) -> bool:
-    """Whether *written* is *meant* with one letter more, less, wrong or in another order (not *meant* itself)."""
+    """Return whether *written* is *meant* with one letter added, missing, wrong or swapped (not *meant*
+    itself).
+    """
     if written == meant or abs(len(written) - len(meant)) > 1:
         return False
     at = next(

@@ -1,11 +1,11 @@
-"""Source files and places in them."""
+"""Source files and positions in them."""
 
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Final, NamedTuple
 
 TEXT: Final = "<string>"
-"""The name of a text that is in no file."""
+"""The name of a text that is not in a file."""
 
 
 @dataclass(frozen=True)
@@ -17,15 +17,15 @@ class SourceFile:
 
     @cached_property
     def lines(self) -> tuple[str, ...]:
-        """The lines without their ends; only a line feed (after an optional carriage return) ends a line."""
+        """The lines without their ends; only a line feed (optionally after a carriage return) ends a line."""
         return tuple(line.removesuffix("\r") for line in self.text.split("\n"))
 
 
 class Span(NamedTuple):
-    """A stretch of a source file: lines and columns count from 1, the end column is exclusive.
+    """A range of a source file: lines and columns count from 1, the end column is exclusive.
 
-    A named tuple because a program has thousands of them, and these are made three times as fast as instances
-    of a frozen dataclass.
+    A named tuple because a program has thousands of them, and these are created three times as fast as
+    instances of a frozen dataclass.
     """
 
     file: SourceFile
@@ -35,5 +35,5 @@ class Span(NamedTuple):
     end_column: int
 
     def to(self, other: "Span") -> "Span":
-        """The stretch from the beginning of this one to the end of *other*."""
+        """Return the range from the beginning of this one to the end of *other*."""
         return Span(self.file, self.line, self.column, other.end_line, other.end_column)

@@ -1,10 +1,10 @@
 """Comments that switch warnings off.
 
     p(X) :- q(Y).     // jacaros: ignore singleton-variable       for this line
-    // jacaros: ignore singleton-variable                         on a line of its own: for the next clause or line
+    // jacaros: ignore singleton-variable                         on its own line: for the next clause or line
     // jacaros: ignore-file singleton-variable, missing-context   for the file
 
-Errors cannot be switched off.  What stands behind ``(`` is for the reader.
+Errors cannot be switched off. Text after ``(`` is a comment for the reader.
 """
 
 import re
@@ -20,7 +20,7 @@ _CODE: Final = re.compile(r"[A-Za-z][\w-]*")
 
 
 class Suppressions:
-    """The orders of one file to switch warnings off; ``unknown`` tells of codes that there are not."""
+    """The suppression comments of one file; ``unknown`` warns of unknown codes."""
 
     def __init__(self, file: SourceFile) -> None:
         self.unknown: list[Diagnostic] = []
@@ -39,14 +39,14 @@ class Suppressions:
         codes = frozenset(_CODE.findall(order["codes"]))
         for code in sorted(codes - KINDS.keys()):
             span = Span(file, comment.line, comment.column, comment.line, comment.column + len(comment.text))
-            self.unknown.append(Diagnostic("warning", f"unknown code {code}", span, None, "unknown-code"))
+            self.unknown.append(Diagnostic("warning", f"unknown code `{code}`", span, None, "unknown-code"))
         if order["file"]:
             self._everywhere |= codes
         else:
             self._lines.append((_lines_of(comment, tokens), codes))
 
     def switch_off(self, diagnostic: Diagnostic) -> bool:
-        """Whether *diagnostic*, which is about this file, is not wanted."""
+        """Return whether a comment suppresses *diagnostic*, which is about this file."""
         if diagnostic.severity == "error" or diagnostic.span is None:
             return False
         if diagnostic.code in self._everywhere:
@@ -56,7 +56,9 @@ class Suppressions:
 
 
 def _lines_of(comment: Comment, tokens: list[Token]) -> range:
-    """The lines that a comment is about: its own, or the clause that begins below, or the next line."""
+    """Return the lines that a comment applies to: its own, or the clause that begins below, or the next
+    line.
+    """
     if any(token.line == comment.line and token.column < comment.column for token in tokens[:-2]):
         return range(comment.line, comment.line + 1)
     at = comment.next_token
@@ -70,7 +72,7 @@ def _lines_of(comment: Comment, tokens: list[Token]) -> range:
 
 
 def wanted(diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
-    """The diagnostics that no comment of their files switches off."""
+    """Yield the diagnostics that no comment of their files suppresses."""
     known: dict[str, Suppressions] = {}
     for diagnostic in diagnostics:
         if diagnostic.severity == "error" or diagnostic.span is None:

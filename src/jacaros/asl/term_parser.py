@@ -1,4 +1,4 @@
-"""Terms and conditions: expressions with their operators."""
+"""Parse terms and conditions: expressions with their operators."""
 
 from abc import abstractmethod
 from typing import Final
@@ -14,26 +14,26 @@ from jacaros.terms.text import unquoted
 from jacaros.terms.values import ARITHMETIC, RELATION
 
 MAX_CHAIN: Final = 250
-"""Operators in a row: each is one level more for all that go down into the term."""
+"""Maximum number of operators in a row: each adds a level of recursion for code that walks the term."""
 
 _NUMERIC: Final = (nodes.Number, nodes.Variable, nodes.Arithmetic, nodes.FunctionCall)
 
 
 class TermParser(LiteralParser):
-    """Reads terms; what stands in braces (plans, bodies, rules) is read by the parser of plans."""
+    """Parse terms; the plan parser reads what is in braces (plans, bodies, rules)."""
 
     @abstractmethod
     def braces(self) -> nodes.Term:
-        """A term in braces: plan, trigger, rule or body."""
+        """Parse a term in braces: plan, trigger, rule or body."""
 
     # expressions
 
     def condition(self) -> nodes.Term:
-        """A formula: what stands in contexts, tests and statements, and behind ``:-``."""
+        """Parse a formula: in contexts, tests and statements, and after ``:-``."""
         return self.expression(formula=True)
 
     def expression(self, loosest: int = OR, formula: bool = False) -> nodes.Term:
-        """An expression whose operators bind at least as tightly as *loosest*."""
+        """Parse an expression whose operators bind at least as tightly as *loosest*."""
         left = self.operand(formula)
         chained = 0
         while True:
@@ -48,8 +48,8 @@ class TermParser(LiteralParser):
                 if chained > MAX_CHAIN:
                     self.fail(
                         "nested-too-deeply",
-                        "this sum has too many parts",
-                        help=f"at most {MAX_CHAIN} operators follow each other without brackets",
+                        "expression with too many operators",
+                        help=f"put brackets around parts of it: at most {MAX_CHAIN} operators may follow each other",
                     )
                 left = self._arithmetic(left, found)
             elif found.kind == RELATION:
@@ -58,26 +58,29 @@ class TermParser(LiteralParser):
                 left = self._connective(left, found, formula)
 
     def element(self) -> nodes.Term:
-        """An element of a list or an annotation: formulae stand in brackets, as ``|`` begins the tail."""
+        """Parse an element of a list or an annotation: formulae need brackets, as ``|`` begins the tail."""
         start = self.token
         element = self.expression(SUM)
         if isinstance(element, nodes.Not) and start.kind == "not":
             self.report(
-                "formula-in-list", "a formula in a list stands in brackets", element.span, "as in [(not a)]"
+                "formula-in-list",
+                "expected brackets around a formula in a list",
+                element.span,
+                "write `[(not a)]`",
             )
         elif self.token.kind in BINARY and self.token.kind != "|":
             self.report(
                 "formula-in-list",
-                "a formula in a list stands in brackets",
+                "expected brackets around a formula in a list",
                 self.span_of(self.token),
-                "as in [(X < 2)]",
+                "write `[(X < 2)]`",
             )
             self.advance()
             self.expression(AND)
         return element
 
     def operand(self, formula: bool = False) -> nodes.Term:
-        """What stands between binary operators."""
+        """Parse an operand of a binary operator."""
         token = self.token
         kind = token.kind
         if kind in ("atom", "~", "::"):
@@ -128,10 +131,12 @@ class TermParser(LiteralParser):
         return inner
 
     def _continues_sum(self, left: nodes.Term) -> bool:
-        """Whether ``+`` or ``-`` behind *left* is arithmetic: after a forgotten ';' or '.' it is not."""
+        """Return whether ``+`` or ``-`` after *left* is arithmetic: after a forgotten ';' or '.' it is
+        not.
+        """
         number = isinstance(left, _NUMERIC)
         if number and not self.token.first:
-            return True  # X-Y <- ...: the end of a context, and no deletion of Y
+            return True  # X-Y <- ...: the end of a context, not a deletion of Y
         return not self.at_plan() and (number or not self.token.first)
 
     def _arithmetic(self, left: nodes.Term, found: Operator) -> nodes.Term:
@@ -147,25 +152,25 @@ class TermParser(LiteralParser):
         return nodes.Arithmetic(operator.kind, (left, right), span=_across(left, right))
 
     def _require_number(self, operator: Token, operand: nodes.Term) -> bool:
-        """Whether *operand* may be a number; reports it otherwise."""
+        """Return whether *operand* may be a number; report it otherwise."""
         if isinstance(operand, _NUMERIC):
             return True
         help = None
         if isinstance(operand, nodes.InternalAction):
-            what = f"'{operand.name}' with {len(operand.arguments)} arguments is not a function"
+            what = f"unknown function `{operand.name}/{len(operand.arguments)}`"
             close = close_matches(operand.name, [*ARITIES, *self.names.functions])
             if close and close[0] != operand.name:
-                help = f"did you mean {close[0]}?"
+                help = f"did you mean `{close[0]}`?"
             elif close:
                 help = f"{close[0]} takes {_arity_text(close[0])}"
         else:
-            what = f"'{operator.text}' needs numbers"
+            what = f"operand of `{operator.text}` is not a number"
             if isinstance(operand, nodes.String | nodes.ListTerm):
-                help = "strings and lists are joined by .concat(A, B, Result)"
+                help = "join strings and lists with `.concat(A, B, Result)`"
             elif operator.first:
-                help = "or is a ';' missing before this line?"
+                help = "if this is a new step, put `;` before this line"
             elif isinstance(operand, nodes.Literal):
-                help = "a belief gives its value through a variable: ask ?b(X) first, then count with X"
+                help = "ask for the value first with `?b(X)`, then calculate with X"
         self.report("not-a-number", what, operand.span or self.span_of(operator), help)
         return False
 
@@ -176,7 +181,7 @@ class TermParser(LiteralParser):
                 "chained-relation",
                 "relations cannot be chained",
                 self.span_of(operator),
-                "join two of them with &, as in 1 < X & X < 5",
+                "join two of them with `&`, as in `1 < X & X < 5`",
             )
         elif left is self._placed and isinstance(left, nodes.Literal | nodes.Variable):
             left = nodes.replace(left, namespace=None)
@@ -184,7 +189,7 @@ class TermParser(LiteralParser):
         return nodes.Relation(operator.kind, left, right, span=_across(left, right))
 
     def _connective(self, left: nodes.Term, found: Operator, formula: bool) -> nodes.Term:
-        """A chain of ``&`` or ``|``, which is right associative; read in a loop, as it may be long."""
+        """Parse a chain of ``&`` or ``|``, which is right associative; in a loop, as it may be long."""
         parts = [left]
         while self.accept(found.symbol):
             parts.append(self.expression(found.level + 1, formula))
@@ -196,7 +201,7 @@ class TermParser(LiteralParser):
 
 
 def _across(left: nodes.Term, right: nodes.Term) -> Span | None:
-    """The stretch from the beginning of *left* to the end of *right*."""
+    """Return the span from the beginning of *left* to the end of *right*."""
     if left.span is None or right.span is None:
         return None
     return left.span.to(right.span)

@@ -1,4 +1,4 @@
-"""All nodes of a tree, its variables, and its shape."""
+"""Walk syntax trees: their nodes, variables and shape."""
 
 from collections.abc import Iterator
 from typing import TypeVar
@@ -7,7 +7,7 @@ from jacaros.asl import nodes
 
 
 def walk(*roots: object) -> Iterator[nodes.Node]:
-    """The *roots* and everything below them, in the order of the text."""
+    """Yield the *roots* and all nodes below them, in source order."""
     stack: list[object] = list(reversed(roots))
     while stack:
         part = stack.pop()
@@ -19,7 +19,7 @@ def walk(*roots: object) -> Iterator[nodes.Node]:
 
 
 def children(node: nodes.Node) -> Iterator[nodes.Node]:
-    """The nodes right below *node*, in the order of the text."""
+    """Yield the direct children of *node*, in source order."""
     for part in node.parts():
         if isinstance(part, nodes.Node):
             yield part
@@ -28,12 +28,12 @@ def children(node: nodes.Node) -> Iterator[nodes.Node]:
 
 
 def variables_in(node: object) -> Iterator[nodes.Variable]:
-    """All occurrences of variables, in order, those of nested plans and bodies included."""
+    """Yield all occurrences of variables, in order, those of nested plans and bodies included."""
     return nodes_in(nodes.Variable, node)
 
 
 def names_in(*parts: object) -> list[str]:
-    """Names of the variables, each once, in order of appearance; unnamed ones left out."""
+    """Return the names of the variables, each once, in order of appearance; unnamed ones are left out."""
     names: dict[str, None] = {}
     for part in parts:
         for variable in variables_in(part):
@@ -43,7 +43,7 @@ def names_in(*parts: object) -> list[str]:
 
 
 def occurrences(*parts: object) -> dict[str, int]:
-    """How often each named variable is mentioned."""
+    """Count the occurrences of each named variable."""
     counts: dict[str, int] = {}
     for part in parts:
         for variable in variables_in(part):
@@ -56,12 +56,12 @@ Kind = TypeVar("Kind", bound=nodes.Node)
 
 
 def nodes_in(kind: type[Kind], node: object) -> Iterator[Kind]:
-    """All nodes of a kind in a piece of syntax, in order."""
+    """Yield all nodes of a kind in a piece of syntax, in order."""
     return (part for part in walk(node) if isinstance(part, kind))
 
 
 def operands(node: nodes.And | nodes.Or) -> list[nodes.Node]:
-    """The formulae that a chain of the same operator joins, from left to right."""
+    """Return the formulae that a chain of the same operator joins, from left to right."""
     kind = type(node)
     found: list[nodes.Node] = []
     stack: list[nodes.Node] = [node]
@@ -75,8 +75,10 @@ def operands(node: nodes.And | nodes.Or) -> list[nodes.Node]:
 
 
 def shape(node: object, names: dict[str, int] | None = None) -> object:
-    """The tree without places and with variables numbered, to be compared: equal for trees that differ in the names
-    of their variables only."""
+    """Return the tree without places and with numbered variables, for comparison.
+
+    Trees that differ only in the names of their variables have equal shapes.
+    """
     names = {} if names is None else names
     if isinstance(node, nodes.Variable):
         number = names.setdefault(node.name, len(names))

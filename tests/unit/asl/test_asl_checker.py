@@ -44,8 +44,8 @@ def test_a_good_program_has_no_warning():
 
 def test_an_unknown_internal_action_is_named_with_what_may_be_meant():
     (warning,) = warnings("+!g <- .prnt(a).")
-    assert warning.message == "there is no internal action .prnt"
-    assert warning.help == "did you mean .print?"
+    assert warning.message == "unknown internal action `.prnt`"
+    assert warning.help == "did you mean `.print`?"
 
 
 def test_internal_actions_are_checked_in_rules_terms_and_conditions():
@@ -61,34 +61,34 @@ def test_internal_actions_are_checked_in_rules_terms_and_conditions():
 
 def test_an_atom_with_a_dot_is_no_internal_action():
     assert messages("p(my.Type). +!g <- .print(my.own).") == []
-    assert messages("+!g <- my.own(1).") == ["there is no internal action my.own"]
+    assert messages("+!g <- my.own(1).") == ["unknown internal action `my.own`"]
 
 
 def test_a_goal_without_a_plan_is_named_once_with_what_may_be_meant():
     found = warnings("!paterol. +!patrol <- !paterol; !go(1,2). +!go(X) <- .print(X).")
     assert [(warning.message, warning.help) for warning in found] == [
-        ("no plan for !paterol/0", "did you mean !patrol?"),
-        ("no plan for !go/2", "did you mean !go/1?"),
+        ("no plan for `!paterol/0`", "did you mean `!patrol`?"),
+        ("no plan for `!go/2`", "did you mean `!go/1`?"),
     ]
 
 
 def test_tests_need_no_plans_for_the_goals_that_all_tests_have():
     assert messages("@t[test] +!t <- !assert_true(p); !fake_message(odom, text); !assert_tru(q).") == [
-        "no plan for !assert_tru/1"
+        "no plan for `!assert_tru/1`"
     ]
-    assert messages("+!t <- !assert_true(p).  !t.") == ["no plan for !assert_true/1"]
+    assert messages("+!t <- !assert_true(p).  !t.") == ["no plan for `!assert_true/1`"]
 
 
 def test_goals_in_another_namespace_are_other_goals():
     (warning,) = warnings("!m::g. +!g.")
-    assert (warning.message, warning.help) == ("no plan for !m::g/0", "did you mean !g?")
+    assert (warning.message, warning.help) == ("no plan for `!m::g/0`", "did you mean `!g`?")
 
 
 def test_a_goal_of_a_local_namespace_is_shown_as_written_and_not_proposed_elsewhere():
     local = "{ begin namespace(own, local) } +!show. !own::shw. { end }"
     inside, outside = warnings(f"{local} !m::show.")
-    assert (inside.message, inside.help) == ("no plan for !own::shw/0", "did you mean !own::show?")
-    assert (outside.message, outside.help) == ("no plan for !m::show/0", "write a plan for it: +!m::show")
+    assert (inside.message, inside.help) == ("no plan for `!own::shw/0`", "did you mean `!own::show`?")
+    assert (outside.message, outside.help) == ("no plan for `!m::show/0`", "write a plan for it: `+!m::show`")
 
 
 def test_a_handler_or_a_plan_inside_a_plan_counts_as_a_plan():
@@ -105,9 +105,9 @@ def test_plans_for_all_goals_and_added_plans_silence_the_check_of_goals():
 
 def test_a_variable_that_occurs_once_may_be_a_slip():
     (warning,) = warnings("+!go(Room) <- move(Rom).")
-    assert warning.message == "the variable Rom occurs only once in this plan"
-    assert warning.help == "did you mean Room? Otherwise write _Rom"
-    assert messages("r(X) :- q(Y).") == ["the variable Y occurs only once in this rule"]
+    assert warning.message == "variable `Rom` occurs only once in this plan"
+    assert warning.help == "did you mean `Room`? Otherwise write `_Rom`"
+    assert messages("r(X) :- q(Y).") == ["variable `Y` occurs only once in this rule"]
 
 
 def test_variables_of_triggers_unnamed_ones_and_those_in_texts_are_left_alone():
@@ -136,23 +136,23 @@ def test_who_knows_more_of_an_action_gives_the_hint():
     [
         (
             "+!g <- .findall(a, b).",
-            "the internal action .findall cannot have 2 arguments",
-            "it takes 3 arguments",
+            "internal action `.findall` expects 3 arguments, found 2",
+            None,
         ),
         (
             "+!g <- .add_plan.",
-            "the internal action .add_plan cannot have no arguments",
-            "it takes 1 to 3 arguments",
+            "internal action `.add_plan` expects 1 to 3 arguments, found none",
+            None,
         ),
         (
             "+!g <- .length(L, N, L, N).",
-            "the internal action .length cannot have 4 arguments",
-            "it takes 2 arguments",
+            "internal action `.length` expects 2 arguments, found 4",
+            None,
         ),
         (
             "+!g(X) : math.sin(X, X) <- a.",
-            "the function math.sin cannot have 2 arguments",
-            "it takes 1 argument",
+            "function `math.sin` expects 1 argument, found 2",
+            None,
         ),
     ],
 )
@@ -179,7 +179,7 @@ def test_performatives_that_are_nearly_known():
     assert codes("+!g <- .send(bob, tel, p); .send(bob, tell, p); .send(bob, propose, p).") == [
         "unknown-performative"
     ]
-    assert warnings("+!g <- .send(bob, askone, p).")[0].help == "did you mean askOne?"
+    assert warnings("+!g <- .send(bob, askone, p).")[0].help == "did you mean `askOne`?"
 
 
 @pytest.mark.parametrize(
@@ -281,12 +281,12 @@ def test_names_with_a_capital_letter_in_beliefs_and_goals_of_the_beginning():
         (7, "singleton-variable"),
         (text.index("Hall") + 1, "singleton-variable"),
     ]
-    assert "kitchen; if any value is meant write _Kitchen" in warnings(text)[0].help
+    assert "`kitchen`? If any value is meant, write `_Kitchen`" in warnings(text)[0].help
 
 
 def test_true_and_none_of_python_are_variables():
     (found,) = warnings("+!g <- a(True).")
-    assert (found.code, found.help) == ("capital-constant", "true is written in lower case")
+    assert (found.code, found.help) == ("capital-constant", "write `true` in lower case")
 
 
 def test_annotations_of_labels_that_are_nearly_known():
@@ -329,7 +329,7 @@ def test_a_run_leaves_out_matters_of_style():
     ],
 )
 def test_comments_switch_warnings_off(text: str, left: list[str]):
-    found = [each.message.split()[2] for each in wanted(warnings(text))]
+    found = [each.message.split("`")[1] for each in wanted(warnings(text))]
     assert found == left
 
 
@@ -340,7 +340,7 @@ def test_errors_cannot_be_switched_off():
 
 def test_codes_that_there_are_not_are_told():
     (found,) = Suppressions(SourceFile("x", "p. // jacaros: ignore singletons")).unknown
-    assert (found.code, found.message) == ("unknown-code", "unknown code singletons")
+    assert (found.code, found.message) == ("unknown-code", "unknown code `singletons`")
 
 
 @pytest.mark.parametrize(
@@ -359,24 +359,24 @@ def test_slips_of_the_pen(written: str, meant: str, like: bool):
     assert is_slip_of(written, meant) is like
 
 
-RETRY = "write how often, and milliseconds before the second attempt, such as retry(3) or retry(3, 500)"
+RETRY = "write the number of retries and a delay in milliseconds, such as `retry(3)` or `retry(3, 500)`"
 
 
 @pytest.mark.parametrize(
     ("text", "help_"),
     [
-        ("!g[every(0)]. +!g.", "write a number of milliseconds, such as every(1000)"),
-        ("+!g <- !!g[every(-5)].", "write a number of milliseconds, such as every(1000)"),
-        ("+!g <- !g[within(abc)].", "write a number of milliseconds, such as within(5000)"),
-        ("+!g <- !g[within(1, 2)].", "write a number of milliseconds, such as within(5000)"),
-        ("@p[within(-1)] +!g.", "write a number of milliseconds, such as within(5000)"),
+        ("!g[every(0)]. +!g.", "write a number of milliseconds, such as `every(1000)`"),
+        ("+!g <- !!g[every(-5)].", "write a number of milliseconds, such as `every(1000)`"),
+        ("+!g <- !g[within(abc)].", "write a number of milliseconds, such as `within(5000)`"),
+        ("+!g <- !g[within(1, 2)].", "write a number of milliseconds, such as `within(5000)`"),
+        ("@p[within(-1)] +!g.", "write a number of milliseconds, such as `within(5000)`"),
         ("+!g <- !g[retry(0)].", RETRY),
         ("+!g <- !g[retry(3, -1)].", RETRY),
-        ("+!g <- ?g[every(100)].", "write it at a goal that asks, such as !ask[within(5000)]"),
-        ("@p[retry(3)] +!g.", "write it at the goal, such as !g[retry(3)]"),
-        ("+!g <- !g[while(g)].", "write it in the label of the plan, such as @p[while(ready)] +!g <- ..."),
-        ("@p[cleanup(3)] +!g.", "write one goal, such as cleanup(park)"),
-        ("@p[while(a, b)] +!g.", "write one condition, such as while(battery(B) & B > 20)"),
+        ("+!g <- ?g[every(100)].", "write it at a goal that asks: `!ask[within(5000)]`"),
+        ("@p[retry(3)] +!g.", "write it at the goal: `!g[retry(3)]`"),
+        ("+!g <- !g[while(g)].", "write it in the label of a plan: `@p[while(ready)] +!g <- ...`"),
+        ("@p[cleanup(3)] +!g.", "write one goal, such as `cleanup(park)`"),
+        ("@p[while(a, b)] +!g.", "write one condition, such as `while(battery(B) & B > 20)`"),
     ],
 )
 def test_annotations_that_act_are_valid_and_at_their_places(text, help_):

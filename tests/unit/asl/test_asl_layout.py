@@ -148,7 +148,7 @@ def test_steps_keep_their_blank_lines_and_lines_their_groups():
 
 
 def test_a_wrong_program_is_refused():
-    with pytest.raises(AslError, match="no final"):
+    with pytest.raises(AslError, match="without a final"):
         formatted("p\nq.")
 
 

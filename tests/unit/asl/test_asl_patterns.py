@@ -116,11 +116,11 @@ def test_wrong_patterns_are_refused_at_their_line():
     def messages(pattern: str) -> list[tuple[int, str]]:
         return places(f"a.\n{{ begin {pattern} }}\n+!g <- a.\n{{ end }}")
 
-    assert messages("dg(X)") == [(2, "argument 1 of 'dg' is the goal, which is a literal")]
-    assert messages("dg") == [(2, "'dg' needs the goal as argument 1")]
-    assert messages("dg(a,b)") == [(2, "'dg' has at most 1 argument")]
-    assert messages("bc(g,foo)") == [(2, "there is no pattern 'foo'")]
-    assert messages("smc(g)") == [(2, "'smc' needs the belief that the goal is impossible as argument 2")]
-    assert messages('sga("order", "true", g)')[0][1].startswith("'order' is no trigger: ")
-    assert messages('sga("+order", "a &", g)')[0][1].startswith("'a &' is no condition: ")
-    assert messages("foo(g)") == [(2, "there is no directive 'foo' with a block")]
+    assert messages("dg(X)") == [(2, "argument 1 of `dg` (the goal) is not a literal")]
+    assert messages("dg") == [(2, "`dg` expects the goal as argument 1")]
+    assert messages("dg(a,b)") == [(2, "`dg` expects at most 1 argument, found 2")]
+    assert messages("bc(g,foo)") == [(2, "unknown pattern `foo`")]
+    assert messages("smc(g)") == [(2, "`smc` expects the belief that the goal is impossible as argument 2")]
+    assert messages('sga("order", "true", g)')[0][1].startswith("`order` is not a trigger: ")
+    assert messages('sga("+order", "a &", g)')[0][1].startswith("`a &` is not a condition: ")
+    assert messages("foo(g)") == [(2, "unknown directive `foo` with a block")]

@@ -140,8 +140,8 @@ def test_a_bare_condition_is_an_action_with_a_warning():
     assert first.action == nodes.Literal("not", (nodes.Literal("a"),))
     assert second.action == nodes.Literal("&", (nodes.Literal("b"), nodes.Literal("c")))
     assert [warning.help for warning in warnings] == [
-        "to test the condition write ?(not f)",
-        "to test it write ?(a & b)",
+        "to test the condition, write `?(not f)`",
+        "to test the condition, write `?(a & b)`",
     ]
 
 

@@ -25,10 +25,10 @@ def test_a_missing_final_dot_is_reported_where_the_next_plan_begins():
         """
     ) == dedent(
         """\
-        robot.asl:3:1: error: the plan before has no final '.'; the next plan begins here
+        robot.asl:3:1: error: plan without a final `.` before the next plan
           3 | +!other <- .print(b).
             | ^
-          = help: put a '.' behind line 2"""
+          = help: put a `.` at the end of line 2"""
     )
 
 
@@ -46,37 +46,37 @@ def test_all_errors_of_a_file_are_reported_at_once_in_order():
         """
     ) == dedent(
         """\
-        robot.asl:2:1: error: '(' is not closed: ')' is expected before '!'
+        robot.asl:2:1: error: unclosed `(`: expected `)`, found `!`
           1 | battery(60
             |        ^
           2 | !patrol.
             | ^
-          = help: it was opened at line 1, column 8
+          = help: opened at line 1, column 8
 
-        robot.asl:3:23: error: a plan has only one context
+        robot.asl:3:23: error: second context of a plan
           3 | +!patrol : battery(B) : B > 20
             |                       ^
-          = help: join the conditions with &
+          = help: join the conditions with `&`
 
-        robot.asl:5:7: error: a ';' is missing before this step
+        robot.asl:5:7: error: missing `;` before this step
           5 |       .print("here);
             |       ^^^^^^
-          = help: steps are separated by ';', the last one is followed by '.'
+          = help: separate steps with `;` and end the last one with `.`
 
-        robot.asl:5:14: error: the string does not end on its line
+        robot.asl:5:14: error: unterminated string
           5 |       .print("here);
             |              ^^^^^^^
           = help: close it: "text"; a line break inside is \\n
 
-        robot.asl:7:9: error: the body behind '<-' is missing
+        robot.asl:7:9: error: missing body after `<-`
           7 | +!go(R) <- .
             |         ^^
-          = help: write the steps, or leave out '<-' if there is nothing to do
+          = help: write the steps, or remove `<-` if there is nothing to do
 
-        robot.asl:8:10: error: there is no '->'
+        robot.asl:8:10: error: unknown operator `->`
           8 | +!charge -> dock.
             |          ^
-          = help: the body of a plan begins with <-"""
+          = help: begin the body of a plan with `<-`"""
     )
 
 
@@ -93,92 +93,117 @@ def test_carets_stand_under_the_mistake_also_behind_tabs():
         (
             "+!g\n<- X = else.",
             2,
-            "'else' is a reserved word and cannot be used here",
-            "as an atom it is written",
+            "reserved word `else` used as a name",
+            "quote it as an atom",
         ),
-        ("\ngröße(3).", 2, "'größe' holds the letter 'ö'; names are made of", "rename it, or put it between"),
+        (
+            "\ngröße(3).",
+            2,
+            "name `größe` contains the letter `ö`; names consist of",
+            "rename it, or quote it",
+        ),
         (
             "+!g <- X = [1,2).",
             1,
-            "'[' is closed by ')'",
-            "it was opened at line 1, column 12; close it with ']'",
+            "`[` is closed by `)`",
+            "close it with `]`; it was opened at line 1, column 12",
         ),
         (
             "+!g <- .print(a;\n .print(b).",
             1,
-            "'(' is not closed: ')' is expected before ';'",
-            "it was opened",
+            "unclosed `(`: expected `)`, found `;`",
+            "close it with `)`; it was opened at",
         ),
-        ("+!g <- for (x) { a; b .", 1, "'{' is not closed: '}' is expected before '.'", "it was opened"),
-        ("p(1)\nq(2).", 2, "the belief before has no final '.'; the next belief begins here", "put a '.'"),
-        ("!g\n!h.", 2, "the goal before has no final '.'; a goal begins here", "put a '.' behind line 1"),
-        ("+!g <- a; b", 1, "the plan has no final '.'", "the file ends here"),
-        ("start <- .print(a).", 1, "a plan begins with its trigger", "put +! before it"),
-        ("+!g :- a.", 1, "':-' belongs to rules", "a plan is written +!goal : condition <- steps."),
-        ("+!g <- a, b.", 1, "steps are separated by ';', not by ','", None),
-        ("+!g : a, b <- c.", 1, "conditions are not joined by ','", "write & for 'and'"),
-        ("p(1), q(2).", 1, "a belief ends with '.', not with ','", "write p(1). p(2)."),
-        ("+!g : a && b.", 1, "there is no '&&'", "'and' is &, 'or' is |"),
-        ("+!g : a || b.", 1, "there is no '||'", "'and' is &, 'or' is |"),
-        ("+!g : X != 1.", 1, "there is no '!='", r"'not equal' is written \=="),
-        ("+!g : X =< 1.", 1, "there is no '=<'", "write <="),
-        (r"+!g : X \= 1.", 1, r"'\' does not begin anything", r"'not equal' is written \=="),
-        ("+!g : 1 < X < 5.", 1, "relations cannot be chained", "join two of them with &"),
-        ("r(X) :- p(X) & !.", 1, "there is no cut", "a plan takes the first solution"),
-        ("r(X) :- p(X); q(X).", 1, "conditions are not joined by ';'", "'or' is written |"),
-        ("+!g(X) <- X++; a.", 1, "there is no '++' behind a variable", "a variable keeps its value"),
-        ("+!g : X ~= 1 <- a.", 1, "there is no '~='", r"'not equal' is written \=="),
-        ("+!g <- X is Y + 1.", 1, "there is no 'is'", "a variable gets its value by ="),
-        ("# a comment\np.", 1, "the character '#' does not belong", "a comment begins with //"),
-        ("+!g : .", 1, "the context behind ':' is missing", None),
-        ("+!g <- a <- b.", 1, "a plan has only one '<-'", "is the final '.'"),
-        ("+!g <- +!h.", 1, "'+!' begins a plan and is no step of a body", "a goal is posted by !g"),
-        ("+!g <- if (a) { b } else if (c) { d }.", 1, "'else if' is written elif", "elif (condition)"),
+        (
+            "+!g <- for (x) { a; b .",
+            1,
+            "unclosed `{`: expected `}`, found `.`",
+            "close it with `}`; it was opened at",
+        ),
+        ("p(1)\nq(2).", 2, "belief without a final `.` before the next belief", "put a `.`"),
+        ("!g\n!h.", 2, "goal without a final `.` before a goal", "put a `.` at the end of line 1"),
+        ("+!g <- a; b", 1, "plan without a final `.`", "put a `.` at the end of the file"),
+        ("start <- .print(a).", 1, "expected the trigger of a plan", "write a plan as `+!goal"),
+        ("+!g :- a.", 1, "unexpected `:-` in a plan", "write a plan as `+!goal : condition <- steps.`"),
+        ("+!g <- a, b.", 1, "expected `;` between steps, found `,`", None),
+        ("+!g : a, b <- c.", 1, "expected `&` between conditions, found `,`", "write `&` for 'and'"),
+        ("p(1), q(2).", 1, "expected `.` after a belief, found `,`", "write `p(1). p(2).`"),
+        ("+!g : a && b.", 1, "unknown operator `&&`", "write one `&` for 'and', one `|` for 'or'"),
+        ("+!g : a || b.", 1, "unknown operator `||`", "write one `&` for 'and', one `|` for 'or'"),
+        ("+!g : X != 1.", 1, "unknown operator `!=`", r"write `\==` for 'not equal'"),
+        ("+!g : X =< 1.", 1, "unknown operator `=<`", "write `<=`"),
+        (r"+!g : X \= 1.", 1, r"unexpected `\`", r"write `\==` for 'not equal'"),
+        ("+!g : 1 < X < 5.", 1, "relations cannot be chained", "join two of them with `&`"),
+        ("r(X) :- p(X) & !.", 1, "unknown operator `!` (cut)", "a plan takes the first solution"),
+        ("r(X) :- p(X); q(X).", 1, "expected `&` or `|` between conditions, found `;`", "write `|` for 'or'"),
+        ("+!g(X) <- X++; a.", 1, "unknown operator `++`", "variables keep their value"),
+        ("+!g : X ~= 1 <- a.", 1, "unknown operator `~=`", r"write `\==` for 'not equal'"),
+        ("+!g <- X is Y + 1.", 1, "unknown keyword `is`", "bind a variable with `=`"),
+        ("# a comment\np.", 1, "unexpected character '#'", "begin comments with `//`"),
+        ("+!g : .", 1, "missing context after `:`", None),
+        ("+!g <- a <- b.", 1, "second `<-` in a plan", "if this is a new plan"),
+        ("+!g <- +!h.", 1, "expected a step, found the trigger `+!`", "post a goal with `!g`"),
+        ("+!g <- if (a) { b } else if (c) { d }.", 1, "write `elif` for `else if`", "elif (condition)"),
         (
             "+!g <- if (a) { b }; else { c }.",
             1,
-            "'else' without an 'if' before it",
-            "'if' and 'else' are not",
+            "`else` without `if`",
+            "remove the `;`",
         ),
-        ("+!g <- while x { b }.", 1, "'(' and the condition of 'while' is expected, not 'x'", None),
-        ("+!g <- a; ; b.", 1, "there is no step between the two ';'", None),
-        ("+!g <- for (X in [1]) { p }.", 1, "there is no 'in'", "an element of a list is found by .member"),
+        ("+!g <- while x { b }.", 1, "expected `(` and the condition of `while`, found `x`", None),
+        ("+!g <- a; ; b.", 1, "empty step between two `;`", None),
+        (
+            "+!g <- for (X in [1]) { p }.",
+            1,
+            "unknown keyword `in`",
+            "find elements of a list with `.member`",
+        ),
         (
             "+!g <- if x > 3 { p }.",
             1,
-            "'(' and the condition of 'if' is expected",
-            "if (condition) { steps }",
+            "expected `(` and the condition of `if`, found `x`",
+            "write `if (condition) { steps }`",
         ),
-        ("+!g : not p(1)\n  .print(q).", 2, "'<-' is expected before '.print'", "the steps of a plan stand"),
+        ("+!g : not p(1)\n  .print(q).", 2, "expected `<-`, found `.print`", "write `<-` before the steps"),
         (
             "+!g <- if (p) { q else { r }.",
             1,
-            "'}' is missing before 'else'",
-            "the block before it was opened at line 1, column 15",
+            "missing `}` before `else`",
+            "close the block that was opened at line 1, column 15",
         ),
-        ("def go(): pass", 1, "'def' is a word of Python", "this is an agent program"),
-        ("+!g <- X = foo + 1.", 1, "'+' needs numbers", "a belief gives its value through a variable"),
-        ('+!g <- X = "a" + "b".', 1, "'+' needs numbers", "strings and lists are joined by .concat"),
-        ("+!g <- X = math.flor(1) + 1.", 1, "'math.flor' with 1 arguments is not a function", "did you mean"),
-        ("+!g <- .print(a)[b].", 1, "'.print' is an internal action, which cannot have annotations", None),
+        ("def go(): pass", 1, "Python keyword `def` in an agent program", "this is an agent program"),
+        (
+            "+!g <- X = foo + 1.",
+            1,
+            "operand of `+` is not a number",
+            "ask for the value first",
+        ),
+        (
+            '+!g <- X = "a" + "b".',
+            1,
+            "operand of `+` is not a number",
+            "join strings and lists with `.concat",
+        ),
+        ("+!g <- X = math.flor(1) + 1.", 1, "unknown function `math.flor/1`", "did you mean"),
+        ("+!g <- .print(a)[b].", 1, "internal action `.print` cannot have annotations", None),
         (
             "+!g : .foreach(p,{a}) <- c.",
             1,
-            "'.foreach' acts and cannot stand in a context",
-            "do it in the body",
+            "internal action `.foreach` acts and cannot be in a context",
+            "move it into the body",
         ),
-        (".print(a).", 1, "'.print' cannot stand outside a plan", "is it a step of the plan before"),
-        ("!!g.", 1, "an initial goal has one '!'", "write !goal."),
-        ("p(a).q(b).", 1, "'.q' is read as one word", "put a blank or a line end after the final"),
-        ("@X +!g.", 1, "a label is an atom, with annotations if need be", "as in @stop[atomic]"),
-        ("/* never closed\n p.", 1, "the comment is not closed", "end it with */"),
-        ("+!g <- a. }", 1, "a belief, a goal or a plan is expected, not '}'", None),
-        ("+!g <- a }.", 1, "nothing is open that this '}' closes", None),
-        ("p(#).", 1, "the character '#' does not belong to the language", None),
-        ("[a].", 1, "a belief, a goal or a plan is expected, not '['", None),
-        ("X.", 1, "a belief is a literal", None),
-        ("p([a|b]).", 1, "the tail of a list is a variable or a list", "as in [H|T]"),
-        ("p[a|b].", 1, "the tail of annotations is a variable", "as in"),
+        (".print(a).", 1, "internal action `.print` outside a plan", "if it is a step of the plan before"),
+        ("!!g.", 1, "expected one `!` before an initial goal", "write `!goal.`"),
+        ("p(a).q(b).", 1, "`.q` is read as one word", "put a blank or a line end after the final"),
+        ("@X +!g.", 1, "expected an atom as label, optionally with annotations", "write `@stop[atomic]"),
+        ("/* never closed\n p.", 1, "unterminated comment", "end it with `*/`"),
+        ("+!g <- a. }", 1, "expected a belief, a goal or a plan, found `}`", None),
+        ("+!g <- a }.", 1, "unmatched `}`", None),
+        ("p(#).", 1, "unexpected character '#'", None),
+        ("[a].", 1, "expected a belief, a goal or a plan, found `[`", None),
+        ("X.", 1, "expected a literal as belief", None),
+        ("p([a|b]).", 1, "expected a variable or a list as the tail of a list", "write `[H|T]`"),
+        ("p[a|b].", 1, "expected a variable as the tail of annotations", "write `p(X)"),
     ],
 )
 def test_common_mistakes(text: str, line: int, message: str, help: str | None):
@@ -200,7 +225,7 @@ def test_a_context_refuses_an_internal_action_that_is_declared_to_act():
     with pytest.raises(AslError) as refused:
         load_program("robot.asl", "+!g : .look & not .tell(a) & my.run <- c.", actions=actions)
     (wrong,) = refused.value.diagnostics
-    assert wrong.message == "'.tell' acts and cannot stand in a context"
+    assert wrong.message == "internal action `.tell` acts and cannot be in a context"
 
 
 def test_one_mistake_gives_one_error():
@@ -227,7 +252,7 @@ def test_two_plans_with_one_label_are_an_error_that_names_both():
     (error,) = errors("@one +!a.\n@two +!b.\n\n@one +!c.")
     assert error.span is not None
     assert error.span.line == 4
-    assert error.message == "two different plans have one label, @one; the first one is at line 1"
+    assert error.message == "two different plans have the label `@one`; the first one is at line 1"
 
 
 def test_two_plans_with_one_label_in_two_files_are_an_error_that_names_both():
@@ -244,8 +269,8 @@ def test_labels_of_subplans_are_apart_from_those_of_the_program():
 @pytest.mark.parametrize(
     ("text", "plain", "message"),
     [
-        ("+!g :\n <- a.", "+!g <- a.", "the context behind ':' is missing"),
-        ("+!g <- !h().", "+!g <- !h.", "the brackets are empty"),
+        ("+!g :\n <- a.", "+!g <- a.", "missing context after `:`"),
+        ("+!g <- !h().", "+!g <- !h.", "empty brackets"),
     ],
 )
 def test_ways_of_writing_in_the_thesis_are_errors_in_other_programs(text: str, plain: str, message: str):

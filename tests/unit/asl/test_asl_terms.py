@@ -145,7 +145,7 @@ def test_nodes_know_their_places():
 def test_text_at_run_time_is_refused_with_a_message():
     with pytest.raises(AslError) as refused:
         parse_term("f(X", "<term2string>")
-    assert str(refused.value).startswith("<term2string>:1:4: error: '(' is not closed")
+    assert str(refused.value).startswith("<term2string>:1:4: error: unclosed `(`")
     with pytest.raises(AslError):
         parse_term("a b")
     with pytest.raises(AslError):

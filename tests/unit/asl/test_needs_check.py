@@ -15,10 +15,10 @@ def told(program: str) -> list[tuple[str, str | None]]:
 @pytest.mark.parametrize(
     ("needs", "message", "help"),
     [
-        ("needs(arm,arm)", "2 units of `arm` are needed, and there is 1", "name `arm` once"),
-        ("needs(lift(2),lift,lift)", "3 units of `lift` are needed, and there are 2", "lift(3)"),
-        ("needs(lift(0))", "this is not a resource", "write a name"),
-        ("needs(arm), policy(refusse)", "unknown policy `refusse`", "did you mean refuse?"),
+        ("needs(arm,arm)", "2 units of `arm`, of which there is 1", "name `arm` once"),
+        ("needs(lift(2),lift,lift)", "3 units of `lift`, of which there are 2", "lift(3)"),
+        ("needs(lift(0))", "expected a resource", "write a name"),
+        ("needs(arm), policy(refusse)", "unknown policy `refusse`", "did you mean `refuse`?"),
     ],
 )
 def test_what_can_never_be_met_is_told_of_plans_and_goals(needs: str, message: str, help: str) -> None:

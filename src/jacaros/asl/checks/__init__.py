@@ -1,1 +1,1 @@
-"""What can be said about a program that is read without errors, one kind of mistake per function."""
+"""Checks of programs without syntax errors, one kind of mistake per function."""

@@ -1,4 +1,4 @@
-"""Internal actions: their names, numbers of arguments, and where they stand."""
+"""Check internal actions: names, numbers of arguments, and where they are used."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -27,8 +27,8 @@ class KnownActions:
 
     Attributes:
         declared: by name; those of the language have a leading dot.
-        help: what to do about a name that is not among them, as far as that is known.
-        is_unseen: whether a name may be among them when the project's Python code runs.
+        help: suggested fix for an unknown name, if there is one.
+        is_unseen: whether a name may become known when the project's Python code runs.
     """
 
     declared: Mapping[str, Declaration]
@@ -36,14 +36,14 @@ class KnownActions:
     is_unseen: Callable[[str], bool] = lambda _: False
 
     def of(self, call: nodes.InternalAction) -> Declaration:
-        """Return what is known of the action that is called."""
+        """Return the declaration of the called action."""
         return self.declared.get(call.name, UNDECLARED)
 
 
 def unknown_actions(
     program: nodes.Program, found: Sequence[nodes.Node], known: KnownActions
 ) -> Iterator[Diagnostic]:
-    """Internal actions that there are not."""
+    """Warn of unknown internal actions."""
     functions = {function.implementation for function in program.functions}
     registered = {function.name for function in program.functions}
     hints: dict[str, str | None] = {}
@@ -65,7 +65,7 @@ def unknown_actions(
             hints[name] = _meant_action(name, known) if len(hints) < MOST_ASKED else None
         yield Diagnostic(
             "warning",
-            f"there is no internal action {name}",
+            f"unknown internal action `{name}`",
             node.span,
             hints[name],
             "unknown-internal-action",
@@ -74,25 +74,25 @@ def unknown_actions(
 
 def _meant_action(name: str, known: KnownActions) -> str | None:
     close = close_matches(name, known.declared)
-    return known.help(name) or (f"did you mean {close[0]}?" if close else None)
+    return known.help(name) or (f"did you mean `{close[0]}`?" if close else None)
 
 
 def _wrong_function(node: nodes.InternalAction) -> Diagnostic:
     least, most = ARITIES[node.name]
-    return _arguments_message(node, least, None if most == float("inf") else int(most), "the function")
+    return _arguments_message(node, least, None if most == float("inf") else int(most), "function")
 
 
 def wrong_arguments(found: Sequence[nodes.Node], known: KnownActions) -> Iterator[Diagnostic]:
-    """Internal actions with too few or too many arguments."""
+    """Warn of internal actions with too few or too many arguments."""
     for node in found:
         if isinstance(node, nodes.InternalAction):
             action = known.declared.get(node.name)
             count = len(node.arguments)
             if action is not None and not action.takes(count):
-                told = _arguments_message(node, action.minimum, action.maximum, "the internal action")
+                found_wrong = _arguments_message(node, action.minimum, action.maximum, "internal action")
                 if action.maximum is not None and count == action.maximum + 1 and action.result_hint:
-                    told = replace(told, help=f"{told.help}; {action.result_hint}")
-                yield told
+                    found_wrong = replace(found_wrong, help=action.result_hint)
+                yield found_wrong
 
 
 def _arguments_message(node: nodes.InternalAction, least: int, most: int | None, what: str) -> Diagnostic:
@@ -104,9 +104,9 @@ def _arguments_message(node: nodes.InternalAction, least: int, most: int | None,
         wanted = f"{least} to {most} arguments"
     return Diagnostic(
         "warning",
-        f"{what} {node.name} cannot have {_arguments(len(node.arguments))}",
+        f"{what} `{node.name}` expects {wanted}, found {len(node.arguments) or 'none'}",
         node.span,
-        f"it takes {wanted}",
+        None,
         "wrong-arguments",
     )
 
@@ -116,14 +116,14 @@ def _arguments(count: int) -> str:
 
 
 def acting_conditions(found: Sequence[nodes.Node], known: KnownActions) -> Iterator[Diagnostic]:
-    """Internal actions that act or wait and are asked whether they hold."""
+    """Warn of internal actions that act or wait and are used as conditions."""
     for node in found:
         for formula in conditions(node):
             for part in parts_of(formula):
                 if isinstance(part, nodes.InternalAction) and known.of(part).suspends:
                     yield Diagnostic(
                         "warning",
-                        f"{part.name} acts or takes time and never holds as a condition",
+                        f"`{part.name}` acts or takes time and never holds as a condition",
                         part.span,
                         "make it a step of the body",
                         "acting-condition",
@@ -131,7 +131,7 @@ def acting_conditions(found: Sequence[nodes.Node], known: KnownActions) -> Itera
 
 
 def unknown_performatives(found: Sequence[nodes.Node], known: KnownActions) -> Iterator[Diagnostic]:
-    """Performatives that are nearly those of the language; any other word may be one of the program's own."""
+    """Warn of misspelt performatives; a word that is not similar to one may be the program's own."""
     for node in found:
         if not isinstance(node, nodes.InternalAction):
             continue
@@ -146,8 +146,8 @@ def unknown_performatives(found: Sequence[nodes.Node], known: KnownActions) -> I
         if meant:
             yield Diagnostic(
                 "warning",
-                f"there is no performative {word.functor}",
+                f"unknown performative `{word.functor}`",
                 word.span,
-                f"did you mean {meant[0]}?",
+                f"did you mean `{meant[0]}`?",
                 "unknown-performative",
             )

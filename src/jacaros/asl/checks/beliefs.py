@@ -1,4 +1,4 @@
-"""What a program asks about beliefs, and what it says that could make them."""
+"""Collect the beliefs that a program asks for, and the text in it that may add them."""
 
 import re
 from collections.abc import Iterator, Mapping
@@ -14,9 +14,9 @@ from jacaros.asl.walk import walk
 
 _WORD: Final = re.compile(r"\w+")
 _SHORTEST: Final = 5
-"""Shorter names are too easily like each other."""
+"""Names shorter than this are too easily similar."""
 _SHORTEST_PART: Final = 3
-"""So are shorter parts of names with underscores."""
+"""Parts of names between underscores that are shorter than this are too easily similar."""
 _ENDINGS: Final = "sdr"
 """Letters that make another form of a word."""
 
@@ -30,17 +30,17 @@ class Beliefs:
     """The names of beliefs in a program.
 
     Attributes:
-        asked: what plans react to and conditions ask for, by name.
-        made: names that the program gives to beliefs of its own and of others.
-        mentioned: all other names in it, and words of strings: they may become beliefs by ways that are not seen.
+        asked: beliefs that plans react to and conditions ask for, by name.
+        made: names that the program gives to its own beliefs and to those of others.
+        mentioned: all other names in it, and words of strings: they may become beliefs in ways that are not visible.
         is_open: beliefs, plans or agents come from elsewhere at run time.
-        events: what plans and ``.wait`` react to, sign and belief: of the default namespace, without strong negation.
+        events: events that plans and ``.wait`` react to, sign and belief; default namespace only, without strong negation.
         made_as, concluded, mentioned_as: as `made`, but for rules; the conclusions of rules; as `mentioned`, without words.
         said: words of strings that are not only printed.
         facts: initial beliefs, by name.
-        noted: beliefs that the agent itself makes: initial ones, and those of steps, without a source in annotations.
-        brought: beliefs made in other ways: by messages, with a source in annotations, by plans for tests, or in ways that
-            are not seen, because they appear in other terms.
+        noted: beliefs that the agent itself adds: initial ones, and those of steps without a source annotation.
+        brought: beliefs that come in other ways: from messages, with a source annotation, from plans for tests, or in
+            ways that are not visible, because they appear in other terms.
     """
 
     asked: dict[str, list[nodes.Literal]] = field(default_factory=dict)
@@ -58,7 +58,7 @@ class Beliefs:
 
 
 def beliefs_of(program: nodes.Program, actions: Mapping[str, Declaration]) -> Beliefs:
-    """Look through a program, with all that it includes; *actions* are the internal actions by name."""
+    """Collect the beliefs of a program and its includes; *actions* are the internal actions by name."""
     found = Beliefs()
     heads: set[int] = set()
     for belief in program.beliefs:
@@ -101,8 +101,9 @@ def beliefs_of(program: nodes.Program, actions: Mapping[str, Declaration]) -> Be
 
 
 def _derive(program: nodes.Program, asked: set[int], found: Beliefs) -> None:
-    """Note the beliefs and events that are derived, whatever their arguments, and the beliefs that
-    they are made of or whose history is kept."""
+    """Note the derived beliefs and events, whatever their arguments, and their streams and those with a
+    history.
+    """
     for kept in program.histories:
         _ask(kept.belief, asked, found)
     for derived in program.derived:
@@ -114,7 +115,7 @@ def _derive(program: nodes.Program, asked: set[int], found: Beliefs) -> None:
 
 
 def _react(plan: nodes.Plan, found: Beliefs) -> None:
-    """Note the events of beliefs that a plan and its sub-plans are for."""
+    """Note the belief events that trigger a plan and its sub-plans."""
     if plan.trigger.kind == "" and plan.trigger.operator in "+-":
         _note_event(plan.trigger.operator, plan.trigger.literal, found)
     for inner in plan.subplans:
@@ -127,7 +128,7 @@ def _note_event(sign: str, literal: nodes.Node, found: Beliefs) -> None:
 
 
 def _awaited(wait: nodes.InternalAction) -> Iterator[nodes.BeliefChange]:
-    """The event ``{+b}`` or ``{-b}`` that a ``.wait`` is for: it reads like a change of beliefs."""
+    """Yield the event ``{+b}`` or ``{-b}`` that a ``.wait`` waits for: it parses as a belief change."""
     for argument in wait.arguments:
         if isinstance(argument, nodes.BodyTerm):
             yield from (step for step in argument.body.steps if isinstance(step, nodes.BeliefChange))
@@ -168,20 +169,20 @@ def _look_at_call(node: nodes.InternalAction, action: Declaration, asked: set[in
 
 
 def _ask(node: nodes.Node, asked: set[int], found: Beliefs) -> None:
-    """Note a literal that is asked for; those of other namespaces may be anybody's."""
+    """Note a literal that is asked for; beliefs of other namespaces may come from anywhere."""
     if isinstance(node, nodes.Literal) and node.namespace is None:
         asked.add(id(node))
         found.asked.setdefault(_name(node), []).append(node)
 
 
 def _make(term: nodes.Node, found: Beliefs) -> None:
-    """Note a belief that is made, or a list of them."""
+    """Note a belief that is added, or a list of them."""
     found.made.update(_names(term))
     found.made_as.update(_keys(term))
 
 
 def _notes(program: nodes.Program) -> set[int]:
-    """The literals that steps add or delete."""
+    """Return the literals that steps add or delete."""
     steps = walk(program.plans)
     return {id(step.operand) for step in steps if isinstance(step, nodes.BeliefChange)}
 
@@ -192,7 +193,7 @@ def _note(belief: nodes.Literal, found: Beliefs) -> None:
 
 
 def source_of(literal: nodes.Literal) -> str:
-    """The source that a literal asks for, such as ``percept``; empty if it asks for none, or for any."""
+    """Return the source that a literal asks for, such as ``percept``; empty if it asks for any."""
     items = literal.annotations.items if literal.annotations is not None else ()
     for each in items:
         if isinstance(each, nodes.Literal) and each.functor == "source" and len(each.arguments) == 1:
@@ -203,8 +204,10 @@ def source_of(literal: nodes.Literal) -> str:
 
 
 def is_fact_of(asked: nodes.Literal, fact: nodes.Literal) -> bool:
-    """Whether a literal asks for values that a fact of another name has: its arguments that are written out are the same,
-    and there is one."""
+    """Return whether a literal asks for values that a fact of another name has.
+
+    It does if there are constant arguments, and the fact has the same constants in those places.
+    """
     if len(asked.arguments) != len(fact.arguments):
         return False
     pairs = [
@@ -227,7 +230,7 @@ def key_of(literal: nodes.Literal) -> Key:
 
 
 def _names(term: nodes.Node) -> Iterator[str]:
-    """The name of a belief, or of each in a list of them."""
+    """Yield the name of a belief, or of each belief in a list."""
     for node in term.items if isinstance(term, nodes.ListTerm) else (term,):
         if isinstance(node, nodes.Literal):
             yield _name(node)
@@ -238,10 +241,13 @@ def _name(literal: nodes.Literal) -> str:
 
 
 def is_misspelt(written: str, meant: str) -> bool:
-    """Whether *written* is surely meant to be *meant*.
+    """Return whether *written* is clearly a misspelling of *meant*.
 
-    Names with numbers (``room1``, ``room2``), plurals and other forms of a word (``close``, ``closed``), short names, names
-    that begin otherwise, and those that differ in a short part (``pos_x``, ``pos_y``) are names of their own.
+    Names with digits (``room1``, ``room2``), plurals and other forms of a word (``close``, ``closed``), short
+    names,
+    names with different first letters, and those that differ in a short part (``pos_x``, ``pos_y``) are names
+    of their
+    own.
     """
     if len(meant) < _SHORTEST or written[0] != meant[0] or not is_slip_of(written, meant):
         return False

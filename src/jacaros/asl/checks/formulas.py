@@ -1,4 +1,4 @@
-"""Where conditions are in a program, and which of them never hold."""
+"""Find the conditions in a program, and those that never hold."""
 
 from collections.abc import Iterator, Sequence
 from math import inf
@@ -12,7 +12,7 @@ Clause = nodes.Plan | nodes.Rule
 
 
 def clauses(program: nodes.Program) -> Iterator[Clause]:
-    """The plans and the rules, in this order."""
+    """Yield the plans, then the rules."""
     yield from program.plans
     for belief in program.beliefs:
         if isinstance(belief, nodes.Rule):
@@ -20,7 +20,9 @@ def clauses(program: nodes.Program) -> Iterator[Clause]:
 
 
 def conditions(node: nodes.Node) -> Iterator[nodes.Term]:
-    """The conditions that *node* itself has: contexts, tests, conditions of statements, rules, ``while`` of labels."""
+    """Yield the conditions of *node* itself: contexts, tests, conditions of statements, rules, ``while`` of
+    labels.
+    """
     if isinstance(node, nodes.Plan):
         if node.context is not None:
             yield node.context
@@ -37,7 +39,7 @@ def conditions(node: nodes.Node) -> Iterator[nodes.Term]:
 
 
 def labelled(plan: nodes.Plan) -> Iterator[nodes.Literal]:
-    """The annotations of a plan's label, but for those that are no literals."""
+    """Yield the annotations of a plan's label that are literals."""
     annotations = plan.label.annotations if isinstance(plan.label, nodes.Literal) else None
     for item in () if annotations is None else annotations.items:
         if isinstance(item, nodes.Literal):
@@ -45,7 +47,7 @@ def labelled(plan: nodes.Plan) -> Iterator[nodes.Literal]:
 
 
 def parts_of(formula: nodes.Term) -> Iterator[nodes.Term]:
-    """The conditions that *formula* is made of by ``&``, ``|`` and ``not``, in the order of the text."""
+    """Yield the conditions that *formula* joins by ``&``, ``|`` and ``not``, in source order."""
     stack = [formula]
     while stack:
         term = stack.pop()
@@ -56,7 +58,7 @@ def parts_of(formula: nodes.Term) -> Iterator[nodes.Term]:
 
 
 def conjuncts(formula: nodes.Term) -> Iterator[nodes.Term]:
-    """The conditions that must hold together for *formula* to hold, in the order of the text."""
+    """Yield the conditions that must all hold for *formula* to hold, in source order."""
     stack = [formula]
     while stack:
         term = stack.pop()
@@ -67,7 +69,7 @@ def conjuncts(formula: nodes.Term) -> Iterator[nodes.Term]:
 
 
 def in_order(root: nodes.Node) -> Iterator[tuple[nodes.Node, bool]]:
-    """Everything below *root* in the order of the text, each node with whether it is asked as a condition."""
+    """Yield all nodes below *root* in source order, each with whether it is used as a condition."""
     stack: list[tuple[nodes.Node, bool]] = [(root, False)]
     while stack:
         node, asked = stack.pop()
@@ -80,14 +82,14 @@ def in_order(root: nodes.Node) -> Iterator[tuple[nodes.Node, bool]]:
 
 
 def is_true(formula: nodes.Term | None) -> bool:
-    """Whether *formula* holds in any case: it is missing or ``true``."""
+    """Return whether *formula* always holds: it is missing or ``true``."""
     return formula is None or (
         isinstance(formula, nodes.Literal) and formula.functor == "true" and not formula.arguments
     )
 
 
 def contradiction(formula: nodes.Term) -> str | None:
-    """Why *formula* never holds, or None if that is not evident."""
+    """Explain why *formula* never holds, or return None if that is not evident."""
     parts = list(conjuncts(formula))
     return _constant(parts) or _both_ways(parts) or _two_values(parts) or _empty_range(parts)
 
@@ -98,7 +100,7 @@ def _constant(parts: Sequence[nodes.Term]) -> str | None:
         if isinstance(part, nodes.Literal) and part.functor == "false" and not part.arguments:
             return "its condition is false"
         if isinstance(part, nodes.Not) and is_true(part.operand):
-            return "'not true' never holds"
+            return "`not true` never holds"
         if (
             isinstance(part, nodes.Relation)
             and isinstance(part.left, nodes.Number)
@@ -106,7 +108,7 @@ def _constant(parts: Sequence[nodes.Term]) -> str | None:
             and (holds := BINARY[part.operator].numbers) is not None
             and not holds(part.left.value, part.right.value)
         ):
-            return f"{format_term(part)} never holds"
+            return f"`{format_term(part)}` never holds"
     return None
 
 
@@ -116,12 +118,12 @@ def _both_ways(parts: Sequence[nodes.Term]) -> str | None:
     for part in parts:
         if isinstance(part, nodes.Not) and part.operand in plain:
             text = format_term(part.operand)
-            return f"{text} and not {text} cannot hold together"
+            return f"`{text}` and `not {text}` cannot both hold"
     return None
 
 
 def _is_fixed(term: nodes.Term) -> bool:
-    """Whether two occurrences of *term* mean the same."""
+    """Return whether two occurrences of *term* mean the same."""
     return not any(isinstance(node, nodes.Variable) and node.unnamed for node in walk(term))
 
 
@@ -158,7 +160,7 @@ def _empty_range(parts: Sequence[nodes.Term]) -> str | None:
 
 
 def _variable_and_constant(part: nodes.Term) -> tuple[str, str, nodes.Term] | None:
-    """The variable, the operator and the constant of ``X op constant``."""
+    """Return the variable, the operator and the constant of ``X op constant``."""
     if not isinstance(part, nodes.Relation) or not isinstance(part.left, nodes.Variable):
         return None
     left, right = part.left, part.right

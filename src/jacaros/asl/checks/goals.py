@@ -1,4 +1,4 @@
-"""Goals that are posted and that no plan is for."""
+"""Check for goals without a plan."""
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
@@ -18,9 +18,10 @@ _Signature = tuple[str | nodes.Variable | None, str, int]
 def goals_without_plan(
     program: nodes.Program, found: Sequence[nodes.Node], known: KnownActions
 ) -> Iterator[Diagnostic]:
-    """Goals that are posted and that no plan (nor ``-!`` handler) is for.
+    """Warn of posted goals without a plan or ``-!`` handler.
 
-    Programs with plans for any goal (``+!G``) and programs that add plans are left alone; those with tests need no
+    Programs with a plan for any goal (``+!G``) and programs that add plans are skipped; those with tests need
+    no
     plans for assertions.
     """
     handled: set[_Signature] = set()
@@ -55,7 +56,7 @@ def goals_without_plan(
         reported.add(signature)
         yield Diagnostic(
             "warning",
-            f"no plan for {_goal_text(signature)}",
+            f"no plan for `{_goal_text(signature)}`",
             goal.span,
             _meant_goal(signature, handled) if len(reported) <= MOST_ASKED else None,
             "unknown-goal",
@@ -63,7 +64,7 @@ def goals_without_plan(
 
 
 def _cleanups(plan: nodes.Plan) -> list[nodes.Literal]:
-    """The clean-up goal of a plan: ``cleanup(Goal)`` in its label."""
+    """Return the clean-up goals of a plan: ``cleanup(Goal)`` in its label."""
     found = [each.arguments[0] for each in labelled(plan) if each.functor == "cleanup" and each.arguments]
     return [goal for goal in found if isinstance(goal, nodes.Literal)]
 
@@ -80,7 +81,7 @@ _HEAD: Final = re.compile(r"^[+]!(\w+)(?:\(([^)]*)\))?", re.MULTILINE)
 
 @cache
 def _goals_of_tests() -> frozenset[tuple[str, int]]:
-    """Names and numbers of arguments of the goals that `jacaros test` gives to every agent."""
+    """Return names and numbers of arguments of the goals that `jacaros test` gives to every agent."""
     texts = [
         (_LIBRARY / f"{name}.asl").read_text(encoding="utf-8") for name in ("test_assert", "test_performance")
     ]
@@ -100,17 +101,19 @@ def _goal_text(signature: _Signature) -> str:
 
 
 def _meant_goal(wanted: _Signature, handled: Iterable[_Signature]) -> str:
-    """The goal with a plan that is most like *wanted*: of the same name or of a like one."""
+    """Return the goal with a plan that is most similar to *wanted*: of the same or of a similar name."""
     within = [signature for signature in handled if _is_reachable(signature[0], wanted[0])]
     texts = sorted(_goal_text(signature) for signature in within)
     same_name = [_goal_text(signature) for signature in within if signature[1] == wanted[1]]
     close = sorted(same_name) or close_matches(_goal_text(wanted), texts)
     if not close:
-        return f"write a plan for it: +{_goal_text(wanted).rpartition('/')[0]}"
+        return f"write a plan for it: `+{_goal_text(wanted).rpartition('/')[0]}`"
     name, _, arity = close[0].rpartition("/")
-    return f"did you mean {name if arity == str(wanted[2]) else close[0]}?"
+    return f"did you mean `{name if arity == str(wanted[2]) else close[0]}`?"
 
 
 def _is_reachable(namespace: str | nodes.Variable | None, own: str | nodes.Variable | None) -> bool:
-    """Whether a program can write the namespace: local ones have a name with '#' that no other file can."""
+    """Return whether a program can write the namespace: names of local ones have a '#', which cannot be
+    written.
+    """
     return not isinstance(namespace, str) or "#" not in namespace or namespace == own

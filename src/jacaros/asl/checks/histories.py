@@ -1,4 +1,4 @@
-"""Conditions that ask for the past of beliefs of which no history is kept."""
+"""Check for conditions on the past of beliefs without a history."""
 
 from collections.abc import Iterator
 
@@ -34,6 +34,6 @@ def no_history(literal: nodes.Literal) -> Diagnostic:
         "warning",
         f"no history of `{belief}` is kept: `ago` finds nothing",
         literal.span,
-        f"declare {{ history({belief}, within(2000)) }}, or `history: 2` in the mapping file of a property",
+        f"declare `{{ history({belief}, within(2000)) }}`, or `history: 2` in the mapping file of a property",
         "no-history",
     )

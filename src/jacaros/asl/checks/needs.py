@@ -1,4 +1,4 @@
-"""Annotations ``needs(..)`` of labels and goals that can never be met, and policies that do not exist."""
+"""Check annotations ``needs(..)`` of labels and goals: needs that can never be met, and unknown policies."""
 
 import re
 from collections import Counter
@@ -13,7 +13,7 @@ _NAME = re.compile(r"[A-Za-z_/][A-Za-z0-9_/]*")
 
 
 def wrong_needs(found: Sequence[nodes.Node]) -> Iterator[Diagnostic]:
-    """Needs that no run can meet."""
+    """Warn of needs that no run can meet."""
     for items in _annotated(found):
         needs = [item for item in items if item.functor == "needs"]
         for need in needs:
@@ -23,7 +23,7 @@ def wrong_needs(found: Sequence[nodes.Node]) -> Iterator[Diagnostic]:
 
 
 def needs_of(found: Sequence[nodes.Node]) -> Iterator[tuple[str, nodes.Literal]]:
-    """The names of resources that plans and goals need, each with its annotation."""
+    """Yield the names of resources that plans and goals need, each with its annotation."""
     for items in _annotated(found):
         for item in items:
             if item.functor == "needs":
@@ -34,7 +34,7 @@ def needs_of(found: Sequence[nodes.Node]) -> Iterator[tuple[str, nodes.Literal]]
 
 
 def _annotated(found: Sequence[nodes.Node]) -> Iterator[list[nodes.Literal]]:
-    """The annotations of labels and of goals."""
+    """Yield the annotations of labels and of goals."""
     for node in found:
         if isinstance(node, nodes.Plan):
             owner: object = node.label
@@ -54,8 +54,8 @@ def _never_met(need: nodes.Literal) -> Iterator[Diagnostic]:
         if name is None or (capacity is not None and capacity < 1):
             yield _wrong(
                 need,
-                "this is not a resource",
-                "write a name, lift(2) for one that two may use, or map(shared)",
+                "expected a resource",
+                "write a name, `lift(2)` for a resource that two may use, or `map(shared)`",
             )
             return
         units[name] += 1
@@ -67,13 +67,15 @@ def _never_met(need: nodes.Literal) -> Iterator[Diagnostic]:
             are = "is 1" if there == 1 else f"are {there}"
             yield _wrong(
                 need,
-                f"this can never be met: {wanted} units of `{name}` are needed, and there {are}",
-                f"name `{name}` once, or say how many there are: {name}({wanted})",
+                f"needs that can never be met: {wanted} units of `{name}`, of which there {are}",
+                f"name `{name}` once, or give its capacity: `{name}({wanted})`",
             )
 
 
 def _read(argument: nodes.Node) -> tuple[str | None, int | None]:
-    """Name and capacity of a resource; no name when it is none, a capacity of None when it is not said."""
+    """Return the name and capacity of a resource; None for a name that is invalid or a capacity that is not
+    given.
+    """
     if isinstance(argument, nodes.String):
         return (argument.value if _NAME.fullmatch(argument.value) else None), None
     if not isinstance(argument, nodes.Literal) or argument.negated:
@@ -99,7 +101,7 @@ def _wrong_policies(items: Sequence[nodes.Literal]) -> Iterator[Diagnostic]:
             yield _wrong(
                 item,
                 f"unknown policy `{name}`",
-                f"did you mean {close[0]}?" if close else f"write {', '.join(_POLICIES)}",
+                f"did you mean `{close[0]}`?" if close else f"write {', '.join(_POLICIES)}",
             )
 
 

@@ -1,4 +1,4 @@
-"""Plans that can never be selected, and handlers that give up more than people expect."""
+"""Check for plans that can never be selected, and for handlers that drop more than you may expect."""
 
 from collections.abc import Iterator, Sequence
 from typing import Final
@@ -16,9 +16,9 @@ _LABEL_WORDS: Final = ("atomic", "breakpoint", "all_unifs", "urgency", "needs", 
 def never_selected(
     program: nodes.Program, found: Sequence[nodes.Node], known: KnownActions
 ) -> Iterator[Diagnostic]:
-    """Plans behind one that is always taken before them.
+    """Warn of plans that an earlier plan makes unreachable.
 
-    Programs that change their plans or choose among them by rules of their own are left alone.
+    Programs that change their plans or select among them by their own rules are skipped.
     """
     for node in found:
         if isinstance(node, nodes.InternalAction) and known.of(node).changes_plans:
@@ -44,9 +44,9 @@ def _shadowed(plans: Sequence[nodes.Plan]) -> Iterator[Diagnostic]:
             where = _where(before, plan)
             yield Diagnostic(
                 "warning",
-                f"this plan is never selected: the one before it{where} is for all these events",
+                f"unreachable plan: the plan{where} already handles all of these events",
                 plan.trigger.span,
-                "give that one a condition, or put it behind this plan",
+                "give that plan a context, or move it after this one",
                 "plan-never-selected",
             )
         elif is_true(plan.context):
@@ -54,15 +54,19 @@ def _shadowed(plans: Sequence[nodes.Plan]) -> Iterator[Diagnostic]:
 
 
 class _Taken:
-    """The plans that are always taken, found by what their triggers fix: a program may have thousands for one event."""
+    """The plans that are always selected, indexed by the arguments that their triggers fix.
+
+    A program may have thousands of plans for one event.
+    """
 
     def __init__(self) -> None:
         self._number = 0
-        # For each kind of event: the arguments that are fixed, and by their values the first plan with its number.
+        # For each kind of event: the fixed arguments, and by their values the first such plan with its
+        # number.
         self._plans: dict[object, dict[tuple[int, ...], dict[object, tuple[int, nodes.Plan]]]] = {}
 
     def add(self, plan: nodes.Plan, literal: nodes.Literal) -> None:
-        """Take a plan in, unless its trigger is for fewer events than its fixed arguments tell."""
+        """Add a plan, unless its trigger matches fewer events than its fixed arguments show."""
         annotations = literal.annotations
         if annotations is not None and not _is_ground(annotations):
             return
@@ -83,7 +87,7 @@ class _Taken:
         by_values.setdefault(_values(literal, fixed), (self._number, plan))
 
     def covering(self, trigger: nodes.Trigger, literal: nodes.Literal) -> nodes.Plan | None:
-        """Return the first plan that is for every event that a trigger with this literal is for."""
+        """Return the first plan that handles every event that a trigger with this literal matches."""
         found: list[tuple[int, nodes.Plan]] = []
         for annotations in dict.fromkeys((None, literal.annotations)):
             for fixed, plans in self._plans.get(_event(trigger, literal, annotations), {}).items():
@@ -107,7 +111,7 @@ def _is_ground(term: nodes.Node) -> bool:
 
 
 def _is_made(plan: nodes.Plan) -> bool:
-    """Whether a directive made the plan: such plans have the place of the directive."""
+    """Return whether a directive made the plan: such plans have the place of the directive."""
     span = plan.span
     return span is not None and span.file.lines[span.line - 1][span.column - 1 :].startswith("{")
 
@@ -120,14 +124,14 @@ def _where(before: nodes.Plan, plan: nodes.Plan) -> str:
 
 
 def contexts_never_true(found: Sequence[nodes.Node]) -> Iterator[Diagnostic]:
-    """Plans whose condition contradicts itself."""
+    """Warn of plans whose context contradicts itself."""
     for node in found:
         if isinstance(node, nodes.Plan) and node.context is not None:
             why = contradiction(node.context)
             if why is not None:
                 yield Diagnostic(
                     "warning",
-                    f"this plan is never selected: {why}",
+                    f"unreachable plan: {why}",
                     node.context.span or node.trigger.span,
                     None,
                     "context-never-true",
@@ -135,7 +139,7 @@ def contexts_never_true(found: Sequence[nodes.Node]) -> Iterator[Diagnostic]:
 
 
 def narrow_handlers(program: nodes.Program) -> Iterator[Diagnostic]:
-    """Goals whose ``-!`` plans all have conditions: when none holds, the whole intention is dropped."""
+    """Note goals whose ``-!`` plans all have contexts: if none holds, the whole intention is dropped."""
     handlers: dict[object, list[nodes.Plan]] = {}
     for plan in program.plans:
         trigger = plan.trigger
@@ -153,15 +157,15 @@ def narrow_handlers(program: nodes.Program) -> Iterator[Diagnostic]:
             trigger = plans[-1].trigger
             yield Diagnostic(
                 "note",
-                "when no condition of the plans for this failure holds, the whole intention is dropped",
+                "if no context of these failure plans holds, the whole intention is dropped",
                 trigger.span,
-                "the failure does not go on to the goals further out; add a plan without a condition",
+                "add a failure plan without a context; the failure is not passed to the goals further out",
                 "narrow-handler",
             )
 
 
 def misspelt_label_words(found: Sequence[nodes.Node]) -> Iterator[Diagnostic]:
-    """Annotations of labels that are nearly those with a meaning."""
+    """Warn of misspelt annotations of labels."""
     for node in found:
         if not isinstance(node, nodes.Plan) or not isinstance(node.label, nodes.Literal):
             continue
@@ -173,15 +177,15 @@ def misspelt_label_words(found: Sequence[nodes.Node]) -> Iterator[Diagnostic]:
             if meant:
                 yield Diagnostic(
                     "warning",
-                    f"the annotation {item.functor} has no meaning for the choice of plans",
+                    f"label annotation `{item.functor}` has no meaning",
                     item.span,
-                    f"did you mean {meant[0]}?",
+                    f"did you mean `{meant[0]}`?",
                     "misspelt-annotation",
                 )
 
 
 def wrong_urgencies(found: Sequence[nodes.Node]) -> Iterator[Diagnostic]:
-    """Annotations ``urgency`` of labels without a whole number from 0 on: they have no effect."""
+    """Warn of ``urgency`` annotations of labels that are not non-negative integers: they have no effect."""
     for node in found:
         if not isinstance(node, nodes.Plan) or not isinstance(node.label, nodes.Literal):
             continue
@@ -190,9 +194,9 @@ def wrong_urgencies(found: Sequence[nodes.Node]) -> Iterator[Diagnostic]:
             if isinstance(item, nodes.Literal) and item.functor == "urgency" and not _is_urgency(item):
                 yield Diagnostic(
                     "warning",
-                    "the urgency of a plan is a whole number from 0 on; this one has no effect",
+                    "urgency must be a non-negative integer; this one has no effect",
                     item.span,
-                    "write a number, such as urgency(10): what has a greater one goes first",
+                    "write a number, such as `urgency(10)`; the greatest goes first",
                     "wrong-urgency",
                 )
 
@@ -203,5 +207,5 @@ def _is_urgency(item: nodes.Literal) -> bool:
     argument = item.arguments[0]
     if isinstance(argument, nodes.Number):
         return argument.value >= 0 and float(argument.value).is_integer()
-    # What it comes to is known when it is computed only.
+    # Its value is known only at run time.
     return isinstance(argument, nodes.Arithmetic)

@@ -1,4 +1,4 @@
-"""Annotations of goals and labels that act: deadlines, attempts, periods, and conditions that must stay true."""
+"""Check annotations of goals and labels that supervise: deadlines, attempts, periods and guard conditions."""
 
 from collections.abc import Callable, Iterator, Sequence
 from typing import Final
@@ -9,29 +9,29 @@ from jacaros.asl.diagnostics import Diagnostic
 
 _Check = Callable[[tuple[nodes.Term, ...]], bool]
 _HELP: Final = {
-    "within": "write a number of milliseconds, such as within(5000)",
-    "hard_deadline": "write a number of milliseconds, such as hard_deadline(5000)",
-    "every": "write a number of milliseconds, such as every(1000)",
-    "retry": "write how often, and milliseconds before the second attempt, such as retry(3) or retry(3, 500)",
-    "while": "write one condition, such as while(battery(B) & B > 20)",
-    "cleanup": "write one goal, such as cleanup(park)",
+    "within": "write a number of milliseconds, such as `within(5000)`",
+    "hard_deadline": "write a number of milliseconds, such as `hard_deadline(5000)`",
+    "every": "write a number of milliseconds, such as `every(1000)`",
+    "retry": "write the number of retries and a delay in milliseconds, such as `retry(3)` or `retry(3, 500)`",
+    "while": "write one condition, such as `while(battery(B) & B > 20)`",
+    "cleanup": "write one goal, such as `cleanup(park)`",
 }
 
 
 def _number(term: nodes.Term, least: float) -> bool:
-    """Whether a term may be a number from *least* on; what is computed is known at run time only."""
+    """Return whether a term may be a number, at least *least*; computed values are known only at run time."""
     if isinstance(term, nodes.Number):
         return term.value >= least
     return isinstance(term, nodes.Variable | nodes.Arithmetic | nodes.FunctionCall)
 
 
 def _is_time(arguments: tuple[nodes.Term, ...]) -> bool:
-    """One positive number of milliseconds."""
+    """Return whether there is one positive number of milliseconds."""
     return len(arguments) == 1 and _number(arguments[0], 1e-9)
 
 
 def _is_retry(arguments: tuple[nodes.Term, ...]) -> bool:
-    """A whole number of attempts, and perhaps the time before the second one."""
+    """Return whether there is a number of retries, and optionally a delay."""
     if not 1 <= len(arguments) <= 2 or not _number(arguments[0], 1):
         return False
     count = arguments[0]
@@ -57,7 +57,7 @@ _OF_LABELS: Final[dict[str, _Check]] = {"within": _is_time, "while": _is_single,
 
 
 def wrong_supervision(goals: Sequence[nodes.Literal], found: Sequence[nodes.Node]) -> Iterator[Diagnostic]:
-    """Annotations of goals and labels that are meant to act, and have no effect."""
+    """Warn of supervising annotations of goals and labels that have no effect."""
     for goal in goals:
         yield from _of_goal(goal)
     for node in found:
@@ -75,15 +75,13 @@ def _of_goal(goal: nodes.Term) -> Iterator[Diagnostic]:
             if not _OF_GOALS[item.functor](item.arguments):
                 yield _invalid(item)
         elif item.functor == "while":
-            yield _misplaced(
-                item, "goals", "write it in the label of the plan, such as @p[while(ready)] +!g <- ..."
-            )
+            yield _misplaced(item, "goals", "write it in the label of a plan: `@p[while(ready)] +!g <- ...`")
 
 
 def _of_test(formula: nodes.Term) -> Iterator[Diagnostic]:
     for item in _annotations(formula):
         if item.functor in ("within", "every", "retry") and item.arguments:
-            yield _misplaced(item, "test goals", "write it at a goal that asks, such as !ask[within(5000)]")
+            yield _misplaced(item, "test goals", "write it at a goal that asks: `!ask[within(5000)]`")
 
 
 def _of_label(plan: nodes.Plan) -> Iterator[Diagnostic]:
@@ -94,7 +92,7 @@ def _of_label(plan: nodes.Plan) -> Iterator[Diagnostic]:
             elif item.functor == "while":
                 yield from _never_true(item)
         elif item.functor in ("every", "retry", "hard_deadline") and item.arguments:
-            yield _misplaced(item, "plans", f"write it at the goal, such as !g[{_example(item.functor)}]")
+            yield _misplaced(item, "plans", f"write it at the goal: `!g[{_example(item.functor)}]`")
 
 
 def _never_true(item: nodes.Literal) -> Iterator[Diagnostic]:
@@ -111,7 +109,7 @@ def _annotations(goal: nodes.Term) -> Iterator[nodes.Literal]:
 
 
 def _example(word: str) -> str:
-    return _HELP[word].rpartition("such as ")[2].partition(" or ")[0]
+    return _HELP[word].rpartition("such as ")[2].partition(" or ")[0].strip("`")
 
 
 def _invalid(item: nodes.Literal) -> Diagnostic:

@@ -1,4 +1,4 @@
-"""Variables that occur once, and comparisons with variables that have no value."""
+"""Check for variables that occur once, and comparisons with variables that have no value."""
 
 import re
 from collections import Counter
@@ -14,23 +14,24 @@ from jacaros.terms.operators import BINARY
 
 _WORD: Final = re.compile(r"\b[A-Z]\w*")
 _CONSTANTS: Final = {
-    "True": "true is written in lower case",
-    "TRUE": "true is written in lower case",
-    "False": "false is written in lower case",
-    "FALSE": "false is written in lower case",
-    "None": "there is no empty value; use an atom such as none",
-    "Null": "there is no empty value; use an atom such as null",
-    "NULL": "there is no empty value; use an atom such as null",
-    "Nil": "the empty list is []",
+    "True": "write `true` in lower case",
+    "TRUE": "write `true` in lower case",
+    "False": "write `false` in lower case",
+    "FALSE": "write `false` in lower case",
+    "None": "use an atom such as `none`; the language has no null value",
+    "Null": "use an atom such as `null`; the language has no null value",
+    "NULL": "use an atom such as `null`; the language has no null value",
+    "Nil": "write the empty list as `[]`",
 }
-"""Variables that are values in other languages."""
+"""Variables that are constants in other languages."""
 
 
 def singletons(clause: Clause) -> Iterator[Diagnostic]:
-    """Variables that occur once in *clause*.
+    """Warn of variables that occur once in *clause*.
 
-    One that stands in a trigger (or in the head of a rule) may be there for the reader only: such a variable
-    is no reason for a warning, but may be what was meant by another one.
+    One in a trigger (or in the head of a rule) may only document the argument: it causes no warning, but may
+    be the
+    name that a misspelt variable was meant to have.
     """
     occurrences: Counter[str] = Counter()
     first: dict[str, nodes.Variable] = {}
@@ -49,7 +50,7 @@ def singletons(clause: Clause) -> Iterator[Diagnostic]:
         if name in _CONSTANTS:
             yield Diagnostic(
                 "warning",
-                f"{name} is a variable that occurs only once, and no value",
+                f"`{name}` is a variable here, not a value",
                 first[name].span,
                 _CONSTANTS[name],
                 "capital-constant",
@@ -57,7 +58,7 @@ def singletons(clause: Clause) -> Iterator[Diagnostic]:
         elif name not in in_head:
             yield Diagnostic(
                 "warning",
-                f"the variable {name} occurs only once in this {what}",
+                f"variable `{name}` occurs only once in this {what}",
                 first[name].span,
                 _meant_variable(name, occurrences) if number < MOST_ASKED else None,
                 "singleton-variable",
@@ -65,11 +66,11 @@ def singletons(clause: Clause) -> Iterator[Diagnostic]:
 
 
 def singletons_of_facts(facts: Iterable[nodes.Literal], what: str) -> Iterator[Diagnostic]:
-    """Variables that occur once in a belief or a goal of the beginning: most often a name is meant.
+    """Warn of variables that occur once in an initial belief or goal: most often a name is meant.
 
     Args:
         facts: all of one kind.
-        what: the kind, for people.
+        what: the kind, for the message.
     """
     for fact in facts:
         named = [
@@ -82,9 +83,9 @@ def singletons_of_facts(facts: Iterable[nodes.Literal], what: str) -> Iterator[D
                 lower = name[0].lower() + name[1:]
                 yield Diagnostic(
                     "warning",
-                    f"the variable {name} occurs only once in this {what}, which so is about any value",
+                    f"`{name}` is a variable (capital {name[0]}), so this {what} matches any value",
                     node.span,
-                    f"names begin with a lower-case letter: {lower}; if any value is meant write _{name}",
+                    f"did you mean `{lower}`? If any value is meant, write `_{name}`",
                     "singleton-variable",
                 )
 
@@ -97,11 +98,17 @@ def _in_head(clause: Clause) -> set[str]:
 
 def _meant_variable(name: str, occurrences: Counter[str]) -> str:
     close = close_matches(name, (other for other in occurrences if other != name), 0.7)
-    return f"did you mean {close[0]}? Otherwise write _{name}" if close else f"if that is meant write _{name}"
+    return (
+        f"did you mean `{close[0]}`? Otherwise write `_{name}`"
+        if close
+        else f"if this is intended, write `_{name}`"
+    )
 
 
 def vain_comparisons(clause: Clause) -> Iterator[Diagnostic]:
-    """``X == 3`` where X has no value yet, ``X = X + 1``, which never hold; ``x > 3``, which does not depend on x."""
+    """Warn of comparisons that never hold (``X == 3`` with an unbound X, ``X = X + 1``) or ignore x (``x >
+    3``).
+    """
     met: set[str] = set()
     for node, asked in in_order(clause):
         if isinstance(node, nodes.Relation) and BINARY[node.operator].orders:
@@ -121,9 +128,9 @@ def _ordered_atom(relation: nodes.Relation) -> Iterator[Diagnostic]:
         ):
             yield Diagnostic(
                 "warning",
-                f"{atom.functor} is an atom, and an atom is greater than any number",
+                f"`{atom.functor}` is an atom, and an atom is greater than any number",
                 atom.span,
-                f"a variable begins with a capital: {atom.functor[:1].upper()}{atom.functor[1:]}",
+                f"begin a variable with a capital letter: `{atom.functor[:1].upper()}{atom.functor[1:]}`",
                 "ordered-atom",
             )
 
@@ -135,9 +142,9 @@ def _vain(relation: nodes.Relation, variable: nodes.Variable, met: set[str]) -> 
     if relation.operator == "==" and name not in met:
         yield Diagnostic(
             "warning",
-            f"{name} has no value here, so that this comparison never holds",
+            f"`{name}` has no value here, so this comparison never holds",
             relation.span,
-            f"to give {name} a value write {name} = ...",
+            f"to give {name} a value, write `{name} = ...`",
             "comparison-without-value",
         )
     elif (
@@ -147,8 +154,8 @@ def _vain(relation: nodes.Relation, variable: nodes.Variable, met: set[str]) -> 
     ):
         yield Diagnostic(
             "warning",
-            f"a variable keeps its value: {name} cannot be equal to a sum with {name}",
+            f"`{name}` cannot be equal to a sum that contains it: variables keep their value",
             relation.span,
-            f"use another variable, as in New{name} = {name} + 1",
+            f"use another variable, as in `New{name} = {name} + 1`",
             "changed-variable",
         )

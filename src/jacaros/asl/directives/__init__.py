@@ -1,1 +1,3 @@
-"""Directives: what `{ name(...) }` and `{ begin name(...) } ... { end }` do to the clauses of a program."""
+"""Directives: how `{ name(...) }` and `{ begin name(...) } ... { end }` transform the clauses of a
+program.
+"""

@@ -8,21 +8,21 @@ from jacaros.asl import nodes
 from jacaros.asl.source import Span
 from jacaros.streams.schema import OPERATORS, VALUED, Fault, faults, unknown
 
-EXAMPLE: Final = "as in { derive(bumped_often, count(bump(_), within(5000), at_least(3))) }"
+EXAMPLE: Final = "write `{ derive(bumped_often, count(bump(_), within(5000), at_least(3))) }`"
 _TIMES: Final = {"within": "within", "lasting": "for", "by": "by"}
-"""Options that are milliseconds here, and their names in the schema, where they are seconds (`for` is a keyword)."""
+"""Options in milliseconds, and their names in the schema, where they are in seconds (`for` is a keyword)."""
 
 _OF_MAPPINGS: Final = {
-    "equals": "write the value into the belief, as in door(open)",
-    "lateness": "leave it out: an agent takes changes in one after the other, so that none is late",
+    "equals": "write the value into the belief, as in `door(open)`",
+    "lateness": "remove it: an agent handles changes in order, so none is late",
 }
-"""Options that only mapping files have, and what to write here."""
+"""Options that only mapping files have, and the alternative here."""
 
 _TURNS: Final = {"degrees": 360.0, "radians": math.tau}
-"""Options of `interpolated` that name angles, and their whole turns."""
+"""Options of `interpolated` that name angles, and their full turns."""
 
 Report = Callable[[str, Span | None, str], None]
-"""Takes a message, its place and the help."""
+"""Reports a message with its place and help."""
 
 
 Placed = Callable[[nodes.Term], nodes.Term]
@@ -32,7 +32,7 @@ Placed = Callable[[nodes.Term], nodes.Term]
 def read_derivation(
     directive: nodes.Literal, namespace: str | None, placed: Placed, report: Report
 ) -> nodes.Derivation | None:
-    """Return what the directive declares; None after a mistake, which is reported."""
+    """Return the derivation that the directive declares, or None after reporting an error."""
     match directive.arguments:
         case (
             nodes.Literal(arguments=(), negated=False, annotations=None) as name,
@@ -41,19 +41,19 @@ def read_derivation(
             reader = _Reader(report, placed)
             made = reader.read(name, pattern, namespace, directive.span)
             return None if reader.wrong else made
-    report("'derive' needs a name and a pattern", directive.span, EXAMPLE)
+    report("`derive` expects a name and a pattern", directive.span, EXAMPLE)
     return None
 
 
 class _Reader:
-    """Reads one pattern, and notes whether something is wrong with it."""
+    """Reads one pattern, and records whether it has errors."""
 
     def __init__(self, report: Report, placed: Placed) -> None:
         self.wrong = False
         self._placed = placed
         self._report = report
 
-    def _say(self, message: str, place: nodes.Node, help_: str) -> None:
+    def _report_error(self, message: str, place: nodes.Node, help_: str) -> None:
         self.wrong = True
         self._report(message, place.span, help_)
 
@@ -65,9 +65,9 @@ class _Reader:
             fault = (
                 unknown(operator)
                 if operator not in OPERATORS
-                else Fault("", f"`{operator}` needs a belief", EXAMPLE)
+                else Fault("", f"`{operator}` expects a belief", EXAMPLE)
             )
-            self._say(fault.message, pattern, fault.help)
+            self._report_error(fault.message, pattern, fault.help)
             return None
         first, *rest = pattern.arguments
         streams = list(self._streams(first, OPERATORS[operator].several, operator))
@@ -76,7 +76,9 @@ class _Reader:
             name: value for name, value in options.items() if operator != "interpolated" or name not in _TURNS
         }
         for fault in list(faults(operator, [written(each) for each in streams], checked)):
-            self._say(_as_written(fault.message), places.get(fault.option, pattern), _as_written(fault.help))
+            self._report_error(
+                _as_written(fault.message), places.get(fault.option, pattern), _as_written(fault.help)
+            )
         if "after" in options and isinstance(options["after"], nodes.Literal):
             streams += list(self._streams(options.pop("after"), False, operator))
         angles = self._angles(streams, options) if operator == "interpolated" else ()
@@ -87,7 +89,7 @@ class _Reader:
         )
 
     def _angles(self, streams: list[nodes.Literal], options: dict[str, Any]) -> tuple[float, ...]:
-        """The whole turns of the values behind the first stream, 0 for those that are not angles."""
+        """Return the full turns of the values after the first stream, 0 for those that are not angles."""
         turns = {each: turn for name, turn in _TURNS.items() for each in options.pop(name, ())}
         named = [each.arguments[place] for each in streams[1:] for place in values_of(each)]
         return tuple(turns.get(each.name, 0.0) if isinstance(each, nodes.Variable) else 0.0 for each in named)
@@ -96,17 +98,17 @@ class _Reader:
         terms = term.items if several and isinstance(term, nodes.ListTerm) else (term,)
         for each in terms:
             if not isinstance(each, nodes.Literal):
-                self._say(
-                    f"`{operator}` needs a belief", each, "write its name and arguments, such as bump(_)"
+                self._report_error(
+                    f"`{operator}` expects a belief", each, "write its name and arguments, such as `bump(_)`"
                 )
                 continue
             if each.annotations is not None:
-                self._say("annotations are not looked at here", each, "leave them out")
+                self._report_error("annotations have no effect here", each, "remove them")
             for argument in each.arguments:
                 if isinstance(argument, nodes.Variable):
                     continue
                 if any(isinstance(part, nodes.Variable) for part in _inside(argument)):
-                    self._say("a variable within a term", argument, "write _ for the whole argument")
+                    self._report_error("variable within a term", argument, "write `_` for the whole argument")
             found = self._placed(each)
             assert isinstance(found, nodes.Literal)
             yield found
@@ -116,12 +118,14 @@ class _Reader:
         places: dict[str, nodes.Node] = {}
         for term in terms:
             if not isinstance(term, nodes.Literal) or not term.arguments:
-                self._say(
-                    "an option is expected", term, "write options behind the belief, such as within(5000)"
+                self._report_error(
+                    "expected an option", term, "write options after the belief, such as `within(5000)`"
                 )
                 continue
             if term.functor in _OF_MAPPINGS:
-                self._say(f"`{term.functor}` is for mapping files", term, _OF_MAPPINGS[term.functor])
+                self._report_error(
+                    f"option `{term.functor}` exists in mapping files only", term, _OF_MAPPINGS[term.functor]
+                )
                 continue
             name = _TIMES.get(term.functor, term.functor)
             places[name] = term
@@ -145,23 +149,25 @@ class _Reader:
         if operator in ("share", "held") and not {"above", "below", "equals"} & options.keys():
             needed = 0
         if count < needed or (count > needed and operator != "inside"):
-            told = (
-                "the two coordinates variables: inside(pose(X, Y, _), ...)"
+            named = (
+                "the two coordinates variables: `inside(pose(X, Y, _), ...)`"
                 if needed == 2
                 else "one argument a variable"
             )
             help_ = (
-                f"make {told}, and the others _" if needed else "write _ for the arguments that do not matter"
+                f"make {named}, and the others `_`"
+                if needed
+                else "write `_` for the arguments that do not matter"
             )
-            self._say(
-                f"`{operator}` needs {needed or 'no'} named variable{'s' if needed != 1 else ''} in its belief",
+            self._report_error(
+                f"`{operator}` expects {needed or 'no'} named variable{'s' if needed != 1 else ''} in its belief",
                 stream,
                 help_,
             )
 
 
 def values_of(stream: nodes.Literal) -> list[int]:
-    """The places of the arguments that are named variables: the values of an event."""
+    """Return the indices of the arguments that are named variables: the values of an event."""
     return [
         place
         for place, argument in enumerate(stream.arguments)
@@ -176,7 +182,7 @@ def _inside(term: nodes.Node) -> Iterator[nodes.Node]:
 
 
 def _constant(term: nodes.Term) -> object:
-    """The number that a term is; another term stands for itself, and is wrong."""
+    """Return the number that a term is; another term is returned as it is, and is wrong."""
     if isinstance(term, nodes.Number):
         return term.value
     if isinstance(term, nodes.Arithmetic) and term.operator == "-" and len(term.operands) == 1:
@@ -186,7 +192,7 @@ def _constant(term: nodes.Term) -> object:
 
 
 def written(stream: nodes.Literal) -> str:
-    """A name for a stream, the same for equal ones."""
+    """Return a name for a stream, equal for equal ones."""
     from jacaros.asl.formatter import format_term
 
     return format_term(nodes.replace(stream, arguments=tuple(map(_named_alike, stream.arguments))))
@@ -197,19 +203,19 @@ def _named_alike(term: nodes.Term) -> nodes.Term:
 
 
 def _as_written(text: str) -> str:
-    """A message about an option under the name that it has in programs."""
+    """Rewrite a message of the schema with the option names of programs."""
     return (
         text.replace("`for`", "`lasting`").replace("options: for", "options: lasting").replace(", equals", "")
     )
 
 
 def streams_of(derived: nodes.Derivation) -> tuple[str, ...]:
-    """Names for the streams of a declaration, in its order; the same for equal ones."""
+    """Return names for the streams of a declaration, in order, equal for equal ones."""
     return tuple(map(written, derived.streams))
 
 
 def format_derivation(derived: nodes.Derivation) -> str:
-    """Return the directive as text, the same for equal ones; in a block of its namespace, if it has one."""
+    """Return the directive as text, equal for equal ones, in a block of its namespace if it has one."""
     streams = list(map(written, derived.streams))
     words = [f"after({streams.pop()})"] if derived.operator == "missing" else []
     words += [_option(name, value) for name, value in derived.options]
@@ -222,7 +228,7 @@ def format_derivation(derived: nodes.Derivation) -> str:
 
 
 def _option(name: str, value: float | tuple[float, ...]) -> str:
-    """An option as programs write it."""
+    """Return an option as programs write it."""
     from jacaros.terms.text import number_text
 
     values = value if isinstance(value, tuple) else (value,)
@@ -233,14 +239,14 @@ def _option(name: str, value: float | tuple[float, ...]) -> str:
 
 
 def milliseconds(seconds: float) -> float:
-    """Return the number of milliseconds that is read as that number of seconds."""
+    """Return the number of milliseconds that is parsed as that number of seconds."""
     exact = seconds * 1000.0
     rounded = round(exact, 6)
     return rounded if rounded / 1000.0 == seconds else exact
 
 
 def _angles_of(derived: nodes.Derivation) -> list[str]:
-    """The options that name the variables of angles."""
+    """Return the options that name the variables of angles."""
     named = [each.arguments[place] for each in derived.streams[1:] for place in values_of(each)]
     found = []
     for name, turn in _TURNS.items():
@@ -255,7 +261,7 @@ def _angles_of(derived: nodes.Derivation) -> list[str]:
 
 
 def circle(derived: list[nodes.Derivation]) -> nodes.Derivation | None:
-    """The last declaration, if it is made of itself."""
+    """Return the last declaration of a cycle, if a belief is derived from itself."""
     made_of: dict[tuple[object, str], list[tuple[object, str]]] = {
         (each.namespace, each.name): [(stream.namespace, stream.functor) for stream in each.streams]
         for each in derived

@@ -1,6 +1,6 @@
-"""Declarative goals, how long an agent is committed to them, and goals that are pursued one after the other.
+"""Goal patterns: declarative goals, commitment strategies, and goals pursued in sequence.
 
-A declarative goal is tied to the belief that it is achieved.
+A declarative goal is achieved when its belief holds.
 """
 
 from dataclasses import replace
@@ -13,9 +13,9 @@ def declarative(call: PatternCall, section: nodes.Section) -> nodes.Section:
     """``dg(g)``: the goal is achieved when, and only when, *g* is believed.
 
     Adds ``+!g : g``, a test ``?g`` at the end of each plan for g (its ``-!g`` plans among them), and
-    ``+g <- .succeed_goal(g)``.  The
-    reference also takes a goal that is already intended for achieved, which makes the retry of ``bdg`` and
-    ``bc`` end at once; ours does not.
+    ``+g <- .succeed_goal(g)``. Jason also treats a goal that is already intended as achieved, which ends the
+    retry
+    of ``bdg`` and ``bc`` immediately; ours does not.
     """
     call.at_most(1)
     goal = call.literal(0, "the goal")
@@ -28,7 +28,7 @@ def declarative(call: PatternCall, section: nodes.Section) -> nodes.Section:
 def backtracking(
     call: PatternCall, section: nodes.Section, possible: nodes.Term | None = None
 ) -> nodes.Section:
-    """``bdg(g)``: a declarative goal that is tried again when a plan fails, as long as *possible* holds."""
+    """``bdg(g)``: a declarative goal that is retried when a plan fails, as long as *possible* holds."""
     goal = call.literal(0, "the goal")
     inner = declarative(call, section)
     retry = call.plan(on("-!", goal), call.achieve(goal), context=possible)
@@ -36,10 +36,10 @@ def backtracking(
 
 
 def exclusive(call: PatternCall, section: nodes.Section) -> nodes.Section:
-    """``ebdg(g)``: a backtracking declarative goal for which each plan is tried at most once.
+    """``ebdg(g)``: a backtracking declarative goal that tries each plan at most once.
 
-    The plans that were tried are remembered in beliefs ``p__tried(Plan, g)``, which go when the goal ends.
-    When no plan is left the goal fails (in the reference it is tried for ever).
+    Plans that were tried are recorded in beliefs ``p__tried(Plan, g)``, which are removed when the goal ends.
+    When no plan is left, the goal fails (Jason retries it forever).
     """
     goal = call.literal(0, "the goal")
     plans: list[nodes.Plan] = []
@@ -61,9 +61,9 @@ def exclusive(call: PatternCall, section: nodes.Section) -> nodes.Section:
 
 
 def maintenance(call: PatternCall, section: nodes.Section) -> nodes.Section:
-    """``mg(g)`` or ``mg(g, pattern)``: *g*, which holds at first, is pursued again whenever it is lost.
+    """``mg(g)`` or ``mg(g, pattern)``: *g* holds initially, and is pursued again whenever it is lost.
 
-    The plans for g are treated by *pattern*, blind commitment (``bc``) if none is named.
+    *pattern* is applied to the plans for g; the default is blind commitment (``bc``).
     """
     call.at_most(2)
     goal = call.literal(0, "the goal")
@@ -76,8 +76,9 @@ def maintenance(call: PatternCall, section: nodes.Section) -> nodes.Section:
 def blind(call: PatternCall, section: nodes.Section) -> nodes.Section:
     """``bc(g)`` or ``bc(g, pattern)``: the goal is pursued until it is believed, whatever fails.
 
-    The plans for g are treated by *pattern* (``bdg`` if none is named), and a last plan posts the goal again
-    when no other plan is applicable.
+    *pattern* (default: ``bdg``) is applied to the plans for g, and a last plan posts the goal again if no
+    other
+    plan is applicable.
     """
     call.at_most(2)
     if len(call.arguments) < 2:
@@ -86,10 +87,11 @@ def blind(call: PatternCall, section: nodes.Section) -> nodes.Section:
 
 
 def single_minded(call: PatternCall, section: nodes.Section) -> nodes.Section:
-    """``smc(g, f)``: the goal is pursued until it is believed, or *f*, that it is impossible, is believed.
+    """``smc(g, f)``: the goal is pursued until it or *f*, which says that it is impossible, is believed.
 
-    When f comes to be believed the goal fails, and the failure goes on to whoever posted it; the retry of the
-    blind commitment inside does not catch it (in the reference it does).
+    When f is believed, the goal fails, and its failure reaches the goal or plan that posted it; the retry of
+    the
+    blind commitment inside does not catch it (in Jason it does).
     """
     call.at_most(2)
     return _committed(call, section, call.literal(1, "the belief that the goal is impossible"))
@@ -109,7 +111,7 @@ def open_minded(call: PatternCall, section: nodes.Section) -> nodes.Section:
 
 
 def _initial(goal: nodes.Literal) -> list[nodes.Literal]:
-    """The belief that the goal holds, unless it has variables."""
+    """Return the belief that the goal holds, unless it has variables."""
     stack: list[nodes.Term] = list(goal.arguments)
     while stack:
         term = stack.pop()
@@ -123,14 +125,14 @@ def _initial(goal: nodes.Literal) -> list[nodes.Literal]:
 
 
 def _tested(plan: nodes.Plan, call: PatternCall) -> nodes.Plan:
-    """*plan* with a last step that tests its own goal."""
+    """Return *plan* with a last step that tests its own goal."""
     assert isinstance(plan.body, nodes.Body)
     test = nodes.Test(_own_goal(plan), span=call.span)
     return nodes.replace(plan, body=nodes.replace(plan.body, steps=(*plan.body.steps, test)))
 
 
 def _tried_once(plan: nodes.Plan, index: int, call: PatternCall) -> nodes.Plan:
-    """*plan* for those goals only for which it has not been tried."""
+    """Return *plan* restricted to goals for which it has not been tried."""
     assert isinstance(plan.body, nodes.Body)
     mark = _tried(nodes.Number(float(index), span=call.span), _own_goal(plan))
     untried: nodes.Term = nodes.Not(mark, span=call.span)
@@ -140,7 +142,7 @@ def _tried_once(plan: nodes.Plan, index: int, call: PatternCall) -> nodes.Plan:
 
 
 def _own_goal(plan: nodes.Plan) -> nodes.Literal:
-    """The goal of a plan with the plan's own variables, without annotations."""
+    """Return the goal of a plan with the plan's own variables, without annotations."""
     assert isinstance(plan.trigger.literal, nodes.Literal)
     return nodes.replace(plan.trigger.literal, annotations=None)
 
@@ -152,7 +154,7 @@ def _tried(index: nodes.Term, goal: nodes.Literal) -> nodes.Literal:
 def _committed(
     call: PatternCall, section: nodes.Section, impossible: nodes.Literal | None = None
 ) -> nodes.Section:
-    """Blind commitment, given up when *impossible* is believed."""
+    """Blind commitment that fails when *impossible* is believed."""
     goal = call.literal(0, "the goal")
     alone = replace(call, arguments=call.arguments[:1])
     if impossible is None:
@@ -171,24 +173,26 @@ def _committed(
 def _with_last_plan(
     call: PatternCall, section: nodes.Section, possible: nodes.Term | None = None
 ) -> nodes.Section:
-    """*section* with ``+!g <- !g`` as the last plan for the goal."""
+    """Return *section* with ``+!g <- !g`` as the last plan for the goal."""
     goal = call.literal(0, "the goal")
     again = call.plan(on("+!", goal), call.achieve(goal), context=possible)
     return with_plans(section, [], section.plans, [again])
 
 
 def _motivated(call: PatternCall, section: nodes.Section, motivation: nodes.Literal) -> nodes.Section:
-    """*section* with a plan that ends the goal, as if achieved, when *motivation* is lost."""
+    """Return *section* with a plan that ends the goal, as if achieved, when *motivation* is lost."""
     unmotivated = call.plan(on("-", motivation), call.internal(".succeed_goal", call.literal(0, "the goal")))
     return with_plans(section, [], section.plans, [unmotivated])
 
 
 def sequenced(call: PatternCall, section: nodes.Section) -> nodes.Section:
-    """``sga("trigger", "context", g)``: each such event adopts *g*, one goal after the other.
+    """``sga("trigger", "context", g)``: each such event adopts *g*, one goal at a time.
 
-    Goals that wait are kept in order in beliefs ``p__queue(N, g)``; one that is waiting already is not queued
-    twice.  Each goal is an intention of its own, and a goal that fails makes room for the next one, too.  (In
-    the reference a waiting goal is taken up only if its arguments equal those of the goal that ended.)
+    Waiting goals are kept in order in beliefs ``p__queue(N, g)``; a goal that is already waiting is not
+    queued
+    again. Each goal is an intention of its own, and a goal that fails also makes room for the next one.
+    (Jason
+    adopts a waiting goal only if its arguments equal those of the goal that ended.)
     """
     call.at_most(3)
     trigger, context = _trigger(call), _context(call)
@@ -202,7 +206,7 @@ def sequenced(call: PatternCall, section: nodes.Section) -> nodes.Section:
     idle: nodes.Term = nodes.Not(busy, span=call.span)
     serve_this = nodes.Literal("p__serve", (key, goal), span=call.span)
     queue_this = nodes.Literal("p__queue", (key, goal), span=call.span)
-    # Whether the queue is busy is asked and noted without anything in between, hence the atomic plans.
+    # The plans are atomic: nothing may happen between asking whether the queue is busy and noting that it is.
     adopted = [
         call.plan(
             trigger,
@@ -229,7 +233,7 @@ def sequenced(call: PatternCall, section: nodes.Section) -> nodes.Section:
 
 
 def _trigger(call: PatternCall) -> nodes.Trigger:
-    """The first argument: a trigger as text or in braces."""
+    """Return the first argument: a trigger as text or in braces."""
     argument = call.arguments[0] if call.arguments else None
     if isinstance(argument, nodes.String):
         return call.parse_trigger(argument.value)
@@ -239,13 +243,13 @@ def _trigger(call: PatternCall) -> nodes.Trigger:
         step = argument.body.steps[0]
         if isinstance(step, nodes.BeliefChange) and isinstance(step.operand, nodes.Literal | nodes.Variable):
             return nodes.Trigger(step.operator, "", step.operand, span=step.span)
-    raise PatternError("argument 1 of 'sga' is a trigger", 'as in sga("+order(X)", "true", serve(X))')
+    raise PatternError("argument 1 of `sga` is not a trigger", 'write sga("+order(X)", "true", serve(X))')
 
 
 def _context(call: PatternCall) -> nodes.Term | None:
-    """The second argument: a condition, as text or as it is; None for ``true``."""
+    """Return the second argument: a condition, as text or as a term; None for ``true``."""
     if len(call.arguments) < 2:
-        raise PatternError("'sga' needs a context as argument 2", '"true" if there is none')
+        raise PatternError("`sga` expects a context as argument 2", 'write "true" for no context')
     argument = call.arguments[1]
     formula = call.parse_formula(argument.value) if isinstance(argument, nodes.String) else argument
     return None if formula == TRUE else formula

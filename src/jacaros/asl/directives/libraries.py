@@ -1,7 +1,7 @@
-"""The libraries of other systems that programs include.
+"""Libraries of other systems that programs include.
 
-What they give there is built in here (joining and focusing, answers to messages), has a counterpart in our own library
-(questions about workspaces), or is not supported (organisations).
+Their contents are built in here (joining and focusing, answers to messages), have a counterpart in our own
+library (questions about workspaces), or are not supported (organisations).
 """
 
 from pathlib import Path
@@ -29,7 +29,7 @@ _OURS: Final = {"common-cartago.asl": "common_cartago.asl", "wsp-rules.asl": "co
 
 
 def counterpart(path: str) -> SourceFile | None:
-    """The file of our own library that stands for a library file; None when there is none."""
+    """Return the file of our own library that replaces a library file, or None."""
     name = _OURS.get(path.rpartition("/")[2]) if is_library(path) else None
     if name is None:
         return None
@@ -38,15 +38,17 @@ def counterpart(path: str) -> SourceFile | None:
 
 
 def is_of_organisations(path: str) -> bool:
-    """Whether *path* is a library file for agents in organisations."""
+    """Return whether *path* is a library file for agents in organisations."""
     return is_library(path) and path.rpartition("/")[2] in _ORGANISATIONS
 
 
 def is_library(path: str) -> bool:
-    """Whether *path* names a file of one of these systems, as in ``$jacamo/templates/common-cartago.asl``."""
+    """Return whether *path* names a file of one of these systems, as in
+    ``$jacamo/templates/common-cartago.asl``.
+    """
     return path.partition("/")[0] in _ROOTS
 
 
 def is_known_library(path: str) -> bool:
-    """Whether *path* is one of the library files of which programs here need nothing."""
+    """Return whether *path* is a library file that programs here do not need."""
     return is_library(path) and path.rpartition("/")[2] in _KNOWN

@@ -1,8 +1,8 @@
-"""What the goal patterns have in common: their arguments, and the plans they are built of.
+"""Shared parts of goal patterns: their arguments, and the plans they are built of.
 
-A pattern is a function from the clauses of its block to the clauses that take their place.  Where the
-patterns of the reference interpreter are known to misbehave, ours follow the idea of the pattern; each
-function says so.
+A pattern is a function from the clauses of its block to the clauses that replace them. Where patterns are
+known
+to misbehave in Jason, ours follow the intent of the pattern; each such function says so.
 """
 
 from collections.abc import Callable
@@ -15,7 +15,7 @@ TRUE = nodes.Literal("true")
 
 
 class PatternError(Exception):
-    """A pattern is used wrongly; the message and the help are for people."""
+    """Raised when a pattern is used wrongly; with a message and help for the user."""
 
     def __init__(self, message: str, help: str | None = None) -> None:
         super().__init__(message)
@@ -26,10 +26,11 @@ class PatternError(Exception):
 class PatternCall:
     """One use of a pattern.
 
-    ``arguments`` belong to the namespace of the block, and their unnamed variables have got names, so that
-    one argument may be put into several places of one plan.  ``number`` differs for each use in a program;
-    ``parse_trigger`` and ``parse_formula`` read arguments given as text;
-    ``apply`` carries out another pattern, which its name tells.
+    ``arguments`` belong to the namespace of the block. Their unnamed variables have names, so that one
+    argument
+    may be put into several places of one plan. ``number`` differs for each use in a program;
+    ``parse_trigger`` and ``parse_formula`` parse arguments given as text;
+    ``apply`` applies another pattern by name.
     """
 
     name: str
@@ -41,24 +42,26 @@ class PatternCall:
     parse_formula: Callable[[str], nodes.Term]
 
     def literal(self, index: int, what: str) -> nodes.Literal:
-        """The argument *index*, which has to be a literal."""
+        """Return the argument *index*, which has to be a literal."""
         if index >= len(self.arguments):
-            raise PatternError(f"'{self.name}' needs {what} as argument {index + 1}")
+            raise PatternError(f"`{self.name}` expects {what} as argument {index + 1}")
         argument = self.arguments[index]
         if not isinstance(argument, nodes.Literal):
-            raise PatternError(f"argument {index + 1} of '{self.name}' is {what}, which is a literal")
+            raise PatternError(f"argument {index + 1} of `{self.name}` ({what}) is not a literal")
         return argument
 
     def nested(self, section: nodes.Section, index: int) -> nodes.Section:
-        """Apply the pattern that argument *index* names, which is for the same goal if it names none."""
+        """Apply the pattern that argument *index* names, to the same goal unless it names another one."""
         written = self.literal(index, "a pattern")
         arguments = written.arguments or self.arguments[:1]
         return self.apply(replace(self, name=written.functor, arguments=arguments), section)
 
     def at_most(self, count: int) -> None:
-        """Refuse more than *count* arguments."""
+        """Reject more than *count* arguments."""
         if len(self.arguments) > count:
-            raise PatternError(f"'{self.name}' has at most {count} argument{'s' if count > 1 else ''}")
+            raise PatternError(
+                f"`{self.name}` expects at most {count} argument{'s' if count > 1 else ''}, found {len(self.arguments)}"
+            )
 
     # parts of the plans that a pattern adds; all have the place of the directive
 
@@ -69,7 +72,7 @@ class PatternCall:
         context: nodes.Term | None = None,
         atomic: str | None = None,
     ) -> nodes.Plan:
-        """A plan without label, or an atomic one whose label ends with *atomic*."""
+        """Return a plan without a label, or an atomic one whose label ends with *atomic*."""
         label = None
         if atomic is not None:
             annotations = nodes.Annotations((nodes.Literal("atomic"),))
@@ -79,36 +82,36 @@ class PatternCall:
         return nodes.Plan(label, trigger, context, nodes.Body(steps, span=self.span), span=self.span)
 
     def achieve(self, goal: nodes.Literal, separate: bool = False) -> nodes.Step:
-        """``!goal`` or ``!!goal``."""
+        """Return ``!goal`` or ``!!goal``."""
         return nodes.Achieve(goal, separate, span=self.span)
 
     def internal(self, name: str, *arguments: nodes.Term) -> nodes.Step:
-        """An internal action as a step."""
+        """Return an internal action as a step."""
         return nodes.Constraint(nodes.InternalAction(name, arguments, span=self.span), span=self.span)
 
     def change(self, operator: str, belief: nodes.Literal) -> nodes.Step:
-        """``+belief``, ``-belief``, ``+>belief``."""
+        """Return ``+belief``, ``-belief`` or ``+>belief``."""
         return nodes.BeliefChange(operator, belief, span=self.span)
 
 
 def on(event: str, literal: nodes.Literal) -> nodes.Trigger:
-    """A trigger: *event* is ``+!``, ``-!``, ``+`` or ``-``."""
+    """Return a trigger: *event* is ``+!``, ``-!``, ``+`` or ``-``."""
     return nodes.Trigger(event[0], event[1:], literal, span=literal.span)
 
 
 def is_about(plan: nodes.Plan, goal: nodes.Literal) -> bool:
-    """Whether *plan* is one for the achievement of *goal*, or for its failure: both literals may unify."""
+    """Return whether *plan* achieves *goal* or handles its failure: both literals may unify."""
     literal = plan.trigger.literal
     return plan.trigger.kind == "!" and isinstance(literal, nodes.Literal) and _may_unify(literal, goal)
 
 
 def achieves(plan: nodes.Plan, goal: nodes.Literal) -> bool:
-    """Whether *plan* is one for ``+!goal``."""
+    """Return whether *plan* is one for ``+!goal``."""
     return plan.trigger.operator == "+" and is_about(plan, goal)
 
 
 def _may_unify(left: nodes.Term, right: nodes.Term) -> bool:
-    """Whether two terms unify as far as one can see without following variables."""
+    """Return whether two terms may unify, without following variables."""
     if isinstance(left, nodes.Variable) or isinstance(right, nodes.Variable):
         return True
     if isinstance(left, nodes.Literal) and isinstance(right, nodes.Literal):
@@ -130,5 +133,5 @@ def _may_unify(left: nodes.Term, right: nodes.Term) -> bool:
 def with_plans(
     section: nodes.Section, before: list[nodes.Plan], plans: list[nodes.Plan], after: list[nodes.Plan]
 ) -> nodes.Section:
-    """*section* with other plans."""
+    """Return *section* with other plans."""
     return replace(section, plans=[*before, *plans, *after])

@@ -1,4 +1,4 @@
-"""Carries out the directives of a program: includes, namespaces, functions and goal patterns."""
+"""Run the directives of a program: includes, namespaces, functions and goal patterns."""
 
 from collections.abc import Callable
 from itertools import count
@@ -43,9 +43,9 @@ PATTERNS: Final[dict[str, Callable[[PatternCall, nodes.Section], nodes.Section]]
 _Result = TypeVar("_Result")
 _SIMPLE: Final = ("derive", "history", "include", "namespace", "register_function")
 _DEEPEST: Final = 40
-"""Files within each other, so that reading them does not exhaust Python's stack."""
+"""Maximum depth of includes, so that parsing them does not exhaust Python's stack."""
 _MOST_INCLUDES: Final = 10_000
-"""Included files of one program; without it, 30 files that include the next one twice would be a thousand million."""
+"""Maximum number of includes: 30 files that each include the next one twice would make a thousand million."""
 
 
 class DirectiveProcessor:
@@ -57,14 +57,14 @@ class DirectiveProcessor:
         self._diagnostics = diagnostics
         self._open_files: list[str] = []
         self._pattern_numbers = count(1)
-        self._told_of_organisations = False
+        self._warned_of_organisations = False
         self._included = 0
         self._derived: list[nodes.Derivation] = []
 
     def read_file(
         self, file: SourceFile, namespaces: Namespaces | None = None, last_dot_optional: bool = False
     ) -> nodes.Section:
-        """All clauses of *file* and of what it includes."""
+        """Parse all clauses of *file* and of its includes."""
         self._open_files.append(file.name)
         parser = ProgramParser(
             file, self._names, self._diagnostics, self, namespaces, last_dot_optional=last_dot_optional
@@ -74,7 +74,7 @@ class DirectiveProcessor:
         return section
 
     def apply(self, parser: ProgramParser, directive: nodes.Literal, section: nodes.Section) -> None:
-        """Carry out a directive without a block."""
+        """Run a directive without a block."""
         name = directive.functor
         if name == "include":
             section.extend(self._include(parser, directive))
@@ -91,17 +91,15 @@ class DirectiveProcessor:
         elif name in PATTERNS:
             parser.report(
                 "wrong-directive",
-                f"'{name}' needs a block",
+                f"`{name}` expects a block",
                 directive.span,
                 f"{{ begin {name}(...) }} plans {{ end }}",
             )
         else:
-            parser.report(
-                "unknown-directive", f"there is no directive '{name}'", directive.span, _meant(name)
-            )
+            parser.report("unknown-directive", f"unknown directive `{name}`", directive.span, _meant(name))
 
     def apply_to_block(self, parser: ProgramParser, directive: nodes.Literal, section: nodes.Section) -> None:
-        """Read the block of a directive and put what becomes of it into *section*."""
+        """Parse the block of a directive and add the resulting clauses to *section*."""
         name = directive.functor
         if name == "namespace":
             outside = parser.namespaces.current
@@ -110,9 +108,9 @@ class DirectiveProcessor:
             parser.namespaces.current = outside
             return
         if name not in PATTERNS:
-            help = f"write {{ {name}(...) }} without begin" if name in _SIMPLE else _meant(name)
+            help = f"write `{{ {name}(...) }}` without `begin`" if name in _SIMPLE else _meant(name)
             parser.report(
-                "unknown-directive", f"there is no directive '{name}' with a block", directive.span, help
+                "unknown-directive", f"unknown directive `{name}` with a block", directive.span, help
             )
             section.extend(parser.block(directive))
             return
@@ -130,9 +128,9 @@ class DirectiveProcessor:
         if not 1 <= len(arguments) <= 2 or not isinstance(arguments[0], nodes.String):
             parser.report(
                 "wrong-directive",
-                "'include' needs the name of a file as a string",
+                "`include` expects the name of a file as a string",
                 directive.span,
-                '{ include("file.asl") }',
+                'write `{ include("file.asl") }`',
             )
             return nodes.Section()
         path = arguments[0].value
@@ -143,12 +141,12 @@ class DirectiveProcessor:
         if found is None:
             return nodes.Section()
         if found.name in self._open_files:
-            wrong, help = f"'{path}' includes itself", "files cannot include each other in a circle"
+            wrong, help = f"file `{path}` includes itself", "break the cycle: files cannot include each other"
         elif len(self._open_files) > _DEEPEST:
-            wrong = f"'{path}' is included more than {_DEEPEST} files deep"
+            wrong = f"file `{path}` is included more than {_DEEPEST} levels deep"
             help = "include it from a file further up"
         elif self._included >= _MOST_INCLUDES:
-            wrong, help = f"this program includes more than {_MOST_INCLUDES} files", "include each file once"
+            wrong, help = f"program includes more than {_MOST_INCLUDES} files", "include each file once"
         else:
             wrong = help = ""
         if wrong:
@@ -158,7 +156,7 @@ class DirectiveProcessor:
         return self.read_file(found, namespaces)
 
     def _find(self, parser: ProgramParser, path: str, directive: nodes.Literal) -> SourceFile | None:
-        """The included file; most libraries of other systems give nothing here."""
+        """Return the included file; None for most libraries of other systems."""
         try:
             if self._read is None:
                 raise FileNotFoundError(path)
@@ -169,34 +167,36 @@ class DirectiveProcessor:
             if ours is not None or is_known_library(path):
                 return ours
             if is_of_organisations(path):
-                self._tell_of_organisations(parser, path, directive)
+                self._warn_of_organisations(parser, path, directive)
                 return None
             if is_library(path):
                 parser.warn(
                     "unknown-library",
-                    f"the library '{path}' is not known; nothing is included",
+                    f"unknown library `{path}`: nothing is included",
                     _place(directive),
                 )
                 return None
             parser.report(
                 "include-not-found",
-                f"the included file '{path}' is not found",
+                f"included file not found: `{path}`",
                 directive.span,
-                f"it is looked for beside {parser.file.name} and in the source paths of the project",
+                f"searched beside {parser.file.name} and in the source paths of the project",
             )
         except (OSError, UnicodeError) as error:
             parser.report(
-                "include-not-found", f"the included file '{path}' cannot be read: {error}", directive.span
+                "include-not-found", f"cannot read the included file `{path}`: {error}", directive.span
             )
         return None
 
-    def _tell_of_organisations(self, parser: ProgramParser, path: str, directive: nodes.Literal) -> None:
-        """Once for a program: they are included together."""
-        if not self._told_of_organisations:
-            self._told_of_organisations = True
+    def _warn_of_organisations(self, parser: ProgramParser, path: str, directive: nodes.Literal) -> None:
+        """Warn once per program that organisations are not supported: their libraries are included
+        together.
+        """
+        if not self._warned_of_organisations:
+            self._warned_of_organisations = True
             parser.warn(
                 "organisation-library",
-                f"organisations are not supported; nothing of '{path}' is included",
+                f"nothing of `{path}` is included: organisations are not supported",
                 _place(directive),
             )
 
@@ -207,25 +207,25 @@ class DirectiveProcessor:
             return parser.namespaces.resolve(term.value)
         if isinstance(term, nodes.Variable):
             return f"{term.name}#{next(self._names.local_namespaces)}"
-        parser.report("wrong-directive", "the namespace of an include is an atom", term.span)
+        parser.report("wrong-directive", "the namespace of an include must be an atom", term.span)
         return None
 
     # namespaces and functions
 
     def _declare_namespace(self, parser: ProgramParser, directive: nodes.Literal) -> None:
-        """Declare a namespace local or global; without a block, nothing is put into it."""
+        """Declare a namespace local or global; without a block it stays empty."""
         before = len(self._diagnostics)
         self._namespace(parser, directive)
         if len(directive.arguments) == 1 and directive.span is not None and len(self._diagnostics) == before:
             parser.warn(
                 "wrong-directive",
-                "without a block this directive has no effect",
+                "this directive has no effect without a block",
                 directive.span,
-                "{ begin namespace(...) } clauses { end }",
+                "write `{ begin namespace(...) } clauses { end }`",
             )
 
     def _namespace(self, parser: ProgramParser, directive: nodes.Literal) -> str | None:
-        """The namespace that the directive puts in force."""
+        """Return the namespace that the directive switches to."""
         arguments = directive.arguments
         names = [term.functor for term in arguments if isinstance(term, nodes.Literal) and not term.arguments]
         if (
@@ -235,14 +235,14 @@ class DirectiveProcessor:
         ):
             parser.report(
                 "wrong-directive",
-                "'namespace' needs an atom, and local or global if need be",
+                "`namespace` expects an atom, and optionally `local` or `global`",
                 directive.span,
-                "as in { begin namespace(robot) } or { namespace(robot, local) }",
+                "write `{ begin namespace(robot) }` or `{ namespace(robot, local) }`",
             )
             return parser.namespaces.current
         name = names[0]
         if names[1:] == ["local"] and name not in parser.namespaces.local:
-            # A name nobody can write, so that the namespace cannot be reached from outside.
+            # A name that cannot be written, so that the namespace cannot be reached from outside.
             parser.namespaces.local[name] = f"{name}#{next(self._names.local_namespaces)}"
         elif names[1:] == ["global"]:
             parser.namespaces.local.pop(name, None)
@@ -259,23 +259,26 @@ class DirectiveProcessor:
                 if "." not in name.strip(".") or name.startswith("."):
                     parser.report(
                         "wrong-directive",
-                        f"the function name '{name}' must contain a dot and not begin with one",
+                        f"function name `{name}` must contain a dot, but not at the beginning",
                         arguments[0].span,
-                        "as in my.sum",
+                        "write a name such as `my.sum`",
                     )
                     return None
                 self._names.functions[name] = int(arity)
                 return nodes.RegisteredFunction(name, int(arity), rule, span=directive.span)
         parser.report(
             "wrong-directive",
-            "'register_function' needs a name, a number of arguments and a rule",
+            "`register_function` expects a name, a number of arguments and a rule",
             directive.span,
             '{ register_function("my.sum", 2, "sum") }',
         )
         return None
 
     def _derive(self, parser: ProgramParser, directive: nodes.Literal, section: nodes.Section) -> None:
-        from jacaros.asl.directives.derive import circle, read_derivation  # here: few programs derive
+        from jacaros.asl.directives.derive import (
+            circle,
+            read_derivation,
+        )  # imported here: few programs use `derive`
 
         def report(message: str, span: Span | None, help: str) -> None:
             parser.report("wrong-directive", message, span or directive.span, help)
@@ -294,7 +297,7 @@ class DirectiveProcessor:
         section.derived.append(made)
 
     def _keep_history(self, parser: ProgramParser, directive: nodes.Literal, section: nodes.Section) -> None:
-        from jacaros.asl.directives.history import read_history  # here: few programs keep histories
+        from jacaros.asl.directives.history import read_history  # imported here: few programs keep histories
 
         def report(message: str, span: Span | None, help: str) -> None:
             parser.report("wrong-directive", message, span or directive.span, help)
@@ -310,7 +313,7 @@ class DirectiveProcessor:
 
     def _call(self, parser: ProgramParser, directive: nodes.Literal) -> PatternCall:
         def reader(text: str) -> PlanParser:
-            text_parser = PlanParser(SourceFile(f"'{text}'", text), self._names, [])
+            text_parser = PlanParser(SourceFile(f"`{text}`", text), self._names, [])
             text_parser.namespaces = parser.namespaces
             return text_parser
 
@@ -332,17 +335,17 @@ class DirectiveProcessor:
         )
 
     def _placed(self, namespaces: Namespaces, argument: nodes.Term) -> nodes.Term:
-        """A goal or belief given to a pattern belongs to the namespace of the block."""
+        """Put a goal or belief given to a pattern into the namespace of the block."""
         if isinstance(argument, nodes.Literal) and argument.namespace is None:
             return nodes.replace(argument, namespace=namespaces.of_literal(argument.functor))
         return argument
 
 
 def _apply_pattern(call: PatternCall, section: nodes.Section) -> nodes.Section:
-    """What the pattern of that name makes of *section*."""
+    """Apply the named pattern to *section*."""
     pattern = PATTERNS.get(call.name)
     if pattern is None:
-        raise PatternError(f"there is no pattern '{call.name}'", f"use one of {', '.join(PATTERNS)}")
+        raise PatternError(f"unknown pattern `{call.name}`", f"use one of {', '.join(PATTERNS)}")
     return pattern(call, section)
 
 
@@ -350,7 +353,7 @@ def _warn_of_java_function(parser: ProgramParser, directive: nodes.Literal, name
     module, _, function = name.rpartition(".")
     parser.warn(
         "java-function",
-        f"the function {name} is written in Java and not available",
+        f"function `{name}` is written in Java and not available",
         _place(directive),
         f"write it in Python: a function {function} with @arithmetic_function in {module.replace('.', '/')}.py; "
         'or as a rule: { register_function("my.sum", 2, "sum") }',
@@ -358,21 +361,23 @@ def _warn_of_java_function(parser: ProgramParser, directive: nodes.Literal, name
 
 
 def _parse_text(parser: PlanParser, read: Callable[[], _Result], what: str) -> _Result:
-    """What *read* makes of the whole text of *parser*; a wrong text is a wrong argument of the directive."""
+    """Parse the whole text of *parser* with *read*; an invalid text is an invalid argument of the
+    directive.
+    """
     try:
         result = read()
     except SyntaxPanic:
         result = None
     if result is None or parser.token.kind != "end" or parser.diagnostics:
-        reason = (
-            parser.diagnostics[0].message if parser.diagnostics else f"'{parser.token.text}' does not fit"
-        )
-        raise PatternError(f"{parser.file.name} is no {what}: {reason}")
+        reason = parser.diagnostics[0].message if parser.diagnostics else f"unexpected `{parser.token.text}`"
+        raise PatternError(f"{parser.file.name} is not a {what}: {reason}")
     return result
 
 
 def _with_named_variables(term: nodes.Term) -> nodes.Term:
-    """*term* with its unnamed variables made ordinary, so that it is the same in several places of a plan."""
+    """Return *term* with its unnamed variables named, so that it means the same in several places of a
+    plan.
+    """
     if isinstance(term, nodes.Variable) and term.unnamed:
         return nodes.replace(term, unnamed=False)
     if isinstance(term, nodes.Literal):
@@ -385,10 +390,10 @@ def _with_named_variables(term: nodes.Term) -> nodes.Term:
 
 def _meant(name: str) -> str | None:
     close = close_matches(name, [*_SIMPLE, *PATTERNS])
-    return f"did you mean '{close[0]}'?" if close else None
+    return f"did you mean `{close[0]}`?" if close else None
 
 
 def _place(directive: nodes.Literal) -> Span:
-    """The place of a directive, which the parser always gives."""
+    """Return the place of a directive, which the parser always sets."""
     assert directive.span is not None
     return directive.span
