@@ -199,13 +199,13 @@ def test_the_longest_of_several_windows_of_a_history_counts() -> None:
 @pytest.mark.parametrize(
     ("declared", "message"),
     [
-        ("range(_)", "'history' needs a belief and `within`"),
-        ("range(_), 5", "'history' needs a belief and `within`"),
+        ("range(_)", "`history` expects a belief and `within`"),
+        ("range(_), 5", "`history` expects a belief and `within`"),
         ("range(_), within(0)", "`within` must be above zero"),
         ("range(_), within(-5)", "`within` must be above zero"),
         ("range(_), within(1e9)", "`within` is longer than a day"),
-        ("range(X), within(5)", "a history is of all values of a belief"),
-        ("range(_)[source(self)], within(5)", "annotations are not looked at here"),
+        ("range(X), within(5)", "a history keeps all values of a belief"),
+        ("range(_)[source(self)], within(5)", "annotations have no effect here"),
     ],
 )
 def test_wrong_declarations_are_reported(declared: str, message: str) -> None:

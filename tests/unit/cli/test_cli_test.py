@@ -148,5 +148,5 @@ def test_warnings_about_programs_go_to_the_errors(folder: Path, capsys: pytest.C
     (folder / "warn.asl").write_text("@a[test] +!a : false <- !missing.", encoding="utf-8")
     code, output, errors = outcome(capsys, "warn.asl")
     assert code == 1
-    assert "no plan for !missing/0" in errors
-    assert "no plan for !missing/0" not in output
+    assert "no plan for `!missing/0`" in errors
+    assert "no plan for `!missing/0`" not in output

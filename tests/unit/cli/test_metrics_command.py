@@ -89,7 +89,7 @@ def test_all_that_cannot_be_counted_is_reported_in_one_pass(
         "    |                       ^^^^^^^^\n"
         "  = help: expected in wrong\n"
         "\n"
-        "wrong/robot.asl:2:16: error: nothing is open that this ')' closes\n"
+        "wrong/robot.asl:2:16: error: unmatched `)`\n"
         "  2 | +!go <- move(1)).\n"
         "    |                ^\n"
         "\n"

@@ -345,7 +345,7 @@ def test_a_check_looks_at_the_classes_and_the_python_code(tmp_path: Path) -> Non
         ("error", "there is no class Mien"),
         ("warning", "the Java class your.Mine has no effect"),
         ("warning", "the internal action my.one cannot have 2 arguments"),
-        ("warning", "there is no internal action my.oen"),
+        ("warning", "unknown internal action `my.oen`"),
     ]
 
 

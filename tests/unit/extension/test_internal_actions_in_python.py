@@ -249,7 +249,7 @@ def test_a_coroutine_cannot_be_a_condition(tmp_path: Path) -> None:
     program = "!go. +!go : my.fetch(1, X) <- .print(X). +!go <- .print(other)."
     result = run(tmp_path, program, python)
     assert result.of("t") == ["other"]
-    assert "my.fetch acts or takes time and never holds as a condition" in result.errors[0]
+    assert "`my.fetch` acts or takes time and never holds as a condition" in result.errors[0]
     assert "t.asl:1:13" in result.errors[0]
 
 
@@ -419,7 +419,7 @@ def test_a_declaration_that_cannot_be_is_told_with_its_line(
 @pytest.mark.parametrize(
     ("call", "help"),
     [
-        ("my.nrom(1, X)", "did you mean my.norm?"),
+        ("my.nrom(1, X)", "did you mean `my.norm`?"),
         ("my.plain(1, X)", "the function my.plain exists: put @internal_action before it"),
         ("my.zzz(1, X)", "my.py has no such function with @internal_action"),
         ("your.norm(1, X)", "a function norm with @internal_action in your.py beside the project"),

@@ -174,7 +174,7 @@ def test_the_console_answers(line: str, result: str) -> None:
         ("ready", "expected ?query, !goal"),
         ("?", "expected ?query, !goal"),
         ("?ready(", "expected"),
-        ("+3", "a literal is expected"),
+        ("+3", "expected a literal"),
         ("! ", "expected ?query, !goal"),
         ("", "`text` must be a text"),
     ],

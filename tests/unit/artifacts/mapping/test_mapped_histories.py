@@ -75,7 +75,7 @@ def test_check_reports_the_past_of_a_property_without_a_history(tmp_path: Path) 
     )
     assert (
         told.help
-        == "declare { history(other(_), within(2000)) }, or `history: 2` in the mapping file of a property"
+        == "declare `{ history(other(_), within(2000)) }`, or `history: 2` in the mapping file of a property"
     )
 
 
