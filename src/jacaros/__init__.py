@@ -1,16 +1,15 @@
 """Program robots as rational agents: AgentSpeak minds, artifacts and ROS, in Python.
 
-What projects write in Python imports its names from here: ``from jacaros import internal_action, Agent, Out``.  Each
-is loaded when it is first used, so that ``import jacaros`` costs nothing.
+Import the names for your Python code from here: ``from jacaros import internal_action, Agent, Out``. Each
+name is
+loaded on first use, so ``import jacaros`` costs nothing.
 """
 
 from importlib import import_module
 
 from jacaros.version import VERSION
 
-TYPE_CHECKING = (
-    False  # as type checkers see it; the typing module alone takes longer to import than all of this
-)
+TYPE_CHECKING = False  # True for type checkers; importing the typing module takes longer than all of this
 
 if TYPE_CHECKING:
     from jacaros.asl.diagnostics import AslError
@@ -94,7 +93,7 @@ _MODULES = {
     "jacaros.mas.embedding.mas": "Mas",
     "jacaros.mas.options": "RunOptions",
 }
-"""Where the names are; a view of a thing of the mind is called otherwise there."""
+"""Where the names are defined; views of the mind's objects have other names there."""
 _PLACES = {
     name.partition("=")[0]: (module, name.rpartition("=")[2])
     for module, names in _MODULES.items()

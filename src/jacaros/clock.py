@@ -1,12 +1,16 @@
-"""Time as a port: the wall clock, and a virtual clock that jumps when everybody waits.
+"""Time as a port: the wall clock, and a virtual clock that jumps when all agents wait.
 
-Agents, artifacts and the embedded world take time from a `Clock` alone.  The virtual clock belongs to an
-event loop made by `new_event_loop`: when no callback is ready and no other thread is at work for the loop,
-it moves to the next timer instead of sleeping, so a run is exactly repeatable and as fast as the machine.
+Agents, artifacts and the embedded world take time only from a `Clock`. The virtual clock belongs to an event
+loop made
+by `new_event_loop`. When no callback is ready and no other thread works for the loop, it moves to the next
+timer instead
+of sleeping, so a run is reproducible and as fast as the machine.
 
-A clock can be paused: it stands still and no timer rings.  On a virtual clock, the callbacks of the run that are on
-their way then are held, too, so a run that was paused does the same as one that was not.  `of_run` marks them;
-the loop continues to serve everything else, such as a page that shows the run.
+A clock can be paused: it stands still and no timer rings. On a virtual clock, pending callbacks of the run
+are then held,
+too, so pausing does not change a run. `of_run` marks them; the loop continues to serve everything else, such
+as a page
+that shows the run.
 """
 
 import asyncio
@@ -23,62 +27,64 @@ from typing import Any, Protocol, TypeVar
 from jacaros.timer_queue import QueuedTimer, TimerQueue
 
 VIRTUAL_EPOCH = 1_577_836_800.0
-"""2020-01-01 00:00:00 UTC, in seconds since the Unix epoch: where every virtual run begins."""
+"""2020-01-01 00:00:00 UTC, in seconds since the Unix epoch: the start of every virtual run."""
 
 real_time = time.monotonic
-"""Seconds of a steady clock, whatever the clock of a run says: to bound how long something keeps the machine busy."""
+"""Seconds of a monotonic clock, independent of the run's clock: to bound how long something keeps the machine
+busy.
+"""
 
 T = TypeVar("T")
 
 
 class Timer(Protocol):
-    """A call that is to come; it can be taken back."""
+    """A pending call, which can be cancelled."""
 
     def cancel(self) -> None:
-        """Take the call back; nothing happens when it is past."""
+        """Cancel the call; no effect once it has been made."""
 
 
 class Clock(Protocol):
-    """Where everybody takes the time from."""
+    """The one source of time for agents, artifacts and the world."""
 
     @property
     def virtual(self) -> bool:
-        """True when time moves in jumps."""
+        """True if time moves in jumps."""
 
     @property
     def elapsed(self) -> float:
-        """Seconds from some moment on, as `call_later` counts them: they never go back, whatever `now` does."""
+        """Seconds since some moment, as `call_later` counts them; never decreases, whatever `now` does."""
 
     def now(self) -> float:
-        """Seconds since the Unix epoch."""
+        """Return seconds since the Unix epoch."""
 
     def call_later(self, delay: float, callback: Callable[[], None]) -> Timer:
-        """Call *callback* on the loop after *delay* seconds; equal moments keep their order."""
+        """Call *callback* on the loop after *delay* seconds; calls for the same moment keep their order."""
 
     async def sleep(self, delay: float) -> None:
         """Wait for *delay* seconds."""
 
     def busy(self, cycles: int) -> None:
-        """Be told that agents made *cycles* reasoning cycles without getting idle."""
+        """Report that agents made *cycles* reasoning cycles without becoming idle."""
 
     @property
     def paused(self) -> bool:
         """Whether the clock is paused."""
 
     def pause(self) -> None:
-        """Let time stand still and no timer ring until `resume`; no effect on a paused clock."""
+        """Stop time and timers until `resume`; no effect on a paused clock."""
 
     def resume(self) -> None:
-        """Let time move again: pending timers ring after the rest of their delays."""
+        """Let time continue: pending timers ring after the rest of their delays."""
 
 
 _OF_RUN: contextvars.ContextVar[bool] = contextvars.ContextVar("jacaros_of_run", default=False)
-"""Whether what is executed belongs to a run, and so is held while a virtual clock is paused."""
+"""Whether the running code belongs to a run, and is therefore held while a virtual clock is paused."""
 
 
 @contextmanager
 def of_run() -> Iterator[None]:
-    """Mark the callbacks and tasks that are begun inside, and those that they begin, as parts of a run."""
+    """Mark callbacks and tasks started inside, and those that they start, as parts of a run."""
     token = _OF_RUN.set(True)
     try:
         yield
@@ -88,7 +94,7 @@ def of_run() -> Iterator[None]:
 
 @contextmanager
 def outside_run() -> Iterator[None]:
-    """Mark what is begun inside as no part of a run: a virtual clock that is paused does not hold it."""
+    """Mark code started inside as independent of a run: a paused virtual clock does not hold it."""
     token = _OF_RUN.set(False)
     try:
         yield
@@ -97,7 +103,7 @@ def outside_run() -> Iterator[None]:
 
 
 def run_context() -> contextvars.Context:
-    """Make a context in which what is begun is part of a run."""
+    """Return a context in which started code is part of a run."""
     context = contextvars.copy_context()
     context.run(_OF_RUN.set, True)
     return context
@@ -106,11 +112,12 @@ def run_context() -> contextvars.Context:
 class WallClock:
     """The time of day; delays are measured on the monotonic clock.
 
-    While it is neither paused nor sped up, `now` is exactly the machine's time of day.  After that, it continues from
-    where it was.
+    Until it is paused or its speed changes, `now` is exactly the machine's time of day. After that, it
+    continues from its
+    last value.
 
     Args:
-        speed: seconds of this clock in a second of real time, greater than 0.
+        speed: seconds of this clock per second of real time, greater than 0.
     """
 
     virtual = False
@@ -119,7 +126,9 @@ class WallClock:
         self._speed = 1.0
         self._paused = False
         self._reached = self._began = 0.0
-        """Seconds of this clock, and of the monotonic clock, when it was last paused, resumed or given a speed."""
+        """Seconds of this clock, and of the monotonic clock, at the last pause, resumption or change of
+        speed.
+        """
         self._ahead: float | None = None
         """`now` minus `elapsed`; None while `now` is the time of day."""
         self._timers = TimerQueue()
@@ -132,14 +141,14 @@ class WallClock:
 
     @property
     def elapsed(self) -> float:
-        """Seconds on the monotonic clock, as far as this clock followed it: nobody sets it."""
+        """Seconds of the monotonic clock, as far as this clock followed it; it cannot be set."""
         if self._paused:
             return self._reached
         return self._reached + (time.monotonic() - self._began) * self._speed
 
     @property
     def speed(self) -> float:
-        """Seconds of this clock in a second of real time."""
+        """Seconds of this clock per second of real time."""
         return self._speed
 
     @speed.setter
@@ -157,27 +166,27 @@ class WallClock:
         return self._paused
 
     def pause(self) -> None:
-        """Let time stand still and no timer ring until `resume`; no effect on a paused clock."""
+        """Stop time and timers until `resume`; no effect on a paused clock."""
         if not self._paused:
             self._note_day()
             self.pause_timers()
 
     def pause_timers(self) -> None:
-        """Let no timer ring until `resume`; `now` continues: messages of real robots carry the time of day."""
+        """Stop timers until `resume`; `now` continues, as messages of real robots carry the time of day."""
         if not self._paused:
             self._note_moment()
             self._paused = True
             self._set_alarm()
 
     def resume(self) -> None:
-        """Let time move again: pending timers ring after the rest of their delays."""
+        """Let time continue: pending timers ring after the rest of their delays."""
         if self._paused:
             self._began = time.monotonic()
             self._paused = False
             self._set_alarm()
 
     def now(self) -> float:
-        """Seconds since the Unix epoch."""
+        """Return seconds since the Unix epoch."""
         return time.time() if self._ahead is None else self._ahead + self.elapsed
 
     def call_later(self, delay: float, callback: Callable[[], None]) -> Timer:
@@ -196,10 +205,10 @@ class WallClock:
         await _sleep(self, delay)
 
     def busy(self, cycles: int) -> None:
-        """Nothing: the wall clock moves by itself."""
+        """Do nothing: the wall clock moves anyway."""
 
     def _note_day(self) -> None:
-        """From now on, `now` follows this clock and not the time of day."""
+        """From now on, `now` follows this clock instead of the time of day."""
         if self._ahead is None:
             self._ahead = time.time() - self.elapsed
 
@@ -207,13 +216,13 @@ class WallClock:
         self._reached, self._began = self.elapsed, time.monotonic()
 
     def _move_to_loop(self, loop: asyncio.AbstractEventLoop) -> None:
-        """Serve another loop; timers of one that has ended are over."""
+        """Serve another loop; timers of a closed one are dropped."""
         if self._loop is not None and self._loop.is_closed():
             self._timers, self._alarm = TimerQueue(), None
         self._loop = loop
 
     def _set_alarm(self) -> None:
-        """Have the loop call for the earliest timer."""
+        """Schedule a call of the loop for the earliest timer."""
         if self._alarm is not None:
             self._alarm.cancel()
             self._alarm = None
@@ -224,7 +233,7 @@ class WallClock:
         self._alarm = self._loop.call_later(max(0.0, moment - self.elapsed) / self._speed, self._ring)
 
     def _ring(self) -> None:
-        """Let the timers ring that are due; those that they set ring in a later pass of the loop."""
+        """Ring the timers that are due; those that they set ring in a later pass of the loop."""
         self._alarm = None
         moment = max(self._alarm_at, self.elapsed)  # the loop may be a billionth of a second early
         due = deque(iter(lambda: self._timers.next_due(moment), None))
@@ -249,16 +258,16 @@ async def _sleep(clock: Clock, delay: float) -> None:
 
 
 class VirtualClock:
-    """Discrete-event time: it starts at a fixed epoch and jumps to the next timer when all wait.
+    """Discrete-event time: it starts at a fixed epoch and jumps to the next timer when all agents wait.
 
     Attributes:
         paused: whether it is paused: it does not jump, and its loop holds the callbacks of the run.
-        when_paused: called with True after a pause began, and with False after it ended.
+        when_paused: called with True after a pause begins, and with False after it ends.
     """
 
     virtual = True
     CYCLES_PER_MILLISECOND = 10_000
-    """An endless plan moves time too: 1 ms for so many busy cycles, so it cannot freeze the world."""
+    """Time moves 1 ms per this number of busy cycles, so a plan that never ends cannot freeze the world."""
 
     def __init__(self, start: float = VIRTUAL_EPOCH) -> None:
         self.start = start
@@ -270,7 +279,7 @@ class VirtualClock:
         self.when_paused: list[Callable[[bool], None]] = []
 
     def now(self) -> float:
-        """Seconds since the Unix epoch."""
+        """Return seconds since the Unix epoch."""
         return self.start + self.elapsed
 
     def call_later(self, delay: float, callback: Callable[[], None]) -> Timer:
@@ -285,20 +294,20 @@ class VirtualClock:
         """Stop jumping, and hold the callbacks of the run, until `resume`; no effect on a paused clock."""
         if not self.paused:
             self.paused = True
-            for told in tuple(self.when_paused):
-                told(True)
+            for watcher in tuple(self.when_paused):
+                watcher(True)
 
     def resume(self) -> None:
         """Continue exactly where the clock was paused."""
         if self.paused:
             self.paused = False
-            for told in tuple(self.when_paused):
-                told(False)
+            for watcher in tuple(self.when_paused):
+                watcher(False)
 
     def busy(self, cycles: int) -> None:
-        """Move 1 ms on for every 10,000 cycles that agents made without getting idle.
+        """Move 1 ms for every 10,000 cycles that agents made without becoming idle.
 
-        What is due then is called by the loop later, never in the middle of the caller's work.
+        The loop calls timers that are due later, never in the middle of the caller's work.
         """
         self._cycles += cycles
         while self._cycles >= self.CYCLES_PER_MILLISECOND:
@@ -306,10 +315,10 @@ class VirtualClock:
             self._move_to(self.elapsed + 0.001)
 
     def advance(self, at_most: float | None = None) -> bool:
-        """Jump to the next timer, with it ring all of that moment; False when there is none.
+        """Jump to the next timer, and ring all timers of that moment; return False without a timer.
 
         Args:
-            at_most: seconds to move if the next timer is further away, or if there is none.
+            at_most: seconds to move if the next timer is further away or does not exist.
         """
         moment = self._timers.first_moment()
         if at_most is not None and (moment is None or moment > self.elapsed + at_most):
@@ -321,7 +330,7 @@ class VirtualClock:
         return True
 
     def pending(self) -> Sequence[Timer]:
-        """The timers that are still to ring, in no order."""
+        """The pending timers, in no order."""
         return self._timers.pending()
 
     def _move_to(self, moment: float) -> None:
@@ -332,7 +341,7 @@ class VirtualClock:
             self.elapsed = moment
 
     def _call_soon(self, timer: QueuedTimer) -> None:
-        """Let the running loop ring a timer, so that errors reach its handler; without a loop let it ring now."""
+        """Let the running loop ring a timer, so that its handler gets errors; without a loop, ring it now."""
         try:
             loop = asyncio.get_running_loop()
         except RuntimeError:
@@ -347,10 +356,10 @@ def _wake(sleeper: asyncio.Future[None]) -> None:
 
 
 class _VirtualSelector(selectors.DefaultSelector):
-    """Lets the loop's "sleep until something happens" become a jump of the virtual clock."""
+    """Turns the loop's "sleep until something happens" into a jump of the virtual clock."""
 
     PATIENCE = 8
-    """As long as the loop has other things to do, it is only this often that it looks for something from outside."""
+    """While the loop is busy, it checks for external events only once per this number of passes."""
 
     def __init__(self, clock: VirtualClock) -> None:
         super().__init__()
@@ -363,7 +372,7 @@ class _VirtualSelector(selectors.DefaultSelector):
         clock.when_paused.append(self._hold)
 
     def _hold(self, paused: bool) -> None:
-        """Hold the callbacks of the run, or let them go."""
+        """Hold the callbacks of the run, or release them."""
         if not paused:
             self.ready.extend(self.held)
             self.held.clear()
@@ -372,7 +381,7 @@ class _VirtualSelector(selectors.DefaultSelector):
             handle = self.ready[place]
             if _is_of_run(handle):
                 self.held.append(handle)
-                # The loop has counted the callbacks of this pass: something must be in its place.
+                # The loop has counted the callbacks of this pass: put something in its place.
                 self.ready[place] = asyncio.Handle(_nothing, (), asyncio.get_running_loop())
 
     def _select_paused(self, timeout: float | None) -> list[tuple[selectors.SelectorKey, int]]:
@@ -397,13 +406,13 @@ class _VirtualSelector(selectors.DefaultSelector):
         if not self.foreign_work:
             if self.clock.advance(timeout):
                 return []
-            if timeout is None and [told for told in self.when_stuck if told()]:
+            if timeout is None and [watcher for watcher in self.when_stuck if watcher()]:
                 return []
         return super().select(timeout)
 
 
 def _nothing() -> None:
-    """Stand for a callback that is held."""
+    """Take the place of a callback that is held."""
 
 
 def _is_of_run(handle: asyncio.Handle) -> bool:
@@ -412,9 +421,9 @@ def _is_of_run(handle: asyncio.Handle) -> bool:
 
 
 def start_thread(work: Callable[[], T]) -> asyncio.Future[T]:
-    """Run *work* in a daemon thread; the future has its result, or what it raised.
+    """Run *work* in a daemon thread; return a future with its result or exception.
 
-    The end of the process waits for the threads of asyncio's own executor, for ever if one never returns.
+    At its end, a process waits for the threads of asyncio's own executor, forever if one never returns.
     """
     loop = asyncio.get_running_loop()
     future: asyncio.Future[T] = loop.create_future()
@@ -427,7 +436,7 @@ def start_thread(work: Callable[[], T]) -> asyncio.Future[T]:
         deliver: Callable[[], None]
         try:
             deliver = partial(future.set_result, work())
-        except StopIteration as error:  # which no future takes
+        except StopIteration as error:  # which a future does not accept
             deliver = partial(future.set_exception, RuntimeError(f"the thread raised {error!r}"))
         except BaseException as error:
             deliver = partial(future.set_exception, error)
@@ -442,7 +451,7 @@ class _DaemonThreads(asyncio.BaseEventLoop):
     """The part of a loop that runs work of ``asyncio.to_thread`` in daemon threads."""
 
     THREADS = 32
-    """Threads at a time, as asyncio has at most."""
+    """Maximum number of concurrent threads, as in asyncio."""
 
     def __init__(self, *arguments: Any) -> None:
         super().__init__(*arguments)
@@ -479,7 +488,7 @@ class _DaemonThreads(asyncio.BaseEventLoop):
 
 
 class VirtualEventLoop(_DaemonThreads, asyncio.SelectorEventLoop):
-    """An asyncio loop whose waiting is done on a virtual clock: ``asyncio.sleep`` and time-outs take no real time."""
+    """An asyncio loop that waits on a virtual clock: ``asyncio.sleep`` and timeouts take no real time."""
 
     def __init__(self, clock: VirtualClock) -> None:
         self._virtual_clock = clock
@@ -487,17 +496,18 @@ class VirtualEventLoop(_DaemonThreads, asyncio.SelectorEventLoop):
         super().__init__(self.virtual_selector)
         self.virtual_selector.ready = self._ready  # type: ignore[attr-defined]
 
-    def when_stuck(self, told: Callable[[], bool]) -> Callable[[], None]:
-        """Call *told* when everybody waits and no timer is left: only something from outside could go on then.
+    def when_stuck(self, watcher: Callable[[], bool]) -> Callable[[], None]:
+        """Call *watcher* when everything waits and no timer is left: only an external event could continue the
+        run.
 
-        It gives True when it has given somebody something to do.  Gives what ends that.
+        *watcher* returns True if it has given something work to do. Return a function that ends this.
         """
         watchers = self.virtual_selector.when_stuck
-        watchers.append(told)
-        return lambda: watchers.remove(told) if told in watchers else None
+        watchers.append(watcher)
+        return lambda: watchers.remove(watcher) if watcher in watchers else None
 
     def time(self) -> float:
-        """Seconds of virtual time since the beginning."""
+        """Return seconds of virtual time since the beginning."""
         return self._virtual_clock.elapsed
 
     def run_in_executor(  # type: ignore[override]  # the typed signature differs between Python versions
@@ -522,7 +532,7 @@ class _RealEventLoop(_DaemonThreads, _Loop):  # type: ignore[misc]
 
 @contextmanager
 def standing_still(loop: asyncio.AbstractEventLoop) -> Iterator[None]:
-    """Let virtual time stand still while another thread works for *loop*; the wall clock goes on."""
+    """Stop virtual time while another thread works for *loop*; the wall clock continues."""
     selector = loop.virtual_selector if isinstance(loop, VirtualEventLoop) else None
     if selector is not None:
         selector.foreign_work += 1
@@ -539,11 +549,13 @@ def new_event_loop(clock: Clock) -> asyncio.AbstractEventLoop:
 
 
 def clock_of(loop: asyncio.AbstractEventLoop) -> Clock:
-    """The clock of an event loop: the virtual one that `new_event_loop` made it for, or the wall clock."""
+    """Return the clock of an event loop: the virtual one that `new_event_loop` made it for, or the wall
+    clock.
+    """
     return loop.virtual_selector.clock if isinstance(loop, VirtualEventLoop) else WallClock()
 
 
 def run(main: Callable[[], Coroutine[Any, Any, T]], clock: Clock) -> T:
-    """Run the coroutine function *main* to its end on a fresh loop of *clock*."""
+    """Run the coroutine function *main* to its end on a new loop of *clock*."""
     with asyncio.Runner(loop_factory=lambda: new_event_loop(clock)) as runner:
         return runner.run(main())

@@ -1,23 +1,23 @@
-"""The roots of the exception tree; every package adds its own branches.
+"""The root exceptions; every package derives its own from these.
 
     JacarosError
-    ├── AslError            (asl)   a wrong program: carries diagnostics with file, line and excerpt
-    ├── ProjectError        (mas)   a wrong .mas2j or .jcm file
+    ├── AslError            (asl)   a program with errors: diagnostics with file, line and excerpt
+    ├── ProjectError        (mas)   an invalid .mas2j or .jcm file
     ├── WorkspaceError      (env)   wrong use of workspaces and artifacts
-    ├── RosError            (ros)   middleware: missing backend, unknown interface, mismatch, time-out
-    └── UsageError                  a wrong command line or a wrong combination of options
+    ├── RosError            (ros)   middleware: missing backend, unknown interface, mismatch, timeout
+    └── UsageError                  an invalid command line or combination of options
     InternalError                   a defect of JaCaROS itself: stops the robot, ends the run
 
-A goal that fails is none of these: it becomes a ``-!g`` event with reason terms.
+A failed goal is not an exception: it becomes a ``-!g`` event with reason terms.
 """
 
 
 class JacarosError(Exception):
-    """Something the user can put right; ``str()`` says what is wrong, where, and what to do."""
+    """An error that the user can fix; ``str()`` says what is wrong, where, and how to fix it."""
 
 
 class UsageError(JacarosError):
-    """A wrong command line or a wrong combination of options."""
+    """An invalid command line or combination of options."""
 
 
 class InternalError(Exception):

@@ -1,25 +1,27 @@
-"""Text of files in messages: what would confuse a terminal is escaped, and everything has a bounded length."""
+"""Excerpts of files in messages: unsafe characters are escaped, and everything has a limited length."""
 
 import re
 from typing import Final
 
 WIDTH: Final = 100
-"""Characters of a line that an excerpt shows."""
+"""Maximum number of characters of a line in an excerpt."""
 
 LONGEST: Final = 500
-"""Characters of one line of a message."""
+"""Maximum number of characters of a message line."""
 
 MOST: Final = 100
-"""Messages about one file (or one call) that are printed; of all others only the number."""
+"""Maximum number of messages printed about one file (or one call); the rest is only counted."""
 
 _UNSAFE: Final = re.compile(
     "[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200b-\u200f\u2028-\u202e\u2060-\u206f\ufeff\ufff9-\ufffb\ud800-\udfff]"
 )
-"""Characters that a terminal obeys or does not show: control characters, marks of direction, parts of surrogate pairs."""
+"""Characters that a terminal obeys or hides: control characters, direction marks, parts of surrogate
+pairs.
+"""
 
 
 def escaped(text: str) -> str:
-    r"""Return *text* with ``\x1b``, ``\u202e`` and the like in place of characters that are not safe to print."""
+    r"""Return *text* with unsafe characters replaced by escapes such as ``\x1b`` and ``\u202e``."""
     return _UNSAFE.sub(_escape, text)
 
 
@@ -29,7 +31,7 @@ def _escape(found: re.Match[str]) -> str:
 
 
 def printable(text: str) -> str:
-    """Return a message with unsafe characters escaped and each of its lines cut to `LONGEST` characters."""
+    """Return a message with unsafe characters escaped and each line cut to `LONGEST` characters."""
     return "\n".join(_cut(line) for line in escaped(text).split("\n"))
 
 
@@ -38,7 +40,7 @@ def _cut(line: str) -> str:
 
 
 def help_line(text: str) -> str:
-    """Return the line below a message that says what to do about it."""
+    """Return the ``help:`` line of a message."""
     return f"  = help: {printable(text)}"
 
 
@@ -48,7 +50,7 @@ def marked(line: str, column: int, end: int | None = None) -> tuple[str, str]:
     Args:
         line: of a file, without its end.
         column: where the carets begin, counted from 1.
-        end: the column behind them; one caret if None.
+        end: the column after the carets; one caret if None.
     """
     first = max(0, min(column - 1 - WIDTH // 2, len(line) - WIDTH))
     last = first + WIDTH
@@ -56,6 +58,6 @@ def marked(line: str, column: int, end: int | None = None) -> tuple[str, str]:
     before = ("..." if first else "") + escaped(line[first:begin])
     meant = escaped(line[begin : min(last, begin + 1 if end is None else end - 1)])
     behind = escaped(line[begin:last]) + ("..." if last < len(line) else "")
-    # Tabs are repeated below, so that the carets are under the same stretch at any width of a tab.
+    # Tabs are repeated below, so that the carets are aligned at any tab width.
     indent = "".join("\t" if char == "\t" else " " for char in before)
     return before + behind, indent + "^" * max(1, len(meant))

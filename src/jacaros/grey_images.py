@@ -17,7 +17,7 @@ _HEADER = ("width", "height", "largest value")
 
 
 class ImageError(Exception):
-    """An image that cannot be used; ``str()`` says why, `help` what to do."""
+    """An image that cannot be used; ``str()`` says why, and `help` how to fix it."""
 
     def __init__(self, message: str, help: str) -> None:
         super().__init__(message)
@@ -44,8 +44,12 @@ def read_image(path: Path) -> GreyImage:
     if data.startswith(_PNG):
         return _read_png(data, path)
     if data[:2] not in (b"P5", b"P2"):
-        kind = next((f"a {name} image" for begins, name in _KNOWN if data.startswith(begins)), "not an image")
-        raise ImageError(f"not a PGM or PNG image: it is {kind}", f"magick {path} {path.with_suffix('.pgm')}")
+        kind = next(
+            (f"a {name} image" for begins, name in _KNOWN if data.startswith(begins)), "something else"
+        )
+        raise ImageError(
+            f"expected a PGM or PNG image, found {kind}", f"magick {path} {path.with_suffix('.pgm')}"
+        )
     width, height, largest, start = _header(data)
     count = width * height
     values = data[start + 1 : start + 1 + count] if data[:2] == b"P5" else _written(data[start:], count)
@@ -74,13 +78,13 @@ def _read_png(data: bytes, path: Path) -> GreyImage:
 
 
 def _header(data: bytes) -> tuple[int, int, int, int]:
-    """Width, height, largest value, and where the header ends."""
+    """Return width, height, largest value, and where the header ends."""
     numbers: list[int] = []
     place = 2
     for what in _HEADER:
         found = _NUMBER.match(data, place)
         if found is None or int(found[1]) == 0:
-            raise ImageError(f"the image's header has no {what}", "save the map again")
+            raise ImageError(f"header without {what}", "save the map again")
         numbers.append(int(found[1]))
         place = found.end()
     width, height, largest = numbers
@@ -97,9 +101,7 @@ def _written(text: bytes, count: int) -> bytes:
     try:
         return bytes(min(WHITE, int(number)) for number in numbers)
     except ValueError:
-        raise ImageError(
-            "the image has a pixel that is not a number from 0 on", "save the map again"
-        ) from None
+        raise ImageError("a pixel is not a non-negative integer", "save the map again") from None
 
 
 def pgm_bytes(image: GreyImage) -> bytes:

@@ -1,8 +1,11 @@
-"""What a Python file declares, without running it: its classes and functions with empty bodies.
+"""The declarations of a Python file, without running it: its classes and functions with empty bodies.
 
-An outline is made from the syntax tree of the file.  Of its code only this is executed: class and function statements
-with the decorators of jacaros, constants, and imports of jacaros and of a few harmless modules.  What only running the
-file can tell (a class made by a call, a base class of another package, an unknown decorator) becomes `UNSEEN`.
+An outline is made from the syntax tree of the file. Of its code, only this is executed: class and function
+statements
+with the decorators of jacaros, constants, and imports of jacaros and of a few harmless modules. Whatever only
+running
+the file could show (a class made by a call, a base class of another package, an unknown decorator) becomes
+`UNSEEN`.
 """
 
 import ast
@@ -41,11 +44,11 @@ _BINDING_CALLS: Final = frozenset(
     {"exec", "eval", "globals", "locals", "setattr", "vars", "__import__", "import_module"}
 )
 INCOMPLETE: Final = "__jacaros_incomplete__"
-"""The attribute of an outline with names that only running the file can tell."""
+"""The attribute of an outline that lists names that only running the file can reveal."""
 
 
 class Unseen:
-    """Something that is not known until the file is run; usable wherever an annotation or a default value is."""
+    """A value that is unknown until the file runs; usable wherever an annotation or a default value is."""
 
     def __getattr__(self, name: str) -> "Unseen":
         if name.startswith("__"):
@@ -68,17 +71,17 @@ UNSEEN: Final = Unseen()
 
 
 def fill(module: ModuleType, file: Path, text: str, project: Callable[[str], ModuleType | None]) -> None:
-    """Give *module* the names that a file declares.
+    """Add the declarations of a file to *module*.
 
     Args:
         module: an empty one.
         file: its file, for errors.
         text: of the file.
-        project: gives the outline of another module of the project; None for a name that is not one of them.
+        project: returns the outline of another module of the project; None for other names.
 
     Raises:
         SyntaxError: the text is not Python.
-        Exception: a declaration is wrong, such as an operation with keyword parameters.
+        Exception: a declaration is invalid, such as an operation with keyword parameters.
     """
     tree = ast.parse(text, str(file))
     outline = _Outline(module, project)
@@ -93,7 +96,7 @@ def fill(module: ModuleType, file: Path, text: str, project: Callable[[str], Mod
 
 
 def _flat(body: list[ast.stmt]) -> Iterator[ast.stmt]:
-    """The statements of a module; of conditions and ``try`` all branches."""
+    """Yield the statements of a module; of conditions and ``try``, all branches."""
     for statement in body:
         if isinstance(statement, ast.If):
             yield from _flat([*statement.body, *statement.orelse])
@@ -105,11 +108,11 @@ def _flat(body: list[ast.stmt]) -> Iterator[ast.stmt]:
 
 
 class _Outline:
-    """Makes harmless statements of those of one file.
+    """Reduces the statements of a file to harmless ones.
 
     Args:
-        module: has the names that are known so far.
-        project: gives other modules of the project.
+        module: contains the names known so far.
+        project: returns other modules of the project.
     """
 
     def __init__(self, module: ModuleType, project: Callable[[str], ModuleType | None]) -> None:
@@ -117,7 +120,7 @@ class _Outline:
         self._names = module.__dict__
 
     def visible(self, statement: ast.stmt) -> Iterator[ast.stmt]:
-        """Give what is to be executed in place of a statement; imports and unknown names are bound here."""
+        """Yield the statements to execute in place of one; imports and unknown names are bound here."""
         if isinstance(statement, ast.Import | ast.ImportFrom):
             self._import(statement)
         elif isinstance(statement, ast.ClassDef):
@@ -219,7 +222,7 @@ class _Outline:
         )  # fmt: skip
 
     def _function(self, node: ast.FunctionDef | ast.AsyncFunctionDef) -> ast.stmt | None:
-        """The function with an empty body; None when a decorator may make anything of it."""
+        """Return the function with an empty body; None if a decorator may turn it into anything."""
         decorators = []
         for each in node.decorator_list:
             if isinstance(each, ast.Attribute) and each.attr in ("setter", "getter", "deleter"):
@@ -241,7 +244,7 @@ class _Outline:
         )  # fmt: skip
 
     def _is_known(self, decorator: ast.expr) -> bool:
-        """Whether a decorator is one of those that only declare, with constants as its arguments."""
+        """Return whether a decorator only declares, with constants as its arguments."""
         called = decorator.func if isinstance(decorator, ast.Call) else decorator
         if isinstance(decorator, ast.Call) and not all(
             map(_is_constant, [*decorator.args, *(each.value for each in decorator.keywords)])
@@ -275,7 +278,7 @@ class _Outline:
                     self._names[each.id] = found if isinstance(target, ast.Name) else UNSEEN
 
     def _value(self, node: ast.expr) -> Any:
-        """What a name, with or without dots, means; `UNSEEN` for anything else."""
+        """Return the value of a name, with or without dots; `UNSEEN` for anything else."""
         if isinstance(node, ast.Name):
             import builtins
 
@@ -290,7 +293,7 @@ _TYPE_PARAMETERS: Final[dict[str, Any]] = {"type_params": []} if "type_params" i
 
 
 def _is_typing(value: object) -> bool:
-    """Whether a base class is one of those that only type checkers mind."""
+    """Return whether a base class matters to type checkers only."""
     return getattr(value, "__module__", "") == "typing"
 
 
@@ -303,7 +306,7 @@ def _is_constant(node: ast.expr) -> bool:
 
 
 def _made_unseen() -> ast.expr:
-    """Another object each time: values of an enumeration are different ones."""
+    """Return a new object each time: the values of an enumeration must differ."""
     return ast.Call(ast.Name("__unseen__", ast.Load()), [], [])
 
 
@@ -380,7 +383,7 @@ def _written(annotation: ast.expr | None) -> ast.expr | None:
 
 
 def _yields(function: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
-    """Whether a function is a generator: it has a yield that is not of a function within it."""
+    """Return whether a function is a generator: it contains a yield, not counting nested functions."""
     stack: list[ast.AST] = list(function.body)
     while stack:
         node = stack.pop()
@@ -392,7 +395,7 @@ def _yields(function: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
 
 
 def _binds_more(statement: ast.stmt) -> bool:
-    """Whether a statement may give a module or a class names that cannot be seen."""
+    """Return whether a statement may bind names of a module or class that cannot be determined."""
     for node in ast.walk(statement):
         if isinstance(node, ast.Name) and (isinstance(node.ctx, ast.Store) or node.id in _BINDING_CALLS):
             return True

@@ -1,8 +1,10 @@
-"""Output that cannot hurt the program that writes it, whatever becomes of the reader or the disk.
+"""Output that cannot hurt the program that writes it, whatever happens to the reader or the disk.
 
-The loop of a run must not wait for a terminal, a pipe or a disk, and a step must not fail because of one.  An `Output`
-writes directly as long as its sink takes everything.  What the sink does not take waits in a bounded queue, which a daemon
-thread writes.  A queue that stays full, and a sink that raises, lose lines: they are counted and reported.
+The loop of a run must not wait for a terminal, a pipe or a disk, and a step must not fail because of one. An
+`Output`
+writes directly as long as its sink accepts everything. The rest waits in a bounded queue, which a daemon
+thread writes.
+If the queue stays full, or the sink raises an exception, lines are lost: they are counted and reported.
 """
 
 import contextlib
@@ -19,11 +21,11 @@ from collections.abc import Callable
 from typing import Any, Protocol, TextIO
 
 LIMIT = 8 << 20
-"""Bytes that may wait for a sink."""
+"""Maximum number of bytes waiting for a sink."""
 PATIENCE = 0.2
-"""Seconds that a writer waits for a full queue of which the sink takes nothing."""
+"""Seconds that a writer waits for a full queue of which the sink accepts nothing."""
 CLOSING = 2.0
-"""Seconds without progress after which `Output.close` drops what still waits."""
+"""Seconds without progress after which `Output.close` drops the rest."""
 _RETRY = 1.0
 """Seconds until a sink that raised an error is tried again."""
 _PIECE = 1 << 16
@@ -32,25 +34,26 @@ _ATOMIC = 4096
 
 
 class Stream(Protocol):
-    """What is needed of a text stream; a file for bytes is one, too."""
+    """The required methods of a text stream; a binary file is accepted, too."""
 
     def write(self, text: Any, /) -> Any:
         """Write *text*."""
 
     def flush(self) -> Any:
-        """Pass on what was written."""
+        """Pass on written text."""
 
 
 class Output:
-    """A sink of text.  `write` raises no error and waits for at most `patience` seconds; safe in any thread.
+    """A sink of text. `write` raises no error and waits at most `patience` seconds; it may be called in any
+    thread.
 
     Args:
-        stream: the text stream, or a function that gives the present one; None stands for one that is closed.
-        name: what warnings call it.
-        warn: takes a warning of one line, without ``warning:``; None for no warnings.
-        patience: seconds that `write` waits when the queue is full and the sink takes nothing; then lines are dropped until
+        stream: the text stream, or a function that returns the present one; None stands for a closed one.
+        name: its name in warnings.
+        warn: called with a warning of one line, without ``warning:``; None for no warnings.
+        patience: seconds that `write` waits if the queue is full and the sink accepts nothing; then lines are dropped until
             half of the queue is free.
-        delay: seconds that text may be collected, to be written by the thread; 0 writes directly while the sink takes it.
+        delay: seconds that text may be collected before the thread writes it; 0 writes directly while the sink accepts it.
 
     Attributes:
         when_gone: called once, in any thread, instead of a warning when the reader has closed its end of a pipe.
@@ -83,7 +86,7 @@ class Output:
 
     @property
     def waiting(self) -> bool:
-        """Whether the sink has not taken all of the text yet."""
+        """Whether the sink has not accepted all of the text yet."""
         return self._waiting > 0
 
     def write(self, text: str | bytes) -> None:
@@ -128,7 +131,7 @@ class Output:
             self._recover()
 
     def _write_directly(self, data: bytes) -> bytes:
-        """Write what the sink takes now; the rest."""
+        """Write what the sink accepts now; return the rest."""
         assert self._descriptor is not None
         try:
             if self._stream is not None:
@@ -149,7 +152,7 @@ class Output:
     # ---- the queue
 
     def _has_room(self, size: int) -> bool:
-        """Wait for room as long as the sink makes progress; False when it makes none."""
+        """Wait for room as long as the sink makes progress; return False if it makes none."""
         if self._blocked and self._waiting > LIMIT // 2:
             return False
         while self._waiting and self._waiting + size > LIMIT:
@@ -174,7 +177,7 @@ class Output:
             self._changed.notify_all()
 
     def _drain(self) -> None:
-        """Write what waits until `close`; the body of the thread."""
+        """Write pending text until `close`; the body of the thread."""
         while True:
             with self._changed:
                 while not self._queue:
@@ -225,10 +228,10 @@ class Output:
                     self._recover()
         self._changed.notify_all()
 
-    # ---- trouble
+    # ---- errors
 
     def _fail(self, error: Exception | None) -> None:
-        """Take note of an error of the sink, or that it blocks (None)."""
+        """Note an error of the sink, or that it blocks (None)."""
         if error is not None:
             first, self._retry_at = self._retry_at is None, time.monotonic() + _RETRY
             if not first:
@@ -239,11 +242,11 @@ class Output:
             return
         self._failures += 1
         if _worth_telling(self._failures):
-            why = "the reader takes nothing" if error is None else _said(error)
+            why = "the reader accepts nothing" if error is None else _said(error)
             self._report(f"cannot write to {self._name}: {why}; dropping lines until it works again")
 
     def _recover(self) -> None:
-        """Take note that the sink has taken something."""
+        """Note that the sink has accepted something."""
         if self._retry_at is None and not self._blocked:
             return
         self._retry_at, self._blocked = None, False
@@ -259,13 +262,13 @@ class Output:
     # ---- the end
 
     def close(self, patience: float | None = CLOSING, limit: float | None = None) -> None:
-        """Write what waits, drop what the sink does not take, and report the lines that were lost.
+        """Write pending text, drop what the sink does not accept, and report the lines that were lost.
 
         The stream itself stays open; later text is dropped if it is stuck.
 
         Args:
             patience: seconds to wait without progress; None for no limit.
-            limit: seconds to wait in all; None for no limit.
+            limit: total seconds to wait; None for no limit.
         """
         with self._changed:
             self._hurry = True
@@ -295,11 +298,13 @@ class Output:
 
 
 class Printed(io.TextIOBase):
-    """What stands in for a standard stream while a run lasts, for code that prints by itself.
+    """Replaces a standard stream during a run, for code that prints by itself.
 
-    ``print`` in project code, loggers and warnings write to `sys.stdout` and `sys.stderr` directly, where a full disk
-    would raise in the middle of an operation and a blocked reader would hold up the loop.  Here complete lines go to
-    *output*.  For all else, such as the encoding or the file descriptor, it is like the stream itself.
+    ``print`` in project code, loggers and warnings write to `sys.stdout` and `sys.stderr` directly. There a
+    full disk would
+    raise an exception in the middle of an operation, and a blocked reader would stop the loop. Here complete
+    lines go to
+    *output*. Otherwise, for example in its encoding and file descriptor, it behaves like the stream itself.
 
     Args:
         stream: the stream.
@@ -312,10 +317,11 @@ class Printed(io.TextIOBase):
         self._line = ""
 
     def write(self, text: str) -> int:
-        """Write the lines that *text* completes; the rest waits for its end, for `flush`, or for a line of an agent.
+        """Write the lines that *text* completes; the rest waits for its end, for `flush`, or for a line of an
+        agent.
 
         Raises:
-            TypeError: *text* is no string.
+            TypeError: *text* is not a string.
         """
         if not isinstance(text, str):
             raise TypeError(f"write() argument must be str, not {type(text).__name__}")
@@ -329,7 +335,7 @@ class Printed(io.TextIOBase):
         return len(text)
 
     def flush(self) -> None:
-        """Write what there is of the last line."""
+        """Write the incomplete last line."""
         with self._lock:
             line, self._line = self._line, ""
             if line:
@@ -358,7 +364,7 @@ class Printed(io.TextIOBase):
 
     @property
     def errors(self) -> str | None:  # type: ignore[override]
-        """What becomes of characters that the encoding lacks."""
+        """How characters that the encoding lacks are handled."""
         return self._stream.errors
 
     def __getattr__(self, name: str) -> Any:
@@ -368,7 +374,8 @@ class Printed(io.TextIOBase):
 class _Descriptor:
     """A file descriptor that is written without waiting for a reader.
 
-    On Linux a terminal or a pipe is opened once more: whether an open file blocks, all processes that write to it share.
+    On Linux, a terminal or a pipe is opened again, as all processes that write to an open file share whether
+    it blocks.
     """
 
     def __init__(self, number: int, encoding: str, errors: str) -> None:
@@ -388,17 +395,17 @@ class _Descriptor:
             self._piece = _ATOMIC
 
     def encode(self, text: str) -> bytes:
-        """The bytes of *text*; characters that the encoding lacks are escaped."""
+        """Encode *text*; characters that the encoding lacks are escaped."""
         try:
             return text.encode(self._encoding, self._errors)
         except UnicodeError:
             return text.encode(self._encoding, "backslashreplace")
 
     def write(self, data: bytes) -> int:
-        """Write what is taken now; the number of bytes.
+        """Write what is accepted now; return the number of bytes.
 
         Raises:
-            BlockingIOError: nothing is taken now.
+            BlockingIOError: nothing is accepted now.
             OSError: the sink is full, gone or broken.
         """
         if self._poll is not None and not self._own and not self._poll.poll(0):
@@ -418,7 +425,9 @@ class _Descriptor:
 
 
 def _descriptor_of(stream: Stream | None) -> _Descriptor | None:
-    """The descriptor of a stream of the process; None for one that somebody else has made, for instance a test."""
+    """Return the descriptor of a stream of the process; None for a stream made by other code, such as a
+    test.
+    """
     if os.name == "posix" and type(stream) is io.FileIO:
         return _Descriptor(stream.fileno(), "utf-8", "backslashreplace")
     if os.name != "posix" or type(stream) is not io.TextIOWrapper:
@@ -437,7 +446,7 @@ def _line_ends(text: str | bytes) -> int:
 
 
 def _worth_telling(times: int) -> bool:
-    """Whether it is the first, 10th, 100th … time."""
+    """Return whether this is the first, 10th, 100th … time."""
     return str(times).rstrip("0") == "1"
 
 

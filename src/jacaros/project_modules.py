@@ -1,8 +1,10 @@
-"""The Python files that a project brings along: ``NAME.py``, or a package ``NAME/``, in its folders.
+"""The Python files of a project: ``NAME.py``, or a package ``NAME/``, in its folders.
 
-Artifacts (``artifacts.py``), internal actions, agent classes and belief bases are all found here.  The files are
-loaded under module names of their own, so that several projects with files of the same names can live in one
-process; the import path is as before when the loading is over.
+Artifacts (``artifacts.py``), internal actions, agent classes and belief bases are found here. The files are
+loaded under
+module names of their own, so that several projects with files of the same names can live in one process; the
+import path
+is restored after loading.
 """
 
 import importlib.util
@@ -20,8 +22,10 @@ from jacaros.text_files import file_text
 
 _numbers = itertools.count(1)
 _import_path = RLock()
-"""Held while `sys.path` and `sys.modules` show the files of one project: they belong to the process, so that systems in
-other threads have to wait."""
+"""Held while `sys.path` and `sys.modules` show the files of one project: they belong to the process, so
+systems in
+other threads have to wait.
+"""
 
 
 class ModuleUnreadable(JacarosError):
@@ -29,19 +33,22 @@ class ModuleUnreadable(JacarosError):
 
 
 class NotImported(JacarosError):
-    """What a project's Python file declares cannot be known without running it, and running it was not asked for."""
+    """Raised when the declarations of a project's Python file cannot be known without running it, which was
+    not requested.
+    """
 
 
 class ProjectModules:
-    """The Python modules of one project; each is loaded once, when it is first asked for.
+    """The Python modules of one project; each is loaded once, on first use.
 
-    A file may import others of the project by plain names (``import gripper``) while it is loaded, and those of
-    its package by relative names (``from .gripper import Gripper``).  Whoever imports one gets the same module.
+    A file may import others of the project by plain names (``import gripper``) while it is loaded, and those
+    of
+    its package by relative names (``from .gripper import Gripper``). All importers share one module.
 
     Args:
-        folders: where the files are looked for, in order.
-        unseen: if given, no file is run: modules are outlines (`jacaros.module_outlines`), and files with declarations that
-            an outline does not show are added here when somebody asks for them.
+        folders: where the files are searched, in order.
+        unseen: if given, no file runs: modules are outlines (`jacaros.module_outlines`), and files with declarations that
+            an outline does not show are added here when they are needed.
     """
 
     def __init__(self, *folders: Path | str, unseen: set[Path] | None = None) -> None:
@@ -53,7 +60,7 @@ class ProjectModules:
         self._modules: dict[str, ModuleType] = {}
 
     def place(self, name: str) -> Path | None:
-        """The file or the folder of a module such as ``my`` or ``my.shapes``; None when there is none."""
+        """Return the file or folder of a module such as ``my`` or ``my.shapes``, or None."""
         parts = name.split(".")
         if not all(part.isidentifier() for part in parts):
             return None
@@ -67,10 +74,11 @@ class ProjectModules:
         return None
 
     def load(self, name: str) -> tuple[ModuleType, ...]:
-        """The module called *name*; of a package all modules, its own first.  Empty when there is none.
+        """Return the module called *name*; of a package, all modules, its own first. Empty if it does not
+        exist.
 
         Raises:
-            ModuleUnreadable: a file has a mistake; the text names file and line.
+            ModuleUnreadable: a file has an error; the text names file and line.
         """
         found = self._loaded.get(name)
         if found is None:
@@ -83,10 +91,10 @@ class ProjectModules:
         return found
 
     def require_seen(self, module: ModuleType, name: str) -> None:
-        """Refuse to say that a module has no such name while that is not known.
+        """Raise an exception unless it is known that the module lacks the name.
 
         Raises:
-            NotImported: the module is an outline, and the name may be there when the file is run.
+            NotImported: the module is an outline, and the name may exist when the file runs.
         """
         if self.unseen is None:
             return
@@ -136,7 +144,7 @@ class ProjectModules:
         return module
 
     def _outline(self, name: str) -> ModuleType | None:
-        """The outline of another module of the project that one imports."""
+        """Return the outline of another module of the project that one imports."""
         name = name.removeprefix(f"{self._prefix}.")
         place = self.place(name)
         if place is None:
@@ -186,7 +194,7 @@ def _where(error: BaseException, file: Path) -> str:
 
 
 def place_of(error: BaseException, folder: Path) -> tuple[Path, int] | None:
-    """The innermost line of a file in *folder* that *error* came through; None when there is none."""
+    """Return the innermost line of a file in *folder* in the traceback of *error*, or None."""
     found = None
     step = error.__traceback__
     while step is not None:

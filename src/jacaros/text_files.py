@@ -1,4 +1,4 @@
-"""The files that JaCaROS reads: regular files of a limited size; never devices, pipes or endless ones."""
+"""Read files: regular files of a limited size; never devices, pipes or endless ones."""
 
 import os
 import stat
@@ -6,15 +6,15 @@ from pathlib import Path
 from typing import Final
 
 LARGEST: Final = 64 * 2**20
-"""Bytes that a program, a project, a mapping, a world or a parameter file may have."""
+"""Maximum number of bytes of a program, project, mapping, world or parameter file."""
 
 
 class UnusableFile(OSError):
-    """A file that is there and is not read; ``str()`` says why."""
+    """A file that exists but cannot be used; ``str()`` says why."""
 
 
 def is_file(path: Path) -> bool:
-    """Return whether a path leads to a file; a name that no file can have leads to none."""
+    """Return whether a path leads to a file; False for a name that no file can have."""
     try:
         return path.is_file()
     except (OSError, ValueError):
@@ -26,7 +26,7 @@ def file_bytes(path: Path | str, largest: int = LARGEST) -> bytes:
 
     Args:
         path: of the file.
-        largest: the number of bytes that it may have.
+        largest: maximum number of bytes.
 
     Raises:
         FileNotFoundError: it does not exist.
@@ -101,9 +101,10 @@ def _line(data: bytes, at: int) -> int:
 
 
 def kept_files() -> Path | None:
-    """Return the folder for files that are kept from run to run to save time; None if none are to be kept.
+    """Return the folder for files that are kept between runs to save time; None to keep none.
 
-    It is ``$JACAROS_CACHE``, by default ``jacaros`` in ``$XDG_CACHE_HOME`` or ``~/.cache``; ``JACAROS_CACHE=0`` keeps none.
+    It is ``$JACAROS_CACHE``, by default ``jacaros`` in ``$XDG_CACHE_HOME`` or ``~/.cache``;
+    ``JACAROS_CACHE=0`` keeps none.
     """
     given = os.environ.get("JACAROS_CACHE")
     if given:

@@ -1,4 +1,4 @@
-"""Timers in the order of their moments: the queue that every clock of a run keeps."""
+"""A queue of timers ordered by time, used by every clock of a run."""
 
 import heapq
 import itertools
@@ -23,7 +23,7 @@ class QueuedTimer:
         self._queue = queue
 
     def cancel(self) -> None:
-        """Take the call back; no effect after it."""
+        """Cancel the call; no effect once it has been made."""
         if self.callback is not None:
             self.callback = None  # what it holds may be large, and the moment far
             self._queue.note_cancelled()
@@ -36,7 +36,9 @@ class QueuedTimer:
 
 
 _Entry = tuple[float, int, QueuedTimer]
-"""A moment, a number that no other timer has, and the timer: tuples are compared without calls of Python functions."""
+"""A moment, a number that no other timer has, and the timer: tuples compare without calling Python
+functions.
+"""
 
 
 class TimerQueue:
@@ -59,7 +61,7 @@ class TimerQueue:
         return timer
 
     def put_back(self, timer: QueuedTimer) -> None:
-        """Take a timer again that `next_due` gave and that has not rung."""
+        """Put back a timer that `next_due` returned and that has not rung."""
         heapq.heappush(self._heap, (timer.when, timer.number, timer))
 
     def first_moment(self) -> float | None:
@@ -70,7 +72,7 @@ class TimerQueue:
         return heap[0][0] if heap else None
 
     def next_due(self, moment: float) -> QueuedTimer | None:
-        """Take out the earliest timer that is due at *moment*; None when none is."""
+        """Remove and return the earliest timer that is due at *moment*; None if none is."""
         heap = self._heap
         while heap and heap[0][0] <= moment:
             timer = heapq.heappop(heap)[2]
@@ -79,7 +81,7 @@ class TimerQueue:
         return None
 
     def pending(self) -> Sequence[QueuedTimer]:
-        """The timers that are still to ring, in no order."""
+        """The pending timers, in no order."""
         return [timer for _, _, timer in self._heap if timer.callback is not None]
 
     def note_cancelled(self) -> None:

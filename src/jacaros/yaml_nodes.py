@@ -1,4 +1,4 @@
-"""YAML values that know where they stand, and readers that note mistakes instead of stopping at the first.
+"""YAML values with their place in the file, and readers that collect errors instead of stopping at the first.
 
 World files and mapping files are read with it.
 """
@@ -23,15 +23,15 @@ from jacaros.yaml_syntax import Problem, syntax_problem
 __all__ = ["Node", "Problem", "YamlFileError", "plain_values", "read_document", "shown"]
 
 LARGEST = 1_000_000
-"""Values that a document may have, those that aliases repeat included."""
+"""Maximum number of values of a document, including those that aliases repeat."""
 
 
 class YamlFileError(JacarosError):
-    """A wrong YAML file; ``str()`` shows every mistake with its file, line, excerpt and help.
+    """A YAML file with errors; ``str()`` shows every error with its file, line, excerpt and help.
 
     Attributes:
         file: name of the file.
-        problems: the mistakes, in the order of the lines.
+        problems: the errors, in the order of the lines.
     """
 
     def __init__(self, file: str, text: str, problems: list[Problem]) -> None:
@@ -45,7 +45,7 @@ class YamlFileError(JacarosError):
 
 
 def shown(file: str, lines: list[str], problem: Problem, level: str = "") -> str:
-    """A mistake in the *lines* of a file, as people read it; *level* such as ``error: `` stands before the message."""
+    """Return an error in the *lines* of a file as text; *level* such as ``error: `` precedes the message."""
     told = [f"{escaped(file)}:{problem.line}:{problem.column}: {level}{printable(problem.message)}"]
     if 0 < problem.line <= len(lines):
         number = f"{problem.line:>5} | "
@@ -57,12 +57,12 @@ def shown(file: str, lines: list[str], problem: Problem, level: str = "") -> str
 
 
 class Node:
-    """One value of a YAML document with its place; every reader returns a usable value, even after a mistake.
+    """One value of a YAML document with its place; every reader returns a usable value, even after an error.
 
     Attributes:
-        value: what the YAML reader made of it.
+        value: as the YAML reader returns it.
         line, column: its place, counted from 1.
-        problems: the list, shared by the document, that mistakes are added to.
+        problems: the document's list of errors.
     """
 
     __slots__ = ("column", "line", "problems", "value", "what")
@@ -71,15 +71,16 @@ class Node:
         self.value, self.line, self.column, self.problems, self.what = value, line, column, problems, what
 
     def wrong(self, message: str, help: str = "") -> None:
-        """Note a mistake at this value."""
+        """Record an error at this value."""
         self.problems.append(Problem(self.line, self.column, message, help))
 
     def mapping(
         self, *known: str, required: tuple[str, ...] = (), anchors: bool = False
     ) -> dict[str, "Node"]:
-        """The entries of a mapping that may have the *known* keys only and must have the *required* ones.
+        """Return the entries of a mapping that has only *known* keys and all *required* ones.
 
-        With *anchors* keys that begin with ``x-`` are the author's own, such as for what aliases repeat.
+        With *anchors*, keys that begin with ``x-`` are free for the author, for example for values that
+        aliases repeat.
         """
         if self.value is None and not required:
             return {}
@@ -113,7 +114,7 @@ class Node:
         self.problems.append(Problem(line + 1, column + 1, f"{self.what} has no key '{key}'", help))
 
     def entries(self) -> Iterator[tuple["Node", "Node"]]:
-        """Names and values of a mapping whose keys are names of the author's choice; none for a missing value."""
+        """Yield names and values of a mapping whose keys the author chooses; nothing for a missing value."""
         if self.value is None:
             return
         if not isinstance(self.value, CommentedMap):
@@ -124,7 +125,7 @@ class Node:
             yield Node(key, place[0] + 1, place[1] + 1, self.problems, "a name"), self._entry(key)
 
     def sequence(self) -> Iterator["Node"]:
-        """The items of a list; a missing value is an empty list."""
+        """Yield the items of a list; a missing value is an empty list."""
         if self.value is None:
             return
         if not isinstance(self.value, CommentedSeq):
@@ -136,7 +137,7 @@ class Node:
             yield Node(self.value[index], line + 1, column + 1, self.problems, what)
 
     def number(self, minimum: float = -math.inf, maximum: float = math.inf, default: float = 0.0) -> float:
-        """A finite number within the limits (both included)."""
+        """Return a finite number within the limits (both included)."""
         value = self.value
         if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
             self.wrong(f"{self.what} must be a number, not {value!r}", "write a figure such as 0.5")
@@ -147,21 +148,21 @@ class Node:
         return float(value)
 
     def whole(self, minimum: int, default: int) -> int:
-        """A whole number, *minimum* or more."""
+        """Return an integer, *minimum* or more."""
         if isinstance(self.value, bool) or not isinstance(self.value, int) or self.value < minimum:
             self.wrong(f"{self.what} must be a whole number of at least {minimum}, not {self.value!r}")
             return default
         return int(self.value)
 
     def text(self) -> str:
-        """A text; numbers are not texts."""
+        """Return a string; numbers are not strings."""
         if not isinstance(self.value, str):
             self.wrong(f"{self.what} must be a text, not {self.value!r}", 'put it in quotes: "..."')
             return ""
         return str(self.value)
 
     def choice(self, *choices: str) -> str:
-        """One of *choices*; the first stands in after a mistake."""
+        """Return one of *choices*; the first one after an error."""
         if self.value not in choices:
             self.wrong(f"{self.what} is {self.value!r}", f"choose one of: {', '.join(choices)}")
             return choices[0]
@@ -175,7 +176,7 @@ class Node:
         return self.value
 
     def pair(self) -> tuple[float, float]:
-        """Two numbers: ``[x, y]``."""
+        """Return two numbers: ``[x, y]``."""
         numbers = [item.number() for item in self.sequence()]
         if isinstance(self.value, CommentedSeq) and len(numbers) != 2:
             self.wrong(f"{self.what} must be two numbers", "write [x, y], in metres")
@@ -189,18 +190,18 @@ def _limits(minimum: float, maximum: float) -> str:
 
 
 def read_document(text: str, problems: list[Problem], what: str) -> Node:
-    """Parse *text*; the mistakes its values turn out to have are collected in *problems*.
+    """Parse *text*; errors that its values turn out to have are collected in *problems*.
 
-    What is not YAML at all is a mistake as well, and the document is then empty.
+    Text that is not YAML is an error as well, and the document is then empty.
 
     Args:
         text: of the file.
-        problems: takes the mistakes.
-        what: what the document is called in messages, such as ``a world``.
+        problems: list for the errors.
+        what: the name of the document in messages, such as ``a world``.
     """
     reader = YAML(typ="rt")
     reader.Constructor = _PlacingConstructor
-    reader.allow_duplicate_keys = True  # they are told below, all of them, and harm nobody till then
+    reader.allow_duplicate_keys = True  # all of them are reported below
     document, composed = _loaded(reader, text, problems)
     if composed is not None:
         problems += _twice(composed, set())
@@ -208,7 +209,7 @@ def read_document(text: str, problems: list[Problem], what: str) -> Node:
 
 
 def plain_values(text: str) -> tuple[Any, Problem | None]:
-    """Return what YAML of plain values means (numbers, texts, lists, mappings), or the first mistake in it."""
+    """Return the value of YAML with plain values (numbers, texts, lists, mappings), or its first error."""
     problems: list[Problem] = []
     reader = YAML(typ="safe", pure=True)
     reader.Constructor = _PlacingSafeConstructor
@@ -217,7 +218,7 @@ def plain_values(text: str) -> tuple[Any, Problem | None]:
 
 
 def _loaded(reader: YAML, text: str, problems: list[Problem]) -> tuple[Any, Any]:
-    """Return the document and its nodes; None for both after a mistake, which is added to *problems*."""
+    """Return the document and its nodes; None for both after an error, which is added to *problems*."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # YAML 1.2 allows an anchor to be given again
@@ -233,13 +234,13 @@ def _loaded(reader: YAML, text: str, problems: list[Problem]) -> tuple[Any, Any]
     return None, None
 
 
-_TOO_DEEP: Final = Problem(1, 1, "its values are nested too deeply", "mind brackets that are not closed")
+_TOO_DEEP: Final = Problem(1, 1, "values are nested too deeply", "close all brackets")
 _DEEPEST: Final = 100
-"""Values within each other; those who use a document go down into it by recursion."""
+"""Maximum nesting of values; code that uses a document recurses into it."""
 
 
 class _Placing:
-    """Makes values of nodes, and says where one is that cannot be made, such as the date 2001-99-99."""
+    """Makes values of nodes, and reports where a value is invalid, such as the date 2001-99-99."""
 
     def construct_object(self, node: Any, deep: bool = False) -> Any:
         """Return the value of a node; called by the YAML reader."""
@@ -269,7 +270,9 @@ def _parts(node: Any) -> Iterator[Any]:
 
 
 def _unusable(document: Any) -> Problem | None:
-    """An alias that means what it is within, or so many aliases of aliases that the document has no end."""
+    """Return the error of an alias inside its own value, or of aliases of aliases that make the document
+    endless.
+    """
     sizes: dict[int, int] = {}
     depths: dict[int, int] = {}
     within: set[int] = set()
@@ -279,7 +282,7 @@ def _unusable(document: Any) -> Problem | None:
             return None
         line, column = node.start_mark.line + 1, node.start_mark.column + 1
         if id(node) in within:
-            return Problem(line, column, f"&{node.anchor} contains itself", "leave the alias out")
+            return Problem(line, column, f"&{node.anchor} contains itself", "remove the alias")
         within.add(id(node))
         parts = list(_parts(node))
         for part in parts:
@@ -296,7 +299,7 @@ def _unusable(document: Any) -> Problem | None:
 
 
 def _twice(node: Any, seen_nodes: set[int]) -> Iterator[Problem]:
-    """The keys that stand in one mapping twice."""
+    """Yield the keys that occur twice in one mapping."""
     if id(node) in seen_nodes:
         return
     seen_nodes.add(id(node))

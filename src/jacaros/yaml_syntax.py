@@ -1,4 +1,4 @@
-"""What is wrong with a file that is no YAML, or no text at all, in words of people who write YAML files."""
+"""Explain why a file is not YAML, or not text at all, in the terms of people who write YAML files."""
 
 import re
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from jacaros.text_files import file_bytes
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """One mistake: where (line and column count from 1), what, and what to do about it."""
+    """One error: where (line and column count from 1), what, and how to fix it."""
 
     line: int
     column: int
@@ -21,7 +21,7 @@ class Problem:
 
 _TOP_KEY = re.compile(r"^([\w-]+)[ \t]*:", re.MULTILINE)
 _QUOTES = 'put texts with such characters in quotes: "..."'
-_INDENT = "begin it in the same column as its neighbours, or further right than what it belongs to"
+_INDENT = "begin it in the same column as its siblings, or further right than its parent"
 _EXPLAINED = (
     (
         r"but got '\['",
@@ -32,14 +32,14 @@ _EXPLAINED = (
     (r"cannot start any token|unknown escape", "{problem}", _QUOTES),
     (
         r"expected <block end>, but found '([\]}])'",
-        "nothing is open that this bracket closes",
-        "leave it out",
+        "unmatched bracket",
+        "remove it",
     ),
     (r"expected <block end>|<document start>", "the indent fits none of the lines above", _INDENT),
     (
         r"mapping values are not allowed",
         "a second ':', or an indent that fits none of the lines above",
-        'mind the indent; put texts that have ": " in them in quotes',
+        'check the indent; put texts that contain ": " in quotes',
     ),
     (r"could not find expected ':'", "a key without ':'", "write it as key: value"),
     (
@@ -47,7 +47,7 @@ _EXPLAINED = (
         "unknown anchor &{0}",
         "mark the value with &{0}, further up",
     ),
-    (r"another document", "a second document begins here", "leave --- out, or make two files"),
+    (r"another document", "a second document begins here", "remove ---, or make two files"),
     (
         r"for merging",
         "<< merges the keys of a mapping, and this is not a mapping",
@@ -55,7 +55,7 @@ _EXPLAINED = (
     ),
     (r"unacceptable character", "invalid character", "save the file as text in UTF-8"),
 )
-"""Patterns of the parser's messages, what they mean, and what to do."""
+"""Patterns of the parser's messages, what they mean, and how to fix them."""
 
 
 def syntax_problem(error: YAMLError, text: str) -> Problem:
@@ -74,7 +74,9 @@ def syntax_problem(error: YAMLError, text: str) -> Problem:
     problem = _explained(told, line, column)
     if opened is not None and "flow" in str(error.context) and "but got '['" not in told:
         where = f"the bracket of line {opened.line + 1}, column {opened.column + 1}"
-        return Problem(line, column, f"{problem.message}, within {where}", "mind commas, quotes and brackets")
+        return Problem(
+            line, column, f"{problem.message}, within {where}", "check commas, quotes and brackets"
+        )
     return problem
 
 
@@ -85,13 +87,13 @@ def _explained(told: str, line: int, column: int) -> Problem:
             return Problem(
                 line, column, f"not YAML: {message.format(*parts, problem=told)}", help.format(*parts)
             )
-    return Problem(line, column, f"not YAML: {told.splitlines()[0]}", "mind indents, colons and quotes")
+    return Problem(line, column, f"not YAML: {told.splitlines()[0]}", "check indents, colons and quotes")
 
 
 def top_keys(path: Path) -> frozenset[str]:
-    """Return the keys of a file's outermost mapping as far as they are written in block style; none of an unreadable file.
+    """Return the keys of a file's outermost mapping that are in block style; none of an unreadable file.
 
-    It tells kinds of YAML files apart without parsing them, and of files with mistakes, too.
+    This identifies kinds of YAML files without parsing them, also if they have errors.
     """
     try:
         return frozenset(_TOP_KEY.findall(read_text(path)[0]))
@@ -100,7 +102,7 @@ def top_keys(path: Path) -> frozenset[str]:
 
 
 def read_text(path: Path) -> tuple[str, Problem | None]:
-    """The text of a file, and the place where it is not in UTF-8.
+    """Return the text of a file, and the place where it is not UTF-8.
 
     Raises:
         OSError: it cannot be read.

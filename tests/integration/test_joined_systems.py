@@ -110,7 +110,7 @@ def test_a_message_that_does_not_arrive_comes_back() -> None:
 
     assert run(test) == [
         "[ann] receiver_not_found",
-        "[[ann] warning: a message did not reach bob: hello] warning",
+        "[[ann] warning: message did not reach bob: hello] warning",
         "[ann] receiver_not_found",
     ]
 

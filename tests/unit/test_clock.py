@@ -52,7 +52,7 @@ def test_a_cancelled_timer_does_not_ring_even_if_cancelled_at_its_own_moment():
     assert rung == []
 
 
-def test_time_stands_still_while_somebody_is_at_work():
+def test_time_stands_still_while_another_thread_works():
     clock = VirtualClock()
     seen = []
 
@@ -88,7 +88,7 @@ def test_time_stands_still_while_a_worker_thread_runs():
 
 
 @pytest.mark.parametrize("clock", [VirtualClock, WallClock])
-def test_a_thread_that_does_not_return_does_not_hold_the_end_up(clock):
+def test_a_thread_that_does_not_return_does_not_delay_the_end(clock):
     gate = threading.Event()
 
     async def main():
@@ -142,7 +142,7 @@ def test_idling_forgets_the_busy_cycles_before():
     assert run(main, clock) == 1.0
 
 
-def test_an_error_in_a_timer_reaches_the_handler_of_the_loop_and_time_goes_on():
+def test_an_error_in_a_timer_reaches_the_handler_of_the_loop_and_time_continues():
     clock = VirtualClock()
     errors = []
 

@@ -133,7 +133,7 @@ class Base(Artifact):
     ]
 
 
-def test_what_only_running_a_file_tells_gives_one_note_and_no_complaint() -> None:
+def test_names_known_only_at_run_time_give_one_note() -> None:
     write(
         a__asl='!go.\n+!go <- makeArtifact("l", "Lamp"); on(1); my.act(1); X = my.sq(2) + 1; .print(X).\n',
         my__py="for name in ('act', 'sq'):\n    globals()[name] = make(name)\n",
@@ -145,7 +145,7 @@ def test_what_only_running_a_file_tells_gives_one_note_and_no_complaint() -> Non
     assert {Path(each.message.split()[2]).name for each in found} == {"my.py", "artifacts.py"}
 
 
-def test_a_mistake_in_a_file_has_its_line() -> None:
+def test_an_error_in_a_file_is_reported_with_its_line() -> None:
     write(a__asl="!go.\n+!go <- my.act(1).\n", my__py="from jacaros import internal_action\n\ndef act(:\n")
     ((code, message),) = [each for each in findings() if each[0] == "unreadable-file"]
     assert code == "unreadable-file"

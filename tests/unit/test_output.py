@@ -37,7 +37,7 @@ def read_all(reader: int, until: int) -> bytes:
     return b"".join(parts)
 
 
-def test_lines_are_there_at_once_and_after_what_others_print() -> None:
+def test_lines_are_written_immediately_and_after_earlier_output() -> None:
     with pipe() as (reader, stream):
         out = Output(stream, "standard output")
         stream.write("before\n")
@@ -62,7 +62,7 @@ def test_a_slow_reader_gets_every_line_in_order() -> None:
     assert found == [expected]
 
 
-def test_a_reader_that_takes_nothing_costs_lines_and_no_time(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_blocked_reader_loses_lines_but_no_time(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(output, "LIMIT", 100_000)
     warnings: list[str] = []
     with pipe() as (reader, stream):
@@ -70,7 +70,7 @@ def test_a_reader_that_takes_nothing_costs_lines_and_no_time(monkeypatch: pytest
         for _ in range(10_000):
             out.write(LINE)
         assert warnings == [
-            "cannot write to standard output: the reader takes nothing; dropping lines until it works again"
+            "cannot write to standard output: the reader accepts nothing; dropping lines until it works again"
         ]
         out.close(patience=0.0)
         in_the_pipe = os.read(reader, 1 << 20)
@@ -79,7 +79,7 @@ def test_a_reader_that_takes_nothing_costs_lines_and_no_time(monkeypatch: pytest
     assert 0 < in_the_pipe.count(b"\n") <= 10_000 - lost + 1
 
 
-def test_lines_go_on_when_a_blocked_reader_reads_again(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_lines_continue_when_a_blocked_reader_reads_again(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(output, "LIMIT", 100_000)
     warnings: list[str] = []
     told = threading.Event()
@@ -118,7 +118,7 @@ def test_a_terminal_that_is_stopped_does_not_stop_the_writer(monkeypatch: pytest
             out.write(LINE)
         out.close(patience=0.0)
     os.close(master)
-    assert "the reader takes nothing" in warnings[0]
+    assert "the reader accepts nothing" in warnings[0]
 
 
 def test_a_full_disk_is_warned_about_once_and_tried_again(monkeypatch: pytest.MonkeyPatch) -> None:

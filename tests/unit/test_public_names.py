@@ -27,7 +27,7 @@ def test_the_errors_of_the_reference_are_public() -> None:
     assert errors - {"TimeoutError"} <= set(jacaros.__all__)
 
 
-def test_a_name_that_is_not_there_is_an_attribute_error() -> None:
+def test_an_unknown_name_is_an_attribute_error() -> None:
     with pytest.raises(AttributeError, match="has no attribute 'internal_actoin'"):
         _ = jacaros.internal_actoin  # type: ignore[attr-defined]
 

@@ -14,7 +14,7 @@ def test_a_byte_order_mark_does_not_belong_to_the_text(tmp_path: Path) -> None:
     assert file_text(file) == "p(1).\nq.\n"
 
 
-def test_the_line_of_a_byte_that_is_no_utf_8_is_told(tmp_path: Path) -> None:
+def test_the_line_of_an_invalid_utf_8_byte_is_reported(tmp_path: Path) -> None:
     file = tmp_path / "a.asl"
     file.write_bytes(b'p(1).\nq("caf\xe9").\n')
     with pytest.raises(UnicodeError) as wrong:
@@ -22,7 +22,7 @@ def test_the_line_of_a_byte_that_is_no_utf_8_is_told(tmp_path: Path) -> None:
     assert str(wrong.value) == "line 2 contains a byte (0xe9) that is not UTF-8; save the file as UTF-8"
 
 
-def test_why_a_file_cannot_be_read_is_told_in_words(tmp_path: Path) -> None:
+def test_the_reason_for_an_unreadable_file_is_reported(tmp_path: Path) -> None:
     with pytest.raises(OSError, match=r"^it is a directory$"):
         file_text(tmp_path)
 
@@ -34,13 +34,13 @@ def test_reading_stops_at_a_nul_byte(tmp_path: Path) -> None:
         file_text(file)
 
 
-def test_a_pipe_that_nobody_writes_to_is_refused_without_waiting(tmp_path: Path) -> None:
+def test_a_pipe_without_a_writer_is_refused_without_waiting(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe.asl")
     with pytest.raises(UnusableFile, match=r"^it is not a regular file$"):
         file_text(tmp_path / "pipe.asl")
 
 
-def test_a_device_without_an_end_is_refused() -> None:
+def test_an_endless_device_is_refused() -> None:
     with pytest.raises(UnusableFile, match=r"^it is not a regular file$"):
         file_text("/dev/zero")
 

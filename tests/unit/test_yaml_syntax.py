@@ -28,14 +28,14 @@ def problems(text: str) -> list[Problem]:
         ("a: 'x\nb: c\n", (1, 4), "this quote is never closed", "close"),
         ("a: [b[0]]\n", (1, 6), "a bracket within a text", 'quotes: "ranges[0]"'),
         ("a: {b: c d: e}\n", (1, 11), "within the bracket of line 1, column 4", "commas"),
-        ("a: {b: c}}\n", (1, 10), "nothing is open", "leave it out"),
+        ("a: {b: c}}\n", (1, 10), "nothing is open", "remove it"),
         ("a: b: c\n", (1, 5), "a second ':'", "quotes"),
         ("a: *x\n", (1, 4), "unknown anchor &x", "mark the value with &x"),
-        ("a: 1\n---\nb: 2\n", (2, 1), "a second document", "leave --- out"),
+        ("a: 1\n---\nb: 2\n", (2, 1), "a second document", "remove ---"),
         ("a: @x\n", (1, 4), "cannot start any token", "quotes"),
         ("b: 1\na: \x07\n", (2, 4), "invalid character", "UTF-8"),
         ("<<: 5\na: 1\n", (1, 5), "<< merges the keys of a mapping", "anchor"),
-        ("a: &a [*a]\n", (1, 4), "&a contains itself", "leave the alias out"),
+        ("a: &a [*a]\n", (1, 4), "&a contains itself", "remove the alias"),
         (LAUGHS, (6, 4), "more than 1000000 values", "fewer aliases"),
         ("a: " + "[" * 5000, (1, 1), "nested too deeply", "brackets"),
     ],
@@ -63,7 +63,7 @@ def test_files_in_another_encoding(data: bytes, place: str, message: str, tmp_pa
     assert message in str(caught.value)
 
 
-def test_a_byte_order_mark_harms_nobody(tmp_path: Path) -> None:
+def test_a_byte_order_mark_is_harmless(tmp_path: Path) -> None:
     (tmp_path / "m.yaml").write_bytes(b"\xef\xbb\xbfproperties: {pose: odom}\r\n")
     assert [each.name for each in load_mapping(tmp_path / "m.yaml").artifacts["m"].properties] == ["pose"]
 
@@ -74,7 +74,7 @@ def test_anchors_have_a_place_of_their_own() -> None:
     assert [each.policy.rate for each in artifact.properties] == [2.0, 3.0]
 
 
-def test_words_of_the_language_are_no_names() -> None:
+def test_reserved_words_are_not_names() -> None:
     with pytest.raises(MappingError) as caught:
         read_mapping(
             "properties:\n  not: {topic: a}\n  for: {topic: b}\n  true: {topic: c}\n  Div: {topic: d}\n  g:\n"

@@ -172,7 +172,7 @@ class LiteralParser(Cursor, ABC):
         return f"_{next(self.names.unnamed)}", True
 
     def _namespace(self) -> "str | nodes.Variable | None":
-        """Parse a namespace prefix; return `_UNSET` if there is none."""
+        """Parse a namespace prefix; return `_UNSET` without one."""
         token = self.token
         if token.kind == "::":
             self.advance()

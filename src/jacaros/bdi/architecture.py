@@ -1,7 +1,8 @@
-"""The port of a mind to whatever runs it (Jason's agent architecture).
+"""The port of a mind to its host (Jason's agent architecture).
 
-A mind does no input or output of its own: it is given things by `Agent.receive`, `Agent.perceive` and
-`Agent.complete`, and reaches out through this port alone.
+A mind does no input or output of its own. It gets input through `Mind.receive`, `Mind.perceive` and
+`Mind.complete`,
+and reaches out through this port alone.
 """
 
 from collections.abc import Callable, Coroutine, Mapping, Sequence
@@ -13,63 +14,64 @@ from jacaros.bdi.state.speech_act import SpeechAct
 
 
 class Timer(Protocol):
-    """A call that is to come."""
+    """A pending call."""
 
     def cancel(self) -> None:
-        """Take it back."""
+        """Cancel the call."""
 
 
 class AgentSystem(Protocol):
-    """What agents of every kind ask of the system that they live in."""
+    """What agents of every kind need from the agent system."""
 
     def agent_names(self) -> Sequence[str]:
-        """Names of all agents of the system, in the order of their making."""
+        """Return the names of all agents of the system, in order of creation."""
 
     def print(self, text: str) -> None:
-        """Show a line of the program's output."""
+        """Print a line of the program's output."""
 
     def log(self, level: str, text: str) -> None:
-        """Tell people about trouble; *level* is ``debug``, ``info``, ``warning`` or ``error``."""
+        """Log a message; *level* is ``debug``, ``info``, ``warning`` or ``error``."""
 
     def stop_system(self, delay: float, exit_code: int) -> None:
         """End the run after *delay* seconds."""
 
     def create_agent(self, name: str, source: str | None, classes: Mapping[str, str]) -> str | None:
-        """Make an agent (from the program file *source*, default NAME.asl); its final name, or None with the
-        reason logged.
+        """Create an agent (from the program file *source*, default NAME.asl). Return its final name, or None
+        after logging
+        the reason.
 
-        *classes* are the classes of the project that it is of, by ``agentClass``, ``agentArchClass`` and
+        *classes* are its classes from the project's Python code, by ``agentClass``, ``agentArchClass`` and
         ``beliefBaseClass``.
         """
 
     def kill_agent(self, name: str, delay: float = 0.0) -> bool:
-        """End an agent after *delay* seconds; False when there is none of that name, or it does not accept."""
+        """End an agent after *delay* seconds; return False if it does not exist or refuses."""
 
     def register_service(self, service: str) -> None:
-        """Tell the directory facilitator that this agent provides a service."""
+        """Register a service that this agent provides with the directory facilitator."""
 
     def deregister_service(self, service: str) -> None:
-        """Take that back."""
+        """Remove the registration."""
 
     def providers(self, service: str) -> Sequence[str]:
-        """The agents that provide a service, in the order in which they registered."""
+        """Return the agents that provide a service, in order of registration."""
 
     def subscribe_to_service(self, service: str) -> None:
-        """Have this agent told of all providers of a service, those to come as well."""
+        """Subscribe this agent to the present and future providers of a service."""
 
 
 class Architecture(AgentSystem, Protocol):
-    """What a mind asks of its host.  No call may enter the agent again before it returns."""
+    """What a mind needs from its host. No call may re-enter the agent before it returns."""
 
     @property
     def random(self) -> Random:
-        """The agent's own generator, seeded by the run."""
+        """The agent's own random number generator, seeded by the run."""
 
     def now(self) -> float:
-        """Seconds since the Unix epoch on the run's clock."""
+        """Return seconds since the Unix epoch on the run's clock."""
 
     def ready(self) -> None:
-        """The agent has something to do: `Agent.run` is to be called soon."""
+        """Report that the agent has work to do: `Mind.run` must be called soon."""
 
     def set_timer(self, delay: float, callback: Callable[[], None]) -> Timer:
         """Call *callback* after *delay* seconds of the run's clock."""
@@ -77,59 +79,63 @@ class Architecture(AgentSystem, Protocol):
     def start_coroutine(
         self, coroutine: Coroutine[Any, Any, Any], ended: Callable[[object, BaseException | None], None]
     ) -> Timer:
-        """Run a coroutine of the project's Python code beside the agent.
+        """Run a coroutine of the project's Python code concurrently with the agent.
 
-        *ended* is told what it returned, or the exception that ended it; not after it was cancelled.
+        *ended* is called with its result, or the exception that ended it; not after it was cancelled.
         """
 
     def act(self, act: Act) -> None:
-        """Begin an external action; `Agent.complete` tells its end (later, or from within this call)."""
+        """Begin an external action; `Mind.complete` reports its end (later, or during this call)."""
 
     def cancel_act(self, act_id: int) -> None:
-        """The intention behind a pending act was dropped."""
+        """Report that the intention of a pending act was dropped."""
 
     def suspend_act(self, act_id: int) -> None:
-        """The intention behind a pending act was suspended."""
+        """Report that the intention of a pending act was suspended."""
 
     def resume_act(self, act_id: int) -> None:
-        """The intention behind a pending act was resumed."""
+        """Report that the intention of a pending act was resumed."""
 
     def send(self, message: SpeechAct) -> bool:
-        """Deliver a message; False when there is no such agent."""
+        """Deliver a message; return False if the receiver does not exist."""
 
     def goal_lost(self) -> None:
-        """A goal failed and no plan took over; the warning comes by `log`."""
+        """Report that a goal failed and no plan handled the failure; the warning comes through `log`."""
 
     def out_of_memory(self) -> None:
-        """A step or an event met a `MemoryError`; the agent goes on as long as it is let."""
+        """Report that a step or an event raised a `MemoryError`; the agent continues as long as the host
+        allows.
+        """
 
     def explain(self, question: str) -> Mapping[str, Any]:
-        """Answer a question about the run so far; plain data, as `jacaros.mas.history.Explanation.data` returns it.
+        """Answer a question about the run so far, as plain data; see `jacaros.mas.history.Explanation.data`.
 
         Raises:
-            UsageError: the question is not understood.
+            UsageError: the question is invalid.
         """
 
     def clone_agent(self, name: str) -> str | None:
-        """Make an agent with a copy of this mind; its final name, or None with the reason logged."""
+        """Create an agent with a copy of this mind; return its final name, or None after logging the
+        reason.
+        """
 
     def read_program(self, path: str) -> tuple[str, str]:
-        """Name and text of a program file (for ``.include``).
+        """Return the name and text of a program file (for ``.include``).
 
         Raises:
-            FileNotFoundError: when there is none.
+            FileNotFoundError: it does not exist.
         """
 
     def list_files(self, folder: str) -> Sequence[str]:
-        """The files in a folder and in the folders in it, as paths that begin with *folder*, sorted.
+        """Return the files in a folder and its subfolders, as sorted paths that begin with *folder*.
 
         Raises:
-            OSError: when it cannot be read.
+            OSError: the folder cannot be read.
         """
 
     def write_file(self, path: str, text: str) -> None:
-        """Write a text file; what it held before is gone.
+        """Write a text file, replacing its contents.
 
         Raises:
-            OSError: when it cannot be written.
+            OSError: the file cannot be written.
         """

@@ -1,4 +1,4 @@
-"""Which code carries out programs: the rules of the language as they are written, or generated code in their place."""
+"""The choice of the engine that runs programs: the rules of the language as written, or generated code."""
 
 import os
 from collections.abc import Mapping
@@ -9,21 +9,24 @@ from jacaros.bdi.state.engine import CodeCache, Engine
 
 
 def is_plain() -> bool:
-    """Whether everything that is there for speed alone is to be left out (``JACAROS_PLAIN=1`` in the environment)."""
+    """Return whether to leave out everything that exists only for speed (``JACAROS_PLAIN=1`` in the
+    environment).
+    """
     return os.environ.get("JACAROS_PLAIN", "0") not in ("", "0")
 
 
 def new_engine(
     actions: Mapping[str, InternalAction], plain: bool | None = None, cache: CodeCache | None = None
 ) -> Engine:
-    """What carries out plans and rules.
+    """Return the engine for plans and rules.
 
     Args:
-        plain: without generated code; as `is_plain` says unless given.
-        cache: where generated code is kept from run to run; None for nowhere.
+        actions: the internal actions that plans may call.
+        plain: no generated code; the default is `is_plain`.
+        cache: where generated code is kept between runs; None to keep none.
     """
     if is_plain() if plain is None else plain:
         return Interpreter(actions)
-    from jacaros.bdi.fast.compiler import Compiler  # here: a plain run does without it altogether
+    from jacaros.bdi.fast.compiler import Compiler  # imported here: a plain run does not need it
 
     return Compiler(actions, cache)

@@ -1,4 +1,4 @@
-"""The agent: a mind with a program.  It is given things, makes cycles, and reaches out through its architecture."""
+"""The agent: a mind with a program. It gets input, runs cycles, and reaches out through its architecture."""
 
 from collections.abc import Iterable, Mapping
 from typing import Any
@@ -69,8 +69,8 @@ class Mind(Circumstance):
     """A mind.
 
     Args:
-        actions: internal actions; the standard ones unless given.
-        plans: those of the program with the same actions, if another agent has had them made already.
+        actions: internal actions; by default the standard ones.
+        plans: the plans of the program with the same actions, if another agent has already made them.
     """
 
     __slots__ = (
@@ -110,21 +110,21 @@ class Mind(Circumstance):
     # --- life ----------------------------------------------------------------------------------------------
 
     def start(self) -> None:
-        """Take up the initial beliefs and goals."""
+        """Adopt the initial beliefs and goals."""
         self.engine.begin(self)
         self._declare(self.program)
         with functions.evaluating(self):
             self.take_up(self.program)
 
     def _declare(self, program: nodes.Program) -> None:
-        """Begin with the derived events and histories of a program."""
+        """Start the derived events and histories of a program."""
         if program.derived or program.histories:
-            from jacaros.bdi.rules import deriving  # here: most programs do without it
+            from jacaros.bdi.rules import deriving  # imported here: most programs do not need it
 
             deriving.declare(self, program)
 
     def take_up(self, program: nodes.Program) -> None:
-        """Take up the beliefs and goals of a program."""
+        """Adopt the beliefs and goals of a program."""
         for belief in reversed(program.beliefs):
             try:
                 self._initial_belief(belief)
@@ -134,7 +134,7 @@ class Mind(Circumstance):
         self.architecture.ready()
 
     def adopt(self, goals: Iterable[nodes.Literal]) -> None:
-        """Take up the goals of a program."""
+        """Adopt the goals of a program."""
         with functions.evaluating(self):
             for goal in goals:
                 term = self._initial_value(goal)
@@ -142,7 +142,7 @@ class Mind(Circumstance):
                     self.post_goal(term)
 
     def _initial_value(self, node: nodes.Literal) -> Term:
-        """The term of an initial belief or goal; None when it holds an expression without a value."""
+        """Return the term of an initial belief or goal; None if it contains an expression without a value."""
         try:
             return lower_value(node)
         except ArithmeticFault as fault:
@@ -151,15 +151,15 @@ class Mind(Circumstance):
 
     def _without_value(self, node: nodes.Node, fault: ArithmeticFault) -> None:
         place = f"{node.span.file.name}:{node.span.line}: " if node.span is not None else ""
-        self.architecture.log("error", f"{place}an initial belief or goal cannot be evaluated: {fault}")
+        self.architecture.log("error", f"{place}cannot evaluate an initial belief or goal: {fault}")
 
     def include(self, path: str, namespace: str | None = None) -> None:
-        """Take in a program file at run time, all of it in a namespace if one is given.
+        """Include a program file at run time, optionally all of it in a namespace.
 
         Raises:
-            FileNotFoundError: there is none.
-            AslError: it is wrong.
-            ActionError: a label is that of another plan.
+            FileNotFoundError: the file does not exist.
+            AslError: the program has errors.
+            ActionError: another plan has the same label.
         """
         program = include_program(
             path, self.architecture.read_program, functions.known_names(self), self.engine.actions, namespace
@@ -170,12 +170,12 @@ class Mind(Circumstance):
         self.take_up(program)
 
     def fresh_namespace(self) -> str:
-        """The name of a namespace that nothing is in."""
+        """Return the name of an unused namespace."""
         self._namespaces += 1
         return f"ns#{self._namespaces}_{self.name}"
 
     def register_functions(self, declared: tuple[nodes.RegisteredFunction, ...]) -> None:
-        """Make the arithmetic functions of a program known."""
+        """Register the arithmetic functions of a program."""
         for function in declared:
             self.functions.own[function.name] = functions.RegisteredFunction(
                 function.arity, function.implementation
@@ -201,7 +201,7 @@ class Mind(Circumstance):
             belief_update.tell(self, term)
 
     def post_goal(self, goal: Term, goal_cause: Cause | None = None) -> None:
-        """Adopt a new goal, as an intention of its own."""
+        """Adopt a new goal in an intention of its own."""
         symbol, arguments, annotations = parts(rename(goal))
         if symbol is None:
             raise ActionError("a goal must be a literal")
@@ -212,7 +212,7 @@ class Mind(Circumstance):
         self.architecture.ready()
 
     def run(self, fuel: int) -> bool:
-        """Make at most *fuel* reasoning cycles; True when there is more to do."""
+        """Run at most *fuel* reasoning cycles; return True if there is more to do."""
         more = self.engine.run(self, fuel)
         if self.waits.needs:
             needs.sweep(self)
@@ -221,17 +221,17 @@ class Mind(Circumstance):
     # --- from outside --------------------------------------------------------------------------------------
 
     def accept_kill(self, killer: str) -> bool:
-        """Whether another agent may end this one; agent classes of projects may say no."""
+        """Return whether another agent may end this one; agent classes of projects may refuse."""
         del killer
         return True
 
     def accepts(self, message: SpeechAct) -> bool:
-        """Whether a message is acceptable; agent classes of projects may say no."""
+        """Return whether a message is acceptable; agent classes of projects may refuse."""
         del message
         return True
 
     def receive(self, message: SpeechAct) -> None:
-        """Take a message; it is looked at in a later cycle.
+        """Receive a message, to be read in a later cycle.
 
         Raises:
             Failure: the mailbox is full; the step that sends the message fails.
@@ -246,7 +246,7 @@ class Mind(Circumstance):
         self.architecture.ready()
 
     def perceive(self, percepts: list[Percept]) -> None:
-        """Take note of changes in the environment; they are worked in before the next cycle."""
+        """Receive changes of the environment; they are taken in before the next cycle."""
         if percepts:
             self.incoming.percepts.append(percepts)
             self.incoming.called = True
@@ -255,18 +255,18 @@ class Mind(Circumstance):
     has_untaken = perceiving.is_untaken
 
     def keep_histories(self, namespace: str | None, histories: Mapping[str, float]) -> None:
-        """Keep what beliefs were, as ``{ history(...) }`` does.
+        """Keep past values of beliefs, as ``{ history(...) }`` does.
 
         Args:
             namespace: of the beliefs.
-            histories: seconds by name.
+            histories: seconds to keep, by name.
         """
-        from jacaros.bdi.rules import deriving  # here: most agents keep none
+        from jacaros.bdi.rules import deriving  # imported here: most agents keep none
 
         deriving.observe(self, namespace, histories)
 
     def complete(self, act_id: int, completion: Completion) -> None:
-        """An external action ended; an id that is not pending (any more) is ignored."""
+        """Handle the end of an external action; ids of acts that are not pending are ignored."""
         if act_id == self._beginning:
             self._beginning, self._ended_at_once = 0, completion
             return
@@ -286,7 +286,7 @@ class Mind(Circumstance):
             waits.fail(self, waiting, "", *misfit)
 
     def _take_outputs(self, completion: Completion) -> tuple[Term, ...] | None:
-        """Bind the output variables of an act; why it failed when one has another value already."""
+        """Bind the output variables of an act; return the failure if one already has another value."""
         mark = len(self.trail)
         for variable, value in completion.outputs:
             if not unify(variable, value, self.trail):
@@ -322,7 +322,7 @@ class Mind(Circumstance):
     call_own = functions.call_own  # pyright: ignore[reportAssignmentType]
 
     def change_mind(self, operator: str, term: Term) -> Raised:
-        """A belief operator whose operand is known only at run time: a literal, a plan or a rule.
+        """Run a belief operator whose operand is known only at run time: a literal, a plan or a rule.
 
         Raises:
             Failure: with ``body_var_without_value`` or ``body_var_not_literal``.
@@ -346,13 +346,13 @@ class Mind(Circumstance):
     def annotated_goal(
         self, goal: Goal, items: tuple[Term, ...], tail: Term, separate: bool = False
     ) -> Posted:
-        """A goal that is posted with annotations."""
+        """Return a posted goal with annotations."""
         annotations = own_annotations(items, tail)
         needs.note(self, annotations)
         return Posted(goal, annotations) if separate else supervised_goals.posted(self, goal, annotations)
 
     def goal_from(self, operator: str, kind: str, term: Term, separate: bool = False) -> Goal | Posted:
-        """The goal that a term denotes.
+        """Return the goal that a term denotes.
 
         Raises:
             Failure: with ``body_var_without_value`` or ``body_var_not_literal``.
@@ -371,7 +371,7 @@ class Mind(Circumstance):
         return Posted(goal, annotations) if separate else supervised_goals.posted(self, goal, annotations)
 
     def test_goal_from(self, term: Term) -> Goal | Posted:
-        """The test goal for a query known only at run time; fails without plans for it."""
+        """Return the test goal for a query known only at run time; fail if no plan handles it."""
         goal = self.goal_from("+", "?", term)
         plain = goal.goal if isinstance(goal, Posted) else goal
         if not self.may_handle(plain[0]):
@@ -379,7 +379,7 @@ class Mind(Circumstance):
         return goal
 
     def post_separate(self, goal: Goal | Posted) -> None:
-        """``!!g``: a new intention that shares no variables with this one."""
+        """``!!g``: adopt a new intention that shares no variables with this one."""
         annotations: EventAnnotations = BY_SELF
         if isinstance(goal, Posted):
             annotations, goal = goal.annotations, goal.goal
@@ -391,7 +391,7 @@ class Mind(Circumstance):
     def begin_act(
         self, symbol: Functor, arguments: tuple[Term, ...], annotations: tuple[Term, ...], next_step: NextStep
     ) -> Any:
-        """Begin an external action; the intention waits for its completion, if it has not ended already."""
+        """Begin an external action; the intention waits for its completion, unless it has already ended."""
         intention = self.current
         assert intention is not None
         self._acts += 1
@@ -411,7 +411,7 @@ class Mind(Circumstance):
             and not self.features.meta_plans
             and (not completion.outputs or self._take_outputs(completion) is None)
         ):
-            # It would be made ready in the next cycle before all others: it may as well be ready now.
+            # It would become ready in the next cycle before all others, so make it ready now.
             intention.frames[-1][0] = next_step
             return None
         waiting = ActWait(intention, (ACTION, (symbol, *arguments) if arguments else symbol), number)
@@ -422,7 +422,7 @@ class Mind(Circumstance):
         return SUSPENDED
 
     def begin_need(self, intention: Intention, frame: Frame, wanted: Wanted) -> bool:
-        """Ask for what a plan or goal needs; False when the intention waits for it, or has failed."""
+        """Request what a plan or goal needs; return False if the intention waits for it, or has failed."""
         self._acts += 1
         number = self._beginning = self._acts
         act = needs.act_for(self, number, intention, frame, wanted)
@@ -440,15 +440,15 @@ class Mind(Circumstance):
         return False
 
     def preempted(self, act_id: int, resource: str) -> None:
-        """A more urgent claim takes a resource away from an act, or from a plan that needs it."""
+        """Handle that a more urgent claim takes a resource away from an act, or from a plan that needs it."""
         preemption.preempted(self, act_id, resource)
 
     def regained(self, act_id: int) -> None:
-        """The act, or the plan, has the resource again, or no longer waits for it."""
+        """Handle that the act, or the plan, has the resource again, or no longer waits for it."""
         preemption.regained(self, act_id)
 
     def finish_call(self, result: Any, frame: Frame, next_step: NextStep) -> Any:
-        """What an internal action that may suspend gave: go on, fail, or wait."""
+        """Handle the result of an internal action that may suspend: continue, fail, or wait."""
         if result is False:
             return FAILED
         if result is SUSPENDED:
@@ -476,7 +476,7 @@ class Mind(Circumstance):
     # --- messages ------------------------------------------------------------------------------------------
 
     def next_message_id(self) -> str:
-        """An id for a message; unique with the name of the agent."""
+        """Return an id for a message, unique together with the name of the agent."""
         self.messages += 1
         return message_id(self.messages, self.name)
 
@@ -484,7 +484,7 @@ class Mind(Circumstance):
 
 
 def _no_goal(term: Term) -> str:
-    """The error of a term that is posted as a goal and is none."""
+    """Return the error for a term that is posted as a goal but is not one."""
     if bare(term).__class__ is Var:
         return "body_var_without_value"
     return "body_var_with_op" if is_body(term) else "body_var_not_literal"

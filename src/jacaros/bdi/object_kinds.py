@@ -1,7 +1,8 @@
-"""How each kind of objects that a mind holds is written as data, and made again.
+"""How each kind of object in a mind is converted to data and restored.
 
-A plan, rule or belief of the program is its place there, with a digest of its text; one from the run is its syntax.  A step
-is the plan and its position in it.
+Plans, rules and beliefs of the program are stored as their places in it, with a digest of their text; those
+added at run
+time as their syntax. A step is stored as the plan and its position in it.
 """
 
 import sys
@@ -30,10 +31,10 @@ from jacaros.terms.collections import QueueValue
 from jacaros.terms.values import Annotated, Functor, List, Reference, Var, functor, list_items, make_list
 
 Value = Any
-"""Anything that a mind holds."""
+"""Any object in a mind."""
 Data = list[Any]
 _PACKAGES = ("jacaros.asl.", "jacaros.bdi.", "jacaros.terms.")
-"""Where the classes and functions of a mind are."""
+"""Packages of the classes and functions of a mind."""
 _LIVE = {
     CoroutineWait: "it waits for a coroutine",
     ConditionObserver: "Python code awaits a condition",
@@ -43,16 +44,16 @@ _LIVE = {
 
 
 class NotStorable(JacarosError):
-    """A mind holds a live object of Python code."""
+    """Raised when a mind holds a live Python object."""
 
 
 class Kind(NamedTuple):
-    """How objects of one kind are written and made again.
+    """How objects of one kind are written and restored.
 
     Attributes:
-        write: gives plain data, and the parts.
-        make: makes an object of both; one that can change, of the data alone.
-        fill: gives an object that can change its parts; None for others.
+        write: returns plain data, and the parts.
+        make: makes an object of both; a mutable one, of the data alone.
+        fill: adds its parts to a mutable object; None for immutable ones.
     """
 
     write: Callable[["ProgramParts", Value], tuple[Data, Iterable[Value]]]
@@ -61,7 +62,7 @@ class Kind(NamedTuple):
 
 
 class ProgramParts:
-    """The plans and beliefs of a mind's program, which are found by their places in it."""
+    """The plans and beliefs of a mind's program, found by their places."""
 
     def __init__(self, mind: Mind) -> None:
         self.mind = mind
@@ -74,23 +75,25 @@ class ProgramParts:
         return id(part) in self._places
 
     def written(self, part: Value) -> tuple[Data, tuple[()]]:
-        """The place of a plan or belief, and a digest of it: the program may be another one when it is read."""
+        """Return the place of a plan or belief, and a digest of it, as the program may have changed when it
+        is restored.
+        """
         return [self._places[id(part)], _digest(part)], ()
 
     def plan(self, data: Data, _: Data) -> Plan:
-        """A plan of the program."""
+        """Restore a plan of the program."""
         plan: Plan = _same_as(data, self._plans)
         if plan.node.goal_condition is not None and plan.goal_condition is None:
-            interpreted(plan)  # a frame whose body has ended asks for the condition and for no step
+            interpreted(plan)  # a frame whose body has ended needs the condition, but no step
         return plan
 
     def belief(self, data: Data, _: Data) -> nodes.Node:
-        """A belief or rule of the program."""
+        """Restore a belief or rule of the program."""
         node: nodes.Node = _same_as(data, self._beliefs)
         return node
 
     def own_plan(self, _: Data, parts: Data) -> Plan:
-        """A plan that was added at run time."""
+        """Restore a plan that was added at run time."""
         node, *labels = parts
         plan = with_subplans(Plan(node, label_of(node, 0), self.mind.library.by_name), 0)
         for inner, label in zip(_with_inner([plan]), labels, strict=True):
@@ -99,7 +102,7 @@ class ProgramParts:
 
 
 def _with_inner(plans: Iterable[Plan]) -> Iterator[Plan]:
-    """Plans and those inside them, in a fixed order."""
+    """Yield plans and their sub-plans, in a fixed order."""
     for plan in plans:
         yield plan
         yield from _with_inner(plan.subplans)
@@ -111,7 +114,7 @@ def _digest(part: Plan | nodes.Node) -> int:
 
 
 def _same_as(data: Data, held: Iterable[Value]) -> Value:
-    """What was written of a program; at another place, if that has changed.
+    """Return the stored plan or belief of a program; at another place, if the program has changed.
 
     Raises:
         ValueError: the program lacks it.
@@ -128,7 +131,7 @@ def _name_of(value: Value) -> Data:
     """Return the module and the name of a function or class of the mind.
 
     Raises:
-        NotStorable: it cannot be found by a name.
+        NotStorable: it cannot be found by name.
     """
     module, name = getattr(value, "__module__", None) or "", getattr(value, "__qualname__", "")
     if module.startswith(_PACKAGES) and getattr(sys.modules.get(module), name, None) is value:
@@ -137,10 +140,10 @@ def _name_of(value: Value) -> Data:
 
 
 def _named(data: Data, wanted: type) -> Value:
-    """The function with a name, or the subclass of *wanted*.
+    """Return the function of that name, or the subclass of *wanted*.
 
     Raises:
-        ValueError: no mind holds such a thing.
+        ValueError: it is not part of a mind.
     """
     module, name = data
     found = getattr(import_module(module), name, None) if module.startswith(_PACKAGES) else None
@@ -195,7 +198,7 @@ def _fill_object(made: Value, parts: Data) -> None:
 
 
 def kind_of(program: ProgramParts, value: Value) -> str:
-    """The kind of an object, by its class for the most part."""
+    """Return the kind of an object, usually by its class."""
     known = _KIND_OF.get(value.__class__)
     if known is not None:
         return known
@@ -217,7 +220,7 @@ def _kind_of_plan(program: ProgramParts, plan: Plan) -> str:
 
 
 KINDS: dict[str, Kind] = {
-    # what cannot change
+    # immutable
     "tuple": Kind(lambda _, value: ([], value), lambda _, __, parts: tuple(parts)),
     "list": Kind(lambda _, value: ([], list_items(value)), lambda _, __, parts: make_list(parts)),
     "functor": Kind(
@@ -268,7 +271,7 @@ KINDS: dict[str, Kind] = {
         lambda _, data, parts: _named(data, nodes.Node)(*parts[:-1], span=parts[-1]),
     ),
     "file": Kind(lambda _, file: ([file.name, file.text], ()), lambda _, data, __: SourceFile(*data)),
-    # what can
+    # mutable
     "array": Kind(lambda _, value: ([], value), lambda _, __, ___: [], list.extend),
     "deque": Kind(lambda _, value: ([], value), lambda _, __, ___: deque(), deque.extend),
     "set": Kind(lambda _, value: ([], value), lambda _, __, ___: set(), set.update),

@@ -1,8 +1,10 @@
-"""Objects of a mind as a flat table of data for JSON, and back.
+"""Convert the objects of a mind to a flat table of data for JSON, and back.
 
-An entry is a kind of objects (`jacaros.bdi.object_kinds`), plain data, and the parts: values, or the numbers of other
-entries.  So what several objects share is shared again, and nothing is nested too deeply.  An object that cannot change
-comes after its parts; one that can is made empty, and filled when all others are there.
+An entry is a kind of object (`jacaros.bdi.object_kinds`), plain data, and the parts: values, or the numbers
+of other
+entries. So shared objects are shared again, and nothing is nested too deeply. An immutable object comes after
+its parts;
+a mutable one is made empty, and filled when all others exist.
 """
 
 from collections.abc import Iterable
@@ -18,18 +20,18 @@ from jacaros.terms.values import Reference, String, Var
 from jacaros.trace import Cause
 
 Entry = tuple[str, Data, Data]
-"""Kind, plain data, and parts; a list where it comes from JSON."""
+"""Kind, plain data, and parts; a list when it comes from JSON."""
 _INLINE = frozenset({bool, float, int, str, String})
 _SHARED = ATOMIC | {Cause, Plan, Reference, Rule, Trigger}
 _INFINITY = float("inf")
 
 
 class Writer:
-    """Puts objects into a table.
+    """Write objects into a table.
 
     Args:
-        shared: the table is for another mind of the same program in this process.  Plans, rules, Python objects in terms,
-            and beliefs without variables and collections stay what they are.
+        shared: the table is for another mind of the same program in this process. Plans, rules, Python objects in terms,
+            and beliefs without variables and collections are not copied.
 
     Attributes:
         table: the entries.
@@ -40,11 +42,11 @@ class Writer:
         self._program = ProgramParts(mind)
         self._shared = shared
         self._numbers: dict[int, int] = {}
-        self._written: list[Value] = []  # so that no other object gets their places in memory
+        self._written: list[Value] = []  # keeps the objects alive, so that no other object gets the same id
         self._open: list[tuple[int, Data]] = []
 
     def write(self, value: Value) -> Value:
-        """Write a value with all that it refers to; return how the table is entered."""
+        """Write a value with everything it refers to; return its reference in the table."""
         self._enter(value)
         while self._open:
             number, parts = self._open.pop()
@@ -54,7 +56,7 @@ class Writer:
         return self._inline(value)
 
     def _enter(self, value: Value) -> None:
-        """Give a value its number, and before it those that it cannot be made without."""
+        """Number a value, after the values that it cannot be made without."""
         todo = [value]
         forms: dict[int, Entry] = {}
         while todo:
@@ -108,18 +110,20 @@ class Writer:
 
 
 def _is_shared(value: Value, depth: int = 4) -> bool:
-    """Whether two minds may hold this very object; a row with its annotations is at most so deep as a rule."""
+    """Return whether two minds may share this object; rows with annotations are at most as deep as
+    *depth*.
+    """
     if value.__class__ is tuple:
         return depth > 0 and all(each.__class__ in ATOMIC or _is_shared(each, depth - 1) for each in value)
     return value.__class__ in _SHARED or callable(value)
 
 
 class Reader:
-    """Makes the objects of a table for a mind.
+    """Make the objects of a table for a mind.
 
     Raises:
-        ValueError: the program of the mind lacks a plan or belief that is used; or the table names something that no mind
-            holds.
+        ValueError: the program of the mind lacks a plan or belief that is used, or the table contains something that is
+            not part of a mind.
     """
 
     def __init__(self, mind: Mind, table: Iterable[Entry]) -> None:
@@ -132,7 +136,9 @@ class Reader:
             self._made.append(made)
             if not fixed:
                 open_ones.append((kind, made, parts))
-        open_ones.sort(key=lambda each: each[0] == "dict")  # keys that are sets must have their dictionaries
+        open_ones.sort(
+            key=lambda each: each[0] == "dict"
+        )  # sets that are keys must be filled before their dictionaries
         for kind, made, parts in open_ones:
             fill = KINDS[kind].fill
             assert fill is not None
@@ -141,7 +147,7 @@ class Reader:
         self._number_variables([made for kind, made, _ in open_ones if kind == "var"])
 
     def _fill_nested_sets(self, filled: list[tuple[Value, Data]]) -> None:
-        """Fill dictionaries again in which two keys were equal, because the sets in them were still empty."""
+        """Fill dictionaries again in which two keys were equal because the sets in them were still empty."""
         short = [(made, parts) for made, parts in filled if 2 * len(made) < len(parts)]
         for made, parts in short:
             made.clear()
@@ -151,14 +157,14 @@ class Reader:
 
     @staticmethod
     def _number_variables(variables: list[Var]) -> None:
-        """Variables that have been compared keep their order; the numbers themselves are those of another process."""
+        """Keep the order of variables that have been compared; their numbers come from another process."""
         compared = [variable for variable in variables if hasattr(variable, "number")]
         for variable in sorted(compared, key=lambda each: each.number):
             del variable.number
             number_of(variable)
 
     def read(self, value: Value) -> Value:
-        """The value that an entry stands for."""
+        """Return the value that an entry represents."""
         if value.__class__ is not dict:
             return String(value) if value.__class__ is str else value
         ((how, inner),) = value.items()

@@ -1,11 +1,14 @@
-"""A mind as a value: what it holds, as data for JSON, and back.
+"""A mind as a value: convert its state to data for JSON, and back.
 
-`knowledge` is what an agent believes and knows how to do.  ``.save_agent`` writes it as a program, ``.clone`` gives it to
-another agent with what the first is about to do (`copy_mind`), and `stored` takes it with everything else.  All of them
-hand their part to the one walk over the state, `jacaros.bdi.object_table`.
+`knowledge` is what an agent believes and its plans. ``.save_agent`` writes it as a program, ``.clone`` gives
+it to another
+agent together with events and intentions (`copy_mind`), and `stored` adds everything else. All of them use
+the one walk
+over the state, `jacaros.bdi.object_table`.
 
-What Python code around the mind holds on to cannot be stored (`NotStorable`): coroutines of the project that an intention
-waits for, goals and conditions that it awaits, and opaque objects in terms.
+Live Python objects cannot be stored (`NotStorable`): coroutines of the project that an intention waits for,
+goals and
+conditions that Python code awaits, and opaque objects in terms.
 """
 
 from typing import Any
@@ -50,12 +53,12 @@ _INTERRUPTED = (
 
 
 def stored(mind: Mind) -> dict[str, Any]:
-    """Return everything that a mind holds, as data for JSON; to be called between two turns.
+    """Return the whole state of a mind as data for JSON; to be called between two turns.
 
     Raises:
         NotStorable: the mind holds a live object.
     """
-    from jacaros.bdi.rules import deriving  # here, as below: few minds are stored or copied
+    from jacaros.bdi.rules import deriving  # imported here and below: few minds are stored or copied
 
     conditions = mind.waits.conditions
     held = knowledge(mind)
@@ -84,18 +87,24 @@ def stored(mind: Mind) -> dict[str, Any]:
 
 
 def restore(mind: Mind, data: dict[str, Any], *, same_host: bool = False) -> None:
-    """Give a new mind, which has the same program and has not begun, what was `stored` of another.
+    """Restore the state that was `stored` of another mind into a new one, which has the same program and has
+    not started.
 
-    An external action that was under way fails with ``env_failure_reason(interrupted)``: its host may be gone, and to give
-    the action again could move a robot twice.  So the plan decides.  Beliefs that the environment showed go without an
-    event: the new host shows them anew.  A wait that was to end meanwhile ends immediately; on a clock that has been set
-    back, it ends after the time that was left.
+    An external action that was running fails with ``env_failure_reason(interrupted)``: its host may be gone,
+    and repeating
+    the action could move a robot twice, so the plan decides. Percept beliefs are removed without events: the
+    new host
+    reports them again. A wait that has expired meanwhile ends immediately; if the clock was set back, it ends
+    after its
+    remaining time.
 
     Args:
-        same_host: the host of the other mind serves the new one: its actions stay under way, what it showed is still there.
+        mind: the new mind.
+        data: the stored state.
+        same_host: the host of the other mind serves the new one: its actions continue, and its percepts are still valid.
 
     Raises:
-        ValueError: *data* has another format; or the program lacks a plan or belief that the other mind used.
+        ValueError: *data* has another format, or the program lacks a plan or belief that the other mind used.
     """
     if data.get("format") != FORMAT:
         raise ValueError(
@@ -132,7 +141,7 @@ def restore(mind: Mind, data: dict[str, Any], *, same_host: bool = False) -> Non
 
 
 def _leave_host(mind: Mind) -> None:
-    """End what only the old host knew of."""
+    """End everything that only the old host knew of."""
     for number in list(mind.waits.acts):
         mind.complete(number, Completion(False, annotations=_INTERRUPTED))
     mind.beliefs.held_percepts.clear()
@@ -165,16 +174,17 @@ def _wait_again(mind: Mind, held: dict[str, Any]) -> None:
 
 
 def _goal_supervisions(mind: Mind) -> set[GoalSupervision]:
-    """The pursuits of goals, each once: the branches of a fork share them."""
+    """Return the supervisions of goals, each once: the branches of a fork share them."""
     frames = (frame for intention in mind.alive.values() for frame in intention.frames)
     held = (frame[SUPERVISION] for frame in frames if is_supervision(frame))
     return {each for each in held if isinstance(each, GoalSupervision)}
 
 
 def knowledge(agent: Circumstance) -> dict[str, Any]:
-    """What an agent believes and knows how to do.
+    """Return what an agent believes and its plans.
 
-    ``beliefs`` has a functor, the entries with their annotations, oldest first, and those behind all others.
+    ``beliefs`` has for each functor the entries with their annotations, oldest first, and those that answer
+    last.
     """
     held: dict[str, Any] = {
         "functions": agent.functions.own,
@@ -191,7 +201,7 @@ def knowledge(agent: Circumstance) -> dict[str, Any]:
 
 
 def _learn(mind: Mind, held: dict[str, Any]) -> None:
-    """Have the knowledge of another agent."""
+    """Take over the knowledge of another agent."""
     for symbol, rows, late in held["beliefs"]:
         for entries, last in ((rows, False), (late, True)):
             for entry, annotations in entries:
@@ -205,9 +215,10 @@ def _learn(mind: Mind, held: dict[str, Any]) -> None:
 
 
 def copy_mind(original: Mind, clone: Mind) -> None:
-    """Give *clone*, which is new and has the same program, the knowledge, events and intentions of *original*.
+    """Give *clone*, a new agent with the same program, the knowledge, events and intentions of *original*.
 
-    The running intention is not copied, nor are those that wait or are suspended, and branches of forks: what they wait for
+    The running intention is not copied, nor are waiting and suspended intentions and branches of forks: what
+    they wait for
     belongs to the original.
     """
     from jacaros.bdi.rules import deriving

@@ -1,4 +1,4 @@
-"""What a project adds to its agents in Python: internal actions, arithmetic functions, agents, belief bases.
+"""Project extensions in Python: internal actions, arithmetic functions, agent classes, belief bases.
 
 Projects import these names from `jacaros` itself.
 """

@@ -1,4 +1,4 @@
-"""Agents and agent architectures as Python code sees them, and the classes to be subclassed for one's own."""
+"""Agents and agent architectures as Python code sees them, and the base classes for your own."""
 
 from collections.abc import Awaitable, Callable, Iterable, Iterator, Sequence
 from random import Random
@@ -23,13 +23,15 @@ from jacaros.terms.values import SOURCE_PERCEPT, String, Term, Var
 
 
 class Agent:
-    """An agent.  Internal actions are given one; subclasses change how an agent works.
+    """An agent. Internal actions receive one; subclasses change how an agent works.
 
     A subclass is named in the project file: ``agents: bob agentClass my.Careful;`` in a ``.mas2j`` file,
-    ``agent bob { ag-class: my.Careful }`` in a ``.jcm`` file.  It overrides what it wants to change among `init`,
-    the selection functions (`select_event`, `select_option`, `select_intention`, `select_message`), `brf`, `buf`,
-    `soc_acc` and `kill_acc`; what it does not override costs nothing.  An exception in one of them is told in the
-    log, and the default is done in its place.
+    ``agent bob { ag-class: my.Careful }`` in a ``.jcm`` file. It overrides any of `init`, the selection
+    functions
+    (`select_event`, `select_option`, `select_intention`, `select_message`), `brf`, `buf`, `soc_acc` and
+    `kill_acc`.
+    Methods that are not overridden have no cost. An exception in a method is logged, and the default is used
+    instead.
     """
 
     _mind: Mind
@@ -37,95 +39,103 @@ class Agent:
     # --- what may be overridden ----------------------------------------------------------------------------
 
     def init(self, *arguments: Any) -> None:
-        """Called before the agent begins, with the arguments of ``agentClass my.Careful(1, fast)``."""
+        """Called before the agent starts, with the arguments of ``agentClass my.Careful(1, fast)``."""
 
     def select_event(self, events: Sequence[EventView]) -> EventView:
-        """Choose the event to be handled next; asked when there are several, oldest first."""
+        """Choose the event to handle next; called if there are several, oldest first."""
         return events[0]
 
     def select_option(self, options: Sequence[Option]) -> Option | None:
-        """Choose among the applicable plans of an event, in the order of the program.
+        """Choose one of the applicable plans of an event, in program order.
 
-        None means that no plan is to be used.  Sub-plans are not asked about.
+        Return None to use no plan. Not called for sub-plans.
         """
         return options[0]
 
     def select_intention(self, intentions: Sequence[IntentionView]) -> IntentionView:
-        """Choose the intention to make the next step; asked when there are several, in the order of their turns.
+        """Choose the intention that runs its next step; called if there are several, in the order of their
+        turns.
 
-        An atomic intention goes first without asking.
+        Not called for an atomic intention, which always goes first.
         """
         return intentions[0]
 
     def select_message(self, messages: Sequence[Message]) -> Message:
-        """Choose the message to be read next; asked when there are several, oldest first."""
+        """Choose the message to read next; called if there are several, oldest first."""
         return messages[0]
 
     def brf(
         self, added: Literal | None, removed: Literal | None, intention: IntentionView | None
     ) -> bool | None:
-        """Revise beliefs: asked before a plan or a message adds or removes one.
+        """Revise beliefs: called before a plan or a message adds or removes one.
 
         Args:
-            added, removed: one of them; what is removed may hold variables, unset `Out` objects.
-            intention: whose step it is; None for a message.
+            added, removed: exactly one of them is given; a removed literal may contain variables, unset `Out` objects.
+            intention: the intention whose step it is; None for a message.
 
         Returns:
-            False to refuse: the step fails with ``error(belief_revision_failed)``, the message is passed over.
+            False to refuse: the step fails with ``error(belief_revision_failed)``, a message is ignored.
         """
         return True
 
     def buf(self, percepts: Sequence[PerceptView]) -> Sequence[PerceptView]:
-        """Update beliefs: what is noticed of these changes in the environment; the others leave no trace."""
+        """Update beliefs: return those of these changes of the environment that the agent notices; the others
+        are ignored.
+        """
         return percepts
 
     def soc_acc(self, message: Message) -> bool:
-        """Whether a message is acceptable; others are passed over.  Answers to own questions are not asked about."""
+        """Return whether to accept a message; others are ignored. Not called for answers to the agent's own
+        questions.
+        """
         return True
 
     def kill_acc(self, killer: str) -> bool:
-        """Whether the agent called *killer* may end this one by ``.kill_agent``."""
+        """Return whether the agent named *killer* may end this one with ``.kill_agent``."""
         return True
 
-    # --- what an agent offers ------------------------------------------------------------------------------
+    # --- what an agent provides ----------------------------------------------------------------------------
 
     @property
     def name(self) -> str:
-        """Its name."""
+        """The agent's name."""
         return self._mind.name
 
     @property
     def random(self) -> Random:
-        """Its random numbers, which follow from the seed of the run."""
+        """The agent's random number generator, seeded by the run."""
         return self._mind.architecture.random
 
     def now(self) -> float:
-        """The time of the run's clock: seconds since the Unix epoch."""
+        """Return the time of the run's clock, in seconds since the Unix epoch."""
         return self._mind.architecture.now()
 
     def print(self, *values: object) -> None:
-        """Print a line as ``.print`` does."""
+        """Print a line, as ``.print`` does."""
         shown = (value if isinstance(value, str) else text(term_of(value)) for value in values)
         self._mind.architecture.print("".join(str(value) for value in shown))
 
     def log(self, message: str, level: str = "info") -> None:
-        """Tell people something; *level* is ``debug``, ``info``, ``warning`` or ``error``."""
+        """Log a message; *level* is ``debug``, ``info``, ``warning`` or ``error``."""
         self._mind.architecture.log(level, message)
 
     def beliefs(self, functor: str | None = None, arity: int | None = None) -> Iterator[Literal]:
-        """Its beliefs (rules are not among them), perhaps only those of one name and number of arguments."""
+        """Iterate over the agent's beliefs (rules are not included), optionally only those of a name and
+        number of arguments.
+        """
         for term in list(self._mind.beliefs.literals()):
             belief = literal_of(term)
             if functor in (None, belief.functor) and arity in (None, belief.arity):
                 yield belief
 
     def ask(self, query: str) -> Iterator[dict[str, Any]]:
-        """The answers of a query such as ``"path(X, Y) & Y > 3"``: the values of its variables by name.
+        """Iterate over the answers of a query such as ``"path(X, Y) & Y > 3"``: values of its variables by
+        name.
 
-        All of them are looked for at once.
+        All answers are found before the first one is returned.
 
         Raises:
-            AslError: the text is no query.
+            AslError: the text is not a query.
         """
         mind = self._mind
         names = Names()
@@ -139,47 +149,48 @@ class Agent:
         yield from answers
 
     def believes(self, query: str) -> bool:
-        """Whether a query has an answer.
+        """Return whether a query has an answer.
 
         Raises:
-            AslError: the text is no query.
+            AslError: the text is not a query.
         """
         return next(self.ask(query), None) is not None
 
     def add_belief(self, belief: object) -> None:
-        """Believe something: a text such as ``"position(3, kitchen)"``, or a `Literal`.
+        """Add a belief: a text such as ``"position(3, kitchen)"``, or a `Literal`.
 
-        Without a source it is ``source(self)``.  The event comes from outside of all intentions.
+        Without a source, ``source(self)`` is added. The event is external.
 
         Raises:
-            AslError, ValueError: it is no literal.
+            AslError, ValueError: it is not a literal.
         """
         self._mind.tell(literal_term(belief))
         self._mind.architecture.ready()
 
     def remove_belief(self, belief: object) -> bool:
-        """Take a source (``self`` unless one is named) off a belief; False when it is not held.
+        """Remove a source (default ``self``) of a belief; return False if the agent does not have it.
 
         Raises:
-            AslError, ValueError: it is no literal.
+            AslError, ValueError: it is not a literal.
         """
         found = self._mind.untell(literal_term(belief))
         self._mind.architecture.ready()
         return found
 
     def achieve(self, goal: object) -> None:
-        """Adopt a goal, as an intention of its own.
+        """Adopt a goal in an intention of its own.
 
         Raises:
-            AslError, ValueError: it is no literal.
+            AslError, ValueError: it is not a literal.
         """
         self._mind.post_goal(literal_term(goal))
 
     def send(self, receiver: str, performative: str, content: object) -> bool:
-        """Send a message: a text that is a literal, or another Python value; False when there is no such agent.
+        """Send a message: a literal as text, or another Python value. Return False if the receiver does not
+        exist.
 
         Raises:
-            AslError: the text is no literal.
+            AslError: the text is not a literal.
         """
         mind = self._mind
         term = literal_term(content) if isinstance(content, str) else term_of(content)
@@ -191,7 +202,7 @@ class Agent:
 
 
 def agent_of(mind: Mind) -> Agent:
-    """What Python code sees of a mind; always the same object."""
+    """Return the `Agent` of a mind; always the same object."""
     if mind.face is None:
         give_face(mind, Agent())
     assert isinstance(mind.face, Agent)
@@ -199,28 +210,29 @@ def agent_of(mind: Mind) -> Agent:
 
 
 def give_face(mind: Mind, face: Agent) -> None:
-    """Let Python code see *face* for a mind."""
+    """Make *face* the `Agent` of a mind."""
     face._mind = mind
     mind.face = face
 
 
 def overridden(face: Agent, name: str) -> Callable[..., object] | None:
-    """The method of a subclass that overrides the one of `Agent`, or None."""
+    """Return the method of a subclass that overrides the one of `Agent`, or None."""
     if getattr(type(face), name) is getattr(Agent, name):
         return None
     method: Callable[..., object] = getattr(face, name)
     return method
 
 
-# --- architectures: what stands between a mind and its surroundings ------------------------------------------
+# --- architectures: between a mind and its environment
+# -------------------------------------------------------
 
 
 class Action:
-    """An external action that an agent wants to be done.
+    """An external action that an agent performs.
 
     Attributes:
         functor: its name.
-        arguments: Python values; unbound variables are `Out` objects, and what is set there is the result.
+        arguments: Python values; unbound variables are `Out` objects, whose values become results.
         annotations: Python values.
     """
 
@@ -232,11 +244,11 @@ class Action:
         self.annotations = tuple(to_value(resolve(a)) for a in raw.annotations)
 
     def outputs(self) -> tuple[tuple[Var, Term], ...]:
-        """The variables for which there are results, with the terms for them."""
+        """The variables that have results, with the terms of the results."""
         return tuple((variable, term_of(out.value)) for variable, out in self._outputs if out.is_set)
 
     def completion(self, success: bool, message: str = "") -> Completion:
-        """How the action ended, as the mind takes it."""
+        """Return how the action ended, in the form that the mind expects."""
         told = ((ERROR_MSG, String(message)),) if message else ()
         return Completion(success, self.outputs() if success else (), told)
 
@@ -248,46 +260,49 @@ class AgentArch:
     """How an agent perceives, acts, and exchanges messages; to be subclassed.
 
     A subclass is named in the project file: ``agents: bob agentArchClass my.Arch;`` in a ``.mas2j`` file,
-    ``agent bob { ag-arch: my.Arch }`` in a ``.jcm`` file.  Several may be named: the last one is asked first, and hands
-    on by ``super()``.
+    ``agent bob { ag-arch: my.Arch }`` in a ``.jcm`` file. With several classes, the last one is called first,
+    and calls
+    the next with ``super()``.
 
     Attributes:
-        agent: whose architecture it is.
+        agent: the agent that the architecture belongs to.
     """
 
     agent: Agent
     following: "AgentArch"
 
     def init(self, *arguments: Any) -> None:
-        """Called before the agent begins, with the arguments of ``agentArchClass my.Arch(1)``."""
+        """Called before the agent starts, with the arguments of ``agentArchClass my.Arch(1)``."""
 
     def perceive(self) -> Iterable[object] | None:
-        """All that is perceived through this architecture now: texts such as ``"light(3)"``, or `Literal` objects.
+        """Return all that is perceived through this architecture now: texts such as ``"light(3)"``, or
+        `Literal` objects.
 
-        Called before each reasoning cycle; None says that nothing has changed.  What is there for the first time
-        becomes a belief, what is there no more is forgotten.  An agent without anything to do makes no cycles: see `wake`.
+        Called before each reasoning cycle; None means that nothing has changed. New percepts become beliefs,
+        missing ones
+        are removed. An idle agent makes no cycles: see `wake`.
         """
         return None
 
     def act(self, action: Action) -> bool | Awaitable[bool | None] | None:
-        """Do an external action.
+        """Perform an external action.
 
         Returns:
-            True when it is done (what was set in `Out` arguments is its result), False when it failed.  A coroutine
-            (``async def act``) may take its time.  ``super().act(action)`` leaves it to the environment.
+            True if it has succeeded (values of `Out` arguments are its results), False if it has failed. A coroutine
+            (``async def act``) may take time. ``super().act(action)`` leaves the action to the environment.
         """
         return self.following.act(action)
 
     def send(self, message: Message) -> bool:
-        """Send a message; False when it cannot be delivered."""
+        """Send a message; return False if it cannot be delivered."""
         return self.following.send(message)
 
     def check_mail(self, message: Message) -> bool:
-        """Look at a message that came; False throws it away."""
+        """Inspect an incoming message; return False to discard it."""
         return self.following.check_mail(message)
 
     def wake(self) -> None:
-        """Give the agent a turn soon, because there is something new to perceive."""
+        """Wake the agent, because there is something new to perceive."""
         self.following.wake()
 
     def stop(self) -> None:
@@ -295,13 +310,13 @@ class AgentArch:
 
 
 class Perception:
-    """What one architecture perceives, as changes since the last time."""
+    """The percepts of one architecture, as changes since the last time."""
 
     def __init__(self) -> None:
         self._held: dict[Term, Percept] = {}
 
     def changes(self, found: Iterable[object]) -> list[Percept]:
-        """The percepts to be added and removed, so that *found* is all there is."""
+        """Return the percepts to add and remove so that *found* are all percepts."""
         now: dict[Term, Percept] = {}
         for item in found:
             symbol, row, annotations = parts(literal_term(item))

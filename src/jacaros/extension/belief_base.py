@@ -1,7 +1,8 @@
-"""Belief bases of a project: what an agent believes goes through an object of the project's class.
+"""Belief bases of projects: changes of an agent's beliefs go through an object of the project's class.
 
-The tables of the mind stay as they are, so that compiled queries read them as fast as ever; only changes are asked
-about, and questions where the class has beliefs of its own (`BeliefBase.candidates`).
+The tables of the mind are unchanged, so compiled queries are as fast as ever. Only changes call the object,
+and
+questions if the class provides beliefs of its own (`BeliefBase.candidates`).
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -21,32 +22,34 @@ from jacaros.terms.values import Functor, Term
 
 Annotations = tuple[Term, ...]
 Entry = Row | OpenFact | Rule
-"""What a table holds: the arguments of a belief, a belief with variables, or a rule."""
+"""An entry of a table: the arguments of a belief, a belief with variables, or a rule."""
 
 
 class Keeper(Protocol):
-    """Where beliefs are in the end."""
+    """Where beliefs are finally stored."""
 
     def keep(self, belief: Literal) -> bool:
-        """Keep a belief, or give it its annotations."""
+        """Store a belief, or update its annotations."""
 
     def give_up(self, belief: Literal) -> bool:
-        """Give a belief up; False when it is not there."""
+        """Remove a belief; return False if it is not stored."""
 
     def literals(self) -> Iterator[Term]:
-        """All beliefs."""
+        """Iterate over all beliefs."""
 
 
 class BeliefBase:
     """Where an agent keeps its beliefs; to be subclassed.
 
-    A subclass is named in the project file: ``agents: bob beliefBaseClass my.LoudBB(3);`` in a ``.mas2j`` file,
-    ``agent bob { ag-bb-class: my.LoudBB(3) }`` in a ``.jcm`` file.  Rules and beliefs that hold variables are kept by
-    the mind alone.  An exception in an overridden method is told in the log, and the default is done in its place.
+    A subclass is named in the project file: ``agents: bob beliefBaseClass my.LoudBB(3);`` in a ``.mas2j``
+    file,
+    ``agent bob { ag-bb-class: my.LoudBB(3) }`` in a ``.jcm`` file. Rules and beliefs with variables are kept
+    by the mind
+    alone. An exception in an overridden method is logged, and the default is used instead.
 
     Attributes:
-        agent: whose beliefs they are.
-        folder: of the project, for files.
+        agent: the agent that the beliefs belong to.
+        folder: the project's folder, for files.
     """
 
     agent: Agent
@@ -56,41 +59,41 @@ class BeliefBase:
     # --- what may be overridden ----------------------------------------------------------------------------
 
     def init(self, *arguments: Any) -> None:
-        """Called before the agent takes up its initial beliefs, with the arguments of ``my.LoudBB(3)``."""
+        """Called before the agent adds its initial beliefs, with the arguments of ``my.LoudBB(3)``."""
 
     def add(self, belief: Literal) -> bool:
-        """Keep a belief that is new, or that has new annotations (then with all of its annotations).
+        """Store a new belief, or one with new annotations (then with all its annotations).
 
         Returns:
-            Whether it was kept: without that there is no event.
+            Whether it was stored: if not, there is no event.
         """
         return self._tables.keep(belief)
 
     def remove(self, belief: Literal) -> bool:
-        """Give a belief up whose last source is taken away.
+        """Remove a belief that has lost its last source.
 
         Returns:
-            Whether it is gone: without that there is no event.
+            Whether it was removed: if not, there is no event.
         """
         return self._tables.give_up(belief)
 
     def candidates(self, pattern: Literal) -> Iterable[Literal]:
-        """Beliefs that are not kept here but looked up when asked for, such as rows of a database.
+        """Return beliefs that are not stored here but looked up on demand, such as rows of a database.
 
-        They answer behind those that are kept.  What does not fit the pattern is left out by the mind.
+        They answer after the stored ones. The mind ignores beliefs that do not match the pattern.
 
         Args:
-            pattern: what is asked for; what is not known are unset `Out` objects.
+            pattern: the question; unknown arguments are unset `Out` objects.
         """
         return ()
 
     def stop(self) -> None:
         """Called when the agent ends."""
 
-    # --- what a belief base offers -------------------------------------------------------------------------
+    # --- what a belief base provides -----------------------------------------------------------------------
 
     def __iter__(self) -> Iterator[Literal]:
-        """All beliefs that are kept, with their annotations."""
+        """Iterate over all stored beliefs, with their annotations."""
         for term in list(self._tables.literals()):
             yield literal_of(term)
 
@@ -101,7 +104,7 @@ class BeliefBase:
         return True
 
     def beliefs(self, functor: str, arity: int | None = None) -> list[Literal]:
-        """The beliefs of one name, and perhaps number of arguments, newest first."""
+        """Return the beliefs of a name, and optionally number of arguments, newest first."""
         return [b for b in self if b.functor == functor and arity in (None, b.arity)]
 
 
@@ -112,7 +115,8 @@ class Tables(belief_base.BeliefTables):
         super().__init__(mind.engine)
         self.base, self.mind = base, mind
         self.budget = mind.beliefs.budget
-        # The change that is under way, as the mind has it: the same literal need not be turned back into terms.
+        # The current change in the mind's representation, so that the same literal is not converted back to
+        # terms.
         self._change: tuple[Literal, AskingTable, Row, Annotations, bool] | None = None
         looked_up = type(base).candidates is not BeliefBase.candidates
         self._kind = LookingTable if looked_up else AskingTable
@@ -122,13 +126,13 @@ class Tables(belief_base.BeliefTables):
         return table
 
     def ask_add(self, table: "AskingTable", row: Row, annotations: Annotations, last: bool) -> bool:
-        """Let the class keep a belief; whether it did."""
+        """Let the class store a belief; return whether it did."""
         literal = literal_from(table.functor, row, annotations)
         self._change = (literal, table, row, annotations, last)
         return self._ask("add", literal, lambda: table.put(row, annotations, last))
 
     def ask_remove(self, table: "AskingTable", row: Row) -> bool:
-        """Let the class give a belief up; whether it did."""
+        """Let the class remove a belief; return whether it did."""
         literal = literal_from(table.functor, row, table.get(row) or ())
         self._change = (literal, table, row, (), False)
         return self._ask("remove", literal, lambda: table.take(row))
@@ -144,7 +148,7 @@ class Tables(belief_base.BeliefTables):
             self._change = None
 
     def ask_candidates(self, functor: Functor, arguments: Row) -> list[tuple[Entry, Annotations]]:
-        """What the class looks up for a question."""
+        """Return the beliefs that the class looks up for a question."""
         try:
             found = [
                 parts(literal_term(each))
@@ -195,7 +199,7 @@ class Tables(belief_base.BeliefTables):
 
 
 class AskingTable(Table):
-    """A table whose changes are made by a `BeliefBase`."""
+    """A table that asks a `BeliefBase` before it changes."""
 
     __slots__ = ("_tables",)
 
@@ -219,23 +223,23 @@ class AskingTable(Table):
         return self._tables.ask_remove(self, row)
 
     def holds_facts_only(self) -> bool:
-        """The class may keep and look up beliefs when it likes."""
+        """False: the class may store and look up beliefs at any time."""
         return False
 
     def put(self, row: Row, annotations: Annotations, last: bool) -> None:
-        """Keep a row, without asking."""
+        """Store a row without asking."""
         if self.get(row) is None:
             super().add(row, annotations, last)
         else:
             super().set(row, annotations)
 
     def take(self, row: Row) -> None:
-        """Give a row up, without asking."""
+        """Remove a row without asking."""
         super().remove(row)
 
 
 class LookingTable(AskingTable):
-    """A table that has further beliefs, which the class looks up for each question."""
+    """A table with additional beliefs, which the class looks up for each question."""
 
     __slots__ = ()
 
@@ -244,12 +248,12 @@ class LookingTable(AskingTable):
         self._changed()
 
     def around(self) -> None:
-        """What is looked up belongs between the others: questions take the general way."""
+        """None: looked-up beliefs may belong between the others, so questions use the general search."""
         return
 
     @property
     def plain(self) -> bool:
-        """Compiled queries may not read the rows directly."""
+        """False: compiled queries must not read the rows directly."""
         return False
 
     @plain.setter
@@ -257,16 +261,16 @@ class LookingTable(AskingTable):
         pass
 
     def still_holds(self, entry: Entry) -> bool:
-        """True: what is looked up is not among the entries."""
+        """True: looked-up beliefs are not among the entries."""
         return True
 
     def candidates(self, arguments: Row) -> Iterable[tuple[Entry, Annotations]]:
-        """The entries that are kept, then those that are looked up."""
+        """Return the stored entries, then the looked-up ones."""
         return [*super().candidates(arguments), *self._tables.ask_candidates(self.functor, arguments)]
 
 
 def install(mind: Mind, base: BeliefBase, folder: Path, arguments: Iterable[object]) -> None:
-    """Let a mind keep its beliefs in a base of the project's class; before it takes up any."""
+    """Let a mind keep its beliefs in a base of the project's class; to be called before it has any."""
     base.agent, base.folder = agent_of(mind), folder
     mind.beliefs = base._tables = Tables(base, mind)
     mind.selections.option_filter = mind.beliefs[SELECT_OPTION]

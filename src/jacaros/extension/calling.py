@@ -1,4 +1,6 @@
-"""How the mind calls a Python function: terms become values, what it gives is unified, and what it raises is a failure."""
+"""Calls of project functions by the mind: terms become values, results are unified, exceptions become
+failures.
+"""
 
 import inspect
 import typing
@@ -26,16 +28,16 @@ from jacaros.terms.text import text
 from jacaros.terms.values import Term, functor_of
 
 FAULTS = (Exception, SystemExit, CancelledError)
-"""What Python code of a project may raise without ending more than the step that called it."""
+"""Exceptions of project code that end only the step that called it."""
 _ITERATORS = ("Iterator", "Iterable", "Generator")
 
 
 class Undeclarable(Exception):
-    """A function cannot be what its decorator says; the text tells why and what to do."""
+    """Raised when a function does not fit its decorator; the text says why and how to fix it."""
 
 
 def action_of(name: str, function: Callable[..., object]) -> InternalAction:
-    """The internal action that a function becomes.
+    """Return the internal action for a function.
 
     Raises:
         Undeclarable: its parameters do not fit.
@@ -57,12 +59,12 @@ def action_of(name: str, function: Callable[..., object]) -> InternalAction:
 
 
 class _Callee:
-    """A function, with what is known of its parameters.
+    """A function and what is known of its parameters.
 
     Attributes:
-        minimum, maximum: numbers of arguments that programs may give.
+        minimum, maximum: numbers of arguments that programs may pass.
         wants_agent: its first parameter is the calling agent.
-        gives_value: it declares what it returns: programs then give one more argument.
+        gives_value: it declares a return value; programs then pass one more argument.
     """
 
     def __init__(self, name: str, function: Callable[..., object]) -> None:
@@ -81,10 +83,10 @@ class _Callee:
                 f"to return a result, annotate it: def {function.__name__}({parameters}) -> {written}"
             )
 
-    # the three ways of being called
+    # the three kinds of calls
 
     def call(self, ctx: Context, *terms: Term) -> bool:
-        """A plain function."""
+        """Call a plain function."""
         call = _Call(self, ctx, terms)
         try:
             value = self.function(*call.arguments)
@@ -93,7 +95,7 @@ class _Callee:
         return call.accept(value)
 
     def answers(self, ctx: Context, *terms: Term) -> Iterator[None]:
-        """A generator: one answer for each value that it yields and that fits."""
+        """Call a generator: one answer for each value that it yields and that unifies."""
         call = _Call(self, ctx, terms)
         search = self.function(*call.arguments)
         assert inspect.isgenerator(search)
@@ -108,7 +110,7 @@ class _Callee:
                 yield
 
     def begin(self, ctx: Context, *terms: Term) -> Waiting:
-        """A coroutine: the intention waits for its end."""
+        """Call a coroutine: the intention waits for its end."""
         call = _Call(self, ctx, terms)
         agent, waiting = ctx.agent, CoroutineWait(ctx.suspendable(), self.name)
 
@@ -139,7 +141,7 @@ class _Callee:
 
 
 class _Call:
-    """One call: the values for the function, and where the results go."""
+    """One call: the values for the function, and the terms that its results are unified with."""
 
     def __init__(self, callee: _Callee, ctx: Context, terms: tuple[Term, ...]) -> None:
         self._callee, self._ctx = callee, ctx
@@ -167,22 +169,23 @@ class _Call:
         return to_value(term, self._outputs)
 
     def accept(self, value: object) -> bool:
-        """Unify what the function gave; False when it does not fit, or when the function says so.
+        """Unify the result of the function; return False if it does not unify, or if the function returned
+        False.
 
         Raises:
-            ActionError: the function gave a value and does not declare one, or one that is no term.
+            ActionError: the function returned a value without declaring one, or one that is not a term.
         """
         try:
             pairs = self._pairs(value)
         except ActionError:
             raise
         except FAULTS as error:
-            # Such as a list that contains itself.
+            # For example, a list that contains itself.
             raise action_fault(self._callee.name, self._callee.function, error) from error
         return pairs is not None and self._ctx.unify_all(*pairs)
 
     def _pairs(self, value: object) -> list[tuple[Term, Term]] | None:
-        """The arguments with the terms for them; None when the function says that it failed."""
+        """Return the arguments with the terms to unify them with; None if the function reported failure."""
         pairs: list[tuple[Term, Term]] = []
         if self._callee.gives_value:
             if value is None:
@@ -201,13 +204,13 @@ class _Call:
         callee = self._callee
         kind = type(value).__name__
         return ActionCrashed(
-            f"{callee.name}: the function gives {text(term_of(value))} and does not say so: declare it, as in "
-            f"'def {callee.function.__name__}(...) -> {kind}', and programs take it in one more argument",
+            f"{callee.name}: the function returns {text(term_of(value))} without declaring it: write "
+            f"'def {callee.function.__name__}(...) -> {kind}', and pass one more argument in programs",
         )
 
 
 def _message(refused: ActionError) -> tuple[Term, ...]:
-    """``error_msg`` of a coroutine's refusal, and its error unless it brings one."""
+    """Return the ``error_msg`` of a coroutine's `ActionError`, and its error unless it has one."""
     names = {symbol.name for symbol in map(functor_of, refused.annotations) if symbol is not None}
     return tuple(t for t in error_terms("internal_action", str(refused)) if t[0].name not in names)
 
@@ -218,16 +221,16 @@ def _message(refused: ActionError) -> tuple[Term, ...]:
 def function_of(
     name: str, function: Callable[..., object], arity: int | tuple[int, int | None] | None
 ) -> tuple[Callable[..., Term], tuple[int, int | None]]:
-    """The evaluator that a function becomes, and the least and greatest number of its arguments.
+    """Return the evaluator for a function, and its minimum and maximum number of arguments.
 
     Raises:
         Undeclarable: its parameters do not fit, or it is a generator or coroutine.
     """
     if inspect.isgeneratorfunction(function) or inspect.iscoroutinefunction(function):
-        raise Undeclarable("an arithmetic function is a plain function that returns a number")
+        raise Undeclarable("an arithmetic function must be a plain function that returns a number")
     signature = _signature(function, False)
     if any(parameter.output for parameter in signature.parameters):
-        raise Undeclarable("an arithmetic function returns its number and has no Out parameter")
+        raise Undeclarable("an arithmetic function returns its number and cannot have Out parameters")
     if arity is None:
         limits = (signature.fewest, None if signature.rest is not None else len(signature.parameters))
     else:
@@ -254,7 +257,7 @@ def _evaluator(
             raise FunctionCrashed(crash_text(name, function, error)) from error
         number = term_of(value)
         if number.__class__ is not float:
-            raise FunctionCrashed(f"{name}: the function gives {value!r}, which is no number")
+            raise FunctionCrashed(f"{name}: the function returned {value!r}, which is not a number")
         return number
 
     return evaluate
@@ -271,7 +274,7 @@ def _signature(function: Callable[..., object], skip_first: bool) -> operations.
 
 
 def _hints(function: Callable[..., object]) -> dict[str, object]:
-    """The annotations; those that cannot be resolved stay as they are written."""
+    """Return the annotations; those that cannot be resolved stay as text."""
     try:
         return typing.get_type_hints(function)
     except Exception:
@@ -287,7 +290,7 @@ def _wants_agent(function: Callable[..., object]) -> bool:
 
 
 def _gives_value(function: Callable[..., object]) -> bool:
-    """Whether the annotation of what a function returns (or yields) names a value."""
+    """Return whether the annotation of the returned (or yielded) value declares a value."""
     hint = _hints(function).get("return")
     if isinstance(hint, str):
         hint = _written(hint)
@@ -297,7 +300,7 @@ def _gives_value(function: Callable[..., object]) -> bool:
 
 
 def _written(hint: str) -> str | None:
-    """What an annotation says that could not be resolved: the value of an iterator, or the whole."""
+    """Return what an unresolved annotation declares: the value of an iterator, or the whole."""
     kind, bracket, inner = hint.partition("[")
     if kind.rpartition(".")[2] in _ITERATORS:
         return inner.rstrip("]").partition(",")[0].strip() if bracket else None
@@ -308,7 +311,7 @@ def _written(hint: str) -> str | None:
 
 
 class ActionCrashed(ActionError, Crashed):
-    """The Python code of an internal action raised an exception that is no `ActionError`."""
+    """The Python code of an internal action raised an exception other than `ActionError`."""
 
 
 class FunctionCrashed(ArithmeticFault, Crashed):
@@ -316,7 +319,7 @@ class FunctionCrashed(ArithmeticFault, Crashed):
 
 
 def action_fault(name: str, function: Callable[..., object], error: BaseException) -> Exception:
-    """How the step of an internal action fails for an exception of its function.
+    """Return the failure for an exception of an internal action's function.
 
     Raises:
         InternalError: the exception is one: a defect of JaCaROS.
@@ -335,7 +338,7 @@ def _annotation(value: Term) -> Term:
 
 
 def crash_text(name: str, function: Callable[..., object], error: BaseException) -> str:
-    """What people are told of an exception: the action, the exception, and where it was raised."""
+    """Describe an exception for the log: the action, the exception, and where it was raised."""
     what = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
     return f"{name}: {what} ({_place(function, error)})"
 

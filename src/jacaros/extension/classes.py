@@ -1,4 +1,6 @@
-"""The classes that a project file names, its own and Jason's belief bases, and how objects are made of them."""
+"""Find the classes that a project file names (the project's own and Jason's belief bases), and create objects
+of them.
+"""
 
 import os
 import stat
@@ -28,18 +30,18 @@ _JASON_BASES = "jason.bb."
 
 
 class UnknownClass(JacarosError):
-    """A project file names a class that its Python code does not have."""
+    """Raised when the project's Python code lacks a class named in a project file."""
 
 
 class Made(NamedTuple, Generic[T]):
-    """An object of a class that a project file names, and the arguments of its `init`."""
+    """An object of a class named in a project file, and the arguments of its `init`."""
 
     made: T
     arguments: tuple[object, ...]
 
 
 def object_of(modules: ProjectModules, written: str, kind: type[T]) -> Made[T] | None:
-    """An object of a class that a project file names; None when the project has no such module."""
+    """Create an object of a class named in a project file; None if the project does not have the module."""
     name, terms = _split(written)
     found = find_class(modules, name, kind)
     if found is None:
@@ -47,16 +49,16 @@ def object_of(modules: ProjectModules, written: str, kind: type[T]) -> Made[T] |
     try:
         return Made(found(), _values(terms))
     except Exception as error:
-        raise JacarosError(f"{name} cannot be made: {type(error).__name__}: {error}") from error
+        raise JacarosError(f"cannot create {name}: {type(error).__name__}: {error}") from error
 
 
 def base_of(modules: ProjectModules, written: str, kind: type[BeliefBase]) -> Made[BeliefBase] | None:
-    """The same for ``beliefBaseClass``, which may name one of Jason's."""
+    """Create the object for ``beliefBaseClass``, which may name one of Jason's classes."""
     name, terms = _split(written)
     if name == f"{_JASON_BASES}ChainBB":
         links = [base_of(modules, str(to_value(term)), kind) for term in terms]
         if any(link is None for link in links):
-            raise UnknownClass(f"{written}: one of these belief bases is not known")
+            raise UnknownClass(f"{written}: unknown belief base in the chain")
         return Made(ChainBB(*[(link.made, link.arguments) for link in links if link is not None]), ())
     if name.startswith(_JASON_BASES):
         known = _STANDARD_BASES.get(name.removeprefix(_JASON_BASES))
@@ -65,7 +67,7 @@ def base_of(modules: ProjectModules, written: str, kind: type[BeliefBase]) -> Ma
 
 
 def _split(written: str) -> tuple[str, tuple[Term, ...]]:
-    """The name of a class and its arguments."""
+    """Split a class name from its arguments."""
     name, bracket, rest = written.strip().partition("(")
     if not bracket:
         return name, ()
@@ -73,7 +75,7 @@ def _split(written: str) -> tuple[str, tuple[Term, ...]]:
         return name.strip(), arguments_of(lower_value(parse_literal(f"arguments({rest}")))
     except AslError as wrong:
         message = wrong.diagnostics[0].message
-        raise JacarosError(f"the arguments of {written} cannot be read: {message}") from wrong
+        raise JacarosError(f"invalid arguments of {written}: {message}") from wrong
 
 
 def _values(terms: tuple[Term, ...]) -> tuple[object, ...]:
@@ -81,11 +83,11 @@ def _values(terms: tuple[Term, ...]) -> tuple[object, ...]:
 
 
 def find_class(modules: ProjectModules, name: str, kind: type[T]) -> type[T] | None:
-    """The subclass of *kind* that ``my.Careful`` names; None when the project has no such module.
+    """Return the subclass of *kind* that ``my.Careful`` names; None if the project does not have the module.
 
     Raises:
         ModuleUnreadable: the module cannot be imported.
-        UnknownClass: it has no such class; the text says what it has.
+        UnknownClass: the module lacks the class; the text lists its classes.
     """
     path, _, last = name.rpartition(".")
     found = list(_modules_of(modules, path or last))
@@ -102,7 +104,7 @@ def find_class(modules: ProjectModules, name: str, kind: type[T]) -> type[T] | N
     there = f"it has {', '.join(known)}" if known else f"it has no class derived from jacaros.{kind.__name__}"
     close = get_close_matches(last, known, 1)
     meant = f"; did you mean {path}.{close[0]}?" if close else ""
-    raise UnknownClass(f"there is no class {last} in {found[0].__file__ or path}: {there}{meant}")
+    raise UnknownClass(f"unknown class {last} in {found[0].__file__ or path}: {there}{meant}")
 
 
 def _is_own(value: object, kind: type[object], module: ModuleType) -> bool:
@@ -110,7 +112,9 @@ def _is_own(value: object, kind: type[object], module: ModuleType) -> bool:
 
 
 def _modules_of(modules: ProjectModules, path: str) -> Iterator[ModuleType]:
-    """The module of that path, then those of its package: ``my.Careful`` may stand in ``my/careful.py``."""
+    """Yield the module of that path, then those of its package: ``my.Careful`` may be in
+    ``my/careful.py``.
+    """
     loaded = list(modules.load(path.partition(".")[0]))
     if "." in path and modules.place(path) is not None:
         loaded = list(modules.load(path))
@@ -118,12 +122,15 @@ def _modules_of(modules: ProjectModules, path: str) -> Iterator[ModuleType]:
 
 
 class TextPersistentBB(BeliefBase):
-    """Keeps beliefs in a text file between two runs (``jason.bb.TextPersistentBB``).
+    """Keeps beliefs in a text file between runs (``jason.bb.TextPersistentBB``).
 
-    Its arguments name the predicates that are kept: ``count``, ``count(_)`` or ``"count/1"``; all of them without
-    arguments.  An argument that ends with ``.bb`` is the file, in the folder of the project; without one it is the
-    agent's name with ``.bb`` behind.  What was kept is believed from the beginning, without events; percepts are not
-    kept.  The file is replaced as a whole when the agent ends, so that it is never half written.
+    Its arguments name the predicates to keep: ``count``, ``count(_)`` or ``"count/1"``; without arguments,
+    all are kept.
+    An argument that ends with ``.bb`` is the file, relative to the project's folder; the default is the
+    agent's name with
+    ``.bb``. Kept beliefs are there from the beginning, without events; percepts are not kept. The file is
+    replaced as a
+    whole when the agent ends, never half written.
     """
 
     def init(self, *arguments: object) -> None:
@@ -136,7 +143,7 @@ class TextPersistentBB(BeliefBase):
         try:
             program, _ = load_program(str(self._file), file_text(self._file))
         except (OSError, UnicodeError, AslError) as wrong:
-            raise JacarosError(f"{self._file} cannot be read: {wrong}") from wrong
+            raise JacarosError(f"cannot read {self._file}: {wrong}") from wrong
         for node in reversed(program.beliefs):
             if not isinstance(node, Rule):
                 self._tables.keep(literal_of(lower_value(node)))
@@ -147,7 +154,8 @@ class TextPersistentBB(BeliefBase):
         self._file.parent.mkdir(parents=True, exist_ok=True)
         handle, name = tempfile.mkstemp(dir=self._file.parent, prefix=f".{self._file.name}.")
         try:
-            # A temporary file is the user's alone; what takes its place is for those who could read it before.
+            # A temporary file is private to the user; the file that it replaces may have been readable by
+            # others.
             Path(name).chmod(_mode(self._file))
             with os.fdopen(handle, "w", encoding="utf-8") as file:
                 file.write(text)
@@ -167,9 +175,9 @@ class TextPersistentBB(BeliefBase):
 
 
 class IndexedBB(BeliefBase):
-    """Holds one belief for each key (``jason.bb.IndexedBB``): a new one takes the place of the old.
+    """Keeps one belief for each key (``jason.bb.IndexedBB``): a new one replaces the old one.
 
-    Its arguments say which arguments of a predicate are the key: ``"student(key,_)"``.
+    Its arguments mark the key arguments of a predicate: ``"student(key,_)"``.
     """
 
     def init(self, *arguments: object) -> None:
@@ -178,7 +186,7 @@ class IndexedBB(BeliefBase):
             pattern = _pattern(argument)
             places = [place for place, part in enumerate(pattern.arguments) if part == "key"]
             if not places:
-                raise JacarosError(f"IndexedBB: {argument} names no key, as in student(key,_)")
+                raise JacarosError(f"IndexedBB: {argument} has no key; write student(key,_)")
             self._keys[pattern.functor, pattern.arity] = places
         self._held: dict[tuple[object, ...], Literal] = {}
 
@@ -206,17 +214,17 @@ class IndexedBB(BeliefBase):
 
 
 class ChainBB(BeliefBase):
-    """Several bases in a row (``jason.bb.ChainBB``): each hands on what it keeps to the next one.
+    """A chain of bases (``jason.bb.ChainBB``): each passes what it keeps to the next one.
 
     Args:
-        links: the bases with their arguments, the one that is asked first in front.
+        links: the bases with their arguments, the first to be called in front.
     """
 
     def __init__(self, *links: tuple[BeliefBase, tuple[object, ...]]) -> None:
         self._beginnings = links
 
     def init(self, *arguments: object) -> None:
-        """Join the links and begin them, the last one first."""
+        """Connect the links and initialise them, the last one first."""
         keeper: Keeper = self._tables
         for link, given in reversed(self._beginnings):
             link.agent, link.folder, link._tables = self.agent, self.folder, keeper
@@ -239,7 +247,7 @@ class ChainBB(BeliefBase):
 
 
 class _Following:
-    """What a link of a chain takes for the place where beliefs are kept: the next link."""
+    """The `Keeper` of a link of a chain: the next link."""
 
     def __init__(self, link: BeliefBase, tables: Keeper) -> None:
         self._link, self._tables = link, tables
@@ -259,11 +267,11 @@ _STANDARD_BASES: dict[str, type[BeliefBase]] = {
     "TextPersistentBB": TextPersistentBB,
     "IndexedBB": IndexedBB,
 }
-"""By the names behind ``jason.bb.``; ``ChainBB`` is made from its links."""
+"""By the names after ``jason.bb.``; ``ChainBB`` is created from its links."""
 
 
 def _mode(file: Path) -> int:
-    """The permissions of a file, or those that a new one gets."""
+    """Return the permissions of a file, or those that a new one would get."""
     if file.exists():
         return stat.S_IMODE(file.stat().st_mode)
     mask = os.umask(0)
@@ -276,7 +284,7 @@ def _is_file(argument: object) -> bool:
 
 
 def _signature(name: object) -> tuple[str, int | None]:
-    """Name and number of arguments of a predicate, None for any number."""
+    """Return the name and number of arguments of a predicate, None for any number."""
     if isinstance(name, Structure):
         return name.functor, len(name.arguments)
     text = str(name)
@@ -290,7 +298,7 @@ def _signature(name: object) -> tuple[str, int | None]:
 
 
 def _pattern(argument: object) -> Literal:
-    """A pattern of a predicate, such as ``student(key,_)``, in whatever way it is written."""
+    """Return a pattern of a predicate, such as ``student(key,_)``, whichever way it is written."""
     if isinstance(argument, Structure):
         parts = tuple(None if isinstance(part, Out) else str(part) for part in argument.arguments)
         return Literal(argument.functor, parts)

@@ -1,6 +1,6 @@
-"""Agent classes at work: what a subclass of `Agent` overrides is put into its mind, and nothing else.
+"""Connect the overridden methods of an `Agent` subclass to its mind, and nothing else.
 
-The mind itself knows nothing of this: its selection functions are replaced by ones that ask.
+The mind does not know of this: its selection functions are replaced by ones that call the methods.
 """
 
 from collections import deque
@@ -39,7 +39,7 @@ _SELECTION_FUNCTIONS = ("select_message", "select_event", "select_option", "sele
 
 
 def _asked_first(change: Change) -> Change:
-    """The addition of a belief that asks the agent's class before."""
+    """Wrap the addition of a belief so that it asks the agent's class first."""
 
     def add(
         mind: "CustomMind", symbol: Functor, row: tuple[Term, ...], annotations: tuple[Term, ...]
@@ -51,13 +51,15 @@ def _asked_first(change: Change) -> Change:
 
 
 class CustomMind(Mind):
-    """The mind of an agent whose class is the project's: asks it about changes of beliefs, if it wants to be asked."""
+    """The mind of an agent with a project's class: it asks the class about changes of beliefs, if `brf` is
+    overridden.
+    """
 
     _revises: Callable[..., object] | None = None
     _notices: Callable[..., object] | None = None
 
     def begin_as(self, face: Agent) -> None:
-        """Let an object of the project's class have its say; before the mind takes up anything."""
+        """Connect an object of the project's class, before the mind has any beliefs."""
         give_face(self, face)
         if any(overridden(face, name) for name in _SELECTION_FUNCTIONS):
             self.selections = Chosen(self, face)
@@ -127,12 +129,12 @@ class CustomMind(Mind):
         try:
             self._revise(literal if told else None, None if told else literal)
         except Failure:
-            self.architecture.log("info", f"the belief {text(term)} is refused by the agent's class")
+            self.architecture.log("info", f"the agent's class refused the belief {text(term)}")
             return True
         return False
 
     def _revise(self, added: Literal | None, removed: Literal | None) -> None:
-        """Ask the class.
+        """Call `brf` of the class.
 
         Raises:
             Failure: with ``belief_revision_failed``.
@@ -153,7 +155,9 @@ class CustomMind(Mind):
 
 
 class Chosen(Urgent):
-    """The selection functions of an agent whose class overrides some of them; the others are as ever."""
+    """The selection functions of an agent whose class overrides some of them; the others are the usual
+    ones.
+    """
 
     __slots__ = ("_event", "_intention", "_message", "_mind", "_option")
 
@@ -194,7 +198,9 @@ class Chosen(Urgent):
         view: Callable[[Item], Seen],
         counts: Callable[[Item], bool],
     ) -> Item:
-        """Take out of a queue what a method chooses from the items that count; the mind itself removes the others."""
+        """Take out of a queue what a method chooses from the items that count; the mind itself removes the
+        others.
+        """
         places = [place for place, item in enumerate(queue) if counts(item)]
         if len(places) < 2 or (len(places) < len(queue) and places[0] != 0):
             return queue.popleft()
@@ -210,7 +216,7 @@ class Chosen(Urgent):
     ) -> Frame | None:
         if self._option is None:
             return super().select_option(goal, annotations, intention)
-        # The context is asked once: what it drew or did may come out otherwise the next time.
+        # Contexts are evaluated once: random numbers or effects might differ the next time.
         held: list[tuple[Frame, list[tuple[Var, Term]]]] = []
         found: list[Option] = []
         trail = self._mind.trail
@@ -249,7 +255,7 @@ def ask(
     default: Result,
     *arguments: object,
 ) -> Result:
-    """What a method of the project's class says; the default when it raises or says what it cannot."""
+    """Call a method of the project's class; use the default if it raises or returns an invalid value."""
     try:
         return check(method(*arguments))
     except FAULTS as error:
@@ -266,7 +272,7 @@ def _one_of(items: Sequence[Result]) -> Callable[[object], Result]:
         for item in items:
             if item is chosen:
                 return item
-        raise ValueError(f"it gives {chosen!r}, which is none of those to choose from")
+        raise ValueError(f"it returned {chosen!r}, which is not one of the choices")
 
     return check
 
@@ -274,11 +280,11 @@ def _one_of(items: Sequence[Result]) -> Callable[[object], Result]:
 def _of(seen: list[PerceptView]) -> Callable[[object], list[PerceptView]]:
     def check(kept: object) -> list[PerceptView]:
         if not isinstance(kept, Iterable):
-            raise TypeError(f"it gives {kept!r}, which is not a list of changes")
+            raise TypeError(f"it returned {kept!r}, which is not a list of changes")
         found: list[PerceptView] = list(kept)
         for percept in found:
             if not any(percept is other for other in seen):
-                raise ValueError(f"it gives {percept!r}, which is none of the changes that it was given")
+                raise ValueError(f"it returned {percept!r}, which is not one of the changes")
         return found
 
     return check

@@ -1,4 +1,4 @@
-"""What Python code adds to the language of a project: the decorators, and what the modules declare by them."""
+"""The decorators for a project's Python code, and the collection of what modules declare with them."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -20,13 +20,13 @@ _MARK = "__jacaros_declared__"
 
 @dataclass(frozen=True, slots=True)
 class Declared:
-    """What a decorator says of a function.
+    """What a decorator declares of a function.
 
     Attributes:
         kind: ``internal action`` or ``arithmetic function``.
         function: the function itself.
         name: as programs write it; None for the default, module and function.
-        arity: number of arguments, or least and most of them; None for what the parameters say.
+        arity: number of arguments, or their minimum and maximum; None to use the parameters.
     """
 
     kind: str
@@ -49,20 +49,24 @@ def internal_action(name: str | None = None, /) -> Callable[[Function], Function
 def internal_action(name: str | Function | None = None, /) -> object:
     """Make a function an internal action of the project's agents.
 
-    The module must be found by the first part of the name: ``my.norm(X, Y, L)`` makes agents look for ``my.py``,
-    or a package ``my/``, beside the project.  The function stays as it is and may be called from Python too.
+    The first part of the name must lead to the module: for ``my.norm(X, Y, L)`` agents look for ``my.py``, or
+    a package
+    ``my/``, beside the project. The function itself is unchanged and can be called from Python, too.
 
-    * A plain function succeeds unless it returns False.  One that declares what it returns (``-> float``) gives
-      its value to one more argument, the last; None is no value, and the action fails.
+    * A plain function succeeds unless it returns False. If it declares a return value (``-> float``),
+    programs pass one
+      more argument at the end, which the value is unified with; if the value is None, the action fails.
     * A generator gives an answer with every ``yield``; conditions try them in turn.
-    * A coroutine (``async def``) suspends the intention that calls it until it is done; dropping the intention
+    * A coroutine (``async def``) suspends the intention that calls it until it is done; dropping the
+    intention
       cancels it.
 
-    Arguments arrive as Python values.  A parameter annotated `Out` is a result: what is set there is unified with
-    the argument.  A first parameter annotated `Agent` is given the calling agent, and does not count.
+    Arguments are Python values. A parameter annotated `Out` is a result: its value is unified with the
+    argument.
+    A first parameter annotated `Agent` receives the calling agent, and is not counted.
 
     Args:
-        name: as programs write it, with dots; the module and the function unless given.
+        name: as programs write it, with dots; by default the module and the function.
 
     Examples:
         @internal_action("my.norm")
@@ -87,13 +91,13 @@ def arithmetic_function(
 ) -> object:
     """Make a function an arithmetic function of the project's programs: ``X = my.sq(3) + 1``.
 
-    It is given its arguments as Python values once all of them are known, and returns a number.  An exception
-    fails the step with ``error(arithmetic_error)``.
+    It is called with Python values once all arguments are known, and returns a number. An exception fails the
+    step with
+    ``error(arithmetic_error)``.
 
     Args:
-        name: as programs write it, with dots; the module and the function unless given.
-        arity: number of arguments, or least and most of them (None: any number); what the parameters say unless
-            given.
+        name: as programs write it, with dots; by default the module and the function.
+        arity: number of arguments, or their minimum and maximum (None: any number); by default those of the parameters.
 
     Examples:
         @arithmetic_function("my.sq")
@@ -109,7 +113,7 @@ def _declare(
     if callable(name):
         return _mark(name, Declared(kind, name, None, arity))
     if name is not None and (not isinstance(name, str) or "." not in name[1:] or name.startswith(".")):
-        raise ValueError(f"the name of an {kind} has the module in front, as in 'my.norm', not {name!r}")
+        raise ValueError(f"the name of an {kind} must begin with the module, as in 'my.norm', not {name!r}")
     return lambda function: _mark(function, Declared(kind, function, name, arity))
 
 
@@ -119,7 +123,7 @@ def _mark(function: Function, declared: Declared) -> Function:
 
 
 def declarations(function: object) -> tuple[Declared, ...]:
-    """What decorators said of a function."""
+    """Return what decorators declared of a function."""
     found: tuple[Declared, ...] = getattr(function, _MARK, ())
     return found
 
@@ -133,8 +137,8 @@ class Additions:
     Attributes:
         actions: internal actions by name.
         functions: evaluators of arithmetic functions by name.
-        arities: their least and greatest numbers of arguments.
-        unseen: names that may be added when their file is run, or (with a dot at the end) the beginnings of such names.
+        arities: their minimum and maximum numbers of arguments.
+        unseen: names that may be added when their file runs, or (ending with a dot) prefixes of such names.
         plain: names of functions without decorator, as programs would write them.
     """
 
@@ -147,10 +151,10 @@ class Additions:
         self._places: dict[str, str] = {}
 
     def collect(self, modules: ProjectModules, name: str) -> None:
-        """Take what the module *name* (of a package: all its modules) declares.
+        """Collect what the module *name* (all modules, if it is a package) declares.
 
         Raises:
-            ModuleUnreadable: a file cannot be imported, or declares what cannot be; the text names file and line.
+            ModuleUnreadable: a file cannot be imported, or has an invalid declaration; the text names file and line.
         """
         for module in modules.load(name):
             if INCOMPLETE in vars(module):
@@ -191,19 +195,19 @@ class Additions:
             raise ModuleUnreadable(f"{place}: {name}: {wrong}") from wrong
 
     def help(self, name: str) -> str | None:
-        """What may help somebody who writes the name of an internal action that there is not."""
+        """Return a suggested fix for an unknown internal action, or None."""
         if name in self.plain:
-            return f"the function {name} exists: put @internal_action before it"
+            return f"put @internal_action before the function {name}"
         if name in self.arities:
             least, most = self.arities[name]
             takes = str(least) if least == most else f"{least} to {'any' if most is None else most}"
             return f"{name} is an arithmetic function with {takes} arguments"
         close = get_close_matches(name, [*self.actions, *self.arities], 1)
-        return f"did you mean {close[0]}?" if close else None
+        return f"did you mean `{close[0]}`?" if close else None
 
 
 def _default_name(module_name: str, function_name: str) -> str:
-    """``my.norm`` for a function of ``my.py``, and for the function ``norm`` of ``my/norm.py``."""
+    """Return ``my.norm`` for a function of ``my.py``, and for the function ``norm`` of ``my/norm.py``."""
     if "." in module_name and module_name.rpartition(".")[2] == function_name:
         return module_name
     return f"{module_name}.{function_name}"

@@ -19,8 +19,8 @@ class Literal:
     Attributes:
         functor: the name.
         arguments: Python values, see the table in ``docs/reference/python_extension.md``.
-        annotations: Python values; those with a structure such as ``source(bob)`` are `Structure` objects.
-        negated: whether ``~`` stands in front.
+        annotations: Python values; structures such as ``source(bob)`` are `Structure` objects.
+        negated: whether it begins with ``~``.
         namespace: its namespace; None for the default one.
     """
 
@@ -34,10 +34,10 @@ class Literal:
 
     @classmethod
     def parse(cls, written: str) -> "Literal":
-        """The literal in a text; its variables become unset `Out` objects.
+        """Parse a literal; its variables become unset `Out` objects.
 
         Raises:
-            AslError: the text is no literal.
+            AslError: the text is not a literal.
         """
         return literal_of(resolve(lower(parse_literal(written), fresh_names())))
 
@@ -48,7 +48,7 @@ class Literal:
 
     @property
     def sources(self) -> tuple[str, ...]:
-        """Where it comes from: ``self``, ``percept`` and names of agents."""
+        """Its sources: ``self``, ``percept`` and names of agents."""
         return tuple(
             str(annotation.arguments[0])
             for annotation in self.annotations
@@ -56,7 +56,7 @@ class Literal:
         )
 
     def with_annotations(self, *annotations: object) -> "Literal":
-        """The literal with further annotations."""
+        """Return the literal with additional annotations."""
         return replace(self, annotations=(*self.annotations, *annotations))
 
     def __str__(self) -> str:
@@ -64,14 +64,14 @@ class Literal:
 
 
 def literal_of(term: Term, outputs: Outputs | None = None) -> Literal:
-    """A term that is a literal, as Python code sees it; *outputs* takes its unbound variables.
+    """Convert a term to a literal for Python code; *outputs* collects its unbound variables.
 
     Raises:
-        ValueError: the term is no literal.
+        ValueError: the term is not a literal.
     """
     symbol = functor_of(term)
     if symbol is None:
-        raise ValueError(f"{text(term)} is no literal")
+        raise ValueError(f"not a literal: {text(term)}")
     return literal_from(symbol, arguments_of(term), annotations_of(term), outputs)
 
 
@@ -81,7 +81,7 @@ def literal_from(
     annotations: tuple[Term, ...],
     outputs: Outputs | None = None,
 ) -> Literal:
-    """A literal in parts, as Python code sees it."""
+    """Make a literal for Python code from its parts."""
     plain = functor(symbol.name, 0)
     return Literal(
         symbol_name(plain),
@@ -93,7 +93,7 @@ def literal_from(
 
 
 def term_of(value: object) -> Term:
-    """The term for a value of Python code; a `Literal` keeps its annotations."""
+    """Convert a Python value to a term; a `Literal` keeps its annotations."""
     if not isinstance(value, Literal):
         return to_term(value, UNKEPT)
     name = f"~{value.functor}" if value.negated else value.functor
@@ -106,14 +106,14 @@ def term_of(value: object) -> Term:
 
 
 def literal_term(value: object) -> Term:
-    """The term of what Python code gives for a literal: a `Literal`, `Structure`, `Atom`, or a text to be read.
+    """Convert a literal from Python code to a term: a `Literal`, `Structure`, `Atom`, or a text.
 
     Raises:
-        AslError: the text is no literal.
-        ValueError: the value is none of these.
+        AslError: the text is not a literal.
+        ValueError: the value has another type.
     """
     if isinstance(value, (Literal, Structure, Atom)):
         return term_of(value)
     if isinstance(value, str):
         return resolve(lower(parse_literal(value), fresh_names()))
-    raise ValueError(f"{value!r} is no literal: give a text such as 'position(3, kitchen)', or a Literal")
+    raise ValueError(f"not a literal: {value!r}; give a text such as 'position(3, kitchen)', or a Literal")

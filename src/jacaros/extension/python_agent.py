@@ -1,4 +1,4 @@
-"""Agents written in Python: the class to be subclassed."""
+"""Agents written in Python: the base class."""
 
 from collections.abc import AsyncIterator, Awaitable, Callable, Coroutine, Mapping, Sequence
 from functools import wraps
@@ -38,7 +38,7 @@ class Mail(Protocol):
 
 
 class Host(AgentSystem, Protocol):
-    """What runs an agent written in Python, as far as the agent may use it."""
+    """What an agent written in Python may use of the code that runs it."""
 
     name: str
     options: Mapping[str, str]
@@ -58,22 +58,22 @@ class Host(AgentSystem, Protocol):
 
     @property
     def random(self) -> Random:
-        """The agent's own generator."""
+        """The agent's random number generator."""
 
     def start(self, work: Coroutine[object, None, T]) -> Awaitable[T]:
-        """Run a coroutine beside the others of the agent."""
+        """Run a coroutine concurrently with the others of the agent."""
 
     async def sleep(self, seconds: float) -> None:
         """Wait on the run's clock."""
 
     async def turn(self) -> None:
-        """Let others have their turn."""
+        """Let other agents run."""
 
 
 def _of(
     part: str, method: Callable[Concatenate[Any, Given], T]
 ) -> Callable[Concatenate["PythonAgent", Given], T]:
-    """The method of an agent that is the one of its session or its host."""
+    """Return a method that forwards to the one of the agent's session or host."""
 
     @wraps(method)
     def call(agent: "PythonAgent", /, *arguments: Given.args, **options: Given.kwargs) -> T:
@@ -87,12 +87,16 @@ class PythonAgent:
     """An agent written in Python; to be subclassed.
 
     A project names the file of the subclass: ``agent painter: painter.py`` in a ``.jcm`` file, ``painter
-    painter.py;`` in a ``.mas2j`` file.  `run` is what the agent does.  Whoever prefers to be called overrides
-    `on_message`, `on_signal` or `on_property` as well, or instead.  It takes time from `sleep` and `clock` only,
-    and random numbers from `random`: then a run with ``--clock fast`` and a seed is repeatable.
+    painter.py;`` in a ``.mas2j`` file. `run` is the agent's behaviour. To use callbacks, override
+    `on_message`, `on_signal`
+    or `on_property` in addition, or instead. Take time from `sleep` and `clock` only, and random numbers from
+    `random`:
+    then a run with ``--clock fast`` and a seed is reproducible.
 
-    The agent stays when `run` is over, with all that it focuses: it is ended by an exception in its code, by
-    other agents, or with the run.  Its operations under way are cancelled then, and its ``finally`` blocks run.
+    When `run` returns, the agent stays, with all artifacts that it focuses. It ends with an exception in its
+    code, when
+    another agent ends it, or with the run. Then its running operations are cancelled, and its ``finally``
+    blocks run.
     """
 
     _host: Host
@@ -100,49 +104,50 @@ class PythonAgent:
     def __init_subclass__(cls, **keywords: object) -> None:
         super().__init_subclass__(**keywords)
         if not iscoroutinefunction(cls.run):
-            raise TypeError(f"{cls.__name__}.run is no coroutine: write async def run(self)")
+            raise TypeError(f"{cls.__name__}.run is not a coroutine: write async def run(self)")
 
     # --- what may be overridden ----------------------------------------------------------------------------
 
     async def run(self) -> None:
-        """What the agent does, from its beginning on."""
+        """The agent's behaviour, called when the agent starts."""
 
     def on_message(self, message: ReceivedMessage) -> object:
-        """Called with every message but the answers to `ask`, ``def`` or ``async def``; one after the other.
+        """Called with every message except answers to `ask`; ``def`` or ``async def``, one call at a time.
 
-        A question that it does not reply to is answered with what it returns; None means that there is no answer.
+        If it does not reply to a question, its return value is the answer; None means that there is no
+        answer.
         """
 
     def on_signal(self, signal: ReceivedSignal) -> object:
-        """Called with every signal of the focused artifacts, ``def`` or ``async def``; one after the other."""
+        """Called with every signal of focused artifacts; ``def`` or ``async def``, one call at a time."""
 
     def on_property(self, change: PropertyChange) -> object:
-        """Called with every change of a property of the focused artifacts; as `on_signal`."""
+        """Called with every property change of focused artifacts, as `on_signal`."""
 
     def accept_kill(self, killer: str) -> bool:
-        """Whether the agent called *killer* may end this one by ``.kill_agent``."""
+        """Return whether the agent named *killer* may end this one with ``.kill_agent``."""
         return True
 
     # --- what it is ----------------------------------------------------------------------------------------
 
     @property
     def name(self) -> str:
-        """Its name."""
+        """The agent's name."""
         return self._host.name
 
     @property
     def options(self) -> Mapping[str, str]:
-        """Its options in the project file: ``[speed=0.5]``, or ``speed: 0.5`` in a ``.jcm`` file."""
+        """The agent's options in the project file: ``[speed=0.5]``, or ``speed: 0.5`` in a ``.jcm`` file."""
         return self._host.options
 
     @property
     def beliefs(self) -> tuple[Literal, ...]:
-        """The literals that the project file gives it as ``beliefs``."""
+        """The literals that the project file lists as ``beliefs``."""
         return self._host.beliefs
 
     @property
     def session(self) -> Session:
-        """Its working session in the environment.
+        """The agent's working session in the environment.
 
         Raises:
             WorkspaceError: the project has no environment.
@@ -156,32 +161,32 @@ class PythonAgent:
 
     @property
     def random(self) -> Random:
-        """Its random numbers, which follow from the seed of the run."""
+        """The agent's random number generator, seeded by the run."""
         return self._host.random
 
-    # --- time, people --------------------------------------------------------------------------------------
+    # --- time and output -----------------------------------------------------------------------------------
 
     sleep = _of("_host", Host.sleep)
 
     def start(self, work: Coroutine[object, None, T]) -> Awaitable[T]:
-        """Run a coroutine beside `run`; it can be awaited.
+        """Run a coroutine concurrently with `run`; the result can be awaited.
 
-        It is cancelled when the agent ends, and an exception in it ends the agent, as one in `run` does.
+        It is cancelled when the agent ends. An exception in it ends the agent, as in `run`.
         """
         return self._host.start(work)
 
     def print(self, *values: object) -> None:
-        """Print a line: all values one after the other, as ``.print`` does."""
+        """Print the values as one line, without separators, as ``.print`` does."""
         self._host.print("".join(map(text, values)))
 
     def log(self, message: str, level: str = "info") -> None:
-        """Tell people something; *level* is ``debug``, ``info``, ``warning`` or ``error``."""
+        """Log a message; *level* is ``debug``, ``info``, ``warning`` or ``error``."""
         self._host.log(level, message)
 
     # --- in the environment, as `Session` has it -------------------------------------------------------------
 
     def join(self, workspace: str) -> str:
-        """Join a workspace and make it the current one; gives its full path."""
+        """Join a workspace and make it the current one; return its full path."""
         return self.session.join(workspace)
 
     quit = _of("session", Session.quit)
@@ -206,7 +211,8 @@ class PythonAgent:
         timeout: float | None = None,
         urgency: int = 0,
     ) -> Any:
-        """Do an operation, wait for its end, and give the values of its `Out` arguments; see `Session.act`.
+        """Run an operation, wait for its end, and return the values of its `Out` arguments; see
+        `Session.act`.
 
         Raises:
             OperationFailed: with the message and the reason.
@@ -214,15 +220,15 @@ class PythonAgent:
         result = await self.begin(
             operation, *arguments, artifact=artifact, workspace=workspace, timeout=timeout, urgency=urgency
         )
-        # An operation may end at once; who does nothing else must not keep the others from their turns.
+        # An operation may end immediately: let other agents run even if this one does nothing else.
         await self._host.turn()
         return result
 
     async def until(self, condition: Callable[[], T], timeout: float | None = None) -> T:
-        """Wait until *condition* is true, which is looked at whenever a focused artifact publishes something.
+        """Wait until *condition* is true; it is tested whenever a focused artifact publishes a change.
 
         Raises:
-            TimeoutError: it was not within *timeout* seconds.
+            TimeoutError: it did not become true within *timeout* seconds.
         """
         value = await self.session.until(condition, timeout)
         await self._host.turn()
@@ -236,11 +242,11 @@ class PythonAgent:
         Args:
             receiver: name of an agent, or several names.
             performative: ``tell``, ``achieve``, ``untell`` ….
-            content: a text that is AgentSpeak (with ``tellHow`` and its like, the text of plans), a `Literal`,
+            content: AgentSpeak as text (with ``tellHow`` and similar, the text of plans), a `Literal`,
                 or another Python value.
 
         Raises:
-            UnknownAgent: there is no such agent.
+            UnknownAgent: the receiver does not exist.
             AslError: the text is not AgentSpeak.
         """
         said = content_of(content, performative)
@@ -260,14 +266,14 @@ class PythonAgent:
             receiver: name of the agent.
             question: a text such as ``"position(X, Y)"``, or a `Literal`.
             performative: ``askOne``, ``askAll`` or ``askHow``.
-            timeout: seconds to wait at most.
+            timeout: maximum time to wait, in seconds; None for no limit.
 
         Returns:
-            For ``askOne`` a `Literal` (or another value), None when there is no answer; for the others a list.
+            For ``askOne`` a `Literal` (or another value), None if there is no answer; for the others a list.
 
         Raises:
-            UnknownAgent: there is no such agent.
-            TimeoutError: the time is over.
+            UnknownAgent: the receiver does not exist.
+            TimeoutError: there was no answer in time.
             AslError: the text is not AgentSpeak.
         """
         answer = await self._host.mail.ask(
@@ -278,52 +284,52 @@ class PythonAgent:
         return heard(answer.content)
 
     async def receive(self, timeout: float | None = None) -> ReceivedMessage:
-        """Wait for the next message; answers to `ask` are not among them.
+        """Wait for the next message; answers to `ask` are not included.
 
         Raises:
-            TimeoutError: none came within *timeout* seconds.
+            TimeoutError: no message arrived within *timeout* seconds.
         """
         return await self._unread.next_message(timeout)
 
     def messages(self) -> AsyncIterator[ReceivedMessage]:
-        """All messages, for ``async for``: those that have come already, and those to come."""
+        """Iterate over all messages with ``async for``: those that have arrived, and future ones."""
         return _Messages(self._unread)
 
     @property
     def _unread(self) -> Mail:
         if overridden(self, "on_message") is not None:
             raise JacarosError(
-                f"{type(self).__name__} has on_message, which is called with every message: none is left to be waited for"
+                f"{type(self).__name__} has on_message, which receives all messages, so none can be awaited"
             )
         return self._host.mail
 
     # --- other agents --------------------------------------------------------------------------------------
 
     def agent_names(self) -> tuple[str, ...]:
-        """Names of all agents, in the order of their making."""
+        """Return the names of all agents, in order of creation."""
         return tuple(self._host.agent_names())
 
     def create_agent(self, name: str, source: str | None = None, agent_class: str | None = None) -> str:
-        """Make an agent and start it; gives its name, which is another one when *name* is taken.
+        """Create an agent and start it; return its name, which differs from *name* if that is taken.
 
         Args:
             name: of the agent.
-            source: its program (``bob.asl``, ``bob.py``), NAME.asl unless given.
+            source: its program (``bob.asl``, ``bob.py``), by default NAME.asl.
             agent_class: its class, for an AgentSpeak agent as in ``ag-class``.
 
         Raises:
-            JacarosError: it cannot be made; the log says why.
+            JacarosError: it cannot be created; the reason is logged.
         """
         classes = {} if agent_class is None else {"agentClass": agent_class}
         made = self._host.create_agent(name, source, classes)
         if made is None:
-            raise JacarosError(f"agent {name} cannot be made; the log says why")
+            raise JacarosError(f"cannot create agent {name}; see the log for the reason")
         return made
 
     kill_agent = _of("_host", AgentSystem.kill_agent)
 
     def stop_system(self, exit_code: int = 0, delay: float = 0.0) -> None:
-        """End the run after *delay* seconds."""
+        """End the run after *delay* seconds, with an exit code."""
         self._host.stop_system(delay, exit_code)
 
     register_service = _of("_host", AgentSystem.register_service)
@@ -331,7 +337,7 @@ class PythonAgent:
     subscribe_to_service = _of("_host", AgentSystem.subscribe_to_service)
 
     def providers(self, service: str) -> tuple[str, ...]:
-        """The agents that provide a service, in the order in which they registered."""
+        """Return the agents that provide a service, in order of registration."""
         return tuple(self._host.providers(service))
 
     def __repr__(self) -> str:
@@ -342,13 +348,13 @@ class PythonAgent:
         def __getattr__(self, name: str) -> object:
             if name == "_host":
                 raise JacarosError(
-                    f"{type(self).__name__} does not live yet: it can do this in run, not in __init__"
+                    f"{type(self).__name__} has not started yet: do this in run, not in __init__"
                 )
             raise AttributeError(f"{type(self).__name__} has no attribute {name!r}", name=name, obj=self)
 
 
 def overridden(agent: PythonAgent, name: str) -> Callable[..., object] | None:
-    """The handler that a subclass has, or None."""
+    """Return the handler that a subclass defines, or None."""
     if getattr(type(agent), name) is getattr(PythonAgent, name):
         return None
     method: Callable[..., object] = getattr(agent, name)
@@ -356,7 +362,7 @@ def overridden(agent: PythonAgent, name: str) -> Callable[..., object] | None:
 
 
 class _Messages:
-    """The messages for an agent, without end."""
+    """The messages of an agent, as an endless asynchronous iterator."""
 
     def __init__(self, mail: Mail) -> None:
         self._mail = mail

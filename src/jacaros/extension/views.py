@@ -1,7 +1,8 @@
-"""What Python code of a project sees of its agents: events, options, intentions, messages and percepts.
+"""Views of agents for project code: events, options, intentions, messages and percepts.
 
-Projects import the views as ``jacaros.Event``, ``Intention``, ``Percept`` and ``Plan``, without the ending that tells them
-from the classes of the mind.
+Projects import the views as ``jacaros.Event``, ``Intention``, ``Percept`` and ``Plan``, without the suffix
+that
+distinguishes them from the classes of the mind.
 """
 
 from collections.abc import Callable
@@ -32,7 +33,7 @@ class PlanView:
     """A plan of an agent.
 
     Attributes:
-        label: its label, such as ``p__3`` when it has none.
+        label: its label, such as ``p__3`` if none is written.
         annotations: those of the label, as Python values.
     """
 
@@ -41,9 +42,10 @@ class PlanView:
         self.annotations = tuple(to_value(resolve(annotation)) for annotation in plan.annotations)
 
     def annotation(self, functor: str, default: Any = None) -> Any:
-        """The argument of an annotation: 3 for ``priority`` in ``@p[priority(3)]``; *default* without it.
+        """Return the argument of an annotation: 3 for ``priority`` in ``@p[priority(3)]``; *default* without
+        it.
 
-        An annotation of several arguments gives a tuple, one without arguments True.
+        Several arguments are returned as a tuple; an annotation without arguments returns True.
         """
         for found in self.annotations:
             if isinstance(found, Structure) and found.functor == functor:
@@ -62,7 +64,7 @@ class EventView:
     Attributes:
         trigger: ``+``, ``-``, ``+!``, ``-!``, ``+?`` …
         literal: the belief or goal.
-        intention: number of the intention that raised it; None when it came from outside.
+        intention: number of the intention that raised it; None for an external event.
     """
 
     def __init__(self, raw: Event) -> None:
@@ -82,16 +84,15 @@ class EventView:
 
 
 class Option:
-    """A plan that is applicable.
+    """An applicable plan.
 
     Attributes:
         plan: the plan.
-        bindings: the values that its variables have by now, by name; those without value are missing, and those
-            that the plan does not use any more.
+        bindings: values by variable name; unbound variables and those that the plan does not use again are missing.
     """
 
     def __init__(self, plan: Plan, frame: Frame) -> None:
-        # The values are taken now: they are undone when the next option is looked for.
+        # Copy the values now: the search for the next option undoes the bindings.
         self.plan = PlanView(plan)
         self.bindings: dict[str, object] = {
             name: to_value(resolve(frame[slot]))
@@ -104,7 +105,7 @@ class Option:
 
 
 class IntentionView:
-    """One thing that an agent is doing.
+    """An intention of an agent.
 
     Attributes:
         id: its number.
@@ -116,14 +117,14 @@ class IntentionView:
 
     @property
     def goals(self) -> tuple[Literal, ...]:
-        """What it is for: its goals and events, the first one first."""
+        """Its goals and events, the first one first."""
         return tuple(
             as_literal(resolve(literal_of(frame[GOAL], frame[ANNOTATIONS]))) for frame in self._raw.frames
         )
 
     @property
     def plans(self) -> tuple[PlanView, ...]:
-        """The plans at work, the first one first."""
+        """Its running plans, the first one first."""
         return tuple(PlanView(frame[PLAN]) for frame in self._raw.frames)
 
     def __repr__(self) -> str:
@@ -131,7 +132,7 @@ class IntentionView:
 
 
 class Message:
-    """A message of another agent.
+    """A message from another agent.
 
     Attributes:
         performative: ``tell``, ``achieve``, ``askOne`` …
@@ -146,7 +147,7 @@ class Message:
 
     @property
     def content(self) -> Any:
-        """What is said: a `Literal`, or another Python value."""
+        """The content: a `Literal`, or another Python value."""
         return _value_of(resolve(self.raw.content))
 
     def __str__(self) -> str:
@@ -154,10 +155,10 @@ class Message:
 
 
 class ReceivedMessage(Message):
-    """A message that an agent written in Python received, and may answer.
+    """A message received by an agent written in Python, which may reply.
 
     Attributes:
-        answered: True when `reply` has been called.
+        answered: True after a call of `reply`.
     """
 
     def __init__(self, raw: SpeechAct, answer: Callable[[SpeechAct, str, Term], None]) -> None:
@@ -167,25 +168,25 @@ class ReceivedMessage(Message):
 
     @property
     def content(self) -> Any:
-        """What is said: a `Literal`, another Python value, or a list of them; variables are `Out` objects."""
+        """The content: a `Literal`, another Python value, or a list of them; variables are `Out` objects."""
         return heard(self.raw.content)
 
     @property
     def is_question(self) -> bool:
-        """True when the sender wants an answer."""
+        """Whether the sender expects an answer."""
         return self.performative in QUESTIONS
 
     def reply(self, content: object, performative: str = "tell") -> None:
-        """Answer the message.
+        """Reply to the message.
 
         Args:
-            content: a text that is AgentSpeak, a `Literal`, or another value; None to a question means that
-                there is no answer.  The answer to ``askAll`` is a list.
-            performative: of the answer.
+            content: AgentSpeak as text, a `Literal`, or another value; None as reply to a question means that
+                there is no answer. The answer to ``askAll`` is a list.
+            performative: of the reply.
 
         Raises:
             AslError: the text is not AgentSpeak.
-            UnknownAgent: the sender has gone.
+            UnknownAgent: the sender no longer exists.
         """
         self.answered = True
         if content is None:
@@ -195,7 +196,7 @@ class ReceivedMessage(Message):
 
 
 class PerceptView:
-    """Something noticed in the environment.
+    """A change noticed in the environment.
 
     Attributes:
         kind: ``add`` or ``remove`` for a belief, ``signal`` for an event without one.
@@ -207,7 +208,7 @@ class PerceptView:
 
     @property
     def literal(self) -> Literal:
-        """What is perceived, with its annotations."""
+        """The perceived literal, with its annotations."""
         plain = as_literal(self.raw.literal)
         return plain.with_annotations(*(to_value(annotation) for annotation in self.raw.annotations))
 
@@ -216,10 +217,11 @@ class PerceptView:
 
 
 def content_of(value: object, performative: str = "tell") -> Term:
-    """The content of a message for a Python value; texts are read as AgentSpeak, those about plans excepted.
+    """Convert a Python value to the content of a message; texts are parsed as AgentSpeak, except texts of
+    plans.
 
     Raises:
-        AslError: a text is no term.
+        AslError: a text is not a term.
     """
     if isinstance(value, str) and performative in _ABOUT_PLANS:
         return String(value)
@@ -231,7 +233,9 @@ def content_of(value: object, performative: str = "tell") -> Term:
 
 
 def heard(content: Term) -> object:
-    """The content of a message as a Python value: a `Literal`, another value such as the text of a plan, or a list."""
+    """Convert the content of a message to Python: a `Literal`, another value such as the text of a plan, or a
+    list.
+    """
     content = resolve(content)
     if is_list(content):
         return [heard(item) for item in list_items(content)]
@@ -240,7 +244,7 @@ def heard(content: Term) -> object:
 
 
 def _value_of(term: Term) -> object:
-    """A term as a Python value; atoms and structures as `Literal` with their annotations."""
+    """Convert a term to a Python value; atoms and structures become `Literal` with their annotations."""
     try:
         return as_literal(term)
     except ValueError:

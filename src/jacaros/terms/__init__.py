@@ -1,1 +1,3 @@
-"""Values of the language: terms, unification, order, arithmetic, text.  Nothing here knows of agents."""
+"""Values of the language: terms, unification, order, arithmetic, text. This package does not depend on
+agents.
+"""

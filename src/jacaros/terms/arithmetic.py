@@ -11,10 +11,11 @@ from jacaros.terms.values import ARITHMETIC, FUNCTION, Annotated, Term, Var, der
 
 Evaluator = Callable[..., Term]
 functions: Mapping[str, Evaluator] = MappingProxyType({})
-"""The functions of the language by name, put here by `jacaros.terms.functions`.
+"""The functions of the language by name, registered by `jacaros.terms.functions`.
 
-They are called with the evaluated arguments and return a number, or None while the arguments are not known.  The agent
-that is `RUNNING` knows those that need an agent.
+They are called with the evaluated arguments and return a number, or None while the arguments are unknown.
+Functions
+that need an agent are called on the agent in `RUNNING`.
 """
 
 
@@ -23,26 +24,25 @@ class Caller(Protocol):
 
     @property
     def call_own(self) -> Callable[[Term], Term]:
-        """Gives the value of a call of a function that needs an agent, or None while it has none."""
+        """Returns the value of a call of a function that needs an agent, or None while it has none."""
 
     def warn_of_operand(self, what: str, value: Term) -> None:
-        """Take note of an operand that is no number: what it is for, and its value."""
+        """Handle an operand that is not a number: a description of it, and its value."""
 
 
 RUNNING: ContextVar[Caller | None] = ContextVar("RUNNING", default=None)
-"""The agent whose turn it is; systems on other loops and in other threads have theirs."""
+"""The agent whose turn it is; systems on other loops and in other threads have their own."""
 
 
 def warn(what: str, value: Term) -> None:
-    """Warn of an operand that is no number, by what it is for and its value; the result is not a number then, as in
-    Jason."""
+    """Warn of an operand that is not a number. As in Jason, the result is NaN."""
     agent = RUNNING.get()
     if agent is not None:
         agent.warn_of_operand(what, value)
 
 
 def settle(term: Term) -> Term:
-    """Dereference, and evaluate when the term is arithmetic whose operands are known."""
+    """Dereference, and evaluate arithmetic whose operands are known."""
     while term.__class__ is Var:
         if term.ref is None:
             return term
@@ -65,11 +65,12 @@ def _evaluate(term: Term) -> Term:
 
 
 _TOO_MANY = 1_000_000
-"""Operations that wait for their operands at the same time."""
+"""Maximum number of nested operations."""
 
 
 def _evaluate_iteratively(term: Term) -> Term:
-    """The value of arithmetic that is nested too deeply for Python's stack; calls of functions inside stay as they are.
+    """Evaluate arithmetic that is nested too deeply for Python's stack; calls of functions inside are not
+    evaluated.
 
     Raises:
         RecursionError: it is nested without end.
@@ -95,7 +96,7 @@ def _evaluate_iteratively(term: Term) -> Term:
 
 
 def _apply(term: Term, operands: list[Term]) -> Term:
-    """The value of an operation, or the term itself while an operand is not known."""
+    """Return the value of an operation, or the term itself while an operand is unknown."""
     for operand in operands:
         if operand.__class__ is not float and _is_open(operand):
             return term
@@ -103,7 +104,7 @@ def _apply(term: Term, operands: list[Term]) -> Term:
 
 
 def _is_open(operand: Term) -> bool:
-    """Whether an operand still waits for a value."""
+    """Return whether an operand still waits for a value."""
     return operand.__class__ is Var or (
         operand.__class__ is tuple and operand[0].kind in (ARITHMETIC, FUNCTION)
     )
@@ -114,12 +115,12 @@ def _number(operand: Term, term: Term) -> float:
         return operand
     if operand.__class__ is Annotated:
         return _number(deref(operand.term), term)
-    warn(f"an operand of '{term[0].name}'", operand)
+    warn(f"operand of `{term[0].name}`", operand)
     return math.nan
 
 
 def call(term: Term) -> Term:
-    """Evaluate a function call; the call itself comes back while arguments are unknown."""
+    """Evaluate a function call; return the call itself while arguments are unknown."""
     function = functions.get(term[0].name)
     if function is not None:
         value = function(*term[1:])
@@ -130,6 +131,6 @@ def call(term: Term) -> Term:
 
 
 def calculated(symbol: str, *operands: Term) -> Term:
-    """The value of an operation on any terms: the slow path of compiled arithmetic."""
+    """Return the value of an operation on any terms: the slow path of compiled arithmetic."""
     values = [settle(operand) for operand in operands]
     return _apply((named(symbol, len(values)).functor, *values), values)

@@ -70,38 +70,38 @@ class QueueValue:
         self._numbers = itertools.count()
 
     def add(self, item: Term) -> None:
-        """Put an element in."""
+        """Add an element."""
         if self.priority:
             heapq.heappush(self._heap, (SortKey(item), next(self._numbers), item))
         else:
             self._items.append(item)
 
     def head(self) -> Term | None:
-        """The next element, or None."""
+        """Return the next element, or None."""
         if self.priority:
             return self._heap[0][2] if self._heap else None
         return self._items[0] if self._items else None
 
     def remove(self) -> Term | None:
-        """Take the next element out, or None."""
+        """Remove and return the next element, or None."""
         if self.priority:
             return heapq.heappop(self._heap)[2] if self._heap else None
         return self._items.popleft() if self._items else None
 
     def clear(self) -> None:
-        """Take all out."""
+        """Remove all elements."""
         self._items.clear()
         self._heap.clear()
 
     def copy(self) -> "QueueValue":
-        """A queue of its own with the same elements."""
+        """Return a new queue with the same elements."""
         other = QueueValue(self.priority)
         for item in self:
             other.add(item)
         return other
 
     def as_list(self) -> Term:
-        """The elements in their order as a list term."""
+        """Return the elements in order as a list term."""
         return make_list(list(self))
 
     def __iter__(self) -> Iterator[Term]:
@@ -115,12 +115,14 @@ _COLLECTIONS = (SetValue, MapValue, QueueValue)
 
 
 def detached(term: Term) -> Term:
-    """The term with collections of its own; one without collections is given back as it is."""
+    """Return the term with its own copies of collections; a term without collections is returned
+    unchanged.
+    """
     return _copy(resolve(term), {}) if holds_collection(term) else term
 
 
 def holds_collection(term: Term) -> bool:
-    """Whether there is a set, map or queue in a term."""
+    """Return whether a term contains a set, map or queue."""
     stack = [term]
     while stack:
         part = deref(stack.pop())

@@ -22,7 +22,7 @@ def _on_number(compute: Callable[[float], float]) -> Callable[..., Term]:
         if value.__class__ is not float:
             if free_variables(value):
                 return None
-            arithmetic.warn("the argument of a function", value)
+            arithmetic.warn("argument of a function", value)
             return math.nan
         try:
             return float(compute(value))
@@ -54,7 +54,7 @@ def _log(value: float) -> float:
 
 
 def _on_list(compute: Callable[[list[float]], float]) -> Callable[..., Term]:
-    """A function of the numbers in a list (other elements are passed over), or of its arguments."""
+    """A function of the numbers in a list (other elements are ignored), or of its arguments."""
 
     def function(*arguments: Term) -> Term:
         values = [resolve(a) for a in arguments]
@@ -71,18 +71,18 @@ def _on_list(compute: Callable[[list[float]], float]) -> Callable[..., Term]:
 
 
 def _of_some(compute: Callable[[list[float]], float]) -> Callable[[list[float]], float]:
-    """A function that has no value without numbers."""
+    """A function that has no value for an empty list of numbers."""
 
     def function(numbers: list[float]) -> float:
         if not numbers:
-            raise ArithmeticFault("a function of a list without numbers")
+            raise ArithmeticFault("list without numbers as argument of a function")
         return compute(numbers)
 
     return function
 
 
 def _sum(numbers: list[float]) -> float:
-    """Added up from the left, so that every Python rounds as Java does."""
+    """Add from the left, so that every Python version rounds as Java does."""
     total = 0.0
     for number in numbers:
         total += number
@@ -100,7 +100,7 @@ def _median(numbers: list[float]) -> float:
 
 
 def _standard_deviation(numbers: list[float]) -> float:
-    """Of a sample: 0 for no numbers, not a number for a single one."""
+    """The standard deviation of a sample: 0 for no numbers, NaN for a single one."""
     if len(numbers) < 2:
         return math.nan if numbers else 0.0
     average = _average(numbers)
@@ -162,11 +162,13 @@ ARITIES: Final[dict[str, tuple[int, float]]] = {
     ".length": (1, 1),
     ".count": (1, 1),
 }
-"""Fewest and most arguments of each function of the language, those that need an agent included."""
+"""Minimum and maximum number of arguments of each function of the language, including those that need an
+agent.
+"""
 
 
 def is_function(name: str, arity: int, registered: Mapping[str, int]) -> bool:
-    """Whether *name* with *arity* arguments is a function of the language or one of the *registered* ones."""
+    """Return whether *name* with *arity* arguments is a function of the language or a *registered* one."""
     limits = ARITIES.get(name)
     if limits is not None and limits[0] <= arity <= limits[1]:
         return True
@@ -177,7 +179,7 @@ class FunctionNames(dict[str, int]):
     """The functions that a running program has registered, with their numbers of arguments.
 
     Attributes:
-        known: those of the project, with their least and greatest numbers of arguments.
+        known: those of the project, with their minimum and maximum numbers of arguments.
     """
 
     def __init__(

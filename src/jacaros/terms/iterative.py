@@ -1,10 +1,12 @@
-"""Terms that are nested too deeply for Python's stack, or contain themselves.
+"""Operations on terms that are nested too deeply for Python's stack, or contain themselves.
 
-The functions on terms call themselves; where Python's stack ends, they hand the rest over to a loop with a list of its
-own, so that the depth of a term is limited by memory alone.  A cycle always leads through a bound variable: a term that
-contains itself is found by a variable that is met again inside its own value.
+The functions on terms are recursive. When Python's stack ends, they continue with the loops here, which keep
+a list of
+their own, so only memory limits the depth of a term. A cycle always leads through a bound variable: a term
+that contains
+itself is recognised by a variable that occurs inside its own value.
 
-People see an `excerpt` of a long term.
+Logs show an `excerpt` of a long term.
 """
 
 from collections.abc import Callable
@@ -25,11 +27,11 @@ from jacaros.terms.values import (
 
 _COMPOUND = frozenset({tuple, List, Annotated})
 MANY_TURNS = 100_000
-"""Elements of a list after which a loop begins to look whether it goes in a circle."""
+"""Number of list elements after which a loop begins to check for cycles."""
 
 
 class CyclicTerm(Exception):
-    """A term contains itself: it has no end that could be printed, sent or stored."""
+    """A term contains itself, so it cannot be printed, sent or stored."""
 
     def __init__(self) -> None:
         super().__init__("a term contains itself")
@@ -41,13 +43,13 @@ def rebuild(
     structure: Callable[[Term], Term],
     annotated: Callable[[Term, tuple[Term, ...], Term], Term],
 ) -> Term:
-    """A copy of a term with the values of its variables; unchanged structures are shared.
+    """Return a copy of a term with the values of its variables; unchanged structures are shared.
 
     Args:
         term: any term.
-        free: what takes the place of an unbound variable.
+        free: returns the replacement of an unbound variable.
         structure: finishes a structure.
-        annotated: puts a term and its annotations and tail together.
+        annotated: combines a term with its annotations and tail.
 
     Raises:
         CyclicTerm: the term contains itself.
@@ -99,7 +101,7 @@ def _parts(term: Term) -> tuple[Term, ...]:
 
 
 def _structure(term: Term, done: list[Term]) -> Term:
-    """The structure of the rebuilt arguments at the end of *done*, which are taken off."""
+    """Return the structure of the rebuilt arguments at the end of *done*, which are removed."""
     arguments = done[1 - len(term) :]
     del done[1 - len(term) :]
     same = all(new is old for new, old in zip(arguments, term[1:], strict=True))
@@ -128,11 +130,13 @@ def _annotated(
 
 
 _HASHABLE = 10_000
-"""Levels of a term (each element of a list is one) that Python can hash without overflowing its stack."""
+"""Maximum depth of a term (each element of a list is a level) that Python can hash without overflowing its
+stack.
+"""
 
 
 def as_key(term: Term) -> Term:
-    """The term itself, which becomes an element of a set or a key of a map.
+    """Return the term, which becomes an element of a set or a key of a map.
 
     Raises:
         RecursionError: it is nested too deeply for that.
@@ -150,7 +154,7 @@ def as_key(term: Term) -> Term:
 
 
 class Turns:
-    """Watches a walk along bound variables, and finds out when it goes in a circle (Brent)."""
+    """Watches a walk along bound variables, and detects cycles (Brent's algorithm)."""
 
     __slots__ = ("_count", "_limit", "_mark")
 
@@ -159,10 +163,10 @@ class Turns:
         self._count, self._limit = 0, 1
 
     def pass_by(self, variable: Var) -> None:
-        """Take note of a variable on the way.
+        """Note a variable on the way.
 
         Raises:
-            CyclicTerm: it was passed before.
+            CyclicTerm: the walk has passed it before.
         """
         if variable is self._mark:
             raise CyclicTerm
@@ -172,25 +176,27 @@ class Turns:
 
 
 MOST_PARTS = 150
-"""So many names, numbers and brackets are kept: more than a line has room for."""
+"""Maximum number of names, numbers and brackets in an excerpt: more than fit into a line."""
 REST = Var("...")
-"""Stands for what was left out."""
+"""Stands for the rest that was left out."""
 
 
 def excerpt(term: Term, parts: int = MOST_PARTS) -> Term:
-    """The term, with dots in place of what comes after its first *parts* parts.
+    """Return the term, with dots in place of what follows its first *parts* parts.
 
-    Variables that have values are replaced by them; arithmetic stays as it is.  A term that contains itself has an
-    excerpt, too.  Plans and their bodies stay whole.
+    Variables are replaced by their values; arithmetic is unchanged. A term that contains itself has an
+    excerpt, too. Plans
+    and their bodies stay whole.
 
-    Where parts are shared, as in ``f(T,T)`` with such a ``T``, the text of a small term can be longer than any memory;
-    and a list of all ranges of a laser is more than anybody reads.
+    The text of a small term with shared parts, as in ``f(T,T)`` with such a ``T``, can exceed any memory, and
+    a list of all
+    ranges of a laser is longer than a reader needs.
     """
     return _Excerpt(parts).of(term)
 
 
 class _Excerpt:
-    """Takes parts until there are enough; each level takes one, so it is not deeper than that."""
+    """Takes parts until there are enough; each level takes one, which limits the depth."""
 
     def __init__(self, parts: int) -> None:
         self._left = parts

@@ -1,4 +1,4 @@
-"""Strong negation and namespaces put on terms that become known later: ``~X`` and ``ns::X``."""
+"""Strong negation and namespaces of terms that are known only later: ``~X`` and ``ns::X``."""
 
 from jacaros.terms.values import NEGATED, Annotated, Functor, Term, Var, deref, functor
 
@@ -22,7 +22,7 @@ def qualify(value: Term, namespace: str | None, negated: bool) -> Term:
 
 
 def positive_form(term: Term) -> Term | None:
-    """A negated literal without its negation; None for any other term."""
+    """Return a negated literal without its negation; None for any other term."""
     symbol = term[0] if term.__class__ is tuple else term
     if symbol.__class__ is not Functor or not symbol.negated:
         return None

@@ -1,8 +1,10 @@
 r"""The operators of the language, one line for each in `OPERATORS`.
 
-Lexer, parser, printers, `jacaros fmt`, compiler and interpreter read this table; an arithmetic operator, or a relation
-that binds nothing, is added by a line here (and by its function, if Python has none).  A connective needs a syntax node
-and a meaning as a condition, too.
+Lexer, parser, printers, `jacaros fmt`, compiler and interpreter read this table. To add an arithmetic
+operator, or a
+relation that binds nothing, add a line here (and its function, if Python has none). A connective also needs a
+syntax
+node and a meaning as a condition.
 """
 
 import math
@@ -21,15 +23,15 @@ class Operator(NamedTuple):
     """One operator.
 
     Attributes:
-        symbol: as it is written.
+        symbol: as written.
         kind: `LOGIC`, `RELATION` or `ARITHMETIC`.
         level: a higher one binds tighter.
-        numbers: its value for numbers: a number, or whether the relation holds.  None for connectives and for ``=..``.
-        code: the same as Python code, with ``{0}`` and ``{1}`` for the operands; derived where it is a call of *numbers*.
+        numbers: computes its value for numbers: a number, or whether the relation holds. None for connectives and ``=..``.
+        code: the same as Python code, with ``{0}`` and ``{1}`` for the operands; by default a call of *numbers*.
         arity: number of operands; an operator with one is written before it.
         right: ``a op b op c`` means ``a op (b op c)``.
         binds: the relation may bind variables.
-        partial: the value may be missing (`ArithmeticFault`), so that it is not computed before it is asked for.
+        partial: the value may not exist (`ArithmeticFault`), computed only when needed.
     """
 
     symbol: str
@@ -49,12 +51,12 @@ class Operator(NamedTuple):
 
     @property
     def is_word(self) -> bool:
-        """Whether it is written in letters, and so reserved."""
+        """Whether it is written in letters, and therefore reserved."""
         return self.symbol.isalpha()
 
     @property
     def orders(self) -> bool:
-        """Whether it is a relation that looks at the order of its operands."""
+        """Whether it is a relation that depends on the order of its operands."""
         return self.kind == RELATION and self.numbers not in (operator.eq, operator.ne, None)
 
     @property
@@ -71,7 +73,7 @@ class Operator(NamedTuple):
 
 
 def divide(left: float, right: float) -> float:
-    """Division of reals: ``x / 0`` is infinite or not a number, as in IEEE."""
+    """Division of reals: ``x / 0`` is infinite or NaN, as in IEEE 754."""
     if right == 0.0:
         if left == 0.0 or left != left:
             return math.nan
@@ -87,10 +89,10 @@ def to_int(value: float) -> int:
 
 
 def integer_divide(left: float, right: float) -> float:
-    """``div``: both operands and the quotient truncated towards zero.
+    """``div``: both operands and the quotient are truncated towards zero.
 
     Raises:
-        ArithmeticFault: when the divisor is zero.
+        ArithmeticFault: the divisor is zero.
     """
     dividend, divisor = to_int(left), to_int(right)
     if divisor == 0:
@@ -100,14 +102,14 @@ def integer_divide(left: float, right: float) -> float:
 
 
 def remainder(left: float, right: float) -> float:
-    """``mod``: the remainder that has the sign of the dividend."""
+    """``mod``: the remainder has the sign of the dividend."""
     if right == 0.0 or not math.isfinite(left):
         return math.nan
     return math.fmod(left, right)
 
 
 def power(left: float, right: float) -> float:
-    """``**``; infinite or not a number where there is no real result, and ``1 ** x`` is 1 for finite x only."""
+    """``**``; infinite or NaN if there is no real result, and ``1 ** x`` is 1 only for finite x."""
     if abs(left) == 1.0 and not math.isfinite(right):
         return math.nan
     try:
@@ -146,11 +148,11 @@ PREFIX: Final = {each.symbol: each for each in OPERATORS if each.arity == 1}
 OR, AND, NOT, RELATIONAL, SUM = (
     each.level for each in (BINARY["|"], BINARY["&"], PREFIX["not"], BINARY["="], BINARY["+"])
 )
-"""Levels that the grammar knows by name."""
+"""Levels used by name in the grammar."""
 COMPUTE: Final[dict[Functor, Callable[..., float]]] = {
     each.functor: each.numbers for each in OPERATORS if each.kind == ARITHMETIC and each.numbers is not None
 }
-"""How arithmetic is computed, by the functor of its terms."""
+"""The functions of arithmetic, by the functor of its terms."""
 WORDS: Final = frozenset(each.symbol for each in OPERATORS if each.is_word)
 """The reserved words among the operators."""
 

@@ -1,6 +1,6 @@
 """The total order of terms: numbers, strings, lists, literals, other values, unbound variables.
 
-It never looks at addresses, so that a run repeated with the same seed sorts alike.
+It never depends on addresses, so runs with the same seed sort alike.
 """
 
 import itertools
@@ -51,7 +51,7 @@ def _rank(term: Term) -> int:
 
 
 def compare(left: Term, right: Term) -> int:
-    """Negative, zero or positive as *left* comes before, with or after *right*."""
+    """Return a negative number, zero or a positive number as *left* comes before, with or after *right*."""
     turns = 0
     try:
         while turns < MANY_TURNS:
@@ -71,7 +71,8 @@ def compare(left: Term, right: Term) -> int:
             if rank == _LIST and not (
                 (left.__class__ is List and right.__class__ is List) or left is NIL or right is NIL
             ):
-                # A list that is open, or may be: element by element, as a closed one would be copied for each.
+                # An open list, or one that may be: compare element by element, as a closed one would be
+                # copied for each.
                 first, left = parts_of_list(left)
                 second, right = parts_of_list(right)
                 order = compare(first, second)
@@ -92,7 +93,7 @@ def compare(left: Term, right: Term) -> int:
 
 
 def _compare_plain(left: Term, right: Term) -> int:
-    """Atoms and structures, without annotations: what `_decisions` says of them, written out for speed."""
+    """Compare atoms and structures without annotations: `_decisions` inlined for speed."""
     first = left[0] if left.__class__ is tuple else left
     second = right[0] if right.__class__ is tuple else right
     if first is not second:
@@ -109,7 +110,7 @@ def _compare_plain(left: Term, right: Term) -> int:
 
 
 def _compare_iteratively(left: Term, right: Term) -> int:
-    """`compare` of terms that are nested too deeply for Python's stack, or without end."""
+    """`compare` for terms that are nested too deeply for Python's stack, or without end."""
     todo: list[Any] = [(left, right)]
     met: set[tuple[int, int]] = set()
     while todo:
@@ -126,7 +127,7 @@ def _compare_iteratively(left: Term, right: Term) -> int:
             todo.append(compare(left, right))
             continue
         if left is not item[0] or right is not item[1] or rank == _OTHER:
-            # Only by a variable or a collection a term can contain itself.
+            # A term can contain itself only through a variable or a collection.
             if (id(left), id(right)) in met:
                 continue
             met.add((id(left), id(right)))
@@ -135,10 +136,12 @@ def _compare_iteratively(left: Term, right: Term) -> int:
 
 
 def _decisions(left: Term, right: Term, rank: int) -> Iterator[Any]:
-    """What decides between two terms of the same rank, in turn: pairs of terms to compare, and decisions.
+    """Yield what decides between two terms of the same rank, in order: pairs of terms to compare, and
+    decisions.
 
-    Literals: by namespace, functor, positive before negated, arguments pairwise, arity, annotations.  Sets, maps and
-    queues: by kind and contents.  Opaque objects: by their numbers.
+    Literals: by namespace, functor, positive before negated, arguments pairwise, arity, annotations. Sets,
+    maps and
+    queues: by kind and contents. Opaque objects: by their numbers.
     """
     if rank == _OTHER:
         if left.__class__ is not right.__class__:
@@ -175,7 +178,7 @@ def _decisions(left: Term, right: Term, rank: int) -> Iterator[Any]:
 
 
 def _compare_numbers(left: float, right: float) -> int:
-    """By value; what is not a number comes after all numbers, so that sorting stays well defined."""
+    """Compare by value; NaN comes last, so that sorting is well defined."""
     if left == right:
         return 0
     if left < right:
@@ -190,7 +193,7 @@ def _compare_variables(left: Var, right: Var) -> int:
 
 
 def number_of(variable: Var) -> int:
-    """The variable's place among those of its name, given out at the first comparison."""
+    """Return the variable's position among those of its name, assigned at the first comparison."""
     try:
         return variable.number
     except AttributeError:
@@ -199,7 +202,7 @@ def number_of(variable: Var) -> int:
 
 
 def _compare_functors(first: Functor, second: Functor) -> int:
-    """By namespace, name and negation; the number of arguments counts only after the arguments."""
+    """Compare by namespace, name and negation; the number of arguments counts only after the arguments."""
     a = (first.namespace or "", first.name, first.negated)
     b = (second.namespace or "", second.name, second.negated)
     return 0 if a == b else -1 if a < b else 1
@@ -213,7 +216,7 @@ SortKey = cmp_to_key(compare)
 
 
 def sorted_terms(terms: Iterable[Term]) -> list[Term]:
-    """The terms in the standard order; equal ones keep their order."""
+    """Return the terms in the standard order; equal ones keep their order."""
     items = list(terms)
     if ordered_by_python(items):
         return sorted(items)
@@ -224,7 +227,7 @@ def sorted_terms(terms: Iterable[Term]) -> list[Term]:
 
 
 def _by_name(items: list[Term]) -> dict[tuple[str, str, bool], list[Term]] | None:
-    """Atoms and structures grouped by what counts first in the standard order; None when there are other terms."""
+    """Group atoms and structures by name; return None if there are other terms."""
     groups: dict[tuple[str, str, bool], list[Term]] = {}
     for item in items:
         symbol = item[0] if item.__class__ is tuple else item
@@ -235,7 +238,7 @@ def _by_name(items: list[Term]) -> dict[tuple[str, str, bool], list[Term]] | Non
 
 
 def _sorted_namesakes(items: list[Term]) -> list[Term]:
-    """Sort terms of the same name: by their arguments alone where Python's own comparison will do."""
+    """Sort terms of the same name: by their arguments alone if Python's own comparison suffices."""
     if len(items) == 1:
         return items
     symbols = {item[0] if item.__class__ is tuple else item for item in items}
@@ -249,13 +252,15 @@ def _sorted_namesakes(items: list[Term]) -> list[Term]:
 
 
 def ordered_by_python(items: list[Term]) -> bool:
-    """Whether Python's own comparison, which is much faster, gives the standard order: of numbers only, or strings only."""
+    """Return whether Python's own, much faster comparison gives the standard order: only numbers, or only
+    strings.
+    """
     kinds = set(map(type, items))
     return kinds == {String} or (kinds == {float} and not any(map(ne, items, items)))
 
 
 def sorted_set(items: list[Term]) -> list[Term]:
-    """The terms in the standard order, the first one of equal ones."""
+    """Return the terms in the standard order, the first one of equal ones."""
     if ordered_by_python(items):
         return sorted(dict.fromkeys(items))
     groups = _by_name(items)
@@ -277,7 +282,7 @@ def _without_doubles(items: list[Term]) -> list[Term]:
 
 
 def annotation_set(annotations: tuple[Term, ...]) -> tuple[Term, ...]:
-    """Sorted, without duplicates, as annotations are kept."""
+    """Return annotations as they are kept: sorted, without duplicates."""
     if len(annotations) < 2:
         return annotations
     return tuple(sorted_set(list(annotations)))
@@ -286,9 +291,9 @@ def annotation_set(annotations: tuple[Term, ...]) -> tuple[Term, ...]:
 def merge_annotations(
     held: tuple[Term, ...], added: tuple[Term, ...]
 ) -> tuple[tuple[Term, ...], tuple[Term, ...]]:
-    """Put *added* into the sorted annotations *held*: all of them, and those that are new.
+    """Insert *added* into the sorted annotations *held*; return all of them, and those that are new.
 
-    Each is placed by bisection: a belief with many annotations must not be sorted again for one more.
+    Each is inserted by bisection: a belief with many annotations must not be sorted again for each new one.
     """
     merged = list(held)
     new = []

@@ -42,7 +42,7 @@ NO_LABEL = atom("nolabel")
 
 
 def make_body(steps: Iterable[Term], rest: Term = BODY_END, symbol: Functor = BODY_SEQUENCE) -> Term:
-    """The body of these step terms, with *rest* behind them; *symbol* is `BODY_TERM` for one in braces."""
+    """Return the body of these step terms, followed by *rest*; *symbol* is `BODY_TERM` for one in braces."""
     body: Term = rest
     for step in reversed(list(steps)):
         body = (symbol, step, body)
@@ -60,7 +60,7 @@ def trigger(operator: str, literal: Term) -> Term:
 
 
 def body_steps(body: Term) -> Iterator[Term]:
-    """The steps of a body term; a variable or other term at the end counts as a step."""
+    """Yield the steps of a body term; a variable or other term at the end counts as a step."""
     body = deref(body)
     while body.__class__ is tuple and body[0] in BODIES:
         yield deref(body[1])
@@ -73,7 +73,7 @@ _NO_STEPS = TRIGGERS | {PLAN, RULE}
 
 
 def step_parts(step_term: Term) -> tuple[str, tuple[Term, ...]]:
-    """Operator and operands of a step; any other term is an action."""
+    """Return operator and operands of a step; any other term is an action."""
     if step_term.__class__ is tuple:
         symbol = step_term[0]
         if symbol.kind == KIND and symbol not in _NO_STEPS:
@@ -82,16 +82,16 @@ def step_parts(step_term: Term) -> tuple[str, tuple[Term, ...]]:
 
 
 def trigger_parts(term: Term) -> tuple[str, Term]:
-    """Operator text and literal of a trigger term."""
+    """Return operator text and literal of a trigger term."""
     return deref(term[1]).name, deref(term[2])
 
 
 def plan_text_parts(term: Term) -> tuple[Term, str, Term, Term, Term]:
-    """Label, trigger operator, trigger literal, context and body of a plan term."""
+    """Return label, trigger operator, trigger literal, context and body of a plan term."""
     operator, literal = trigger_parts(deref(term[2]))
     return term[1], operator, literal, deref(term[3]), deref(term[4])
 
 
 def is_body(term: Term) -> bool:
-    """Whether a term is a plan body."""
+    """Return whether a term is a plan body."""
     return term is BODY_END or (term.__class__ is tuple and term[0] in BODIES)

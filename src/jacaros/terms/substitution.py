@@ -33,9 +33,9 @@ HOLDERS = frozenset({tuple, Annotated, List})
 
 
 def resolve(term: Term) -> Term:
-    """Apply all bindings: variables replaced by their values, arithmetic evaluated.
+    """Apply all bindings: variables are replaced by their values, arithmetic is evaluated.
 
-    The term itself is returned when there is nothing to replace.  Unbound variables stay as they are.
+    If there is nothing to replace, the term itself is returned. Unbound variables are kept.
     """
     kind = term.__class__
     if kind in ATOMIC:
@@ -94,7 +94,7 @@ def _resolve_list(term: List) -> Term:
 
 
 def _settle(term: List) -> None:
-    """Find out how many elements of a resolved list need not be looked at again."""
+    """Determine how many elements of a resolved list need not be checked again."""
     if term.is_settled():
         return
     count, depth = term.settled, term.depth
@@ -109,13 +109,15 @@ def _settle(term: List) -> None:
             count += 1
     except RecursionError:
         return
-    # The depth first: another thread may look at the list.
+    # Set the depth first: another thread may read the list.
     term.depth = depth
     term.settled = count
 
 
 def _depth(term: Term, level: int = 0) -> int | None:
-    """How deep a resolved term is nested; `NO_KEY` with annotations, None while something in it may change."""
+    """Return how deep a resolved term is nested; `NO_KEY` with annotations, None while something in it may
+    change.
+    """
     kind = term.__class__
     if kind is Var or level > _KEY_DEPTH:
         return None
@@ -201,7 +203,7 @@ def _annotate(inner: Term, annotations: tuple[Term, ...], tail: Term) -> Term:
 
 
 def with_tail(annotations: tuple[Term, ...], tail: Term) -> tuple[tuple[Term, ...], Term]:
-    """The annotations together with those of the tail, and what is unbound of it."""
+    """Return the annotations together with those of the tail, and its unbound rest."""
     tail = deref(tail)
     if tail is None or tail.__class__ is Var:
         return annotations, tail
@@ -210,9 +212,11 @@ def with_tail(annotations: tuple[Term, ...], tail: Term) -> tuple[tuple[Term, ..
 
 
 def is_flat(term: Term) -> bool:
-    """Whether the term is an atom, or a structure of atoms, numbers and strings: nothing in it can be bound or evaluated.
+    """Return whether the term is an atom, or a structure of atoms, numbers and strings: nothing in it can be
+    bound or
+    evaluated.
 
-    A quick test for the most frequent terms; False does not say that there are variables.
+    A quick test for the most frequent terms; False does not mean that there are variables.
     """
     if term.__class__ is not tuple:
         return term.__class__ is Functor and not term.kind
@@ -225,12 +229,12 @@ def is_flat(term: Term) -> bool:
 
 
 def is_ground(term: Term) -> bool:
-    """Whether the term holds no unbound variable."""
+    """Return whether the term contains no unbound variable."""
     return is_flat(term) or not free_variables(term)
 
 
 def free_variables(term: Term, found: list[Var] | None = None) -> list[Var]:
-    """The unbound variables of a term, each once, in order of appearance."""
+    """Return the unbound variables of a term, each once, in order of appearance."""
     found = [] if found is None else found
     met = {id(variable) for variable in found}
     stack = [term]
@@ -260,7 +264,9 @@ def free_variables(term: Term, found: list[Var] | None = None) -> list[Var]:
 
 
 def rename(term: Term, names: dict[Var, Var] | None = None) -> Term:
-    """A copy with fresh variables in place of the unbound ones; ground terms are returned as they are."""
+    """Return a copy with fresh variables in place of the unbound ones; ground terms are returned
+    unchanged.
+    """
     if is_flat(term):
         return term
     term = resolve(term)
@@ -270,7 +276,7 @@ def rename(term: Term, names: dict[Var, Var] | None = None) -> Term:
 
 
 def replace_variable(term: Term, variable: Var, value: Var) -> Term:
-    """The resolved term with another variable in the place of this one."""
+    """Return the resolved term with one variable replaced by another."""
     return _rename(resolve(term), _Alone({variable: value}))
 
 
@@ -315,7 +321,9 @@ def _renamed(term: Term, names: dict[Var, Var]) -> Term:
 
 
 def related(symbol: str, left: Term, right: Term) -> bool:
-    """Whether a relation that binds nothing holds: of numbers by value, of other terms by order or by equality."""
+    """Return whether a relation that binds nothing holds: numbers by value, other terms by order or
+    equality.
+    """
     relation = BINARY[symbol]
     assert relation.numbers is not None
     left, right = settle(left), settle(right)
@@ -338,7 +346,7 @@ def equal(left: Term, right: Term) -> bool:
 
 
 def _equal_by_parts(left: Term, right: Term) -> bool:
-    """Equality of resolved terms that are nested too deeply for Python's own comparison."""
+    """Compare resolved terms that are nested too deeply for Python's own comparison."""
     stack = [(left, right)]
     while stack:
         a, b = stack.pop()
@@ -369,8 +377,10 @@ _KEY_DEPTH = 300
 
 
 def is_key(term: Term, depth: int = 0) -> bool:
-    """Whether a resolved term can be looked up by equality: ground, without annotations, and not nested so deeply
-    that Python could not compare or hash it."""
+    """Return whether a resolved term can be looked up by equality.
+
+    It must be ground, without annotations, and not nested too deeply for Python to compare or hash it.
+    """
     while True:
         kind = term.__class__
         if kind is Var or kind is Annotated or depth > _KEY_DEPTH:

@@ -1,4 +1,4 @@
-"""Terms as AgentSpeak text, printed as Jason prints them."""
+"""Terms as AgentSpeak text, as Jason prints them."""
 
 import math
 from collections.abc import Iterable
@@ -40,11 +40,11 @@ from jacaros.terms.values import (
 )
 
 _LEAST, _GREATEST, _LARGEST = -(2.0**63), 2.0**63, 2**63 - 1
-"""Of the whole numbers that Java's ``long`` can have; `_GREATEST` is one more than the largest."""
+"""Limits of Java's ``long``; `_GREATEST` is one more than the largest value."""
 
 
 def number_text(value: float) -> str:
-    """A number: integral values without a fraction, others in the shortest form of Java's doubles."""
+    """Format a number: integral values without a fraction, others in the shortest form of Java's doubles."""
     if _LEAST <= value <= _GREATEST:
         whole = int(value)
         if whole == value:
@@ -53,7 +53,7 @@ def number_text(value: float) -> str:
 
 
 def double_text(value: float) -> str:
-    """A number as Java's ``Double.toString`` writes it: always with a fraction or an exponent."""
+    """Format a number as Java's ``Double.toString``: always with a fraction or an exponent."""
     if value != value:
         return "NaN"
     if math.isinf(value):
@@ -71,7 +71,7 @@ def double_text(value: float) -> str:
 
 
 def _shortest(value: float) -> str:
-    """The shortest digits that tell the number from others, two of them at least as in Java."""
+    """Return the shortest digits that identify the number, at least two as in Java."""
     shortest = repr(value)
     if "e" in shortest and "." not in shortest:
         nearest = f"{value:.1e}"
@@ -80,7 +80,9 @@ def _shortest(value: float) -> str:
 
 
 def _scientific(value: float) -> tuple[str, int]:
-    """Digits with one place before the point, and the power of ten, of a number that repr writes plainly."""
+    """Return digits with one place before the point, and the power of ten, of a number that repr writes
+    without exponent.
+    """
     whole, _, fraction = repr(abs(value)).partition(".")
     if whole != "0":
         digits, power = (whole + fraction).rstrip("0"), len(whole) - 1
@@ -91,18 +93,18 @@ def _scientific(value: float) -> tuple[str, int]:
 
 
 def quoted(text: str) -> str:
-    """A string in double quotes as it is written in a program; `text` shows its characters as they are."""
+    """Return a string in double quotes, as written in a program; `text` does not escape its characters."""
     return '"' + text.replace("\n", "\\n").replace('"', '\\"') + '"'
 
 
 def unquoted(written: str) -> str:
-    r"""The value of a string in quotes: ``\n`` and ``\"`` are converted, every other backslash stays."""
+    r"""Return the value of a quoted string: ``\n`` and ``\"`` are converted, other backslashes are kept."""
     inner = written[1:-1]
     return inner.replace("\\n", "\n").replace('\\"', '"') if "\\" in inner else inner
 
 
 def text(term: Term) -> str:
-    """The term with all bindings applied, strings in quotes."""
+    """Return the text of a term with all bindings applied, strings in quotes."""
     if term.__class__ is float:
         return number_text(term)
     term = resolve(term)
@@ -110,7 +112,9 @@ def text(term: Term) -> str:
 
 
 def display(term: Term) -> str:
-    """The term as ``.print`` shows it: a string bare, an unbound variable marked."""
+    """Return the text of a term as ``.print`` shows it: a string without quotes, an unbound variable
+    marked.
+    """
     term = resolve(term)
     if term.__class__ is String:
         return str(term)
@@ -120,7 +124,7 @@ def display(term: Term) -> str:
 
 
 def _is_unknown(term: Term) -> bool:
-    """Whether a term is a variable without value, perhaps negated or with annotations."""
+    """Return whether a term is an unbound variable, possibly negated or with annotations."""
     if term.__class__ is Annotated:
         term = term.term
     if term.__class__ is tuple and term[0] is NEGATED:
@@ -133,7 +137,7 @@ _Pieces = list[Any]
 
 
 def _write(term: Term) -> str:
-    """Terms may be nested as deeply as memory allows, so what is still to be written is kept in a list."""
+    """Write a term with a list of pending parts, as terms may be nested as deeply as memory allows."""
     written: list[str] = []
     todo: _Pieces = [term]
     inside: set[int] = set()
@@ -190,7 +194,9 @@ def _annotated(term: Annotated) -> _Pieces:
 
 
 def _flat(term: tuple[Term, ...]) -> str:
-    """A structure whose arguments are numbers, strings and atoms, as most are; empty when it is not one."""
+    """Write a structure whose arguments are numbers, strings and atoms, as most are; return an empty string
+    for others.
+    """
     symbol = term[0]
     if symbol.kind != PLAIN or symbol is CONS:
         return ""
@@ -269,7 +275,7 @@ def _plan(term: tuple[Term, ...]) -> _Pieces:
 
 
 def plan_text(plan: Term) -> str:
-    """A plan as it is written in a program, without braces."""
+    """Return a plan as written in a program, without braces."""
     return (
         "".join(_write(piece) if piece.__class__ is not str else piece for piece in _plan(resolve(plan)))
         + "."
@@ -283,7 +289,7 @@ _STATEMENTS = {
     "|&|": (".fork", "and"),
     "|||": (".fork", "or"),
 }
-"""The internal actions that control statements are for Jason, and so in what it prints."""
+"""The internal actions that control statements are in Jason, and in what it prints."""
 _PLAN_CHANGES = {
     "+": (".add_plan", "self", "begin"),
     "+<": (".add_plan", "self", "begin"),

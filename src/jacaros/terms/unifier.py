@@ -1,8 +1,10 @@
 """Unification of terms.
 
-Variables are bound in place; a `Trail` remembers which, so that a search can take bindings back.  What
-differs from textbook unification is the treatment of annotations (Jason): those of the left term must be a
-subset of those of the right one.
+Variables are bound in place; a `Trail` records which, so that a search can undo bindings. The difference from
+textbook
+unification is the treatment of annotations (as in Jason): those of the left term must be a subset of those of
+the right
+one.
 """
 
 from collections.abc import Iterator
@@ -32,10 +34,10 @@ class Trail(list[Var]):
     """The variables bound since a search began, in order.
 
     Attributes:
-        serial: number of goals posted so far; stamped on every binding, so that those made for a failed goal
-            can be told from older ones.
-        deep: a unification is under way that does without Python's stack.
-        room: how many more rules the search under way may open.
+        serial: number of goals posted so far; stamped on every binding, so that bindings made for a failed goal
+            can be distinguished from older ones.
+        deep: an iterative unification is running.
+        room: how many more rules the current search may open.
     """
 
     __slots__ = ("deep", "room", "serial")
@@ -48,14 +50,14 @@ class Trail(list[Var]):
 
 
 def bind(variable: Var, value: Term, trail: Trail) -> None:
-    """Give an unbound variable its value."""
+    """Bind an unbound variable."""
     variable.ref = value
     variable.at = trail.serial
     trail.append(variable)
 
 
 def undo(trail: Trail, mark: int) -> None:
-    """Take back all bindings made since the trail had the length *mark*."""
+    """Undo all bindings made since the trail had the length *mark*."""
     while len(trail) > mark:
         trail.pop().ref = None
 
@@ -63,10 +65,10 @@ def undo(trail: Trail, mark: int) -> None:
 def unify(left: Term, right: Term, trail: Trail) -> bool:  # noqa: C901 - the inner loop of every search
     """Make two terms equal by binding variables; the annotations of *left* must be among those of *right*.
 
-    On failure bindings may be left on the trail: the caller takes them back.
+    On failure, bindings may remain on the trail: the caller undoes them.
     """
     kind = left.__class__
-    if kind in ATOMIC:  # the most frequent cases, written out
+    if kind in ATOMIC:  # the most frequent cases, inlined
         if right.__class__ in ATOMIC:
             return kind is right.__class__ and bool(left == right)
         if right.__class__ is Var and right.ref is None:
@@ -116,7 +118,7 @@ def unify(left: Term, right: Term, trail: Trail) -> bool:  # noqa: C901 - the in
                 continue
             return kind is right.__class__ and bool(left == right)
     except RecursionError:
-        # What was bound so far stays: it is made equal once more.
+        # Bindings made so far stay: they are made equal once more.
         if trail.deep:
             raise
     trail.deep = True
@@ -138,10 +140,10 @@ def _unify_lists(left: List, right: List, trail: Trail) -> bool:
 
 
 def _unify_iteratively(left: Term, right: Term, trail: Trail) -> bool:
-    """`unify` of terms that are nested too deeply for Python's stack, or without end.
+    """`unify` for terms that are nested too deeply for Python's stack, or without end.
 
     Raises:
-        RecursionError: when it is their annotations that are nested so deeply.
+        RecursionError: their annotations are nested that deeply.
     """
     todo: list[tuple[Term, ...]] = [(left, right)]
     met: set[tuple[int, int]] = set()
@@ -184,7 +186,7 @@ def _unify_iteratively(left: Term, right: Term, trail: Trail) -> bool:
 
 
 def _unify_negated(left: Term, right: Term, trail: Trail) -> bool:
-    """``~X``: matches a negated literal, whose positive form X takes."""
+    """``~X``: matches a negated literal and binds X to its positive form."""
     left, right = _known_negation(left), _known_negation(right)
     if left.__class__ is tuple and left[0] is NEGATED:
         if right.__class__ is tuple and right[0] is NEGATED:
@@ -201,7 +203,7 @@ def _unify_negated(left: Term, right: Term, trail: Trail) -> bool:
 
 
 def _known_negation(term: Term) -> Term:
-    """``~X`` with the value that X has by now."""
+    """Return ``~X`` with the present value of X."""
     if term.__class__ is tuple and term[0] is NEGATED:
         value = deref(term[1])
         return term if value.__class__ is Var else qualify(value, None, True)
@@ -209,7 +211,9 @@ def _known_negation(term: Term) -> Term:
 
 
 def _bind_checked(variable: Var, value: Term, trail: Trail) -> bool:
-    """Bind; a value that contains the variable has a fresh one in its place, so that every term is finite."""
+    """Bind a variable; a value that contains it gets a fresh variable in its place, so that every term is
+    finite.
+    """
     if value.__class__ in HOLDERS and _occurs(variable, value):
         value = replace_variable(value, variable, Var(variable.name))
     bind(variable, value, trail)
@@ -258,7 +262,7 @@ def _parts(term: Term) -> tuple[Term, tuple[Term, ...], Term]:
 def unify_annotations(
     left: tuple[Term, ...], left_tail: Term, right: tuple[Term, ...], right_tail: Term, trail: Trail
 ) -> bool:
-    """First way to find every annotation of *left* in *right*; tails take what is over."""
+    """Find every annotation of *left* in *right* in the first way possible; tails take the rest."""
     for _ in each_annotation_match(left, left_tail, right, right_tail, trail):
         return True
     return False
@@ -267,10 +271,10 @@ def unify_annotations(
 def each_annotation_match(
     left: tuple[Term, ...], left_tail: Term, right: tuple[Term, ...], right_tail: Term, trail: Trail
 ) -> Iterator[None]:
-    """Every way to find the annotations of *left* in *right*, in the order of *right*.
+    """Find the annotations of *left* in *right* in every possible way, in the order of *right*.
 
-    With an unbound tail on the left there is one answer at most.  The elements of bound tails are annotations
-    like the others.
+    With an unbound tail on the left there is at most one answer. The elements of bound tails are ordinary
+    annotations.
     """
     if left_tail is not None or right_tail is not None:
         left, left_tail = with_tail(left, left_tail)
@@ -309,7 +313,7 @@ def _annotation_matches(
 def _absorbed(
     left: tuple[Term, ...], left_tail: Term, right: tuple[Term, ...], right_tail: Term, trail: Trail
 ) -> Iterator[None]:
-    """The tail of the right side takes the annotations it lacks."""
+    """Let the tail of the right side take the annotations that it lacks."""
     mark = len(trail)
     tail = deref(right_tail)
     if tail.__class__ is Var:

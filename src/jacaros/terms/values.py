@@ -7,7 +7,7 @@ atom                an interned `Functor` of arity 0, compared by identity
 structure           a tuple ``(functor, argument, ...)``
 list                `List`; the empty one is the atom `NIL`
 open list           cons tuples ``(CONS, head, tail)`` ending in a `Var`
-annotated term      `Annotated`, around a term that has annotations; nobody else pays for them
+annotated term      `Annotated`, around a term that has annotations; others have no cost
 variable            `Var`; bound ones refer to their value
 set, map, queue     the mutable classes of `jacaros.terms.collections`
 anything else       `Reference`, opaque
@@ -34,7 +34,9 @@ Term = Any
 """Any value of the table above."""
 
 PLAIN, ARITHMETIC, FUNCTION, RELATION, LOGIC, ACTION, PLAN, NEGATION = range(8)
-"""Kinds of functors: ordinary; ``+``; ``math.max``; ``<``; ``&``; ``.print``; pieces of plans; ``~X`` with X unknown."""
+"""Kinds of functors: ordinary; ``+``; ``math.max``; ``<``; ``&``; ``.print``; pieces of plans; ``~X`` with X
+unknown.
+"""
 
 
 class Functor:
@@ -100,7 +102,9 @@ def functor(
 
 
 def enter(table: dict[Any, Held], key: Any, made: Named) -> Named:
-    """Put a new object into a table of names, and return the one that has the key: another thread may be faster."""
+    """Put a new object into a table of names; return the object with the key, as another thread may have been
+    faster.
+    """
     new = Held(made, _release)
     new.key, new.table = key, table
     while True:
@@ -111,7 +115,7 @@ def enter(table: dict[Any, Held], key: Any, made: Named) -> Named:
 
 
 def _release(held: Held, remove: Callable[[dict[Any, Held], Any], None] = _remove_dead_weakref) -> None:
-    """Forget an object that is gone, unless there is another one of its name by now.
+    """Remove an object that is gone, unless there is another one of its name by now.
 
     The default outlives the module when the interpreter ends.
     """
@@ -138,13 +142,13 @@ class String(str):
 
 
 class Var:
-    """A variable that has met the outside of its plan.
+    """A variable that is visible outside its plan.
 
     Attributes:
         ref: its value, or None while it has none.
         at: number of the goal posting after which it was bound (see `Trail.serial`); unset before.
-        name: for people; names of unnamed variables begin with ``_``.
-        number: place among the variables of that name in the standard order; unset until it is asked for.
+        name: for output; names of unnamed variables begin with ``_``.
+        number: position among the variables of that name in the standard order; unset until it is needed.
     """
 
     __slots__ = ("at", "name", "number", "ref")
@@ -211,7 +215,7 @@ class Reference:
         left, right = self.value, other.value
         if left is right:
             return True
-        # What the classes of projects do when they are asked is their affair: the mind goes on.
+        # Classes of projects may raise anything in __eq__ or __hash__; the mind continues.
         try:
             return hash(left) == hash(right) and bool(left == right)
         except Exception:
@@ -234,16 +238,16 @@ _CELLS = 16
 class List:
     """A closed list of at least one element.
 
-    Lists share their elements: a tail is a shorter view of the same stack, and an element put in front is pushed on it.
+    Lists share their elements: a tail is a shorter view of the same stack, and an element put in front is
+    pushed on it.
 
     Attributes:
-        stack: the elements, the last one first; what is above *size* belongs to other lists.
+        stack: the elements, the last one first; elements above *size* belong to other lists.
         size: number of elements.
-        settled: number of elements from the bottom of the stack that are known to hold no variable and nothing to
-            evaluate; they are not looked at again.
-        depth: the settled elements are nested no deeper than this, counting the list itself; `NO_KEY` when there are
-            annotations among them.
-        hashed: the hash value, or None before it is asked for.
+        settled: number of elements from the bottom of the stack that are known to contain no variable and nothing to
+            evaluate; they are not checked again.
+        depth: maximum nesting of the settled elements, counting the list itself; `NO_KEY` with annotations among them.
+        hashed: the hash value, or None before it is needed.
     """
 
     __slots__ = ("depth", "hashed", "settled", "size", "stack")
@@ -386,14 +390,16 @@ def make_list(items: Iterable[Term], tail: Term = NIL) -> Term:
 
 
 def deref(term: Term) -> Term:
-    """The value behind a bound variable; an unbound one itself."""
+    """Return the value of a bound variable; an unbound one is returned as it is."""
     while term.__class__ is Var and term.ref is not None:
         term = term.ref
     return term
 
 
 def list_items(term: Term) -> Iterator[Term]:
-    """The elements of a list term; ends at a tail that is no list, or where the list would begin again."""
+    """Yield the elements of a list term; end at a tail that is not a list, or where the list would begin
+    again.
+    """
     term = deref(term)
     return iter(term.elements()) if term.__class__ is List else _items_of_cells(term)
 
@@ -415,7 +421,7 @@ def _items_of_cells(term: Term) -> Iterator[Term]:
 
 
 def parted(term: Term) -> tuple[list[Term], Term]:
-    """The elements of a list term, and what is behind the bar: `NIL` if it is closed.
+    """Return the elements of a list term, and its tail: `NIL` if it is closed.
 
     *term* must not contain itself.
     """
@@ -431,7 +437,7 @@ def parted(term: Term) -> tuple[list[Term], Term]:
 
 
 def parts_of_list(term: Term) -> tuple[Term, Term]:
-    """The first element of a list term that has one, and the rest."""
+    """Return the first element of a non-empty list term, and the rest."""
     if term.__class__ is List:
         return term.stack[term.size - 1], term.rest()
     return term[1], term[2]
@@ -445,18 +451,18 @@ def list_length(term: Term) -> int:
 
 
 def is_list(term: Term) -> bool:
-    """Whether the (dereferenced) term is a list."""
+    """Return whether the (dereferenced) term is a list."""
     return term is NIL or term.__class__ is List or (term.__class__ is tuple and term[0] is CONS)
 
 
 def bare(term: Term) -> Term:
-    """The term without its annotations."""
+    """Return the term without its annotations."""
     term = deref(term)
     return deref(term.term) if term.__class__ is Annotated else term
 
 
 def functor_of(term: Term) -> Functor | None:
-    """The functor of an atom, structure or annotated one; None for other terms and for lists."""
+    """Return the functor of an atom, structure or annotated one; None for other terms and for lists."""
     term = bare(term)
     if term.__class__ is tuple:
         return None if term[0] is CONS else term[0]
@@ -464,18 +470,18 @@ def functor_of(term: Term) -> Functor | None:
 
 
 def arguments_of(term: Term) -> tuple[Term, ...]:
-    """The arguments of an atom or structure."""
+    """Return the arguments of an atom or structure."""
     term = bare(term)
     return term[1:] if term.__class__ is tuple else ()
 
 
 def annotations_of(term: Term) -> tuple[Term, ...]:
-    """The annotations of a term, sorted."""
+    """Return the annotations of a term, sorted."""
     term = deref(term)
     return term.annotations if term.__class__ is Annotated else ()
 
 
 def structure(name: str, *arguments: Term, namespace: str | None = None) -> Term:
-    """The structure (or, without arguments, the atom) of that name."""
+    """Return the structure (or, without arguments, the atom) of that name."""
     symbol = functor(name, len(arguments), False, namespace)
     return (symbol, *arguments) if arguments else symbol

@@ -42,7 +42,7 @@ def test_a_good_program_has_no_warning():
     assert messages("!g. +!g : p(X) <- .print(X); !h(X). +!h(X). -!h(Y) <- .print(Y). p(1).") == []
 
 
-def test_an_unknown_internal_action_is_named_with_what_may_be_meant():
+def test_an_unknown_internal_action_is_reported_with_a_suggestion():
     (warning,) = warnings("+!g <- .prnt(a).")
     assert warning.message == "unknown internal action `.prnt`"
     assert warning.help == "did you mean `.print`?"
@@ -59,12 +59,12 @@ def test_internal_actions_are_checked_in_rules_terms_and_conditions():
     )
 
 
-def test_an_atom_with_a_dot_is_no_internal_action():
+def test_an_atom_with_a_dot_is_not_an_internal_action():
     assert messages("p(my.Type). +!g <- .print(my.own).") == []
     assert messages("+!g <- my.own(1).") == ["unknown internal action `my.own`"]
 
 
-def test_a_goal_without_a_plan_is_named_once_with_what_may_be_meant():
+def test_a_goal_without_a_plan_is_reported_once_with_a_suggestion():
     found = warnings("!paterol. +!patrol <- !paterol; !go(1,2). +!go(X) <- .print(X).")
     assert [(warning.message, warning.help) for warning in found] == [
         ("no plan for `!paterol/0`", "did you mean `!patrol`?"),
@@ -126,7 +126,7 @@ def test_warnings_come_in_the_order_of_the_text():
     assert [w.span.line for w in warnings("+!a <- .x.\n+!b <- p(X).\n+!c <- !d.") if w.span] == [1, 2, 3]
 
 
-def test_who_knows_more_of_an_action_gives_the_hint():
+def test_the_help_for_an_unknown_action_comes_from_the_caller():
     (warning,) = warnings("+!g <- my.act(1).")
     assert warning.help == "write my.act"
 
@@ -171,11 +171,11 @@ def test_wrong_numbers_of_arguments(text: str, message: str, help: str):
         "+!g <- while (.fail) { a }.",
     ],
 )
-def test_actions_that_act_are_no_conditions(text: str):
+def test_actions_that_act_are_not_conditions(text: str):
     assert codes(text) == ["acting-condition"]
 
 
-def test_performatives_that_are_nearly_known():
+def test_misspelt_performatives_are_reported():
     assert codes("+!g <- .send(bob, tel, p); .send(bob, tell, p); .send(bob, propose, p).") == [
         "unknown-performative"
     ]
@@ -192,7 +192,7 @@ def test_performatives_that_are_nearly_known():
         "+!h <- a. { +e <- a. +e <- b. }",
     ],
 )
-def test_a_plan_behind_one_for_the_same_events_is_never_selected(text: str):
+def test_a_plan_after_one_for_the_same_events_is_unreachable(text: str):
     assert codes(text) == ["plan-never-selected"]
 
 
@@ -262,7 +262,7 @@ def test_comparisons_with_variables_without_a_value():
     assert codes("+!g : X == 3 & p(X) <- a.") == ["comparison-without-value"]
 
 
-def test_an_atom_that_is_compared_with_a_number_is_told() -> None:
+def test_comparing_an_atom_with_a_number_is_reported() -> None:
     assert codes("+!g : x > 3 <- a.") == ["ordered-atom"]
     assert codes("+!g : p(X) <- if (2*X <= limit) { a }.") == ["ordered-atom"]
     assert codes("+!g : p(X) & X > a & x == 3 <- a.") == []
@@ -275,7 +275,7 @@ def test_a_variable_cannot_get_another_value():
     assert codes("+!g(X) <- Y = X + 1; a(Y).") == []
 
 
-def test_names_with_a_capital_letter_in_beliefs_and_goals_of_the_beginning():
+def test_capitalised_names_in_initial_beliefs_and_goals_are_reported():
     text = "place(Kitchen, 2). same(X, X). any(_, _Y). !go(Hall). +!go(_) : place(_, _) & same(1, 1) & any(1, 2)."
     assert [(each.span.column, each.code) for each in warnings(text) if each.span] == [
         (7, "singleton-variable"),
@@ -289,18 +289,18 @@ def test_true_and_none_of_python_are_variables():
     assert (found.code, found.help) == ("capital-constant", "write `true` in lower case")
 
 
-def test_annotations_of_labels_that_are_nearly_known():
+def test_misspelt_annotations_of_labels_are_reported():
     assert codes("@a[atomc] +!g. @b[atomic, priority(2), tests] +!h.") == ["misspelt-annotation"]
 
 
-def test_an_urgency_is_a_whole_number():
+def test_an_urgency_is_a_non_negative_integer():
     wrong = ["urgency", "urgency(high)", "urgency(1.5)", "urgency(-1)", "urgency(_)", "urgency(1, 2)"]
     assert [codes(f"@a[{each}] +b.") for each in wrong] == [["wrong-urgency"]] * len(wrong)
     assert codes("@a[urgency(0)] +b. @c[urgency(10), atomic] +d. @e[urgency(2 * 3)] +f.") == []
     assert codes("@a[urgensy(3)] +b.") == ["misspelt-annotation"]
 
 
-def test_clauses_with_errors_are_passed_over():
+def test_clauses_with_errors_are_skipped():
     text = "+!a <- b(; .prnt(x); c(Y).\n+!d <- .prnt(Z).\n!nobody."
     file = SourceFile("main.asl", text)
     program, diagnostics = read_program(file)
@@ -338,7 +338,7 @@ def test_errors_cannot_be_switched_off():
     assert [each.code for each in diagnostics] == ["missing-body"]
 
 
-def test_codes_that_there_are_not_are_told():
+def test_unknown_codes_are_reported():
     (found,) = Suppressions(SourceFile("x", "p. // jacaros: ignore singletons")).unknown
     assert (found.code, found.message) == ("unknown-code", "unknown code `singletons`")
 
@@ -355,7 +355,7 @@ def test_codes_that_there_are_not_are_told():
         ("", "a", True),
     ],
 )
-def test_slips_of_the_pen(written: str, meant: str, like: bool):
+def test_slips_are_recognised(written: str, meant: str, like: bool):
     assert is_slip_of(written, meant) is like
 
 

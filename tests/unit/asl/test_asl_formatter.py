@@ -69,6 +69,6 @@ def test_plans_with_all_parts():
     assert format_body(plan.body) == ""
 
 
-def test_what_is_no_term_has_no_text():
+def test_other_values_have_no_text():
     with pytest.raises(TypeError):
         format_term(nodes.Node())

@@ -42,7 +42,7 @@ def test_the_programs_are_there():
     assert len(PROGRAMS) > 330
 
 
-def test_every_program_means_the_same_and_is_stable():
+def test_formatting_keeps_the_meaning_and_is_stable():
     for path in PROGRAMS:
         before = path.read_text(encoding="utf-8")
         after = formatted(before)

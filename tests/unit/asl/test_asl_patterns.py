@@ -59,7 +59,7 @@ def test_blind_commitment():
     assert expanded("bc(at(_),dg)") == [BELIEVED, TESTED, SUCCEEDS, LAST]
 
 
-def test_single_minded_commitment_lets_the_failure_go_on():
+def test_single_minded_commitment_passes_the_failure_on_to_the_caller():
     assert expanded("smc(at(_), broken)") == [
         BELIEVED,
         TESTED,

@@ -49,7 +49,7 @@ def test_an_exclusive_goal_fails_when_all_its_plans_have_been_tried(printed):
     ) == ["first(tea)", "second(tea)", "no_applicable 0"]
 
 
-def test_an_exclusive_goal_goes_on_with_the_next_plan(printed):
+def test_an_exclusive_goal_continues_with_the_next_plan(printed):
     assert printed(
         """
         { begin ebdg(got(_)) }

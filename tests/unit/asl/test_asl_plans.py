@@ -120,12 +120,12 @@ def test_round_brackets_may_also_hold_a_formula():
     assert isinstance(second, nodes.Constraint)
 
 
-def test_true_is_no_step():
+def test_true_is_not_a_step():
     assert steps("true") == ()
     assert len(steps("true; a; true")) == 1
 
 
-def test_a_variable_alone_is_a_step_but_no_body_outside_plan_terms():
+def test_a_variable_alone_is_a_step_but_not_a_body_outside_plan_terms():
     (step,) = steps("P")
     assert step == nodes.ExternalAction(nodes.Variable("P"))
 
@@ -156,7 +156,7 @@ def test_functions_in_conditions():
     assert isinstance(context.left, nodes.FunctionCall)
 
 
-def test_subplans_stand_behind_or_in_place_of_the_final_dot():
+def test_subplans_follow_or_replace_the_final_dot():
     for text in (
         "+!g <- a. { +e <- b. @l +f. }",
         "+!g <- a { +e <- b. @l +f. }",
@@ -166,7 +166,7 @@ def test_subplans_stand_behind_or_in_place_of_the_final_dot():
         assert len(plan.subplans) == 2
 
 
-def test_comments_are_nowhere_in_the_way():
+def test_comments_are_allowed_everywhere():
     assert belief_texts('/* a\n b */ p(/* x */ 1). // q.\n// r.\ns("// no comment").') == [
         "p(1)",
         's("// no comment")',

@@ -32,7 +32,7 @@ def test_a_missing_final_dot_is_reported_where_the_next_plan_begins():
     )
 
 
-def test_all_errors_of_a_file_are_reported_at_once_in_order():
+def test_all_errors_of_a_file_are_reported_in_one_pass_in_order():
     assert report(
         """\
         battery(60
@@ -51,7 +51,7 @@ def test_all_errors_of_a_file_are_reported_at_once_in_order():
             |        ^
           2 | !patrol.
             | ^
-          = help: opened at line 1, column 8
+          = help: close it with `)`; it was opened at line 1, column 8
 
         robot.asl:3:23: error: second context of a plan
           3 | +!patrol : battery(B) : B > 20
@@ -66,7 +66,7 @@ def test_all_errors_of_a_file_are_reported_at_once_in_order():
         robot.asl:5:14: error: unterminated string
           5 |       .print("here);
             |              ^^^^^^^
-          = help: close it: "text"; a line break inside is \\n
+          = help: close it on the same line: "text"; write a line break as `\\n`
 
         robot.asl:7:9: error: missing body after `<-`
           7 | +!go(R) <- .
@@ -80,7 +80,7 @@ def test_all_errors_of_a_file_are_reported_at_once_in_order():
     )
 
 
-def test_carets_stand_under_the_mistake_also_behind_tabs():
+def test_carets_are_below_the_error_even_after_tabs():
     assert report("+!g\n\t<-\t.print(a) b.\n").splitlines()[1:3] == [
         "  2 | \t<-\t.print(a) b.",
         "    | \t  \t          ^",
@@ -243,7 +243,7 @@ def test_one_mistake_gives_one_error():
         assert len(places(text)) == 1, text
 
 
-def test_the_rest_of_the_file_is_read_behind_every_error():
+def test_parsing_continues_after_every_error():
     text = "".join(f"+!g{number} <- a(;{' b' * (number % 3)}.\n" for number in range(40))
     assert sorted({line for line, _ in places(text)}) == list(range(1, 41))
 
@@ -320,7 +320,7 @@ Corner(1,2).
     ]
 
 
-def test_a_sum_has_a_limit_that_a_run_can_bear():
+def test_the_length_of_a_sum_is_limited():
     (wrong,) = errors(f"p({'+'.join(['1'] * 252)}). q.")
     assert wrong.code == "nested-too-deeply"
     (wrong,) = errors(f"p({'**'.join(['1'] * 200)}). q.")

@@ -78,7 +78,7 @@ def test_annotations_may_have_annotations_and_a_tail():
     )
 
 
-def test_functions_are_told_from_internal_actions_by_name_and_arity():
+def test_functions_differ_from_internal_actions_by_name_and_arity():
     assert isinstance(parse_term(".length(L)"), nodes.FunctionCall)
     assert isinstance(parse_term(".length(L,N)"), nodes.InternalAction)
     assert isinstance(parse_term("system.time"), nodes.FunctionCall)
@@ -162,7 +162,7 @@ def test_other_entry_points():
     assert parse_literals("") == ()
 
 
-def test_a_long_chain_is_no_deep_tree_for_the_parser():
+def test_the_parser_reads_long_chains_without_recursion():
     parse_formula(" & ".join(["a"] * 400))
     parse_term("+".join(["1"] * 251))
     parse_term("[" + ",".join(["1"] * 5000) + "]")

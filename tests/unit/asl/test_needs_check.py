@@ -21,7 +21,7 @@ def told(program: str) -> list[tuple[str, str | None]]:
         ("needs(arm), policy(refusse)", "unknown policy `refusse`", "did you mean `refuse`?"),
     ],
 )
-def test_what_can_never_be_met_is_told_of_plans_and_goals(needs: str, message: str, help: str) -> None:
+def test_needs_that_can_never_be_met_are_reported(needs: str, message: str, help: str) -> None:
     for program in (f"@a[{needs}] +!g <- b.", f"+!f <- !g[{needs}]."):
         ((found, help),) = told(program)
         assert message in found
@@ -29,6 +29,6 @@ def test_what_can_never_be_met_is_told_of_plans_and_goals(needs: str, message: s
         assert help in help
 
 
-def test_what_can_be_met_is_not_told() -> None:
+def test_needs_that_can_be_met_are_not_reported() -> None:
     for needs in ("needs(arm,base)", "needs(lift(2),lift)", "needs(map(shared))", 'needs("/r1/wheels")'):
         assert not told(f"@a[{needs}, policy(take)] +!g <- b.")

@@ -29,7 +29,7 @@ def test_outputs_are_bound_when_the_action_ends() -> None:
     assert agent.prints == ["moved(7)", "other"]
 
 
-def test_an_action_that_ends_at_once_goes_on_in_the_next_cycle() -> None:
+def test_an_action_that_ends_immediately_continues_in_the_next_cycle() -> None:
     agent = AgentHarness(
         "!g. +!g <- a; .print(1); b; .print(2).", actions={"a": lambda: True, "b": lambda: True}
     )
@@ -79,7 +79,7 @@ def test_suspending_the_intention_suspends_the_action_and_resuming_resumes_it() 
     assert agent.prints == ["done"]
 
 
-def test_an_action_that_ends_while_its_intention_is_suspended_counts_after_resume() -> None:
+def test_an_action_that_ends_while_suspended_counts_after_resume() -> None:
     agent = begun("!g. +!g <- move; .print(done). +!s <- .suspend(g). +!r <- .resume(g).")
     agent.achieve("s")
     agent.run()
@@ -91,7 +91,7 @@ def test_an_action_that_ends_while_its_intention_is_suspended_counts_after_resum
     assert agent.prints == ["done"]
 
 
-def test_every_act_gets_one_completion_even_if_two_come() -> None:
+def test_a_second_completion_of_an_act_is_ignored() -> None:
     agent = begun("!g. +!g <- move; .print(done).")
     for _ in range(2):
         agent.mind.complete(1, Completion(True))
@@ -107,13 +107,13 @@ TURNS = """
 """
 
 
-def test_an_action_that_ends_at_once_takes_one_turn() -> None:
+def test_an_action_that_ends_immediately_takes_one_turn() -> None:
     agent = AgentHarness(TURNS, actions={"act": lambda: True})
     agent.run()
     assert agent.prints == ["a1", "b1", "a2", "b2", "b3", "a3", "b4", "b5"]
 
 
-def test_what_an_action_lets_the_agent_perceive_is_believed_when_the_plan_goes_on() -> None:
+def test_percepts_of_an_action_are_believed_when_the_plan_continues() -> None:
     def look() -> bool:
         agent.perceive("seen(cup)")
         return True
@@ -123,7 +123,7 @@ def test_what_an_action_lets_the_agent_perceive_is_believed_when_the_plan_goes_o
     assert agent.prints == ["cup"]
 
 
-def test_an_output_of_an_action_that_ends_at_once_is_bound_or_fails_the_step() -> None:
+def test_an_output_of_an_immediate_action_is_bound_or_fails_the_step() -> None:
     program = """
         !a.
         +!a <- get(X, X2); .print(X, X2); get(Y, Y); .print(no).

@@ -19,7 +19,7 @@ def test_an_atomic_plan_is_never_interleaved() -> None:
     assert lines == ["a1", "a2", "a3", "b1", "b2"]
 
 
-def test_while_an_atomic_plan_waits_everything_waits() -> None:
+def test_nothing_else_runs_while_an_atomic_plan_waits() -> None:
     lines = printed(
         """
         !a. !b.
@@ -43,7 +43,7 @@ def test_an_atomic_intention_handles_its_own_failure_events() -> None:
     ) == ["wait_timeout", "handled", "after"]
 
 
-def test_after_an_atomic_plan_its_intention_makes_one_more_step_before_the_others() -> None:
+def test_the_intention_of_an_ended_atomic_plan_runs_one_more_step_first() -> None:
     assert printed(
         """
         !a. !b.
@@ -54,7 +54,7 @@ def test_after_an_atomic_plan_its_intention_makes_one_more_step_before_the_other
     ) == ["a0", "s1", "s2", "a1", "b1", "a2", "b2", "b3"]
 
 
-def test_a_tail_call_out_of_an_atomic_plan_ends_its_privilege() -> None:
+def test_a_tail_call_ends_the_privilege_of_an_atomic_plan() -> None:
     assert printed(
         """
         !a(2). !b.
@@ -65,7 +65,7 @@ def test_a_tail_call_out_of_an_atomic_plan_ends_its_privilege() -> None:
     ) == ["2", "1", "z1", "z2", "b1", "z3", "b2", "z4", "b3"]
 
 
-def test_an_atomic_intention_finds_its_own_event_behind_others() -> None:
+def test_an_atomic_intention_finds_its_own_event_after_others() -> None:
     host = mind("+!a <- .wait(10). +!b.")
     host.agent.post_goal(atom("a"))
     host.agent.run(10)
@@ -82,7 +82,7 @@ def test_an_atomic_intention_finds_its_own_event_behind_others() -> None:
     assert event_of(host.agent, intention) is None
 
 
-def test_an_atomic_intention_goes_on_wherever_it_stands() -> None:
+def test_an_atomic_intention_continues_wherever_it_is() -> None:
     plans = "@a[atomic] +!a <- !b; .print(a). +!b <- !c; .print(b). @c[atomic] +!c <- .print(c). +!d(X) <- .print(X)."
     goals = [*(f"!d({number})." for number in range(3)), "!a.", *(f"!d({number})." for number in range(3, 6))]
     lines = printed(" ".join([*goals, plans]))

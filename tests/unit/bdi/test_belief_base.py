@@ -35,7 +35,7 @@ class Model:
 
 
 @given(OPERATIONS)
-def test_a_table_answers_like_a_list_whatever_is_added_and_removed(
+def test_a_table_answers_like_a_list_after_any_changes(
     operations: list[tuple[str, int, int]],
 ) -> None:
     table, model = Table(functor("p", 2)), Model()
@@ -68,7 +68,7 @@ def open_fact(a: object, b: object) -> OpenFact:
 
 @pytest.mark.parametrize("few", [0, 8])
 @given(st.lists(st.tuples(st.sampled_from("arxlRLdO"), st.integers(0, 7), st.integers(0, 2)), max_size=50))
-def test_candidates_are_in_order_and_miss_nothing_whatever_is_mixed(
+def test_candidates_of_mixed_tables_are_complete_and_in_order(
     few: int, operations: list[tuple[str, int, int]]
 ) -> None:
     """With *few* the ways of large tables are taken by small ones, too."""
@@ -102,7 +102,7 @@ def matches(row: object, asked: tuple[object, ...]) -> bool:
     return all(b in (None, a) for a, b in zip(row, asked, strict=True))
 
 
-def test_taking_out_the_newest_leaves_no_gaps_to_read_over() -> None:
+def test_removing_the_newest_beliefs_leaves_no_gaps() -> None:
     table = Table(functor("p", 2))
     table.find((0,), 1.0)
     for i in range(1000):
@@ -115,7 +115,7 @@ def test_taking_out_the_newest_leaves_no_gaps_to_read_over() -> None:
     assert list(table.find_items((0,), 1.0)) == [((1.0, 5.0), BY_SELF)]
 
 
-def test_a_search_reads_what_was_there_before_an_action_in_it_changed_beliefs() -> None:
+def test_a_search_does_not_see_changes_by_its_own_actions() -> None:
     base = BeliefTables()
     table = base[functor("p", 1)]
     for i in range(3):
@@ -131,7 +131,7 @@ def test_a_search_reads_what_was_there_before_an_action_in_it_changed_beliefs() 
     assert [row for row, _ in table.entries()] == [(10.0,), (11.0,), (12.0,)]
 
 
-def test_a_table_that_held_a_rule_is_plain_again_when_it_is_gone() -> None:
+def test_a_table_is_plain_again_without_its_rule() -> None:
     table = Table(atom("p"))
     rule = Entry()
     table.add((), BY_SELF)
@@ -144,7 +144,7 @@ def test_a_table_that_held_a_rule_is_plain_again_when_it_is_gone() -> None:
 @pytest.mark.parametrize("belief", ["d(I)", "d(a, I)", "d(I, _)", "d(_, I)", "d(I)[b]"])
 @pytest.mark.parametrize("add", ["+", "+>"])
 @pytest.mark.parametrize("others", ["", "d(0). d(0, 0).", "d(X) :- X < 0. d(X, Y) :- X < 0 & Y < 0."])
-def test_work_with_a_belief_does_not_grow_with_the_number_of_others(
+def test_the_cost_of_a_belief_does_not_depend_on_the_number_of_others(
     belief: str, add: str, others: str, calls_of: Callable[[Callable[[], object]], int]
 ) -> None:
     if add == "+>" and "_" in belief:

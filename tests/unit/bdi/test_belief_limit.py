@@ -27,7 +27,7 @@ def limited(program: str, limit: int) -> RecordingHost:
     return host
 
 
-def test_the_step_that_adds_one_too_many_fails_with_the_reason() -> None:
+def test_a_step_that_exceeds_the_limit_fails_with_the_reason() -> None:
     host = limited(GROW, 10)
     assert host.printed == [
         "9 belief_limit in line 5",
@@ -36,7 +36,7 @@ def test_the_step_that_adds_one_too_many_fails_with_the_reason() -> None:
     assert len(believed(host, "grown")) == 8
 
 
-def test_a_large_limit_is_kept_though_beliefs_are_counted_now_and_then(
+def test_a_large_limit_holds_although_beliefs_are_counted_occasionally(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(beliefs, "SMALL", 10)
@@ -48,14 +48,14 @@ def test_a_large_limit_is_kept_though_beliefs_are_counted_now_and_then(
     assert host.agent.beliefs.__class__ is BoundedBeliefs
 
 
-def test_as_long_as_there_are_few_beliefs_nothing_is_counted() -> None:
+def test_few_beliefs_are_not_counted() -> None:
     host = mind(GROW.replace("!fill(N + 1)", "if (N < 2000) { !fill(N + 1) }"))
     host.run()
     assert len(believed(host, "grown")) == 2000
     assert host.agent.beliefs.__class__ is BeliefTables
 
 
-def test_what_is_replaced_or_deleted_makes_room() -> None:
+def test_replaced_and_deleted_beliefs_make_room() -> None:
     program = """
     a(0). b(0).
     !s.
@@ -65,7 +65,7 @@ def test_what_is_replaced_or_deleted_makes_room() -> None:
     assert limited(program, 2).printed == ["full", "belief_limit"]
 
 
-def test_beliefs_from_outside_are_refused_and_that_is_told_once() -> None:
+def test_refused_beliefs_from_outside_are_logged_once() -> None:
     host = mind("+p(X) <- .print(X).", options=Options(belief_limit=3))
     host.run()
     percepts = [Percept("add", structure("p", float(n)), (SOURCE_PERCEPT,)) for n in range(4)]
@@ -77,7 +77,7 @@ def test_beliefs_from_outside_are_refused_and_that_is_told_once() -> None:
     assert host.logged == [
         (
             "error",
-            "beliefs from outside are refused: there are 3 beliefs (option belief_limit), most of them p/1 (3)",
+            "refusing beliefs from outside: there are 3 beliefs (option belief_limit), most of them p/1 (3)",
         )
     ]
     host.agent.perceive([Percept("remove", structure("p", 0.0), (SOURCE_PERCEPT,))])
@@ -88,7 +88,7 @@ def test_beliefs_from_outside_are_refused_and_that_is_told_once() -> None:
     assert len(believed(host, "p")) == 3
 
 
-def test_internal_actions_that_add_beliefs_meet_it_too() -> None:
+def test_the_limit_applies_to_internal_actions_that_add_beliefs() -> None:
     program = """
     a. b.
     !s.

@@ -8,7 +8,7 @@ from recording_host import mind, printed
 from jacaros.bdi.rules import deconstruction
 
 
-def test_a_failed_goal_gives_its_variables_back_to_the_handler_and_the_caller() -> None:
+def test_a_failed_goal_unbinds_its_variables_for_the_handler_and_the_caller() -> None:
     assert printed(
         """
         !s.
@@ -78,7 +78,7 @@ def test_an_unbound_namespace_takes_every_namespace_in_turn() -> None:
     assert sorted(lines) == ["a1", "b3", "default4"]
 
 
-def test_what_a_wait_for_an_event_binds_outlives_the_search_for_its_plan() -> None:
+def test_bindings_of_an_event_wait_outlive_the_search_for_its_plan() -> None:
     lines = printed(
         """
         !g. !k.
@@ -91,7 +91,7 @@ def test_what_a_wait_for_an_event_binds_outlives_the_search_for_its_plan() -> No
     assert lines == ["1", "k"]
 
 
-def test_the_first_free_variable_is_given_back_between_the_rounds_of_a_loop() -> None:
+def test_the_first_free_variable_is_unbound_between_the_rounds_of_a_loop() -> None:
     assert printed(
         """
         !t. c(0).
@@ -102,7 +102,7 @@ def test_the_first_free_variable_is_given_back_between_the_rounds_of_a_loop() ->
     ) == ["1", "2", "X<no-value>", "X<no-value>", "0", "1", "Y<no-value>", "Y<no-value>"]
 
 
-def test_what_a_loop_binds_is_gone_after_it_and_in_its_next_round() -> None:
+def test_bindings_of_a_loop_end_with_each_round_and_after_it() -> None:
     assert printed("!g. +!g <- for (.member(Z,[W,[3]])) { .print(Z,W); W = f(b) }.")[1] == "[3]W<no-value>"
     assert printed("!g. p(1). +!g <- for (p(Z)) { Y = Z }; if (p(2)) { Y = 3 }; .print(Y).") == [
         "Y<no-value>"
@@ -116,7 +116,7 @@ def test_what_a_loop_binds_is_gone_after_it_and_in_its_next_round() -> None:
     ]
 
 
-def test_a_body_held_by_a_variable_may_fail_at_once_and_gives_shared_variables_back() -> None:
+def test_a_failing_body_held_by_a_variable_unbinds_shared_variables() -> None:
     assert printed("!g. +!g <- B = {.fail}; B. -!g[error(E)] <- .print(E).") == ["ia_failed"]
     assert printed("!g. s(1). +!g <- B = {for (s(X)) {.print(X)}}; B; .print(X).") == ["1", "X<no-value>"]
 
@@ -176,9 +176,7 @@ def test_a_round_of_a_loop_over_numbers_takes_few_calls(
     ],
 )
 @pytest.mark.parametrize("parts", ["[F, A, N]", "[S, F, A, N]", "[_, F, A, _]", "[F, F, N]"])
-def test_a_term_is_taken_apart_alike_by_a_list_of_new_variables_and_by_one_with_values(
-    term: str, parts: str
-) -> None:
+def test_deconstruction_treats_new_and_bound_variables_alike(term: str, parts: str) -> None:
     def shown(test: str) -> list[str]:
         return printed(f"!go. +!go <- T = {term}; {test}; .print(F, A, N). -!go <- .print(no).")
 
@@ -199,14 +197,14 @@ def test_a_term_is_taken_apart_alike_by_a_list_of_new_variables_and_by_one_with_
         "[p, [X], []]",
     ],
 )
-def test_a_term_is_made_alike_for_a_new_variable_and_for_one_without_value(parts: str) -> None:
+def test_construction_treats_new_and_unbound_variables_alike(parts: str) -> None:
     def shown(before: str) -> list[str]:
         return printed(f"!go. +!go <- {before} X =.. {parts}; Y = 2; .print(X). -!go <- .print(no).")
 
     assert shown("") == shown("L = [X];")
 
 
-def test_a_term_is_taken_apart_without_unification(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_term_is_deconstructed_without_unification(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(deconstruction, "unify", None)
     program = (
         "!go(p(1, a)). +!go(T) <- T =.. [F, A, N]; M =.. [q, A, [F]]; M =.. [_, G, _, O]; .print(G, A, N, O)."
@@ -214,7 +212,7 @@ def test_a_term_is_taken_apart_without_unification(monkeypatch: pytest.MonkeyPat
     assert printed(program) == ["q[1,a][][p]"]
 
 
-def test_a_text_that_is_read_again_has_the_values_of_then() -> None:
+def test_a_text_that_is_parsed_again_uses_the_present_values() -> None:
     assert printed(
         """
         !go. +!go <- !g(1); !g(2).

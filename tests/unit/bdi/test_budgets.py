@@ -21,7 +21,7 @@ def limited(program: str, **limits: int) -> RecordingHost:
     return mind(program, options=Options(**limits))
 
 
-def test_a_goal_that_is_one_intention_too_many_fails_its_step() -> None:
+def test_a_goal_beyond_the_intention_limit_fails_its_step() -> None:
     host = limited(
         """
         !spawn(1).
@@ -39,7 +39,7 @@ def test_a_goal_that_is_one_intention_too_many_fails_its_step() -> None:
     ]
 
 
-def test_an_event_that_is_one_too_many_fails_its_step() -> None:
+def test_an_event_beyond_the_limit_fails_its_step() -> None:
     host = limited(
         """
         !flood.
@@ -70,20 +70,20 @@ def test_branches_of_a_fork_count_as_intentions() -> None:
     assert host.printed == ["intention_limit"]
 
 
-def test_events_from_outside_are_refused_and_that_is_logged_now_and_then() -> None:
+def test_refused_events_from_outside_are_logged_occasionally() -> None:
     host = limited("+p(X) <- .print(X).", event_limit=2)
     for number in range(25):
         host.agent.perceive([Percept("add", structure("p", float(number)), (SOURCE_PERCEPT,))] * 1)
     host.run()
-    refused = "events from outside are refused"
+    refused = "refusing events from outside"
     assert [text for _, text in host.logged] == [
         f"{refused}: there are 2 events (option event_limit)",
-        f"{refused} (10 by now): there are 2 events (option event_limit)",
+        f"{refused} (10 so far): there are 2 events (option event_limit)",
     ]
     assert host.printed == ["0", "1"]
 
 
-def test_who_sends_to_a_full_mailbox_is_refused() -> None:
+def test_sending_to_a_full_mailbox_fails() -> None:
     host = limited("+p(X) <- .print(X).", mailbox_limit=2)
     for number in range(2):
         host.agent.receive(SpeechAct("tell", "bob", "tester", structure("p", float(number)), f"m{number}"))
@@ -101,7 +101,7 @@ FORK_BOMB = """
 """
 
 
-def test_goals_without_end_leave_the_other_plans_their_turns(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_endless_goals_leave_other_plans_their_turns(monkeypatch: pytest.MonkeyPatch) -> None:
     for module in (circumstance, loop, sel_ev):
         monkeypatch.setattr(module, "CROWD", 50)
     host = limited(FORK_BOMB, intention_limit=5000)
@@ -118,7 +118,7 @@ def test_goals_without_end_leave_the_other_plans_their_turns(monkeypatch: pytest
     assert "bump" in host.printed
 
 
-def test_goals_without_end_are_logged_now_and_then() -> None:
+def test_endless_goals_are_logged_occasionally() -> None:
     host = limited(FORK_BOMB, intention_limit=20)
     host.agent.run(5000)
     warnings = [text for _, text in host.logged]
@@ -127,7 +127,7 @@ def test_goals_without_end_are_logged_now_and_then() -> None:
     assert warnings[-1].endswith("\n  1000 goals have failed for this reason")
 
 
-def test_an_intention_that_waits_behind_the_crowd_has_its_turn_even_if_the_others_never_end(
+def test_an_intention_behind_the_crowd_runs_even_if_the_others_never_end(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     for module in (circumstance, loop, sel_ev):

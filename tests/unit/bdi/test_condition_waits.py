@@ -77,7 +77,7 @@ def test_waits_end_in_the_order_in_which_they_began() -> None:
     assert printed(program) == ["fourth", "second", "first", "third"]
 
 
-def test_a_condition_costs_the_changes_of_other_beliefs_nothing(
+def test_a_condition_costs_nothing_when_other_beliefs_change(
     calls_of: Callable[[Callable[[], object]], int],
 ) -> None:
     def work(waits: int) -> int:
@@ -94,7 +94,7 @@ def test_a_condition_costs_the_changes_of_other_beliefs_nothing(
     assert work(200) < work(2) + 1000
 
 
-def test_nothing_is_left_of_waits_that_are_over() -> None:
+def test_ended_waits_leave_nothing_behind() -> None:
     host = mind(
         "!go. +!go <- !!wait; .wait(1); !!wait; .wait(1); .drop_intention(wait); +done."
         "+!wait <- .wait(c(1, X) & not d(X) & .count(e(X), 5) & .intend(go), 10000)."

@@ -17,7 +17,7 @@ def single_agent_cases() -> list[Path]:
 
 @pytest.mark.parametrize("case", single_agent_cases(), ids=lambda path: f"{path.parent.name}/{path.stem}")
 @pytest.mark.parametrize("fuel", [1, 3, 100_000])
-def test_staying_with_an_intention_changes_nothing_a_program_can_see(case: Path, fuel: int) -> None:
+def test_staying_with_an_intention_is_invisible_to_programs(case: Path, fuel: int) -> None:
     host = mind(case.read_text(), name=case.stem, path=str(case), complete=no_environment)
     host.run(fuel)
     expected = [
@@ -55,7 +55,7 @@ def test_a_rule_a_hundred_thousand_levels_deep_needs_no_python_recursion() -> No
     assert printed("n(0). n(X) :- X > 0 & n(X-1). !s. +!s : n(100000) <- .print(deep).") == ["deep"]
 
 
-def test_a_goal_that_is_ended_is_told_to_be_achieved_and_finished() -> None:
+def test_an_ended_goal_is_reported_as_achieved_and_finished() -> None:
     program = """
         !a. !b. !w.
         +!a <: done <- !c.
@@ -128,7 +128,7 @@ def test_beliefs_with_very_long_lists_are_found_counted_once_and_deleted() -> No
     ) == ["event", "held", "equal", "10"]
 
 
-def test_done_ends_the_goal_at_once() -> None:
+def test_done_ends_the_goal_immediately() -> None:
     assert printed("!g. +!g <- !h; .print(after). +!h <- .print(h1); .done; .print(no).") == ["h1", "after"]
 
 
@@ -142,7 +142,7 @@ def test_an_intention_whose_wait_ended_while_suspended_is_ready_at_its_resume() 
     ) == ["g2", "resumed", "r2"]
 
 
-def test_goal_state_events_keep_their_order_and_tell_the_reason() -> None:
+def test_goal_state_events_keep_their_order_and_carry_the_reason() -> None:
     assert printed(
         """
         !g.
@@ -162,7 +162,7 @@ def test_goal_state_events_keep_their_order_and_tell_the_reason() -> None:
     ]
 
 
-def test_goal_state_events_tell_what_suspends_and_resumes_a_goal_that_waits() -> None:
+def test_goal_state_events_report_suspension_and_resumption_of_waiting_goals() -> None:
     assert printed(
         """
         !g.
@@ -185,7 +185,7 @@ def test_goal_state_events_tell_what_suspends_and_resumes_a_goal_that_waits() ->
     ]
 
 
-def test_goals_of_a_dropped_intention_are_no_desires() -> None:
+def test_goals_of_a_dropped_intention_are_not_desires() -> None:
     assert printed(
         """
         !g. !k. !x. !x. !x.
@@ -196,7 +196,7 @@ def test_goals_of_a_dropped_intention_are_no_desires() -> None:
     ) == ["gone"]
 
 
-def test_the_stack_of_an_intention_tells_its_goal_and_what_is_left_to_do() -> None:
+def test_the_stack_of_an_intention_shows_its_goal_and_remaining_steps() -> None:
     assert printed(
         """
         !g(1).
@@ -205,7 +205,7 @@ def test_the_stack_of_an_intention_tells_its_goal_and_what_is_left_to_do() -> No
     ) == ["1", "{ .print(Y); .print(B); .wait(1) }"]
 
 
-def test_a_body_held_by_a_variable_makes_its_first_step_in_the_same_turn() -> None:
+def test_a_body_held_by_a_variable_runs_its_first_step_in_the_same_turn() -> None:
     assert printed(
         """
         !a. !b.
@@ -215,7 +215,7 @@ def test_a_body_held_by_a_variable_makes_its_first_step_in_the_same_turn() -> No
     ) == ["a1", "b1", "a2", "b2", "a3", "b3", "b4", "b5"]
 
 
-def test_done_ends_a_handler_or_a_belief_plan_and_its_caller_goes_on() -> None:
+def test_done_ends_a_handler_or_a_belief_plan_and_its_caller_continues() -> None:
     assert printed("!s. +!s <- !g; .print(after). +!g <- .fail. -!g <- .done; .print(no).") == ["after"]
     assert printed("!g. +!g <- +b; .print(x). +b <- .print(b); .done; .print(no).") == ["b", "x"]
 
@@ -229,7 +229,7 @@ def test_beliefs_may_change_while_a_loop_goes_over_them() -> None:
     ) == ["1", "1", "2", "4", "5", "end"]
 
 
-def test_a_plan_goes_when_its_last_source_takes_it_back() -> None:
+def test_a_plan_is_removed_with_its_last_source() -> None:
     assert printed(
         """
         !g.
@@ -240,12 +240,12 @@ def test_a_plan_goes_when_its_last_source_takes_it_back() -> None:
     ) == ["1", "no_relevant"]
 
 
-def test_the_label_of_a_plan_that_is_in_no_file_names_none() -> None:
+def test_the_label_of_a_plan_without_a_file_names_no_file() -> None:
     program = '!g. +!g <- .add_plan("@k +!a."); .relevant_plans({+!a}, _, L); .print(L).'
     assert printed(program) == ["[k[source(self)]]"]
 
 
-def test_a_plan_that_is_not_there_can_be_removed() -> None:
+def test_removing_an_unknown_plan_succeeds() -> None:
     assert printed(
         "!g. @k +!a. +!g <- .remove_plan(none); .remove_plan([k, none]); .relevant_plans({+!a}, L); .print(L)."
     ) == ["[]"]
@@ -267,7 +267,7 @@ def test_plans_of_any_width_are_compiled() -> None:
     ) == ["a", "b", "c"]
 
 
-def test_ending_a_goal_of_a_suspended_intention_lets_its_caller_go_on_at_once() -> None:
+def test_ending_a_goal_of_a_suspended_intention_resumes_its_caller_immediately() -> None:
     lines = printed(
         """
         !g. !k.
@@ -280,7 +280,7 @@ def test_ending_a_goal_of_a_suspended_intention_lets_its_caller_go_on_at_once() 
     assert lines.index("a") < lines.index("k2")
 
 
-def test_dropping_all_intentions_gives_up_the_planned_events() -> None:
+def test_dropping_all_intentions_cancels_planned_events() -> None:
     assert printed(
         """
         !s.

@@ -175,7 +175,7 @@ def change(program: str) -> nodes.Program:
     return load_program("a.asl", f"{program} {ON_OFF} !s. +!s.")[0]
 
 
-def test_a_mind_that_is_restored_for_another_program_gives_up_what_that_does_not_derive() -> None:
+def test_a_mind_restored_for_another_program_drops_underived_beliefs() -> None:
     host = after_two_events()
     data = json.loads(json.dumps(stored(host.agent)))
     old = host.agent
@@ -233,7 +233,7 @@ def test_a_changed_program_keeps_the_history_that_both_declare() -> None:
     assert past.past(functor("g", 1), 50.0) is None
 
 
-def test_a_clone_goes_on_with_the_windows_of_the_original() -> None:
+def test_a_clone_continues_with_the_windows_of_the_original() -> None:
     host = after_two_events("{ history(e(_), within(1000)) }")
     other = RecordingHost()
     other.time = host.time
@@ -269,7 +269,7 @@ def run_until(host: RecordingHost, end: float) -> None:
     host.time = end
 
 
-def test_a_property_with_a_new_value_has_not_ended_in_between() -> None:
+def test_a_property_with_a_new_value_does_not_end_in_between() -> None:
     host = mind(
         "{ derive(held, held(p(X), above(1), lasting(100))) } { derive(many, count(p(_), within(1000), at_least(3))) }"
         "+held <- .print(held). -held <- .print(over). +many <- .print(many). -many <- .print(few)."
@@ -345,7 +345,7 @@ def test_an_agent_without_declarations_listens_to_nothing(tmp_path: Path) -> Non
         ("d", "unknown operator `d`", None),
     ],
 )
-def test_wrong_patterns_are_told_with_help(derived: str, message: str, help_: str | None) -> None:
+def test_invalid_patterns_are_reported_with_help(derived: str, message: str, help_: str | None) -> None:
     with pytest.raises(AslError) as caught:
         load_program("a.asl", f"{{ derive(d, {derived}) }}\n!s. +!s.")
     told = {each.message: each.help for each in caught.value.diagnostics}
@@ -353,7 +353,7 @@ def test_wrong_patterns_are_told_with_help(derived: str, message: str, help_: st
     assert help_ is None or told[message] == help_
 
 
-def test_directives_are_written_as_they_are_read() -> None:
+def test_directives_are_written_as_they_were_parsed() -> None:
     text = """{ derive(a, count(e(_,3,"x y"), within(100), at_least(2))) }
         { derive(b, missing(r(_), after(q(z)), within(57))) }
         { derive(c, interpolated([scan(R), pose(X,A), p(B,_,C)], within(0.1), degrees(A, C), radians(B))) }
@@ -367,7 +367,7 @@ def test_directives_are_written_as_they_are_read() -> None:
     assert written == [line.strip() for line in text.splitlines()]
 
 
-def test_circles_over_several_declarations_are_told() -> None:
+def test_cycles_over_several_declarations_are_reported() -> None:
     with pytest.raises(AslError, match="`b` is derived from itself"):
         load_program("a.asl", "{ derive(a, count(b, within(1))) } { derive(b, count(a, within(1))) }")
 

@@ -17,14 +17,14 @@ def wait(waits: EventWaits, kind: object) -> EventWait:
     return made
 
 
-def test_those_of_a_kind_and_of_any_kind_come_in_their_order() -> None:
+def test_waits_for_one_kind_and_for_any_kind_keep_their_order() -> None:
     waits = EventWaits()
     first, any_kind, other, last = (wait(waits, kind) for kind in (ADDED, None, OTHER, ADDED))
     assert list(waits.candidates(ADDED)) == [first, any_kind, last]
     assert list(waits.candidates(OTHER)) == [any_kind, other]
 
 
-def test_nothing_is_left_of_waits_that_are_over() -> None:
+def test_ended_waits_leave_nothing_behind() -> None:
     waits = EventWaits()
     first, second = wait(waits, ADDED), wait(waits, ADDED)
     waits.remove(first)

@@ -106,7 +106,7 @@ def test_long_values_are_cut() -> None:
     assert len(found) < 100
 
 
-def test_internal_actions_that_only_look_are_called_again() -> None:
+def test_internal_actions_without_effects_are_called_again() -> None:
     program = "!go([1,2]).\n+!go(L) : .length(L, N) & .member(X, L) & X > N."
     assert stop(program) == "stops at `X > N` with X=1, N=2 (the first of 2 answers)"
 
@@ -116,13 +116,13 @@ def test_numbers_of_answers_are_computed_again() -> None:
     assert stop("p(1). p(2). !go.\n+!go : .count(p(_)) > 5.") == "stops at `.count(p(_)) > 5`"
 
 
-def test_no_action_that_acts_or_prints_is_called_again() -> None:
+def test_actions_that_act_or_print_are_not_repeated() -> None:
     assert [
         name for name, action in STANDARD.items() if action.repeatable and action.suspends | action.prints
     ] == []
 
 
-def test_what_is_printed_in_a_context_is_printed_once() -> None:
+def test_output_of_a_context_is_printed_once() -> None:
     host = _run('!go.\n+!go : .print("looking") & ready.')
     assert host.printed == ["looking"]
     assert _candidates(host) == ["+!go (tester.asl:2), stops at `ready`"]
@@ -131,7 +131,7 @@ def test_what_is_printed_in_a_context_is_printed_once() -> None:
 @pytest.mark.parametrize(
     "conjunct", [".random(X)", ".add_plan({+!a})", "math.random < 2", ".queue.add(Q, 1)", "N::p(1)"]
 )
-def test_what_may_have_an_effect_is_not_called_again(conjunct: str) -> None:
+def test_calls_that_may_have_an_effect_are_not_repeated(conjunct: str) -> None:
     found = stop(f"p. !go.\n+!go : p & {conjunct} & ready.")
     assert found == f"not examined from `{conjunct}` on, which may have effects"
 
@@ -154,7 +154,7 @@ def test_warnings_of_a_context_are_logged_once() -> None:
     assert len(reports) == 1
 
 
-def test_a_search_without_end_is_cut_short() -> None:
+def test_an_endless_search_is_cut_short() -> None:
     program = "!go.\n+!go : p(X) & endless(0).\nendless(X) :- endless(X + 1). p(1)."
     host = _run(program)
     assert _candidates(host) == ["+!go : p(X) & endless(0) (tester.asl:2)"]
@@ -166,7 +166,7 @@ def test_many_answers_are_not_searched_to_the_end() -> None:
     assert found.endswith(" answers); not searched to the end")
 
 
-def test_a_limit_of_searches_is_left_as_it_was() -> None:
+def test_a_search_limit_is_unchanged() -> None:
     host = mind("p(1). p(2). low(X) :- p(X) & X > 5.\n+!go : low(X).\n!go.", options=_limited())
     host.run()
     budget = host.agent.beliefs.budget
@@ -180,7 +180,7 @@ def _limited() -> object:
     return Options(search_limit=50)
 
 
-def test_nothing_is_searched_for_goals_that_are_saved(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_nothing_is_searched_for_handled_failures(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("jacaros.bdi.explaining.lost_goals.FailingContexts", None)
     host = _run(
         "!go.\n+!go : ready.\n-!go <- .print(saved).\n!outer.\n+!outer <- !go(1).\n+!go(X) : ready.\n-!outer."
@@ -188,7 +188,7 @@ def test_nothing_is_searched_for_goals_that_are_saved(monkeypatch: pytest.Monkey
     assert host.printed == ["saved"]
 
 
-def test_an_observer_hears_the_conjunct_of_a_lost_goal() -> None:
+def test_an_observer_gets_the_conjunct_of_a_lost_goal() -> None:
     host = mind("battery(12). !go.\n+!go : battery(B) & B > 20.")
     heard: list[str] = []
     observe_goals(host.agent, lambda state, goal, number, intention, why: heard.append(why) if why else None)

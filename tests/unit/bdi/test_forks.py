@@ -45,7 +45,7 @@ def test_a_fork_inside_a_loop_is_made_anew_each_time() -> None:
     ]
 
 
-def test_a_loop_around_a_fork_goes_on_in_the_branch_that_goes_on() -> None:
+def test_a_loop_around_a_fork_continues_in_the_surviving_branch() -> None:
     assert printed(
         """
         !s.

@@ -29,7 +29,7 @@ def test_a_registered_internal_action_is_a_function() -> None:
     assert printed(program) == ["5"]
 
 
-def test_it_is_evaluated_in_conditions_rules_goals_and_beliefs() -> None:
+def test_functions_are_evaluated_in_conditions_rules_goals_and_beliefs() -> None:
     program = """
         big(X) :- my.sum(X, 1) > 10.
         !g(9). !g(10).
@@ -40,7 +40,7 @@ def test_it_is_evaluated_in_conditions_rules_goals_and_beliefs() -> None:
     assert printed(SUM + program) == ["small", "11"]
 
 
-def test_texts_and_plans_that_are_read_at_run_time_may_call_it() -> None:
+def test_texts_and_plans_parsed_at_run_time_may_call_functions() -> None:
     program = """
         !g. +!g <- .term2string(T, "f(my.sum(4, 5))"); .print(T);
             .add_plan("+!h(X) : my.sum(X, 1) > 3 <- .print(my.sum(X, 10))."); !h(3);
@@ -49,12 +49,12 @@ def test_texts_and_plans_that_are_read_at_run_time_may_call_it() -> None:
     assert printed(SUM + program) == ["f(9)", "13", "2"]
 
 
-def test_it_waits_for_its_arguments() -> None:
+def test_a_function_waits_for_its_arguments() -> None:
     assert printed(SUM + "!g. +!g <- X = my.sum(Q, 1); .print(X); Q = 4; .print(X).") == ["my.sum(Q,1)", "5"]
 
 
-@pytest.mark.parametrize(("rule", "why"), [("none", "does not hold"), ("word", "is no number")])
-def test_one_without_a_number_fails_the_step(rule: str, why: str) -> None:
+@pytest.mark.parametrize(("rule", "why"), [("none", "does not hold"), ("word", "is not a number")])
+def test_a_function_without_a_number_fails_the_step(rule: str, why: str) -> None:
     program = f"""{{ register_function("my.f", 1, "{rule}") }}
         word(_, a).
         !g. +!g <- X = my.f(1); .print(never). -!g[error(E), error_msg(M)] <- .print(E, " ", M).
@@ -64,7 +64,7 @@ def test_one_without_a_number_fails_the_step(rule: str, why: str) -> None:
     assert why in line
 
 
-def test_an_initial_belief_without_a_value_is_left_out_and_told() -> None:
+def test_an_initial_belief_without_a_value_is_skipped_and_reported() -> None:
     host = mind(
         '{ register_function("my.f", 1, "none") } p(my.f(1)). p(2). !g(my.f(1)). !g(3). +!g(X) : p(Y) <- .print(X, Y).'
     )
@@ -113,4 +113,4 @@ f(_, {number}).
 
     with ThreadPoolExecutor() as pool:
         found = list(pool.map(run, (1, 2)))
-    assert found == [["meet", n, "NaN", "meet", """an operand of '+' is no number: "a\""""] for n in "12"]
+    assert found == [["meet", n, "NaN", "meet", """operand of `+` is not a number: "a\""""] for n in "12"]

@@ -24,7 +24,7 @@ def test_the_variables_of_a_goal_are_bound(action: str) -> None:
     assert host.printed[0] == "1"
 
 
-def test_resuming_tells_the_goal_as_well() -> None:
+def test_resuming_reports_the_goal_as_well() -> None:
     host = mind(
         f"{WAITING} .suspend(w(1, _)); .suspended(w(X, Y), _); .print(X, Y); .resume(w(Z, _)); .print(Z)."
     )
@@ -32,13 +32,13 @@ def test_resuming_tells_the_goal_as_well() -> None:
     assert host.printed == ["1a", "1"]
 
 
-def test_nothing_is_bound_when_there_is_no_such_goal() -> None:
+def test_nothing_is_bound_without_a_matching_goal() -> None:
     host = mind(f"{WAITING} .drop_desire(other(X)); .print(X).")
     host.run(seconds=0.5)
     assert host.printed == ["X<no-value>"]
 
 
-def test_a_goal_that_ends_itself_goes_on_behind() -> None:
+def test_a_plan_that_ends_its_own_goal_continues_after_the_goal() -> None:
     host = mind(
         "!begin. +!begin <- !own(1); .print(after). +!own(X) <- .succeed_goal(own(_)); .print(never)."
     )
@@ -50,7 +50,7 @@ def test_a_goal_that_ends_itself_goes_on_behind() -> None:
     ("step", "error"),
     [
         (".wait({ +never }, 10)", "wait_timeout the wait is over without what it waited for"),
-        (".send(self, askOne, p(_), q(_))", "ask_failed the answer does not fit"),
+        (".send(self, askOne, p(_), q(_))", "ask_failed the answer does not match"),
         ("act", "action_failed the action failed"),
     ],
 )
@@ -66,7 +66,7 @@ def test_the_failure_of_a_waiting_step_has_a_message(step: str, error: str) -> N
 
 
 @pytest.mark.parametrize("action", [".wait(1)", ".send(self, tell, hi)", ".broadcast(tell, hi)", ".stopMAS"])
-def test_actions_that_wait_or_act_on_others_are_no_conditions(action: str) -> None:
+def test_actions_that_wait_or_act_on_others_are_not_conditions(action: str) -> None:
     host = mind(
         f"r :- {action}. !begin. +!begin <- if (r) {{ .print(holds) }}; !known({action}). "
         "+!known(F) : F <- .print(holds). +!known(F) <- .print(end). +hi <- .print(hi)."
@@ -100,7 +100,7 @@ def test_rules_and_plans_are_removed_whatever_their_variables_are_called() -> No
 @pytest.mark.parametrize(
     ("action", "lines"), [("drop_all_intentions", ["b"]), ("drop_all_events", ["a", "b"])]
 )
-def test_dropping_all_intentions_takes_back_what_is_to_come(action: str, lines: list[str]) -> None:
+def test_dropping_all_intentions_cancels_scheduled_events(action: str, lines: list[str]) -> None:
     host = mind(
         f"""!begin. +!begin <- .at("now +20", {{ +!x(a) }}); .{action}; .at("now +30", {{ +!x(b) }}).
         +!x(N) <- .print(N)."""
@@ -109,7 +109,7 @@ def test_dropping_all_intentions_takes_back_what_is_to_come(action: str, lines: 
     assert host.printed == lines
 
 
-def test_a_condition_that_comes_true_tells_how_long_it_took() -> None:
+def test_a_wait_reports_how_long_its_condition_took() -> None:
     host = mind(
         '!begin. !later. +!begin <- .wait(p(X), 5000, T); .print(X, " ", T). +!later <- .wait(300); +p(1).'
     )
@@ -127,7 +127,7 @@ def test_a_goal_that_suspends_itself_at_its_end_is_not_over(action: str) -> None
     assert host.printed == ["before", "after"]
 
 
-def test_a_goal_that_suspends_itself_goes_on_with_its_next_step() -> None:
+def test_a_goal_that_suspends_itself_continues_with_its_next_step() -> None:
     host = mind(
         "!own. +!own <- .suspend; .print(on). !resume. +!resume <- .wait(100); .print(before); .resume(own)."
     )
@@ -146,12 +146,12 @@ def test_a_goal_that_suspends_itself_goes_on_with_its_next_step() -> None:
         (".drop_event(g(1)); .wait(10)", "pending dropped finished"),
     ],
 )
-def test_the_states_of_a_goal_that_is_an_event_yet_are_told(steps: str, states: str) -> None:
+def test_the_states_of_a_goal_that_is_still_an_event_are_reported(steps: str, states: str) -> None:
     program = f"!s. +!s <- !!g(1); {steps}; .print(end). +!g(X). ^!g(X)[state(S)] <- .print(S)."
     assert [line for line in printed(program) if line != "end"] == states.split()
 
 
-def test_a_wait_says_what_it_waits_for() -> None:
+def test_the_reason_of_a_wait_names_what_it_waits_for() -> None:
     program = """
 !a. !b. !c. !look.
 +!a <- .wait(300).

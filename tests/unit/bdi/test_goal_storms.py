@@ -198,7 +198,7 @@ def text_of(frame: Any) -> str:
 
 @settings(max_examples=100)
 @given(stories)
-def test_nothing_is_left_of_goals_however_they_are_steered(story: list[tuple[Any, ...]]) -> None:
+def test_ended_goals_leave_nothing_behind_however_they_ended(story: list[tuple[Any, ...]]) -> None:
     storm = Storm()
     for step in story:
         storm.step(step)
@@ -209,7 +209,7 @@ def test_nothing_is_left_of_goals_however_they_are_steered(story: list[tuple[Any
 
 @settings(max_examples=60)
 @given(stories)
-def test_when_all_is_dropped_nothing_runs_any_more(story: list[tuple[Any, ...]]) -> None:
+def test_nothing_runs_after_everything_is_dropped(story: list[tuple[Any, ...]]) -> None:
     storm = Storm()
     for step in story:
         storm.step(step)
@@ -229,7 +229,7 @@ def test_when_all_is_dropped_nothing_runs_any_more(story: list[tuple[Any, ...]])
     st.lists(st.tuples(numbers, st.sampled_from([1.0, 4.0, 6.0, 7.0])), min_size=1, max_size=5),
     st.lists(st.booleans(), max_size=12),
 )
-def test_between_the_steps_of_an_atomic_plan_nobody_else_does_anything(
+def test_nothing_else_runs_between_the_steps_of_an_atomic_plan(
     tasks: list[tuple[float, float]], ends: list[bool]
 ) -> None:
     host = mind(
@@ -261,7 +261,7 @@ def test_between_the_steps_of_an_atomic_plan_nobody_else_does_anything(
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_an_id_that_is_not_pending_is_of_no_account(seed: int) -> None:
+def test_an_id_that_is_not_pending_is_ignored(seed: int) -> None:
     host = mind("!g. +!g <- act(1); .print(done).")
     host.run()
     host.agent.complete(99 + seed, Completion(False))

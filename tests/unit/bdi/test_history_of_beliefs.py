@@ -164,7 +164,7 @@ def test_a_stored_mind_keeps_its_history(same_host: bool, now: str) -> None:
     assert [ask(host, each) for each in (0.0, 150.0, 250.0)] == [now, "[2]", "[1]"]
 
 
-def test_a_history_that_an_artifact_asks_for_is_like_one_of_a_directive() -> None:
+def test_a_history_requested_by_an_artifact_equals_one_of_a_directive() -> None:
     host = mind(PROPERTY.split("}")[1])
     old = show(host, 1.0, [])
     run_until(host, host.time + 0.1)

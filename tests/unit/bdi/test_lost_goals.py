@@ -20,34 +20,34 @@ def lost(goal: str, why: str, line: int, *details: str) -> list[str]:
     return [first, *(f"  {each}" for each in details)]
 
 
-def test_a_test_goal_is_told_with_its_values() -> None:
+def test_a_test_goal_is_reported_with_its_values() -> None:
     found = told("!g.\n+!g <- X = 7;\n ?reading(X, Y).")
     assert found == lost("g", "test_goal_failed, a test found no answer", 3, "step: ?reading(7,Y)")
 
 
-def test_a_comparison_is_told_with_its_values() -> None:
+def test_a_comparison_is_reported_with_its_values() -> None:
     found = told("level(3).\n!g.\n+!g <- ?level(X);\n X > 5.")
     assert found == lost("g", "constraint_failed, a constraint does not hold", 4, "step: 3 > 5")
 
 
-def test_a_formula_without_value_is_told_as_it_is_written() -> None:
+def test_a_formula_without_value_is_reported_as_written() -> None:
     found = told("!g.\n+!g <- X = 1 div 0.")
     assert found == lost("g", "arithmetic_error, integer division by zero", 2, "step: X = (1 div 0)")
 
 
-def test_an_internal_action_is_told_with_what_it_says() -> None:
+def test_an_internal_action_is_reported_with_its_message() -> None:
     (first, step) = told("!g.\n+!g <- .nth(7, [a], X).")
-    assert first.endswith("internal_action, .nth: there is no position 7 in 1 elements (tester.asl:2)")
+    assert first.endswith("internal_action, .nth: position 7 is outside the 1 elements (tester.asl:2)")
     assert step == "  step: .nth(7,[a],X)"
 
 
-def test_the_terms_of_a_failure_are_told() -> None:
+def test_the_terms_of_a_failure_are_reported() -> None:
     found = told('!g.\n+!g <- .fail(stuck(3), error_msg("the door is shut")).')
     step = "step: .fail(...)"
     assert found == lost("g", "internal_action, the door is shut", 2, step, "reason: stuck(3)")
 
 
-def test_a_failing_action_tells_reason_step_and_goals() -> None:
+def test_a_failing_action_is_reported_with_reason_step_and_goals() -> None:
     reason = structure("env_failure_reason", structure("aborted", 204.0, String("no path")))
     failed = Completion(False, (), (structure("error_msg", String("no path")), reason))
     program = (
@@ -66,12 +66,12 @@ def test_a_goal_without_relevant_plan() -> None:
     assert told("!g.\n+!g <- !nobody(4).") == lost("g", "no_relevant, no relevant plan for !nobody(4)", 2)
 
 
-def test_the_goals_behind_one_without_plan_are_told() -> None:
+def test_the_goals_below_one_without_plan_are_reported() -> None:
     found = told("!g.\n+!g <- !h.\n+!h <- !i.\n+!i <- !nobody(4).")
     assert found == lost("g", "no_relevant, no relevant plan for !nobody(4)", 4, "for: !i, !h, !g")
 
 
-def test_plans_that_do_not_fit_are_told() -> None:
+def test_plans_that_do_not_fit_are_reported() -> None:
     found = told("!g.\n+!g <- !h(4).\n+!h(X) : X > 5.\n+!h(a).\n+!h(b).\n+!h(c).\n+!h(d).")
     assert found == lost(
         "g",
@@ -91,7 +91,7 @@ def test_an_initial_goal_without_applicable_plan_has_a_name() -> None:
     ]
 
 
-def test_fail_goal_tells_who_called_it_and_what_it_ended() -> None:
+def test_fail_goal_names_its_caller_and_the_ended_goal() -> None:
     found = told("!a. !b.\n+!a <- .wait(10);\n .fail_goal(b).\n+!b <- !c(1).\n+!c(X) <- .wait(9000).")
     assert found == lost(
         "b", ".fail_goal in the plan of !a ended it", 5, "step: .wait(9000), for !c(1), !b"
@@ -103,18 +103,18 @@ def test_fail_goal_on_the_own_goal() -> None:
     assert found == lost("a", ".fail_goal in the plan of !a ended it", 2, "step: .fail_goal(a)")
 
 
-def test_a_deadline_tells_what_the_goal_was_at() -> None:
+def test_a_deadline_reports_the_running_step() -> None:
     found = told("!a.\n+!a <- !late[hard_deadline(50)].\n+!late <- !inner.\n+!inner <- .wait(9000).")
     told_why = "deadline_reached, the goal was not achieved in time"
     assert found == lost("a", told_why, 4, "step: .wait(9000), for !inner, !late, !a")
 
 
-def test_a_handler_that_fails_is_told_with_what_it_was_for() -> None:
+def test_a_failing_handler_is_reported_with_its_goal() -> None:
     found = told("!a.\n+!a <- !b.\n+!b <- .fail.\n-!b <- ?help.")
     assert found == lost("a", "test_goal_failed, a test found no answer", 4, "step: ?help, for -!b, !a")
 
 
-def test_handlers_that_do_not_fit_are_told() -> None:
+def test_handlers_that_do_not_fit_are_reported() -> None:
     assert told("!a.\n+!a <- !b.\n+!b <- .fail.\n-!b[error(other)].") == [
         (
             "no applicable plan for the failure event -!b; the intention is dropped: "
@@ -144,7 +144,7 @@ def test_long_terms_and_deep_stacks_are_cut() -> None:
     )
 
 
-def test_an_observer_hears_error_place_step_and_reason() -> None:
+def test_an_observer_gets_error_place_step_and_reason() -> None:
     host = mind('!a.\n+!a <- .fail(wet, error_msg("ouch")).')
     heard: list[str] = []
     observe_goals(host.agent, lambda state, goal, number, intention, why: heard.append(why) if why else None)
@@ -152,7 +152,7 @@ def test_an_observer_hears_error_place_step_and_reason() -> None:
     assert heard == ["internal_action, ouch (tester.asl:2)\nstep: .fail(...)\nreason: wet"]
 
 
-def test_goals_with_shared_parts_are_told_in_part() -> None:
+def test_goals_with_shared_parts_are_reported_in_part() -> None:
     found = told("!b(200, a).\n+!b(0, T) <- .fail.\n+!b(N, T) <- !b(N - 1, f(T, T)); .print(N).")
     assert len(found) == 2
     assert found[1].startswith("  step: .fail, for !b(0,f(f(f(")
@@ -169,7 +169,7 @@ def test_a_long_message_is_cut() -> None:
 ASKS = "!ask.\n+!ask <- .send(self, askOne, door(X), R); .print(R).\n"
 
 
-def test_a_plan_that_fails_for_a_question_is_told_with_its_reason() -> None:
+def test_a_failed_plan_for_a_question_is_reported_with_its_reason() -> None:
     (first, step) = told(ASKS + "+?door(X) <- ?seen(X).")
     assert first.startswith("the question ?door(")
     assert first.endswith(
@@ -186,7 +186,7 @@ def test_a_question_without_applicable_plan_is_answered_without_a_warning() -> N
     assert host.logged == []
 
 
-def test_a_question_that_a_failure_plan_saves_is_not_told() -> None:
+def test_a_question_saved_by_a_failure_plan_is_not_reported() -> None:
     assert told(ASKS + "+?door(X) <- .fail.\n-?door(X) <- X = shut.") == []
 
 
@@ -203,13 +203,13 @@ WHY_NOT = [
 ]
 
 
-def test_details_tell_why_no_plan_was_taken_for_an_event() -> None:
+def test_details_report_why_no_plan_was_selected_for_an_event() -> None:
     plan = "+alarm(T) : zones(T).\n"
     assert details(plan + "alarm(fire).") == WHY_NOT
     assert details(plan + "!go.\n+!go <- +alarm(fire).") == WHY_NOT
     assert details(plan + "!go.\n+!go <- +alarm(fire). { +other. }") == WHY_NOT
 
 
-def test_without_details_events_without_applicable_plan_are_skipped_in_silence() -> None:
+def test_without_details_events_without_applicable_plan_are_skipped_silently() -> None:
     assert details("+alarm(T) : zones(T). alarm(fire).", verbose=1) == []
     assert details("+other. alarm(fire).") == []

@@ -122,7 +122,7 @@ def test_a_mind_continues_in_another_process(milliseconds, plain, monkeypatch):
     assert continued(begun(milliseconds), PROGRAM, plain[1]) == outcome(whole)
 
 
-def test_an_action_under_way_fails_where_its_host_is_gone():
+def test_a_running_action_fails_when_its_host_is_gone():
     program = """
         !go. !others. +!go <- drive(kitchen); .print(never).
         -!go[error(E), env_failure_reason(R), error_msg(M)] <- .print(E, " ", R, " ", M).

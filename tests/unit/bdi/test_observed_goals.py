@@ -19,7 +19,7 @@ CASES = Path(__file__).parents[2] / "conformance"
 BEGUN = ("pursued", "suspended", "resumed")
 
 
-def test_an_observer_hears_of_every_change_of_a_goal() -> None:
+def test_an_observer_is_notified_of_every_change_of_a_goal() -> None:
     host = mind("!a. +!a <- !b; .wait(10); .suspend(a); .print(x). +!b <- .fail. -!b.")
     heard: list[tuple[str, str]] = []
     observe_goals(
@@ -71,7 +71,7 @@ def test_goals_whose_failure_plan_fails_have_failed():
     assert goals_at_the_end("!a. +!a <- .fail. -!a : false.") == ["failed !a"]
 
 
-def test_the_goals_of_a_branch_end_with_it_and_those_around_the_fork_go_on():
+def test_the_goals_of_a_branch_end_with_it_and_those_around_the_fork_continue():
     program = "!a(1). +!a(N) <- !b(N) ||| !c(X); .wait(10). +!b(_) <- .wait(20). +!c(3) <- .wait(5)."
     assert goals_at_the_end(program) == ["achieved !a(1)", "dropped !b(1)", "achieved !c(3)"]
     program = "!a(1). +!a(N) <- !b(N) |&| !c(X); .wait(10). +!b(_) <- .wait(20). +!c(3) <- .wait(5)."
@@ -86,7 +86,7 @@ def test_a_branch_that_is_lost_in_a_handler_ends_the_fork_that_waits_for_it():
     assert goals_at_the_end(program.format("|||")) == ["achieved !a", "failed !b", "achieved !c"]
 
 
-def test_goals_that_are_steered_end():
+def test_goals_ended_from_outside_end():
     program = "!a. +!a <- !b; .print(x). +!b <- !c. +!c <- .wait(1000). !k. +!k <- .wait(5); .{}."
     assert goals_at_the_end(program.format("drop_intention(a)"))[:2] == ["dropped !a", "achieved !k"]
     assert sorted(goals_at_the_end(program.format("fail_goal(b)"))) == [
@@ -149,7 +149,7 @@ def pursued(agent, intention):
 @pytest.mark.parametrize(
     "case", sorted(CASES.rglob("*.asl")), ids=lambda path: f"{path.parent.name}/{path.stem}"
 )
-def test_every_goal_ends_once_unless_it_is_pursued_still(case: Path) -> None:
+def test_every_goal_ends_once_unless_it_is_still_pursued(case: Path) -> None:
     if "syntax_errors" in case.parts or not case.with_suffix(".expected").exists():
         return
     watched = Watched(case.read_text(), name=case.stem, path=str(case), complete=no_environment)

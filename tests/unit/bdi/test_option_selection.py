@@ -36,7 +36,7 @@ def test_the_answers_do_not_multiply_without_a_filter() -> None:
     assert host.printed == ["1"]
 
 
-def test_the_filter_is_told_the_intention() -> None:
+def test_the_filter_gets_the_intention() -> None:
     host = mind("""
         select__option(_, I, { @L +!g : C <- B }, _) :- I > 0 & I < 100.
         select__option(_, _, { @L +!begin : C <- B }, _).
@@ -46,7 +46,7 @@ def test_the_filter_is_told_the_intention() -> None:
     assert host.printed == ["done"]
 
 
-def test_a_filter_that_is_taken_away_does_not_filter() -> None:
+def test_a_removed_filter_does_not_filter() -> None:
     host = mind("""
         select__option(T, I, P, U) :- open.
         open.

@@ -34,13 +34,13 @@ def test_all_plans_of_a_change_see_the_newest_beliefs() -> None:
     assert host.printed == ["plus(1)", "minus(1,2)", "plus(2)"]
 
 
-def test_a_signal_is_an_event_and_no_belief() -> None:
+def test_a_signal_is_an_event_but_not_a_belief() -> None:
     host = told(percept("signal", 5.0))
     assert host.printed == ["plus(5)"]
     assert believed(host, "level") == []
 
 
-def test_one_literal_seen_twice_stays_while_one_of_them_holds() -> None:
+def test_a_literal_perceived_twice_stays_while_one_percept_holds() -> None:
     host = told(percept("add", 1.0, "a"), percept("add", 1.0, "b"), percept("remove", 1.0, "a"))
     assert believed(host, "level") == ["level(1)[artifact_name(b),source(percept)]"]
 
@@ -98,7 +98,7 @@ def test_percepts_without_arguments_come_and_go() -> None:
     assert believed(host, "dark") == []
 
 
-def test_a_percept_that_the_agent_has_given_up_ends_without_an_event() -> None:
+def test_a_percept_that_the_agent_has_deleted_ends_without_an_event() -> None:
     host = told(percept("add", 1.0), program="!s. +!s <- .abolish(level(_)).")
     host.agent.perceive([percept("remove", 1.0)])
     host.run()

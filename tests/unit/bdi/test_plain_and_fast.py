@@ -62,7 +62,7 @@ def test_a_program_prints_the_same_plain_and_fast_and_with_code_that_was_kept(pr
         ("G = r(B); for (G) { A = B; .print(T) }", ["f(1,1)", "f(2,2)"]),
     ],
 )
-def test_loops_give_back_variables_that_stand_in_terms(plain, loop, shown, monkeypatch):
+def test_loops_unbind_variables_inside_terms(plain, loop, shown, monkeypatch):
     monkeypatch.setenv("JACAROS_PLAIN", plain)
     assert printed(f"k(0). p(1). p(2). r(X) :- p(X). !s. +!s <- T = f(A, B); {loop}; .print(T).") == [
         *shown,
@@ -74,7 +74,7 @@ def test_loops_give_back_variables_that_stand_in_terms(plain, loop, shown, monke
 @pytest.mark.parametrize(
     "condition", ["p(X)", "r(X)", "q(X)", "p(X)[source(self)]", "p(X) & true", "F", "r(X) & not X = 9"]
 )
-def test_a_loop_leaves_out_beliefs_that_are_deleted_before_their_turn(plain, condition, monkeypatch):
+def test_a_loop_skips_beliefs_that_are_deleted_before_their_turn(plain, condition, monkeypatch):
     monkeypatch.setenv("JACAROS_PLAIN", plain)
     assert printed(
         f"""
@@ -93,7 +93,7 @@ def test_an_intention_shows_the_same_variables_plain_and_fast(monkeypatch):
     assert printed(program) == fast == ["[map('L',[s[source(self)]])][s[source(self)]]"]
 
 
-def test_what_is_there_for_speed_is_not_even_imported_when_it_is_left_out():
+def test_a_plain_run_does_not_import_the_fast_paths():
     script = (
         "import sys; from jacaros.testing import run_project; "
         f"print(run_project({str(PROGRAMS[0])!r}, seconds=120).exit_code, "
@@ -109,7 +109,7 @@ def test_what_is_there_for_speed_is_not_even_imported_when_it_is_left_out():
     assert done.stdout.splitlines()[-1] == "0 []"
 
 
-def test_plain_and_fast_make_the_same_cycles(monkeypatch, tmp_path):
+def test_plain_and_fast_runs_make_the_same_cycles(monkeypatch, tmp_path):
     program = tmp_path / "count.asl"
     program.write_text(
         "!s. !t. +!s <- !g(20); !k; !h; .print(done); .stopMAS. +!g(0). +!g(N) : N > 0 <- +b(N); !g(N-1). "

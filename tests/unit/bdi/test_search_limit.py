@@ -26,7 +26,7 @@ def ended(program: str, limit: int = 20_000) -> tuple[list[str], list[str]]:
 
 
 @pytest.mark.parametrize("kind", ENDLESS)
-def test_a_step_that_searches_without_end_fails_with_the_reason(kind: str) -> None:
+def test_an_endless_search_in_a_step_fails_with_the_reason(kind: str) -> None:
     program = """
     !s.
     +!s <- ?e; .print(never).
@@ -41,20 +41,20 @@ def test_a_step_that_searches_without_end_fails_with_the_reason(kind: str) -> No
 
 
 @pytest.mark.parametrize("kind", ENDLESS)
-def test_a_context_that_is_searched_without_end_does_not_hold(kind: str) -> None:
+def test_a_context_with_an_endless_search_does_not_hold(kind: str) -> None:
     program = "!s. @first +!s : e <- .print(never). +!s <- .print(next). " + ENDLESS[kind]
     printed, told = ended(program)
     assert printed == ["next"]
     reason = "the search takes more than 20000 rules and answers (option search_limit)"
-    assert told == [f"the context of plan first cannot be evaluated: {reason}"]
+    assert told == [f"cannot evaluate the context of plan first: {reason}"]
 
 
-def test_collecting_without_end_fails_too() -> None:
+def test_endless_collecting_fails_too() -> None:
     program = "!s. +!s <- .findall(I, .range(I, 1, 1e15), L); .print(never). -!s[error(E)] <- .print(E)."
     assert ended(program)[0] == ["search_limit"]
 
 
-def test_who_handles_the_failure_may_search_as_much_again() -> None:
+def test_a_handler_gets_the_whole_search_limit_again() -> None:
     program = """
     !s.
     +!s <- ?(.range(I, 1, 1e15) & I < 0).
@@ -63,7 +63,7 @@ def test_who_handles_the_failure_may_search_as_much_again() -> None:
     assert ended(program)[0] == ["15000"]
 
 
-def test_what_is_searched_in_many_cycles_adds_up_to_nothing() -> None:
+def test_searches_of_different_cycles_do_not_add_up() -> None:
     program = "!s. +!s <- for (.range(I, 1, 1000)) { ?(.range(J, 1, 100) & J = 100) }; .print(done)."
     assert ended(program)[0] == ["done"]
 

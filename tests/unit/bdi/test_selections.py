@@ -78,7 +78,7 @@ def test_a_policy_decides_how_many_messages_are_read_in_a_cycle() -> None:
 
 
 @pytest.mark.skipif(is_plain(), reason="the rules ask for every event")
-def test_code_written_for_speed_asks_nothing_while_the_policy_is_plain() -> None:
+def test_fast_paths_do_not_consult_a_plain_policy() -> None:
     class Refusing(Fair):
         def select_event(self) -> Event | None:
             raise AssertionError

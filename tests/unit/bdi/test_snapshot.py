@@ -86,7 +86,7 @@ def test_a_mind_that_is_restored_after_each_cycle_prints_the_same(program):
     assert printed(program, exchanged=True) == expected
 
 
-def test_what_is_stored_of_a_restored_mind_is_the_same():
+def test_a_restored_mind_is_stored_as_the_same_data():
     host = mind("b(1)[x]. b(X) :- c(X). !s. +!s <- .wait(1000).")
     host.agent.run(10)
     before = stored(host.agent)

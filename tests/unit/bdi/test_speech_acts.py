@@ -76,7 +76,7 @@ def test_a_flat_content_is_believed_as_any_other(content: str, flat: bool) -> No
 
 
 @pytest.mark.parametrize("flat", [False, True])
-def test_an_asked_for_goal_is_told_of_and_awaited(flat: bool) -> None:
+def test_a_requested_goal_is_reported_and_awaited(flat: bool) -> None:
     said = message("achieve", "g(1)")
     said.flat = flat
     assert after("+!g(_). ^!g(X)[state(pending)] <- .print(X).", said).printed == ["1"]
@@ -101,7 +101,7 @@ def test_unachieve_drops_the_goal() -> None:
     assert host.printed == []
 
 
-def test_a_question_is_answered_from_beliefs_then_from_a_plan_then_with_no() -> None:
+def test_a_question_is_answered_from_beliefs_then_by_a_plan_then_with_false() -> None:
     host = after("p(1). +?q(X) <- X = 2. +?r(_) <- .fail.", *(message("askOne", f"{f}(X)") for f in "pqrs"))
     answers = {text(a.content)[0]: (a.performative, text(a.content), a.in_reply_to) for a in host.sent}
     assert answers == {
@@ -136,7 +136,7 @@ def test_an_unknown_receiver_fails_the_step() -> None:
 
 
 @pytest.mark.parametrize("performative", ["tellHow", "tell-how"])
-def test_plans_can_be_told(performative: str) -> None:
+def test_plans_can_be_sent(performative: str) -> None:
     host = after("", message(performative, '"+!h <- .print(told)."'), message("achieve", "h"))
     assert host.printed == ["told"]
 
@@ -150,12 +150,12 @@ def test_a_plan_of_the_program_comes_before_what_a_message_does() -> None:
 LATE = "!ask. +?late(X) <- .wait(300); X = 3. "
 
 
-def test_an_answer_that_nobody_waits_for_any_more_is_thrown_away() -> None:
+def test_a_late_answer_is_discarded() -> None:
     asking = "+!ask <- .send(self, askOne, late(X), A, 100); .print(A); .wait(1000); .count(late(_), N); .print(N)."
     assert after(LATE + asking).printed == ["timeout", "0"]
 
 
-def test_an_answer_that_is_not_waited_for_becomes_a_belief() -> None:
+def test_an_answer_without_a_wait_becomes_a_belief() -> None:
     asking = "+!ask <- .send(self, askOne, late(X)); .wait(1000); ?late(Y)[source(S)]; .print(Y, S)."
     assert after(LATE + asking).printed == ["3self"]
 
@@ -170,7 +170,7 @@ def test_a_plan_that_answers_a_question_sees_who_asks() -> None:
     assert [text(sent.content) for sent in host.sent] == ["limit(100)", "limit(100)[urgent]"]
 
 
-def test_plans_that_are_asked_for_are_told_and_taken_in() -> None:
+def test_requested_plans_are_sent_and_added() -> None:
     host = after("+!goto(X) <- .print(going, X). +!goto(a) <- .print(a).", message("askHow", "{+!goto(b)}"))
     [answer] = host.sent
     assert (answer.performative, answer.in_reply_to) == ("tellHow", "m1")
@@ -182,7 +182,7 @@ def test_plans_that_are_asked_for_are_told_and_taken_in() -> None:
     assert len(asker.agent.library.plans) == 1
 
 
-def test_a_restricted_agent_takes_in_no_plans_that_it_asked_for() -> None:
+def test_a_restricted_agent_does_not_add_requested_plans() -> None:
     host = after("+!goto(X) <- .print(X).", message("askHow", "{+!goto(_)}"))
     asker = mind("", options=Options(plans_from_others=False))
     asker.agent.receive(host.sent[0])
@@ -191,7 +191,7 @@ def test_a_restricted_agent_takes_in_no_plans_that_it_asked_for() -> None:
 
 
 @pytest.mark.parametrize("receivers", ["[]", "Nobody"])
-def test_a_message_to_nobody_is_sent_to_nobody(receivers: str) -> None:
+def test_a_message_to_an_empty_list_is_not_sent(receivers: str) -> None:
     host = mind(
         f"!g. +!g <- Nobody = []; .send({receivers}, tell, p); .send({receivers}, askOne, p, A); .print(A)."
     )

@@ -81,7 +81,7 @@ def test_a_goal_that_is_achieved_in_time_leaves_no_alarm():
     assert not host.agent.waits.alarms
 
 
-def test_a_failure_plan_has_as_long_as_it_takes():
+def test_a_failure_plan_has_no_deadline():
     assert printed(
         """
         !g.
@@ -173,7 +173,7 @@ def test_after_the_last_attempt_the_goal_fails_with_its_own_reason():
     ) == ["try", "try", "try", "blocked kitchen 3", "after"]
 
 
-def test_a_lost_goal_tells_the_number_of_attempts():
+def test_a_lost_goal_reports_the_number_of_attempts():
     host = ran("!g. +!g <- !h[retry(2)]. +!h <- 2 > 20.")
     [(level, told)] = host.logged
     assert level == "warning"
@@ -282,7 +282,7 @@ def test_missed_periods_are_reported_once():
     )
     assert host.printed == ["0", "1", "missed1", "3", "missed2", "6"]
     assert host.logged == [
-        ("warning", "the goal !scan has missed a period of 1000 ms: it takes longer"),
+        ("warning", "goal !scan has missed a period of 1000 ms: it takes longer"),
     ]
 
 
@@ -319,7 +319,7 @@ def test_a_periodic_goal_that_is_named_ends_for_good_and_its_plan_continues(mome
     assert not host.agent.waits.alarms
 
 
-def test_a_periodic_goal_that_succeeds_before_its_first_pursuit_has_none():
+def test_a_periodic_goal_that_succeeds_before_its_first_period_never_runs():
     program = """
         !g. !end.
         +!g <- !scan[every(1000)]; .print(after).
@@ -338,7 +338,7 @@ def test_the_plan_of_a_periodic_goal_can_end_it():
     assert printed(program) == ["0", "1", "2", "after"]
 
 
-def test_done_ends_the_present_pursuit():
+def test_done_ends_the_present_period():
     assert printed("!scan[every(1000)]. +!scan <- .print(scan); .done; .print(never).", 2.5) == ["scan"] * 3
 
 
@@ -422,7 +422,7 @@ def test_the_clean_up_goal_is_pursued_before_the_goal_fails():
     ) == ["parking", "dock", "condition_lost", "after"]
 
 
-def test_a_clean_up_that_fails_still_tells_what_was_lost():
+def test_a_failing_clean_up_still_reports_the_lost_condition():
     assert printed(
         """
         ok. !g. !t.
@@ -488,7 +488,7 @@ def test_the_condition_of_a_plan_that_has_ended_is_not_watched():
 
 
 @pytest.mark.parametrize("end", [".drop_intention(h)", ".fail_goal(h)", ".succeed_goal(h)"])
-def test_nothing_is_left_of_a_plan_that_is_ended_from_outside(end):
+def test_a_plan_ended_from_outside_leaves_nothing_behind(end):
     host = ran(
         f"ok. !g. !t. +!g <- !h. @[while(ok), within(9000)] +!h <- drive(5). -!h. +!t <- .wait(50); {end}."
     )

@@ -22,7 +22,7 @@ def test_a_context_may_end_with_a_difference() -> None:
     assert printed("!g(5,2). +!g(X,Y) : 2 < X-Y <- .print(yes). +!g(_,_) <- .print(no).") == ["yes"]
 
 
-def test_a_plan_for_every_goal_fails_in_its_place_however_many_kinds_of_goals_it_met() -> None:
+def test_a_plan_for_any_goal_fails_in_place_after_many_kinds_of_goals() -> None:
     program = """
     !a.
     +!X : not b = X <- !b; ?missing.
@@ -42,18 +42,18 @@ def test_running_plans_for_every_goal_show_what_is_left_of_each() -> None:
     assert printed(program) == ["{ !show; .print(rest) }", "rest"]
 
 
-def test_an_initial_belief_or_goal_without_value_is_left_out_and_told() -> None:
+def test_an_initial_belief_or_goal_without_value_is_skipped_and_reported() -> None:
     host = mind("p(1). p(1 div 0). !g(1 div 0). !h. +!h <- .print(ready). +!g(_) <- .print(never).")
     host.run()
     assert host.printed == ["ready"]
     assert believed(host, "p") == ["p(1)[source(self)]"]
     assert [text for level, text in host.logged if level == "error"] == [
-        "tester.asl:1: an initial belief or goal cannot be evaluated: integer division by zero",
-        "tester.asl:1: an initial belief or goal cannot be evaluated: integer division by zero",
+        "tester.asl:1: cannot evaluate an initial belief or goal: integer division by zero",
+        "tester.asl:1: cannot evaluate an initial belief or goal: integer division by zero",
     ]
 
 
-def test_a_number_beyond_all_bounds_may_stand_in_a_head() -> None:
+def test_an_infinite_number_may_be_in_a_head() -> None:
     assert printed("!g(1/0). +!g(1e400) <- .print(infinite). +!g(_) <- .print(other).") == ["infinite"]
 
 
@@ -108,7 +108,7 @@ def test_an_exception_of_an_internal_action_fails_its_step_only(
         *("untellHow", "unheard_of", "ask-one"),
     ],
 )
-def test_no_content_of_a_message_does_any_harm(performative: str, content: Term) -> None:
+def test_no_message_content_does_any_harm(performative: str, content: Term) -> None:
     host = mind("q(1). +!g <- .print(here).")
     host.agent.receive(SpeechAct(performative, "friend", "tester", content, "m1"))
     host.run()
@@ -119,7 +119,7 @@ def test_no_content_of_a_message_does_any_harm(performative: str, content: Term)
         assert [message.in_reply_to for message in host.sent] == ["m1"]
 
 
-def test_the_reasons_of_a_goal_that_is_tried_again_and_again_do_not_pile_up() -> None:
+def test_the_reasons_of_a_retried_goal_do_not_pile_up() -> None:
     program = """
     n(0). !unknown.
     -!X : n(N) & N < 60 <- -+n(N+1); !X.
@@ -135,7 +135,7 @@ def ended(program: str, **options: int) -> list[str]:
     return host.printed
 
 
-def test_rules_without_end_fail_with_the_reason() -> None:
+def test_endless_rules_fail_with_the_reason() -> None:
     program = """
     !s. !other.
     endless(N) :- endless(N+1).
@@ -150,12 +150,12 @@ def test_rules_without_end_fail_with_the_reason() -> None:
     ]
 
 
-def test_a_condition_that_never_ends_does_not_hold() -> None:
+def test_an_endless_condition_does_not_hold() -> None:
     program = "!s. e :- e. +!s : e <- .print(never). +!s <- .print(next); if (e) { .print(never) }. -!s <- .print(failed)."
     assert ended(program, rule_depth=2000) == ["next", "failed"]
 
 
-def test_goals_without_end_fail_with_the_reason() -> None:
+def test_endless_goals_fail_with_the_reason() -> None:
     program = """
     !s.
     +!s <- !g(0).
@@ -169,7 +169,7 @@ def test_goals_without_end_fail_with_the_reason() -> None:
     ]
 
 
-def test_the_goal_that_finds_no_room_can_be_saved_where_it_is() -> None:
+def test_a_goal_beyond_the_depth_limit_can_be_handled_in_place() -> None:
     program = """
     !s.
     +!s <- !g(1); .print(done).
@@ -179,7 +179,7 @@ def test_the_goal_that_finds_no_room_can_be_saved_where_it_is() -> None:
     assert ended(program, goal_depth=500) == ["500", "done"]
 
 
-def test_handlers_without_end_end_their_intention() -> None:
+def test_endless_handlers_end_their_intention() -> None:
     program = """
     !s. !other.
     +!s <- !g(0); .print(never).
@@ -191,16 +191,16 @@ def test_handlers_without_end_end_their_intention() -> None:
     assert ended(program, goal_depth=500) == ["alive", "too_deep"]
 
 
-def test_belief_changes_that_cause_each_other_without_end_fail() -> None:
+def test_endless_mutual_belief_changes_fail() -> None:
     program = "!s. +!s <- +b(1); .print(never). +b(N) <- +b(N+1); .print(never). -!s[error(E)] <- .print(E)."
     assert ended(program, goal_depth=500) == ["too_deep"]
 
 
-def test_a_rule_whose_head_has_no_value_is_left_out_and_told() -> None:
+def test_a_rule_whose_head_has_no_value_is_skipped_and_reported() -> None:
     host = mind("r(1)[1 div 0] :- p. p. !g. +!g <- .print(alive).")
     host.run()
     assert host.printed == ["alive"]
-    assert any("cannot be evaluated" in text for level, text in host.logged if level == "error")
+    assert any("cannot evaluate" in text for level, text in host.logged if level == "error")
 
 
 def test_a_goal_without_plan_whose_argument_has_no_value_fails_with_a_reason() -> None:

@@ -51,7 +51,7 @@ def test_an_urgent_event_is_handled_before_those_that_came_first() -> None:
     ]
 
 
-def test_without_urgency_the_order_is_that_of_coming() -> None:
+def test_without_urgency_the_order_is_that_of_arrival() -> None:
     program = TWO_STEPS.replace("[urgency(10)]", "")
     assert told(low(1), low(2), bump(1), program=program).printed == [
         *("low 1", "end of low 1", "low 2", "bump 1", "end of low 2", "end of bump 1"),
@@ -129,7 +129,7 @@ def test_intentions_of_equal_urgency_take_turns() -> None:
     assert printed(program) == ["a1", "a2", "b1", "a3", "b2", "b3", "w1", "w2"]
 
 
-def test_no_event_is_taken_up_while_a_more_urgent_intention_is_ready() -> None:
+def test_no_event_is_handled_while_a_more_urgent_intention_is_ready() -> None:
     program = """
         +low(I) : .count(busy, 0) <- .print("low ", I).
         +low(I) <- .print("bad moment ", I).
@@ -138,7 +138,7 @@ def test_no_event_is_taken_up_while_a_more_urgent_intention_is_ready() -> None:
     assert told(low(1), low(2), bump(1), program=program).printed == ["bump 1", "low 1", "low 2"]
 
 
-def test_an_urgent_intention_that_waits_lets_the_others_go_on() -> None:
+def test_a_waiting_urgent_intention_lets_the_others_continue() -> None:
     program = """
         !a. !b.
         @a[urgency(1)] +!a <- .print(a1); .wait(10); .print(a2); .print(a3).
@@ -149,7 +149,7 @@ def test_an_urgent_intention_that_waits_lets_the_others_go_on() -> None:
     assert lines.index("a3") == lines.index("a2") + 1
 
 
-def test_a_suspended_urgent_intention_does_not_hold_others_up_and_goes_first_when_resumed() -> None:
+def test_a_suspended_urgent_intention_blocks_no_others_and_goes_first_when_resumed() -> None:
     program = """
         !a. !b.
         @a[urgency(1)] +!a <- .print(a1); .suspend; .print(a2); .print(a3).
@@ -226,14 +226,14 @@ def test_without_its_urgent_plan_an_event_is_as_any_other() -> None:
     assert host.printed == ["low 1", "end of low 1", "bump as well"]
 
 
-def test_an_option_gives_urgency_to_the_events_of_a_program_that_says_nothing() -> None:
+def test_an_option_sets_the_urgency_of_events_without_labels() -> None:
     program = TWO_STEPS.replace("[urgency(10)]", "")
     options = Options(urgency=(("bump", 3),))
     host = told(low(1), low(2), bump(1), program=program, options=options)
     assert host.printed[:2] == ["bump 1", "end of bump 1"]
 
 
-def test_an_option_says_more_than_a_label() -> None:
+def test_an_option_takes_precedence_over_a_label() -> None:
     options = Options(urgency=(("bump", 0), ("low", 1)))
     assert told(bump(1), low(1), options=options).printed[0] == "low 1"
 
@@ -251,7 +251,7 @@ def test_sub_plans_count_for_the_urgency_of_events() -> None:
     assert host.printed[:2] == ["bump 1", "end of bump 1"]
 
 
-def test_a_number_that_is_none_is_no_urgency() -> None:
+def test_an_invalid_urgency_has_no_effect() -> None:
     program = TWO_STEPS.replace("urgency(10)", "urgency(high), urgency(1.5), urgency(-3), urgency")
     assert told(low(1), bump(1), program=program).printed[0] == "low 1"
 
@@ -344,7 +344,7 @@ def test_a_burst_is_not_sorted_when_something_urgent_comes(monkeypatch: pytest.M
 
 
 @pytest.mark.parametrize("events", ["discard", "requeue"])
-def test_what_waits_is_in_order_in_every_cycle(events: str) -> None:
+def test_the_queues_are_in_order_in_every_cycle(events: str) -> None:
     """As long as nothing urgent was noted, all that waits has urgency 0: so nothing has to be sorted.
 
     But for events that are put back to be tried again: they go back to the front.
@@ -433,7 +433,7 @@ def test_an_urgent_intention_that_waited_goes_first_when_its_wait_ends() -> None
         host.ring_next(host.time + 1000)
 
 
-def test_the_first_goes_first_while_nothing_that_waits_is_urgent() -> None:
+def test_the_first_goes_first_while_nothing_is_urgent() -> None:
     host = busy()
     agent = host.agent
     assert agent.selections.plain

@@ -48,13 +48,13 @@ def test_a_variable_that_has_a_value_narrows_the_search() -> None:
     ) == ["31carl"]
 
 
-def test_bindings_are_taken_back_between_two_ways() -> None:
+def test_bindings_are_undone_between_two_matches() -> None:
     assert printed(
         "m[source(bob), source(carl)]. !g(Z). +!g(Z) : m[source(Z)] & Z == carl <- .print(Z). +!g(Z) <- .print(none)."
     ) == ["carl"]
 
 
-def test_only_the_first_way_counts_in_a_trigger() -> None:
+def test_only_the_first_match_counts_in_a_trigger() -> None:
     """One unifier for each plan: when its context fails, the next plan has its turn."""
     program = """
     !start.

@@ -108,7 +108,7 @@ def test_a_profiler_sees_the_lines_of_the_agent_program(tmp_path: Path) -> None:
     assert not any(line >= 10 for line, _ in calls)
 
 
-def test_what_measures_coverage_sees_which_lines_have_run(tmp_path: Path) -> None:
+def test_coverage_sees_the_lines_that_have_run(tmp_path: Path) -> None:
     """By trace functions, as coverage tools do."""
     seen: set[tuple[str, int]] = set()
 

@@ -124,7 +124,7 @@ def test_without_a_cache_every_start_compiles(compiled: list[str]) -> None:
         "+!go[x] <- .print(1).",
     ],
 )
-def test_a_program_that_differs_at_all_is_compiled(program: str, compiled: list[str]) -> None:
+def test_any_difference_in_a_program_makes_it_compile(program: str, compiled: list[str]) -> None:
     memory = Memory()
     for other in ("+!go <- .print(2).", "+!go(1) <- .print(1).", "-!go <- .print(1).", "+!go <- .print(x)."):
         run(memory, other)

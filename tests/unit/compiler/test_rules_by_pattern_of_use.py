@@ -143,7 +143,7 @@ def test_facts_and_rules_answer_in_their_order_whatever_comes_and_goes(
         assert unnamed(written) == unnamed(known)
 
 
-def test_a_search_goes_on_beyond_the_depth_of_nested_generators() -> None:
+def test_a_search_continues_beyond_the_depth_of_nested_generators() -> None:
     """A chain of 350 edges: the answers come in order, those that lie deep among them."""
     program = """
     path(X, Y) :- edge(X, Y).

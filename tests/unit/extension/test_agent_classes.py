@@ -149,7 +149,7 @@ class Mine(Agent):
         "belief_revision_failed fixed things stay",
         "2",
     }
-    assert result.errors == ["[bob] info: the belief level(20)[source(ann)] is refused by the agent's class"]
+    assert result.errors == ["[bob] info: the agent's class refused the belief level(20)[source(ann)]"]
 
 
 def test_percepts_can_be_kept_out(tmp_path: Path) -> None:
@@ -193,7 +193,7 @@ class Mine(Agent):
     assert result.lines == ["[ann] refused", "[boss] killed"]
 
 
-def test_a_mistake_in_the_class_is_told_and_the_default_is_done(tmp_path: Path) -> None:
+def test_an_error_in_the_class_is_logged_and_the_default_is_used(tmp_path: Path) -> None:
     python = """
 class Mine(Agent):
     def select_option(self, options):
@@ -210,15 +210,15 @@ class Mine(Agent):
 @pytest.mark.parametrize(
     ("declared", "message"),
     [
-        ("agentClass my.Mien", "there is no class Mien in"),
+        ("agentClass my.Mien", "unknown class Mien in"),
         ("agentClass my.Mien", "did you mean my.Mine?"),
         ("beliefBaseClass my.Mine", "it has no class derived from jacaros.BeliefBase"),
-        ("agentClass my.Mine(1 2)", "the arguments of my.Mine(1 2) cannot be read"),
+        ("agentClass my.Mine(1 2)", "invalid arguments of my.Mine(1 2)"),
         ("agentClass broken.Mine", "broken.py:1: NameError"),
         ("agentClass my.Mine(1)", "takes 1 positional argument but 2 were given"),
     ],
 )
-def test_a_class_that_cannot_be_had_is_told_before_anything_runs(
+def test_an_unknown_class_is_reported_before_anything_runs(
     tmp_path: Path, declared: str, message: str
 ) -> None:
     python = "class Mine(Agent):\n    def init(self):\n        pass\n"
@@ -228,7 +228,7 @@ def test_a_class_that_cannot_be_had_is_told_before_anything_runs(
     assert "sys.mas2j:1:" in "\n".join(result.errors)
 
 
-def test_a_class_of_java_is_told_and_has_no_effect(tmp_path: Path) -> None:
+def test_a_java_class_is_reported_and_has_no_effect(tmp_path: Path) -> None:
     result = run(tmp_path, "!go. +!go <- .print(hello).", "", "agentClass your.Careful")
     assert result.of("bob") == ["hello"]
     assert "the Java class your.Careful has no effect" in result.errors[0]
@@ -256,7 +256,7 @@ class Loud(BeliefBase):
     (tmp_path / "sue_of_bob.asl").write_text("!go. +!go : word(W) <- .print(W).")
     result = run(tmp_path, program, python, "")
     assert result.lines == ["[sue] add word", "[bob] internal_action", "[sue] hi"]
-    assert "there is no class Nobody" in result.errors[0]
+    assert "unknown class Nobody" in result.errors[0]
 
 
 def test_python_code_can_look_at_beliefs_and_talk(tmp_path: Path) -> None:
@@ -291,7 +291,7 @@ class Mine(Agent):
     assert said(tmp_path, program, python) == ["8"]
 
 
-def test_a_plan_behind_a_general_one_is_no_mistake_where_the_class_chooses(tmp_path: Path) -> None:
+def test_a_plan_after_a_general_one_is_reachable_if_the_class_selects(tmp_path: Path) -> None:
     python = """
 class Mine(Agent):
     def select_option(self, options):
@@ -301,7 +301,7 @@ class Mine(Agent):
     assert check_files([tmp_path / "sys.mas2j"]).diagnostics == []
 
 
-def test_what_is_read_at_run_time_can_name_python_code(tmp_path: Path) -> None:
+def test_texts_parsed_at_run_time_can_name_python_code(tmp_path: Path) -> None:
     python = """
 @internal_action
 def double(x: float) -> float:
@@ -342,9 +342,9 @@ def test_a_check_looks_at_the_classes_and_the_python_code(tmp_path: Path) -> Non
     )
     found = check_files([tmp_path / "sys.mas2j"]).diagnostics
     assert sorted((each.severity, each.message.partition(" in /")[0]) for each in found) == [
-        ("error", "there is no class Mien"),
+        ("error", "unknown class Mien"),
+        ("warning", "internal action `my.one` expects 1 argument, found 2"),
         ("warning", "the Java class your.Mine has no effect"),
-        ("warning", "the internal action my.one cannot have 2 arguments"),
         ("warning", "unknown internal action `my.oen`"),
     ]
 

@@ -54,7 +54,7 @@ def test_jasons_directive_is_accepted(tmp_path: Path) -> None:
     assert said(tmp_path, program, SQ) == ["9"]
 
 
-def test_a_function_of_java_is_told(tmp_path: Path) -> None:
+def test_a_java_function_is_reported(tmp_path: Path) -> None:
     result = run(tmp_path, '{ register_function("your.sq") } !go. +!go <- .print(hello).', SQ)
     assert result.of("t") == ["hello"]
     assert "a function sq with @arithmetic_function in your.py" in result.errors[0]
@@ -70,13 +70,13 @@ def test_an_exception_fails_the_step(tmp_path: Path) -> None:
     assert result.errors == [f"[t] error: {result.of('t')[1]}"]
 
 
-def test_what_is_no_number_fails_the_step(tmp_path: Path) -> None:
+def test_a_result_that_is_not_a_number_fails_the_step(tmp_path: Path) -> None:
     result = run(tmp_path, "!go. +!go <- X = my.word(1). -!go[error(E)] <- .print(E).", SQ)
     assert result.of("t") == ["arithmetic_error"]
-    assert "my.word: the function gives 'four', which is no number" in result.errors[0]
+    assert "my.word: the function returned 'four', which is not a number" in result.errors[0]
 
 
-def test_a_function_with_another_number_of_arguments_is_told(tmp_path: Path) -> None:
+def test_a_wrong_number_of_arguments_of_a_function_is_reported(tmp_path: Path) -> None:
     result = run(tmp_path, "!go. +!go <- X = my.sq(1, 2). -!go <- .print(failed).", SQ)
     assert result.exit_code in (0, 1)
     assert "my.sq" in result.errors[0]

@@ -47,7 +47,7 @@ def said(folder: Path, base: str, program: str, python: str = "") -> list[str]:
     return result.of("bob")
 
 
-def test_a_base_hears_of_changes_and_may_refuse_them(tmp_path: Path) -> None:
+def test_a_base_is_asked_about_changes_and_may_refuse_them(tmp_path: Path) -> None:
     program = """
     p(1). fixed(0).
     !go.
@@ -82,7 +82,7 @@ def test_messages_and_percepts_go_through_the_base(tmp_path: Path) -> None:
     assert sorted(result.of("bob")) == ["+p(7)[source(ann)]", "-p(7)[source(ann)]", "event7ann"]
 
 
-def test_a_mistake_in_a_base_is_told_and_the_belief_is_kept(tmp_path: Path) -> None:
+def test_an_error_in_a_base_is_logged_and_the_belief_is_kept(tmp_path: Path) -> None:
     python = "class Bad(BeliefBase):\n    def add(self, belief):\n        return belief.nothing\n"
     result = run(tmp_path, "my.Bad", "!go. +!go <- +p(1); ?p(X); .print(X).", python)
     assert result.of("bob") == ["1"]
@@ -157,11 +157,11 @@ def test_the_file_may_be_read_by_those_who_could_read_it_before(tmp_path: Path) 
     assert kept.stat().st_mode & 0o777 == 0o640
 
 
-def test_a_file_that_is_broken_is_told_and_left_alone(tmp_path: Path) -> None:
+def test_a_broken_file_is_reported_and_not_changed(tmp_path: Path) -> None:
     (tmp_path / "bob.bb").write_text("count(3\n")
     result = run(tmp_path, "jason.bb.TextPersistentBB", COUNT)
     assert result.exit_code == 1
-    assert f"{tmp_path}/bob.bb cannot be read: {tmp_path}/bob.bb:1:8" in result.errors[0]
+    assert f"cannot read {tmp_path}/bob.bb: {tmp_path}/bob.bb:1:8" in result.errors[0]
     assert (tmp_path / "bob.bb").read_text() == "count(3\n"
 
 

@@ -32,7 +32,7 @@ def test_the_default_name_is_module_and_function(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("returned", "outcome"), [("None", "yes"), ("True", "yes"), ("False", "ia_failed")])
-def test_a_function_without_value_succeeds_unless_it_says_false(
+def test_a_function_without_value_succeeds_unless_it_returns_false(
     tmp_path: Path, returned: str, outcome: str
 ) -> None:
     python = HEAD + f"@internal_action\ndef test(x):\n    return {returned}\n"
@@ -46,11 +46,11 @@ def test_a_function_that_declares_a_value_and_has_none_fails(tmp_path: Path) -> 
     assert said(tmp_path, program, python) == ["[4,6]"]
 
 
-def test_a_value_that_is_not_declared_is_told_with_the_cure(tmp_path: Path) -> None:
+def test_an_undeclared_value_is_reported_with_help(tmp_path: Path) -> None:
     python = HEAD + "@internal_action\ndef sum(x, y):\n    return x + y\n"
     result = run(tmp_path, "!go. +!go <- my.sum(1, 2). -!go[error(E)] <- .print(E).", python)
     assert result.of("t") == ["internal_action"]
-    assert "declare it, as in 'def sum(...) -> int'" in result.errors[0]
+    assert "write 'def sum(...) -> int'" in result.errors[0]
 
 
 def test_arguments_arrive_as_python_values(tmp_path: Path) -> None:
@@ -74,7 +74,7 @@ def test_an_unbound_variable_is_a_place_for_a_result(tmp_path: Path) -> None:
     assert said(tmp_path, "!go. +!go <- my.fill(pair(X, Y)); .print(X, Y).", python) == ["1at(2)"]
 
 
-def test_the_parts_of_a_literal_can_be_had(tmp_path: Path) -> None:
+def test_the_parts_of_a_literal_are_available(tmp_path: Path) -> None:
     python = HEAD + (
         "@internal_action\ndef who(belief: Literal) -> list[str]:\n    return sorted(belief.sources)\n"
     )
@@ -82,7 +82,7 @@ def test_the_parts_of_a_literal_can_be_had(tmp_path: Path) -> None:
     assert said(tmp_path, program, python) == ['["bob"]']
 
 
-def test_a_generator_gives_its_answers_one_after_the_other(tmp_path: Path) -> None:
+def test_a_generator_gives_its_answers_in_turn(tmp_path: Path) -> None:
     python = (
         HEAD
         + """
@@ -253,7 +253,7 @@ def test_a_coroutine_cannot_be_a_condition(tmp_path: Path) -> None:
     assert "t.asl:1:13" in result.errors[0]
 
 
-def test_an_exception_fails_the_step_alone_and_is_told_with_its_line(tmp_path: Path) -> None:
+def test_an_exception_fails_only_the_step_and_is_logged_with_its_line(tmp_path: Path) -> None:
     python = HEAD + "\n@internal_action\ndef bad(x):\n    return 1 / x\n"
     program = """
     !go. !other.
@@ -269,7 +269,7 @@ def test_an_exception_fails_the_step_alone_and_is_told_with_its_line(tmp_path: P
 
 @pytest.mark.parametrize("word", ["def", "async def"])
 @pytest.mark.parametrize("what", ["sys.exit(3)", "raise asyncio.CancelledError", "raise RecursionError"])
-def test_not_even_the_end_of_python_ends_the_run(tmp_path: Path, word: str, what: str) -> None:
+def test_a_system_exit_does_not_end_the_run(tmp_path: Path, word: str, what: str) -> None:
     python = HEAD + f"import asyncio, sys\n\n@internal_action\n{word} quit():\n    {what}\n"
     result = run(tmp_path, "!go. +!go <- my.quit. -!go[error(E)] <- .print(E).", python)
     assert result.of("t") == ["internal_action"]
@@ -278,7 +278,7 @@ def test_not_even_the_end_of_python_ends_the_run(tmp_path: Path, word: str, what
     assert result.exit_code == 0
 
 
-def test_in_a_condition_an_exception_is_told_and_the_condition_does_not_hold(tmp_path: Path) -> None:
+def test_an_exception_in_a_condition_is_logged_and_the_condition_does_not_hold(tmp_path: Path) -> None:
     python = HEAD + "@internal_action\ndef bad():\n    raise ValueError('no')\n"
     result = run(tmp_path, "!go. +!go : my.bad <- .print(no). +!go <- .print(yes).", python)
     assert result.of("t") == ["yes"]
@@ -300,10 +300,10 @@ def test_a_wrong_number_of_arguments_is_wrong(tmp_path: Path) -> None:
         '!go. +!go <- my.half(9, X); my.half(9, 3, Y); .print(X, " ", Y); my.half(1). '
         "-!go[error_msg(M)] <- .print(M)."
     )
-    assert said(tmp_path, program, python) == ["4.5 3", "my.half takes 2 to 3 arguments, not 1"]
+    assert said(tmp_path, program, python) == ["4.5 3", "my.half expects 2 to 3 arguments, found 1"]
 
 
-def test_the_calling_agent_is_at_hand(tmp_path: Path) -> None:
+def test_the_calling_agent_is_available(tmp_path: Path) -> None:
     python = (
         HEAD
         + """
@@ -387,7 +387,7 @@ def test_artifacts_and_internal_actions_share_their_modules(tmp_path: Path) -> N
     assert said(tmp_path, program, python) == ["[4,5]"]
 
 
-def test_a_module_that_does_not_import_is_told_with_its_line(tmp_path: Path) -> None:
+def test_a_module_that_cannot_be_imported_is_reported_with_its_line(tmp_path: Path) -> None:
     result = run(tmp_path, "!go. +!go <- my.one(X); .print(", "x = 1\nimport nowhere_at_all\n")
     assert result.exit_code == 1
     (told,) = result.errors
@@ -401,16 +401,14 @@ def test_a_module_that_does_not_import_is_told_with_its_line(tmp_path: Path) -> 
         ("@internal_action('your.one')\ndef one(): pass\n", "my.py:3: no program can find your.one"),
         ("@internal_action\ndef one(*, x): pass\n", "my.py:3: my.one: one: agents cannot give the keyword"),
         ("@internal_action\nasync def one():\n    yield 1\n", "cannot be an internal action"),
-        ("@internal_action('one')\ndef one(): pass\n", "has the module in front, as in 'my.norm'"),
+        ("@internal_action('one')\ndef one(): pass\n", "must begin with the module, as in 'my.norm'"),
         (
             "@internal_action\ndef one(): pass\n@internal_action('my.one')\ndef two(): pass\n",
             "my.one is declared twice",
         ),
     ],
 )
-def test_a_declaration_that_cannot_be_is_told_with_its_line(
-    tmp_path: Path, python: str, message: str
-) -> None:
+def test_an_invalid_declaration_is_reported_with_its_line(tmp_path: Path, python: str, message: str) -> None:
     result = run(tmp_path, "!go. +!go <- my.one.", HEAD + python)
     assert result.exit_code == 1
     assert message in result.errors[0]
@@ -420,17 +418,17 @@ def test_a_declaration_that_cannot_be_is_told_with_its_line(
     ("call", "help"),
     [
         ("my.nrom(1, X)", "did you mean `my.norm`?"),
-        ("my.plain(1, X)", "the function my.plain exists: put @internal_action before it"),
+        ("my.plain(1, X)", "put @internal_action before the function my.plain"),
         ("my.zzz(1, X)", "my.py has no such function with @internal_action"),
         ("your.norm(1, X)", "a function norm with @internal_action in your.py beside the project"),
     ],
 )
-def test_a_name_that_leads_nowhere_gets_a_hint_and_is_an_action(tmp_path: Path, call: str, help: str) -> None:
+def test_an_unknown_name_is_an_action_and_gets_help(tmp_path: Path, call: str, help: str) -> None:
     python = HEAD + "@internal_action\ndef norm(x) -> int:\n    return x\n\ndef plain(x):\n    return x\n"
     result = run(tmp_path, f"!go. +!go <- {call}. -!go[error(E)] <- .print(E).", python)
     assert result.of("t") == ["action_failed"]
     assert len(result.errors) == 1
-    assert f"there is no internal action {call.partition('(')[0]}" in result.errors[0]
+    assert f"unknown internal action `{call.partition('(')[0]}`" in result.errors[0]
     assert f"  = help: {help}" in result.errors[0] or help in result.errors[0]
 
 

@@ -133,7 +133,7 @@ def test_a_wrong_program_is_not_included(tmp_path: Path) -> None:
         other_asl="@ok +!hello <- .print(hello). @same +!hello <- .print(other).",
     )
     assert result.lines == [
-        "[a] internal_action .include: other.asl cannot be included: another plan has the label same already"
+        "[a] internal_action .include: cannot include other.asl: another plan has the label same already"
     ] or result.lines == ["[a] internal_action another plan has the label same already"]
 
 

@@ -60,4 +60,4 @@ def test_a_plan_of_a_message_is_refused(tmp_path: Path, capsys: pytest.CaptureFi
     assert output == "[a] told\n[a] done\n"
     output, errors = run(tmp_path, capsys, step, "--restrict")
     assert "told\n" not in output
-    assert "a plan told by self was refused: this run is restricted" in errors
+    assert "refused a plan from self: this run is restricted" in errors

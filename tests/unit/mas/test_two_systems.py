@@ -22,7 +22,7 @@ def test_warnings_go_to_the_log_of_the_system_whose_agent_they_concern() -> None
 
     asyncio.run(main())
     assert {name: len(log) for name, log in logs.items()} == {"ann": 1, "bob": 1}
-    assert all(log[0].startswith(f"[{name}] warning: an operand of '+'") for name, log in logs.items())
+    assert all(log[0].startswith(f"[{name}] warning: operand of `+`") for name, log in logs.items())
 
 
 FUNCTION = """

@@ -109,7 +109,7 @@ def ring(length: int) -> Var:
 
 @pytest.mark.parametrize("make", [circle, ring])
 @pytest.mark.parametrize("length", [1, 100, 5000])
-def test_a_term_that_contains_itself_never_holds_anybody_up(make: Callable[[int], Var], length: int) -> None:
+def test_a_term_that_contains_itself_never_blocks_a_run(make: Callable[[int], Var], length: int) -> None:
     term, twin = make(length), make(length)
     for use in (resolve, text, rename, lambda t: equal(t, twin)):
         with pytest.raises(CyclicTerm):
@@ -121,7 +121,7 @@ def test_a_term_that_contains_itself_never_holds_anybody_up(make: Callable[[int]
     assert sum(1 for _ in list_items(term)) < 10 * length + 10
 
 
-def test_a_variable_is_bound_to_a_finite_copy_of_what_plainly_contains_it() -> None:
+def test_a_variable_is_bound_to_a_finite_copy_of_a_term_that_contains_it() -> None:
     variable = Var("X")
     assert unify(variable, structure("f", variable), Trail())
     assert text(variable) == "f(X)"
@@ -136,6 +136,6 @@ def test_a_collection_that_contains_itself_is_written_once() -> None:
     assert text(structure("g", items, items)) == "g({f(...)},{f(...)})"
 
 
-def test_ten_thousand_variables_are_told_apart_quickly() -> None:
+def test_ten_thousand_variables_are_distinguished_quickly() -> None:
     variables = [Var(f"V{n}") for n in range(100_000)]
     assert free_variables(make_list([*variables, *variables])) == variables

@@ -25,7 +25,7 @@ class Listener:
         return None
 
     def warn_of_operand(self, what: str, value: Term) -> None:
-        self.told.append(f"{what} is no number: {text(value)}")
+        self.told.append(f"{what} is not a number: {text(value)}")
 
 
 @pytest.fixture
@@ -69,7 +69,7 @@ def test_operations_on_doubles(left: float, operator: str, right: float, value: 
 @pytest.mark.parametrize(
     ("left", "operator", "right"), [(0.0, "/", 0.0), (1.0, "mod", 0.0), (-8.0, "**", 1 / 3)]
 )
-def test_operations_without_a_real_result_give_no_number(left: float, operator: str, right: float) -> None:
+def test_operations_without_a_real_result_give_nan(left: float, operator: str, right: float) -> None:
     assert math.isnan(calculated(operator, left, right))
 
 
@@ -95,11 +95,9 @@ def test_minus_of_terms() -> None:
 
 
 @pytest.mark.parametrize("operand", [atom("a"), String("2"), make_list([1.0])])
-def test_an_operand_that_is_no_number_gives_no_number_and_a_warning(
-    operand: Term, warnings: list[str]
-) -> None:
+def test_an_operand_that_is_not_a_number_gives_nan_and_a_warning(operand: Term, warnings: list[str]) -> None:
     assert math.isnan(calculated("+", operand, 1.0))
-    assert "'+' is no number" in warnings[0]
+    assert "`+` is not a number" in warnings[0]
 
 
 def call(name: str, *arguments: Term) -> Term:
@@ -160,7 +158,7 @@ def test_functions_of_known_arguments(name: str, arguments: tuple[Term, ...], va
         (".length", (1.0,)),
     ],
 )
-def test_functions_without_a_value_give_no_number(name: str, arguments: tuple[Term, ...]) -> None:
+def test_functions_without_a_value_give_nan(name: str, arguments: tuple[Term, ...]) -> None:
     assert math.isnan(call(name, *arguments))
 
 
@@ -176,9 +174,9 @@ def test_functions_wait_for_their_arguments(name: str) -> None:
     assert text(waiting) == f"{name}(X)"
 
 
-def test_a_function_of_no_number_warns(warnings: list[str]) -> None:
+def test_a_function_of_a_non_number_warns(warnings: list[str]) -> None:
     assert math.isnan(call("math.abs", atom("a")))
-    assert "is no number" in warnings[0]
+    assert "is not a number" in warnings[0]
 
 
 def test_an_unknown_function_stays_a_term() -> None:

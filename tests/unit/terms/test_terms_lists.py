@@ -113,7 +113,7 @@ def test_a_long_list_is_a_key_and_one_nested_too_deeply_is_not() -> None:
     assert equal(nested, resolve(nested))
 
 
-def test_ground_elements_are_not_looked_at_again() -> None:
+def test_ground_elements_are_not_checked_again() -> None:
     known = resolve(make_list([structure("f", float(i)) for i in range(50)]))
     known.stack[3] = Var("Unseen")  # what looks at it would find a variable
     longer = resolve((CONS, structure("g", 1.0), known))
@@ -150,7 +150,7 @@ def test_a_short_tail_does_not_keep_a_long_list_in_memory() -> None:
     assert len(resolve(tail).stack) < 1_000
 
 
-def test_a_short_list_does_not_keep_what_grew_from_it_in_memory() -> None:
+def test_a_short_list_does_not_keep_longer_ones_in_memory() -> None:
     short = numbers(3)
     grown = short
     for i in range(10_000):
@@ -167,7 +167,7 @@ def test_a_list_is_the_same_after_pickling() -> None:
 
 
 @given(st.lists(elements, max_size=12))
-def test_sorting_is_that_of_comparing(items: list[Term]) -> None:
+def test_sorting_agrees_with_comparing(items: list[Term]) -> None:
     ordered = sorted_terms(items)
     assert all(compare(a, b) <= 0 for a, b in itertools.pairwise(ordered))
     assert sorted(map(text, ordered)) == sorted(map(text, items))

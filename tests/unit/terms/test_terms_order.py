@@ -133,7 +133,7 @@ def test_names_and_plain_arguments_are_sorted_without_comparing_terms(
     assert sorted_terms(terms) == expected
 
 
-def test_what_is_not_a_number_is_sorted_behind_the_numbers() -> None:
+def test_nan_is_sorted_after_the_numbers() -> None:
     nan = float("nan")
     assert [text(n) for n in sorted_terms([nan, 2.0, nan, 1.0])] == ["1", "2", "NaN", "NaN"]
     assert compare(nan, float("nan")) == 0
@@ -200,7 +200,7 @@ def test_one_more_annotation_is_compared_with_few_of_the_others(
 
 
 @pytest.mark.parametrize("symbol", ["<", "<=", ">", ">=", "=="])
-def test_no_relation_but_unequal_holds_of_what_is_not_a_number(symbol: str) -> None:
+def test_only_unequal_holds_for_nan(symbol: str) -> None:
     assert not related(symbol, float("nan"), 3.0)
     assert not related(symbol, 3.0, float("nan"))
 

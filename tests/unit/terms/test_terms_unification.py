@@ -28,7 +28,7 @@ def test_without_annotations_unification_is_symmetric(left: object, right: objec
 
 
 @given(any_plans, any_plans)
-def test_undo_takes_back_every_binding(left: object, right: object) -> None:
+def test_undo_undoes_every_binding(left: object, right: object) -> None:
     scope: dict[str, Var] = {}
     trail = Trail()
     unify(build(left, scope), build(right, scope), trail)

@@ -71,7 +71,7 @@ def test_functors_survive_copying_as_themselves() -> None:
     assert pickle.loads(pickle.dumps(symbol)) is symbol
 
 
-def test_strings_are_no_numbers_and_are_not_added() -> None:
+def test_strings_are_not_numbers_and_are_not_added() -> None:
     with pytest.raises(TypeError, match=r"\.concat"):
         String("a") + "b"
     with pytest.raises(TypeError):

@@ -1,1 +1,1 @@
-"""Programs in one style: tokens and comments to documents, documents to lines."""
+"""Programs in the standard layout: tokens and comments to documents, documents to lines."""

@@ -1,4 +1,4 @@
-"""Whole programs: clauses, plans and directives, and plan bodies: one step a line, blocks indented."""
+"""Lay out whole programs: clauses, plans and directives, and plan bodies with one step per line."""
 
 from jacaros.asl.layout.document import HARD, NOTHING, Break, Document, Group, Nest, OwnLine, Row, row
 from jacaros.asl.layout.expressions import ExpressionLayout
@@ -9,10 +9,10 @@ _BLOCK_INDENT = 3
 
 
 class StepLayout(ExpressionLayout):
-    """Lays out bodies and what stands in braces."""
+    """Lays out bodies and terms in braces."""
 
     def steps(self, begin: int, end: int, hard: bool) -> Document:
-        """The steps; *hard*: each on a line of its own, also where all would fit on one."""
+        """Lay out the steps; *hard*: each on its own line, even if all fit on one."""
         parts: list[Document | str] = []
         at = begin
         while at < end:
@@ -25,11 +25,11 @@ class StepLayout(ExpressionLayout):
         return row(*parts)
 
     def group(self, begin: int, end: int) -> Document:
-        """Steps in round brackets."""
+        """Lay out steps in round brackets."""
         return Group(Nest(None, self.steps(begin, end, not self.on_one_line(begin, end))))
 
     def _step(self, begin: int, end: int, hard: bool) -> tuple[Document, int]:
-        """A step with the ``;`` behind it, and the index behind that."""
+        """Lay out a step with the ``;`` after it; return also the index after that."""
         parts: list[Document | str] = []
         at = begin
         while True:
@@ -52,7 +52,7 @@ class StepLayout(ExpressionLayout):
         return Group(Nest(None, row(*parts))), at
 
     def _statement(self, begin: int, end: int) -> tuple[Document, int]:
-        """``if (c) { a } elif (c) { b } else { c }`` and the like."""
+        """Lay out ``if (c) { a } elif (c) { b } else { c }`` and similar statements."""
         blocks: list[tuple[int, int | None, int]] = []
         at = begin
         while True:
@@ -70,11 +70,11 @@ class StepLayout(ExpressionLayout):
             if condition is not None:
                 parts += [" ", self.plain(condition, self.closer[condition] + 1)]
             parts += [" ", self.block(block, hard)]
-        # One group: either all blocks of a statement stand on one line, or none does.
+        # One group: either all blocks of a statement are on one line, or none is.
         return Group(row(*parts)), behind
 
     def block(self, opener: int, hard: bool) -> Document:
-        """Steps in braces."""
+        """Lay out steps in braces."""
         closer = self.closer[opener]
         closing = self.pieces[closer]
         if closer == opener + 1 and not closing.before:
@@ -97,7 +97,7 @@ class ProgramLayout(StepLayout):
     """Lays out a program."""
 
     def program(self) -> Document:
-        """All clauses, and the comments at the end."""
+        """Lay out all clauses, and the comments at the end."""
         end = len(self.pieces) - 1
         last = self.pieces[end]
         content = self.clauses(0, end)
@@ -107,7 +107,7 @@ class ProgramLayout(StepLayout):
         return row(content, between, self.remarks(end))
 
     def clauses(self, begin: int, end: int) -> Document:
-        """Clauses, each beginning a line; at most one blank line between two."""
+        """Lay out clauses, each on a new line, with at most one blank line between two."""
         parts: list[Document] = []
         at = begin
         while at < end:
@@ -144,7 +144,7 @@ class ProgramLayout(StepLayout):
     # plans
 
     def _plan_clause(self, begin: int, stop: int, end: int) -> tuple[Document, int]:
-        """A plan with its final dot and its sub-plans, which may stand in the place of the dot."""
+        """Lay out a plan with its final dot and its sub-plans, which may replace the dot."""
         inner = next((at for at in self.split(begin, stop, "{") if self._holds_plans(at)), None)
         if inner is not None and self._is_last_of_plan(begin, inner):
             behind = self.closer[inner] + 1
@@ -161,7 +161,9 @@ class ProgramLayout(StepLayout):
         return following in _TRIGGERS or following in ("@", "}")
 
     def _is_last_of_plan(self, begin: int, opener: int) -> bool:
-        """Whether the braces at *opener* stand where the plan may end, and not where a term is expected."""
+        """Return whether the braces at *opener* are where the plan may end, and not where a term is
+        expected.
+        """
         before = self.pieces[opener - 1].kind
         if before == ")":
             return self.pieces[self.opener[opener - 1] - 1].kind not in ("if", "while", "for", "elif")
@@ -178,7 +180,7 @@ class ProgramLayout(StepLayout):
         return row(self.piece(opener), content, HARD, "}", self.line_end(closer))
 
     def plan(self, begin: int, end: int) -> Document:
-        """A plan without its final dot: on one line if it is written so and fits."""
+        """Lay out a plan without its final dot: on one line if it is written so and fits."""
         hard = not self.on_one_line(begin, end)
         trigger = self._behind_label(begin)
         arrows = self.split(begin, end, "<-")
@@ -196,14 +198,14 @@ class ProgramLayout(StepLayout):
         return Group(row(*parts))
 
     def _introduction(self, arrow: int) -> Document:
-        """The comments between ``<-`` and the first step, each on a line."""
+        """Lay out the comments between ``<-`` and the first step, one per line."""
         first = self.pieces[arrow + 1]
         comments = [*self.pieces[arrow].behind, *(remark.text for remark in first.before if remark.own_line)]
         first.before = [remark for remark in first.before if not remark.own_line]
         return Row(tuple(row(comment, HARD) for comment in comments))
 
     def _behind_label(self, begin: int) -> int:
-        """The index of the trigger of the plan that begins at *begin*."""
+        """Return the index of the trigger of the plan that begins at *begin*."""
         if self.pieces[begin].kind != "@":
             return begin
         at = begin + 1
@@ -212,7 +214,7 @@ class ProgramLayout(StepLayout):
         return at
 
     def _head(self, begin: int, end: int) -> Document:
-        """Trigger, context and goal condition."""
+        """Lay out trigger, context and goal condition."""
         signs = self.split(begin, end, ":", "<:")
         parts: list[Document | str] = [self.plain(begin, signs[0] if signs else end)]
         for sign, stop in zip(signs, [*signs[1:], end], strict=False):
@@ -223,7 +225,7 @@ class ProgramLayout(StepLayout):
     # terms in braces
 
     def braces(self, opener: int) -> Document:
-        """A plan, trigger, rule or body as a term."""
+        """Lay out a plan, trigger, rule or body as a term."""
         closer = self.closer[opener]
         begin = opener + 1
         if begin == closer:

@@ -1,8 +1,10 @@
-"""Texts with places where lines may break, and how they are laid out at a width.
+"""Texts with possible line breaks, and their layout for a given width.
 
-After Wadler's "prettier printer": a group is put on one line if that fits, and otherwise broken at its own places.
-Comments are no part of the width.  One that goes to the end of a line is kept back until the line ends, and ends
-it at the next place where it may break, so that it can never swallow code.
+After Wadler's "prettier printer": a group is put on one line if it fits, and otherwise broken at its own
+breaks.
+Comments do not count for the width. A comment at the end of a line is held back until the line ends, and ends
+it at the
+next possible break, so that it can never swallow code.
 """
 
 from dataclasses import dataclass
@@ -10,7 +12,7 @@ from typing import Final
 
 WIDTH: Final = 100
 _ALIGNED: Final = 60
-"""Comments of lines that follow each other stand in one column, unless the code of a line is longer than this."""
+"""Comments of consecutive lines are aligned in one column, unless the code of a line is longer than this."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,7 +24,7 @@ class Text:
 
 @dataclass(frozen=True, slots=True)
 class Break:
-    """A place where a line may end: *flat* if it does not; None for one that always does.
+    """A possible line break: *flat* is the text without the break; None for a mandatory break.
 
     ``blank`` asks for a blank line there.
     """
@@ -33,7 +35,7 @@ class Break:
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """Parts one after the other."""
+    """Parts in sequence."""
 
     parts: "tuple[Document, ...]"
 
@@ -47,7 +49,7 @@ class Group:
 
 @dataclass(frozen=True, slots=True)
 class Nest:
-    """New lines begin further to the right: by *by* columns, or at the present column if it is None."""
+    """Indents new lines: by *by* columns, or to the present column if it is None."""
 
     by: int | None
     content: "Document"
@@ -62,7 +64,7 @@ class LineEnd:
 
 @dataclass(frozen=True, slots=True)
 class OwnLine:
-    """A comment that has a line of its own, if it stands at the beginning of one."""
+    """A comment on its own line, if it is at the beginning of one."""
 
     comment: str
     blank_behind: bool = False
@@ -74,12 +76,12 @@ NOTHING: Final = Row(())
 
 
 def row(*parts: "Document | str") -> Row:
-    """The parts one after the other; strings are texts."""
+    """Return the parts in sequence; strings are texts."""
     return Row(tuple(Text(part) if isinstance(part, str) else part for part in parts))
 
 
 def render(document: Document) -> str:
-    """The document as lines."""
+    """Return the document as lines."""
     return _Printer().run(document)
 
 
@@ -142,7 +144,7 @@ class _Printer:
         self._line, self._kept, self._fresh, self._indent = "", [], True, indent
 
     def _fits(self, content: Document, rest: list[tuple[int, bool, Document]]) -> bool:
-        """Whether *content*, and what stands behind it up to the next possible end of the line, fits here."""
+        """Return whether *content*, and the text after it up to the next possible break, fits here."""
         left = WIDTH - self._column()
         at = len(rest)
         stack: list[tuple[bool, Document]] = [(True, content)]
@@ -190,7 +192,7 @@ class _Printer:
 
 
 def _joined(comments: list[str]) -> str:
-    """Comments for the end of one line; what spans lines cannot stand behind a comment that takes the rest of one."""
+    """Join comments for the end of one line; a block comment cannot follow a line comment."""
     text = ""
     for comment in comments:
         swallowed = "\n" in comment and "//" in text.rpartition("\n")[2]

@@ -1,4 +1,4 @@
-"""Tokens with their comments; terms and conditions: blanks between tokens, and breaks in what is too long."""
+"""Tokens with their comments, and the layout of terms and conditions."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
@@ -35,9 +35,9 @@ class Remark:
 
 @dataclass(slots=True)
 class Piece:
-    """A token with the comments before it and those behind it at the end of its line.
+    """A token with the comments before it, and those after it at the end of its line.
 
-    ``blank`` tells whether there is a blank line before it, or before its first comment.
+    ``blank``: there is a blank line before it, or before its first comment.
     """
 
     token: Token
@@ -58,7 +58,7 @@ class Piece:
 
 
 def pieces_of(file: SourceFile) -> list[Piece]:
-    """The pieces of a file; the last one is of kind ``end`` and holds the comments at the end."""
+    """Return the pieces of a file; the last one is of kind ``end`` and holds the comments at the end."""
     comments: list[Comment] = []
     tokens = tokenize(file, lambda _: None, comments)[:-1]
     pieces: list[Piece] = []
@@ -106,23 +106,23 @@ class ExpressionLayout(ABC):
 
     @abstractmethod
     def braces(self, opener: int) -> Document:
-        """What stands in the braces that open at *opener*."""
+        """Lay out the contents of the braces that open at *opener*."""
 
     @abstractmethod
     def group(self, begin: int, end: int) -> Document:
-        """Steps in round brackets."""
+        """Lay out steps in round brackets."""
 
     # pieces
 
     def piece(self, index: int) -> Document:
-        """One token with its comments."""
+        """Lay out one token with its comments."""
         piece = self.pieces[index]
         if not piece.before and not piece.behind:
             return Text(piece.text)
         return row(self.remarks(index), piece.text, self.line_end(index))
 
     def remarks(self, index: int) -> Document:
-        """The comments before a token."""
+        """Lay out the comments before a token."""
         piece = self.pieces[index]
         parts: list[Document | str] = []
         for at, remark in enumerate(piece.before):
@@ -135,18 +135,18 @@ class ExpressionLayout(ABC):
         return row(*parts) if parts else NOTHING
 
     def hoisted(self, index: int) -> Document:
-        """The comments before a token, to be put before the group that begins with it."""
+        """Lay out the comments before a token, to be put before the group that begins with it."""
         remarks = self.remarks(index)
         self.pieces[index].before.clear()
         return remarks
 
     def line_end(self, index: int) -> Document:
-        """The comments behind a token at the end of its line."""
+        """Lay out the comments after a token at the end of its line."""
         behind = self.pieces[index].behind
         return Row(tuple(LineEnd(comment) for comment in behind)) if behind else NOTHING
 
     def split(self, begin: int, end: int, *kinds: str) -> list[int]:
-        """The places of tokens of these kinds outside of brackets."""
+        """Return the indices of tokens of these kinds outside brackets."""
         found = []
         at = begin
         while at < end:
@@ -156,20 +156,20 @@ class ExpressionLayout(ABC):
         return found
 
     def find(self, begin: int, end: int, kind: str) -> int:
-        """The place of the first token of this kind outside of brackets, or *end*."""
+        """Return the index of the first token of this kind outside brackets, or *end*."""
         at = begin
         while at < end and self.pieces[at].kind != kind:
             at = self.closer.get(at, at) + 1
         return min(at, end)
 
     def on_one_line(self, begin: int, end: int) -> bool:
-        """Whether the pieces stand on one line of the source."""
+        """Return whether the pieces are on one line of the source."""
         return begin >= end or self.pieces[begin].token.line == self.pieces[end - 1].token.line
 
     # expressions
 
     def formula(self, begin: int, end: int) -> Document:
-        """A condition; one that is too long is broken behind its ``|`` and ``&``."""
+        """Lay out a condition; if it is too long, it is broken after its ``|`` and ``&``."""
         return self._chain(begin, end, _CONNECTIVES)
 
     def _chain(self, begin: int, end: int, operators: Sequence[str]) -> Document:
@@ -186,7 +186,7 @@ class ExpressionLayout(ABC):
         return Group(Nest(None, row(*parts)))
 
     def plain(self, begin: int, end: int) -> Document:
-        """Tokens and brackets with the usual blanks between them."""
+        """Lay out tokens and brackets with the usual blanks between them."""
         parts: list[Document | str] = []
         operand_next = True
         at = begin
@@ -225,7 +225,9 @@ class ExpressionLayout(ABC):
         return row(self.piece(opener), self._items(opener + 1, closer, kind), self.piece(closer))
 
     def _items(self, begin: int, end: int, kind: str) -> Document:
-        """What stands in brackets, with ``,`` (and the ``|`` of a tail) between; as many on a line as fit."""
+        """Lay out bracketed contents, separated by ``,`` (and the ``|`` of a tail); as many per line as
+        fit.
+        """
         places = self.split(begin, end, ",", "|") if kind == "[" else self.split(begin, end, ",")
         if not places:
             return Nest(None, self.formula(begin, end))
@@ -244,7 +246,7 @@ class ExpressionLayout(ABC):
 
 
 def _matching(pieces: Sequence[Piece]) -> dict[int, int]:
-    """The closing bracket of each opening one."""
+    """Return the closing bracket of each opening one."""
     open_brackets: list[int] = []
     found: dict[int, int] = {}
     for index, piece in enumerate(pieces):

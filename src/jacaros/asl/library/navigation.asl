@@ -180,7 +180,7 @@ battery_full :- percent_left(Percent) & not charged_at(_) & Percent >= 95.
 +!charge_first
   <- !dock_and_charge.
 
-// A robot that cannot charge stands, so that its battery lasts until somebody has come.
+// A robot that cannot charge stands, so that its battery lasts until a person has come.
 -!charge_first[error(Error), error_msg(Text), env_failure_reason(Reason)]
   <- !stand_for(battery);
      .fail(error(Error), error_msg(Text), env_failure_reason(Reason)).

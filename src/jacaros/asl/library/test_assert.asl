@@ -2,7 +2,7 @@
 //
 //     { include("$jacaros/test_assert.asl") }
 //
-// An assertion that fails is told, and the plan goes on.  All plans have labels, so that the file may be taken in twice.
+// A failed assertion is logged, and the plan continues. All plans have labels, so the file may be included twice.
 
 // Equal terms; lists are equal when they have the same elements, in any order.
 @test__assert_equals[atomic]

@@ -1,8 +1,10 @@
-"""Internal actions on the system of agents: messages, agents and their services, and chance.
+"""Internal actions on the agent system: messages, agents and their services, and random numbers.
 
-A service is a string; other terms are taken as written.  Types of services are accepted and ignored, as in Jason's local
-infrastructure.  The directory is an agent, ``df``, that exists from its first use on.  Random numbers come from the agent's
-own generator: a run with a seed repeats itself.
+A service is a string; other terms are converted to text. Types of services are accepted and ignored, as in
+Jason's
+local infrastructure. The directory is an agent, ``df``, created on first use. Random numbers come from the
+agent's own
+generator, so a run with a seed is reproducible.
 """
 
 from collections.abc import Callable, Iterator
@@ -69,7 +71,7 @@ def _say(
     reply: str | None = None,
     message_id: str | int | None = None,
 ) -> None:
-    """Send a message to one agent; its content may have bindings that are not applied yet."""
+    """Send a message to one agent; bindings in its content may not be applied yet."""
     if message_id is None:
         agent.messages = message_id = agent.messages + 1
     sender = agent.name
@@ -90,7 +92,10 @@ def _nobody(receiver: str) -> ActionError:
 
 
 def _direct(written: Written) -> Function | None:
-    """A function for a ``.send`` whose performative is written out, as it nearly always is, and perhaps the receiver."""
+    """Return a specialised function for a ``.send`` with a constant performative (the usual case), and
+    perhaps a
+    constant receiver.
+    """
     if len(written) != 3 or written[1] is None:
         return None
     act, to = _known_name(written[1]), _known_name(written[0])
@@ -102,10 +107,10 @@ def _direct(written: Written) -> Function | None:
 
 
 def _sender_to_one(act: str, to: str, flat: bool) -> Function:
-    """Sends to one agent that is written out; *flat* if the content is known to be."""
+    """Send to one agent named in the program; *flat* if the content is known to be flat."""
 
     def send_on(agent: Mind, receiver: Term, performative: Term, content: Term) -> None:
-        # `_say` and `is_flat`, written out for the most frequent messages; the others are left to it.
+        # `_say` and `is_flat` inlined for the most frequent messages; the others are left to it.
         if not flat:
             if content.__class__ is not tuple or content[0].kind:
                 _say(agent, to, act, content)
@@ -125,7 +130,7 @@ def _sender_to_one(act: str, to: str, flat: bool) -> Function:
 
 
 def _sender_to_some(act: str) -> Function:
-    """Sends to one or several agents that become known at run time, or to the agent itself."""
+    """Send to one or several agents known only at run time, or to the agent itself."""
 
     def send_to(agent: Mind, receiver: Term, performative: Term, content: Term) -> None:
         for name in _receivers(resolve(receiver)):
@@ -135,7 +140,7 @@ def _sender_to_some(act: str) -> Function:
 
 
 def _known_name(term: Term | None) -> str | None:
-    """The name that a term of the program is, if it is one."""
+    """Return the name that a term of the program denotes, or None."""
     if term is None or is_list(term) or bare(term).__class__ not in (String, Functor):
         return None
     return _name(term, "")
@@ -149,10 +154,13 @@ def _receivers(receiver: Term) -> list[str]:
 
 @internal_action(".send", arity=(3, 5), suspends=True, direct=_direct, body_only=True, performative=1)
 def send(ctx: Context, receiver: Term, performative: Term, content: Term, *rest: Term) -> Waiting | None:
-    """``.send(To, Performative, Content [, Answer [, Timeout]])``: a message; with an answer, a synchronous question.
+    """``.send(To, Performative, Content [, Answer [, Timeout]])`` sends a message; with *Answer*, it is a
+    synchronous
+    question.
 
-    *To* is a name or a list of names, which may be empty; *Timeout* is in milliseconds, and the answer is ``timeout``
-    then.
+    *To* is a name or a list of names, which may be empty. *Timeout* is in milliseconds; when it expires, the
+    answer is
+    ``timeout``.
 
     Raises:
         ActionError: ``receiver_not_found``.
@@ -172,7 +180,7 @@ def _ask(
 ) -> Waiting | None:
     if not receivers:
         if not ctx.unify(rest[0], NIL):
-            raise ActionError("the answer does not fit", (ERROR, atom("ask_failed")))
+            raise ActionError("the answer does not match", (ERROR, atom("ask_failed")))
         return None
     waiting = AnswerWait(ctx.suspendable(), rest[0], many, len(receivers))
     for name in receivers:
@@ -182,14 +190,14 @@ def _ask(
         _say(ctx.agent, name, act, content, None, message_id)
     if len(rest) > 1:
         if rest[1].__class__ is not float:
-            raise WrongArguments(f"the time-out must be a number of milliseconds, not {text(rest[1])}")
+            raise WrongArguments(f"the timeout must be a number of milliseconds, not {text(rest[1])}")
         waiting.alarm = set_alarm(ctx.agent, rest[1] / 1000.0, time_out_question, waiting)
     return waiting
 
 
 @internal_action(".broadcast", arity=2, suspends=True, body_only=True, performative=0)
 def broadcast(ctx: Context, performative: Term, content: Term) -> None:
-    """``.broadcast(Performative, Content)``: to all other agents."""
+    """``.broadcast(Performative, Content)`` sends a message to all other agents."""
     act = _name(performative, "the performative")
     for name in ctx.architecture.agent_names():
         if name != ctx.agent.name:
@@ -204,20 +212,22 @@ def my_name(ctx: Context, name: Term) -> bool:
 
 @internal_action(".all_names", arity=1)
 def all_names(ctx: Context, names: Term) -> bool:
-    """``.all_names(L)``: *L* is the list of the names of all agents, atoms, in the order of their making."""
+    """``.all_names(L)``: *L* is the list of the names of all agents, as atoms, in order of creation."""
     return ctx.unify(names, make_list([atom(name) for name in ctx.architecture.agent_names()]))
 
 
 @internal_action(".create_agent", arity=(1, 3), brings_in=True, restricted=2)
 def create_agent(ctx: Context, name: Term, source: Term = None, options: Term = None) -> bool:
-    """``.create_agent(Name[, File[, Options]])`` makes an agent that runs a program (default ``Name.asl``).
+    """``.create_agent(Name[, File[, Options]])`` creates an agent that runs a program (default ``Name.asl``).
 
-    The name is made unique.  A variable for the name is bound to the final one, a string: its own name in
-    small letters, with a number if need be.  *Options* is a list of ``agentClass("my.Careful")``,
-    ``agentArchClass("my.Arch")`` and ``beliefBaseClass("my.LoudBB(3)")``, classes of the project's Python code.
+    The name is made unique. If the name is a variable, it is bound to the final name, a string: the
+    variable's own name in
+    lower case, with a number if necessary. *Options* is a list of ``agentClass("my.Careful")``,
+    ``agentArchClass("my.Arch")`` and ``beliefBaseClass("my.LoudBB(3)")``, classes in the project's Python
+    code.
 
     Raises:
-        ActionError: the agent could not be made, because of its program for example.
+        ActionError: the agent could not be created, for example because its program has errors.
     """
     path = None if source is None else string(source, "the second argument of .create_agent")
     listed = [] if options is None else elements(options, "the third argument of .create_agent")
@@ -228,40 +238,42 @@ def create_agent(ctx: Context, name: Term, source: Term = None, options: Term = 
 
 
 def _made(ctx: Context, action: str, name: Term, make: Callable[[str], str | None]) -> bool:
-    """Make an agent, whose name may be a variable."""
+    """Create an agent, whose name may be a variable."""
     variable = isinstance(name, Var)
     wanted = name.name[:1].lower() + name.name[1:] if variable else characters(name)
     made = make(wanted)
     if made is None:
-        raise ActionError(f"{action}: the agent {wanted} could not be made")
+        raise ActionError(f"{action}: agent {wanted} could not be created")
     return not variable or ctx.unify(String(made), name)
 
 
 def _class_option(option: Term) -> tuple[str, str]:
     symbol = functor_of(option)
     if symbol is None or symbol.name not in _CLASSES or len(arguments_of(option)) != 1:
-        raise WrongArguments(f".create_agent does not know the option {text(option)}")
+        raise WrongArguments(f".create_agent: unknown option {text(option)}")
     return symbol.name, characters(arguments_of(option)[0])
 
 
 @internal_action(".clone", arity=1, brings_in=True)
 def clone(ctx: Context, name: Term) -> bool:
-    """``.clone(Name)`` makes an agent with the same beliefs, rules, plans, events and intentions.
+    """``.clone(Name)`` creates an agent with the same beliefs, rules, plans, events and intentions.
 
-    The calling intention is not copied, nor are intentions that wait for something.  The name is made unique; a
-    variable is bound to the final one, as by ``.create_agent``.
+    The calling intention and waiting intentions are not copied. The name is made unique; a variable is bound
+    to the final
+    name, as by ``.create_agent``.
 
     Raises:
-        ActionError: the agent could not be made.
+        ActionError: the agent could not be created.
     """
     return _made(ctx, ".clone", name, ctx.architecture.clone_agent)
 
 
 @internal_action(".kill_agent", arity=(1, 2))
 def kill_agent(ctx: Context, name: Term, deadline: Term = 0.0) -> bool:
-    """``.kill_agent(Name[, Ms])`` ends an agent, at once or after some milliseconds.  Fails if there is none.
+    """``.kill_agent(Name[, Ms])`` ends an agent, immediately or after *Ms* milliseconds. Fails if it does not
+    exist.
 
-    With a time, the agent is given ``+jag_shutting_down(Ms)`` so that it can prepare.
+    With a time, the agent first gets the event ``+jag_shutting_down(Ms)``, so that it can prepare.
     """
     delay = number(deadline, "the second argument of .kill_agent") / 1000
     return ctx.architecture.kill_agent(characters(name), max(delay, 0.0))
@@ -269,11 +281,11 @@ def kill_agent(ctx: Context, name: Term, deadline: Term = 0.0) -> bool:
 
 @internal_action(".stopMAS", arity=(0, 2), suspends=True, body_only=True)
 def stop_mas(ctx: Context, delay: Term = 0.0, code: Term = 0.0) -> None:
-    """``.stopMAS([Ms[, Code]])`` ends the whole run after some milliseconds, with an exit code (default 0).
+    """``.stopMAS([Ms[, Code]])`` ends the whole run after *Ms* milliseconds, with an exit code (default 0).
 
-    With a time, all agents are given ``+jag_shutting_down(Ms)`` so that they can prepare.
+    With a time, all agents first get the event ``+jag_shutting_down(Ms)``, so that they can prepare.
 
-    ``true`` and ``false`` in place of the code stand for 0: there is no virtual machine to be kept running.
+    ``true`` and ``false`` in place of the code mean 0: there is no virtual machine to keep running.
     """
     milliseconds = number(delay, "the first argument of .stopMAS")
     exit_code = 0 if code is TRUE or code is FALSE else whole(code, "the second argument of .stopMAS")
@@ -288,27 +300,31 @@ def version(ctx: Context, result: Term) -> bool:
 
 @internal_action(".df_register", arity=(1, 2))
 def register_service(ctx: Context, service: Term, _kind: Term = None) -> None:
-    """``.df_register(Service[, Type])``: the agent provides a service; subscribers are told."""
+    """``.df_register(Service[, Type])`` registers a service that the agent provides; subscribers are
+    notified.
+    """
     ctx.architecture.register_service(characters(service))
 
 
 @internal_action(".df_deregister", arity=(1, 2))
 def deregister_service(ctx: Context, service: Term, _kind: Term = None) -> None:
-    """``.df_deregister(Service[, Type])``: the agent does not provide it any more."""
+    """``.df_deregister(Service[, Type])`` removes the registration of a service."""
     ctx.architecture.deregister_service(characters(service))
 
 
 @internal_action(".df_search", arity=(2, 3))
 def find_providers(ctx: Context, service: Term, *rest: Term) -> bool:
-    """``.df_search(Service[, Type], L)``: *L* is the list of the agents that provide a service, atoms."""
+    """``.df_search(Service[, Type], L)``: *L* is the list of the agents that provide a service, as atoms."""
     found = ctx.architecture.providers(characters(service))
     return ctx.unify(rest[-1], make_list([atom(name) for name in found]))
 
 
 @internal_action(".df_subscribe", arity=(1, 2))
 def subscribe_to_service(ctx: Context, service: Term, _kind: Term = None) -> None:
-    """``.df_subscribe(Service[, Type])``: the agent is told ``provider(Agent, Service)`` of each provider by ``df``,
-    those of now and those to come."""
+    """``.df_subscribe(Service[, Type])`` subscribes to a service: ``df`` sends a belief ``provider(Agent,
+    Service)`` for
+    each present and future provider.
+    """
     ctx.architecture.subscribe_to_service(characters(service))
 
 
@@ -318,14 +334,14 @@ def random(ctx: Context, first: Term, second: Term = 1.0, third: Term = 1.0) -> 
 
     ``.random(L, X[, N])``: *X* is an element of the list *L*; fails for an empty list.
 
-    There are *N* answers (default 1), endlessly many when it is 0.
+    There are *N* answers (default 1), or infinitely many if *N* is 0.
     """
     generator = ctx.architecture.random
     choices = elements(first, "the list of .random") if is_list(first) else None
     result, amount = (first, second) if choices is None else (second, third)
     if result.__class__ is not Var:
         raise WrongArguments(
-            f".random needs a list or a variable, and a variable behind a list, not {text(result)}"
+            f".random expects a list or a variable, and a variable after a list, not {text(result)}"
         )
     draws = 1 if amount == 1.0 else whole(amount, "the number of answers of .random")
     if choices == []:
@@ -337,5 +353,5 @@ def random(ctx: Context, first: Term, second: Term = 1.0, third: Term = 1.0) -> 
 
 @internal_action(".set_random_seed", arity=1)
 def set_random_seed(ctx: Context, seed: Term) -> None:
-    """``.set_random_seed(N)``: the agent's draws from now on follow from *N*."""
+    """``.set_random_seed(N)`` seeds the agent's random number generator."""
     ctx.architecture.random.seed(whole(seed, "the argument of .set_random_seed"))

@@ -1,4 +1,4 @@
-"""Internal actions about beliefs, their namespaces, rules and conditions."""
+"""Internal actions on beliefs, their namespaces, rules and conditions."""
 
 from collections.abc import Iterator
 
@@ -20,7 +20,7 @@ from jacaros.terms.values import FALSE, TRUE, Functor, Term, Var, atom, bare, fu
 
 @internal_action(".abolish", arity=1)
 def abolish(ctx: Context, pattern: Term) -> None:
-    """``.abolish(P)``: delete all beliefs that match, with all their sources."""
+    """``.abolish(P)`` deletes all beliefs that match, with all their sources."""
     belief_update.abolish(ctx.agent, pattern)
 
 
@@ -30,7 +30,7 @@ def _assert(ctx: Context, term: Term, last: bool) -> None:
         return
     symbol, row, annotations = parts(term)
     if symbol is None:
-        raise WrongArguments(f"a literal or a rule is expected, not {text(term)}")
+        raise WrongArguments(f"expected a literal or a rule, found {text(term)}")
     own = own_annotations(annotations)
     new = belief_update.insert(ctx.agent, symbol, row, own, last)
     if new is not None:
@@ -39,19 +39,19 @@ def _assert(ctx: Context, term: Term, last: bool) -> None:
 
 @internal_action(".asserta", arity=1)
 def asserta(ctx: Context, term: Term) -> None:
-    """``.asserta(L)``: add a belief or rule before all others."""
+    """``.asserta(L)`` adds a belief or rule at the beginning."""
     _assert(ctx, term, last=False)
 
 
 @internal_action(".assertz", arity=1)
 def assertz(ctx: Context, term: Term) -> None:
-    """``.assertz(L)``: add a belief or rule behind all others."""
+    """``.assertz(L)`` adds a belief or rule at the end."""
     _assert(ctx, term, last=True)
 
 
 @internal_action(".belief", arity=1, backtracks=True)
 def belief(ctx: Context, pattern: Term) -> Iterator[None]:
-    """``.belief(P)``: each matching belief that is held, rules left out."""
+    """``.belief(P)``: *P* is a matching belief; rules are not considered."""
     wanted = functor_of(pattern)
     for literal in list(ctx.agent.beliefs.literals()):
         if (wanted is None or functor_of(literal) is wanted) and ctx.unify(pattern, literal):
@@ -60,7 +60,7 @@ def belief(ctx: Context, pattern: Term) -> Iterator[None]:
 
 @internal_action(".list_rules", arity=0)
 def list_rules(ctx: Context) -> None:
-    """Print the rules."""
+    """``.list_rules`` prints the rules."""
     for table in ctx.agent.beliefs.values():
         for entry, _ in table.entries():
             if isinstance(entry, Rule):
@@ -69,13 +69,14 @@ def list_rules(ctx: Context) -> None:
 
 @internal_action(".relevant_rules", arity=2)
 def relevant_rules(ctx: Context, pattern: Term, target: Term) -> bool:
-    """``.relevant_rules(P, Rs)``: Rs is the list of the rules that can prove a literal, in the order of the base.
+    """``.relevant_rules(P, Rs)``: Rs is the list of the rules that can prove a literal, in the order of the
+    belief base.
 
-    With *P* unbound these are all rules.
+    With *P* unbound, it is the list of all rules.
     """
     symbol, _, annotations = parts(pattern)
     if symbol is None and bare(pattern).__class__ is not Var:
-        raise WrongArguments(f"a literal is expected, not {text(pattern)}")
+        raise WrongArguments(f"expected a literal, found {text(pattern)}")
     beliefs = ctx.agent.beliefs
     found = []
     for table in beliefs.values() if symbol is None else (beliefs[symbol],):
@@ -95,7 +96,7 @@ def relevant_rules(ctx: Context, pattern: Term, target: Term) -> bool:
 
 @internal_action(".eval", arity=2)
 def evaluate(ctx: Context, target: Term, formula: Term) -> bool:
-    """``.eval(X, F)``: X is ``true`` or ``false``."""
+    """``.eval(X, F)``: X is ``true`` if the formula F holds, otherwise ``false``."""
     mark = len(ctx.trail)
     holds = ctx.succeeds(formula)
     undo(ctx.trail, mark)
@@ -104,7 +105,7 @@ def evaluate(ctx: Context, target: Term, formula: Term) -> bool:
 
 @internal_action(".findall", arity=3, condition=1, collects=True, repeatable=True)
 def findall(found: list[Term]) -> Term:
-    """``.findall(T, F, L)``: L is the list of T for all answers of F, in order, duplicates kept."""
+    """``.findall(T, F, L)``: L is the list of T for all answers of F, in order, with duplicates."""
     return make_list(found)
 
 
@@ -122,9 +123,9 @@ def count(found: list[Term]) -> Term:
 
 @internal_action(".max", arity=(2, 3), repeatable=True)
 def greatest(ctx: Context, *arguments: Term) -> bool:
-    """``.max(L, X)``: *X* is the greatest element of a list in the standard order.  Fails for an empty list.
+    """``.max(L, X)``: *X* is the greatest element of a list in the standard order. Fails for an empty list.
 
-    ``.max(T, F, X)``: *X* is the greatest instance of *T* among the answers of the formula *F*.  Fails without
+    ``.max(T, F, X)``: *X* is the greatest instance of *T* among the answers of the formula *F*. Fails without
     answers.
     """
     return _extreme(ctx, arguments, 1, ".max")
@@ -132,16 +133,16 @@ def greatest(ctx: Context, *arguments: Term) -> bool:
 
 @internal_action(".min", arity=(2, 3), repeatable=True)
 def least(ctx: Context, *arguments: Term) -> bool:
-    """``.min(L, X)``: *X* is the smallest element of a list in the standard order.  Fails for an empty list.
+    """``.min(L, X)``: *X* is the smallest element of a list in the standard order. Fails for an empty list.
 
-    ``.min(T, F, X)``: *X* is the smallest instance of *T* among the answers of the formula *F*.  Fails without
+    ``.min(T, F, X)``: *X* is the smallest instance of *T* among the answers of the formula *F*. Fails without
     answers.
     """
     return _extreme(ctx, arguments, -1, ".min")
 
 
 def _extreme(ctx: Context, arguments: tuple[Term, ...], sign: int, name: str) -> bool:
-    """*sign* is 1 for the greatest and -1 for the smallest; the first one among equals counts."""
+    """Find the greatest (*sign* 1) or smallest (*sign* -1) element; the first of equal ones counts."""
     if len(arguments) == 3:
         found = best(ctx, arguments[0], arguments[1], sign)
         return found is not None and ctx.unify(arguments[2], found)
@@ -158,7 +159,7 @@ def _extreme(ctx: Context, arguments: tuple[Term, ...], sign: int, name: str) ->
 
 
 def best(ctx: Context, template: Term, formula: Term, sign: int) -> Term | None:
-    """The greatest (sign 1) or smallest (sign -1) instance of a template, None without answers."""
+    """Return the greatest (sign 1) or smallest (sign -1) instance of a template; None without answers."""
     found: Term | None = None
     mark = len(ctx.trail)
     for _ in ctx.answers(formula):
@@ -171,13 +172,15 @@ def best(ctx: Context, template: Term, formula: Term, sign: int) -> Term | None:
 
 @internal_action(".perceive", arity=0)
 def perceive(ctx: Context) -> None:
-    """Look at the environment at once: nothing is left unseen between two cycles anyway."""
+    """``.perceive`` perceives the environment; it has no effect here, as percepts are taken in before every
+    cycle.
+    """
     del ctx
 
 
 @internal_action(".namespace", arity=1, backtracks=True)
 def namespace(ctx: Context, target: Term) -> Iterator[None]:
-    """``.namespace(N)``: each namespace in use."""
+    """``.namespace(N)``: *N* is a namespace in use; one answer for each."""
     names: dict[str, None] = {"default": None}
     for symbol, table in ctx.agent.beliefs.items():
         if symbol.namespace and len(table):
@@ -193,7 +196,7 @@ def namespace(ctx: Context, target: Term) -> Iterator[None]:
 
 
 def _properties(ctx: Context, namespace: Term) -> dict[Term, Term]:
-    """The properties of a namespace, by key; a change of them stays."""
+    """Return the properties of a namespace by key; changes to the dictionary are kept."""
     if not isinstance(namespace, Functor):
         raise WrongArguments(f"the first argument must be the name of a namespace, not {text(namespace)}")
     found: dict[Term, Term] = ctx.agent.beliefs.namespace_properties.setdefault(namespace.name, {})
@@ -202,7 +205,7 @@ def _properties(ctx: Context, namespace: Term) -> dict[Term, Term]:
 
 @internal_action(".namespace_set_prop", arity=3)
 def set_property(ctx: Context, namespace: Term, key: Term, value: Term) -> None:
-    """``.namespace_set_prop(N, Key, Value)`` gives a namespace a property."""
+    """``.namespace_set_prop(N, Key, Value)`` sets a property of a namespace."""
     if not isinstance(key, Functor):
         raise WrongArguments(f"the key of a property must be an atom, not {text(key)}")
     _properties(ctx, namespace)[key] = value
@@ -210,9 +213,10 @@ def set_property(ctx: Context, namespace: Term, key: Term, value: Term) -> None:
 
 @internal_action(".namespace_get_prop", arity=(2, 4), backtracks=True)
 def get_property(ctx: Context, namespace: Term, key: Term, *rest: Term) -> Iterator[None]:
-    """``.namespace_get_prop(N, Key[, Value[, Default]])``: a property of a namespace, or the default value.
+    """``.namespace_get_prop(N, Key[, Value[, Default]])``: *Value* is a property of a namespace, or the
+    default.
 
-    With *Key* unbound, an answer for each property.
+    With *Key* unbound, there is an answer for each property.
     """
     held = _properties(ctx, namespace)
     if key.__class__ is Var:

@@ -1,7 +1,7 @@
 """Internal actions on sets, maps and queues, which are changed in place and shared by reference.
 
-The first argument is the collection; an unbound variable becomes an empty one.  All raise `WrongArguments`
-when it is something else.  A change is not taken back when a search goes back behind it.
+The first argument is the collection; an unbound variable becomes an empty one. All raise `WrongArguments`
+for any other term. Backtracking does not undo changes.
 """
 
 from collections.abc import Iterable, Iterator
@@ -37,7 +37,7 @@ def _created(ctx: Context, term: Term, made: Collection, name: str) -> Collectio
 
 
 def _each(ctx: Context, pattern: Term, values: Iterable[Term]) -> Iterator[None]:
-    """An answer for each of the values that unifies."""
+    """Yield an answer for each of the values that unifies."""
     for value in values:
         if ctx.unify(pattern, value):
             yield
@@ -45,33 +45,33 @@ def _each(ctx: Context, pattern: Term, values: Iterable[Term]) -> Iterator[None]
 
 @internal_action(".set.create", arity=1)
 def create_set(ctx: Context, variable: Term) -> bool:
-    """``.set.create(S)``: the unbound variable *S* becomes an empty set; fails when it has a value."""
+    """``.set.create(S)``: the unbound variable *S* becomes an empty set; fails if it has a value."""
     return variable.__class__ is Var and ctx.unify(variable, SetValue())
 
 
 @internal_action(".set.add", arity=2)
 def add_to_set(ctx: Context, collection: Term, item: Term) -> None:
-    """``.set.add(S, X)`` puts an element in."""
+    """``.set.add(S, X)`` adds an element."""
     _set(ctx, collection).items[as_key(item)] = None
 
 
 @internal_action(".set.add_all", arity=2)
 @internal_action(".set.union", arity=2)
 def add_all_to_set(ctx: Context, collection: Term, items: Term) -> None:
-    """``.set.add_all(S, C)`` and ``.set.union(S, C)`` put the elements of a list, set or queue in."""
+    """``.set.add_all(S, C)`` and ``.set.union(S, C)`` add the elements of a list, set or queue."""
     _set(ctx, collection).items.update(dict.fromkeys(map(as_key, _items(items))))
 
 
 @internal_action(".set.intersection", arity=2)
 def intersection_of_sets(ctx: Context, collection: Term, items: Term) -> None:
-    """``.set.intersection(S, C)`` leaves in *S* only what is also in the list, set or queue *C*."""
+    """``.set.intersection(S, C)`` keeps in *S* only the elements of the list, set or queue *C*."""
     target, kept = _set(ctx, collection), dict.fromkeys(map(as_key, _items(items)))
     target.items = {item: None for item in target.items if item in kept}
 
 
 @internal_action(".set.difference", arity=2)
 def difference_of_sets(ctx: Context, collection: Term, items: Term) -> None:
-    """``.set.difference(S, C)`` takes out of *S* what is in the list, set or queue *C*."""
+    """``.set.difference(S, C)`` removes from *S* the elements of the list, set or queue *C*."""
     target = _set(ctx, collection)
     for item in _items(items):
         target.items.pop(as_key(item), None)
@@ -79,7 +79,7 @@ def difference_of_sets(ctx: Context, collection: Term, items: Term) -> None:
 
 @internal_action(".set.remove", arity=2)
 def remove_from_set(ctx: Context, collection: Term, item: Term) -> None:
-    """``.set.remove(S, X)`` takes an element out; it need not be there."""
+    """``.set.remove(S, X)`` removes an element, if it is in the set."""
     _set(ctx, collection).items.pop(as_key(item), None)
 
 
@@ -91,64 +91,64 @@ def list_of_set(ctx: Context, collection: Term, result: Term) -> bool:
 
 @internal_action(".set.copy", arity=2)
 def copy_set(ctx: Context, collection: Term, copy: Term) -> bool:
-    """``.set.copy(S, C)``: *C* is another set with the same elements."""
+    """``.set.copy(S, C)``: *C* is a new set with the same elements."""
     return ctx.unify(copy, SetValue(dict(_set(ctx, collection).items)))
 
 
 @internal_action(".set.clear", arity=1)
 def clear_set(ctx: Context, collection: Term) -> None:
-    """``.set.clear(S)`` takes all elements out."""
+    """``.set.clear(S)`` removes all elements."""
     _set(ctx, collection).items.clear()
 
 
 @internal_action(".map.create", arity=1)
 def create_map(ctx: Context, variable: Term) -> bool:
-    """``.map.create(M)``: the unbound variable *M* becomes an empty map; fails when it has a value."""
+    """``.map.create(M)``: the unbound variable *M* becomes an empty map; fails if it has a value."""
     return variable.__class__ is Var and ctx.unify(variable, MapValue())
 
 
 @internal_action(".map.put", arity=3)
 def put(ctx: Context, collection: Term, key: Term, value: Term) -> None:
-    """``.map.put(M, K, V)`` makes *V* the value of the key *K*."""
+    """``.map.put(M, K, V)`` sets the value of the key *K* to *V*."""
     _map(ctx, collection).items[as_key(key)] = value
 
 
 @internal_action(".map.get", arity=(3, 4), repeatable=True)
 def get(ctx: Context, collection: Term, key: Term, value: Term, *default: Term) -> bool:
-    """``.map.get(M, K, V[, Default])``: *V* is the value of *K*, or the default.  Fails without either."""
+    """``.map.get(M, K, V[, Default])``: *V* is the value of *K*, or the default. Fails without either."""
     found = _map(ctx, collection).items.get(as_key(key), *default)
     return found is not None and ctx.unify(value, found)
 
 
 @internal_action(".map.remove", arity=(2, 3))
 def remove_from_map(ctx: Context, collection: Term, key: Term, value: Term = None) -> bool:
-    """``.map.remove(M, K[, V])`` takes a key out, whose value *V* was.  Fails when it is not there."""
+    """``.map.remove(M, K[, V])`` removes a key with the value *V*. Fails if the key is not in the map."""
     removed = _map(ctx, collection).items.pop(as_key(key), None)
     return removed is not None and (value is None or ctx.unify(value, removed))
 
 
 @internal_action(".map.key", arity=2, backtracks=True, repeatable=True)
 def key_of_map(ctx: Context, collection: Term, key: Term) -> Iterator[None]:
-    """``.map.key(M, K)``: *K* is a key; an answer for each that unifies, in the standard order."""
+    """``.map.key(M, K)``: *K* is a key; one answer for each that unifies, in the standard order."""
     return _each(ctx, key, list(_map(ctx, collection)))
 
 
 @internal_action(".map.value", arity=2, backtracks=True, repeatable=True)
 def value_of_map(ctx: Context, collection: Term, value: Term) -> Iterator[None]:
-    """``.map.value(M, V)``: *V* is a value; an answer for each that unifies, in the order of the keys."""
+    """``.map.value(M, V)``: *V* is a value; one answer for each that unifies, in the order of the keys."""
     source = _map(ctx, collection)
     return _each(ctx, value, [source.items[key] for key in source])
 
 
 @internal_action(".map.copy", arity=2)
 def copy_map(ctx: Context, collection: Term, copy: Term) -> bool:
-    """``.map.copy(M, C)``: *C* is another map with the same keys and values."""
+    """``.map.copy(M, C)``: *C* is a new map with the same keys and values."""
     return ctx.unify(copy, MapValue(dict(_map(ctx, collection).items)))
 
 
 @internal_action(".map.clear", arity=1)
 def clear_map(ctx: Context, collection: Term) -> None:
-    """``.map.clear(M)`` takes all keys out."""
+    """``.map.clear(M)`` removes all keys."""
     _map(ctx, collection).items.clear()
 
 
@@ -156,7 +156,7 @@ def clear_map(ctx: Context, collection: Term) -> None:
 def create_queue(ctx: Context, variable: Term, kind: Term = None) -> bool:
     """``.queue.create(Q[, priority])``: the unbound variable *Q* becomes an empty queue.
 
-    A queue with ``priority`` gives its smallest element first, any other one the oldest.  Fails when *Q* has
+    A queue with ``priority`` returns its smallest element first, any other queue the oldest. Fails if *Q* has
     a value.
     """
     priority = isinstance(kind, Functor) and kind.name == "priority"
@@ -165,13 +165,13 @@ def create_queue(ctx: Context, variable: Term, kind: Term = None) -> bool:
 
 @internal_action(".queue.add", arity=2)
 def add_to_queue(ctx: Context, collection: Term, item: Term) -> None:
-    """``.queue.add(Q, X)`` puts an element in."""
+    """``.queue.add(Q, X)`` adds an element."""
     _queue(ctx, collection).add(item)
 
 
 @internal_action(".queue.add_all", arity=2)
 def add_all_to_queue(ctx: Context, collection: Term, items: Term) -> None:
-    """``.queue.add_all(Q, C)`` puts the elements of a list, set or queue in, in their order."""
+    """``.queue.add_all(Q, C)`` adds the elements of a list, set or queue, in order."""
     target = _queue(ctx, collection)
     for item in _items(items):
         target.add(item)
@@ -179,14 +179,14 @@ def add_all_to_queue(ctx: Context, collection: Term, items: Term) -> None:
 
 @internal_action(".queue.head", arity=2, repeatable=True)
 def head(ctx: Context, collection: Term, item: Term) -> bool:
-    """``.queue.head(Q, X)``: *X* is the next element, which stays.  Fails when there is none."""
+    """``.queue.head(Q, X)``: *X* is the next element, which stays in the queue. Fails for an empty queue."""
     found = _queue(ctx, collection).head()
     return found is not None and ctx.unify(item, found)
 
 
 @internal_action(".queue.remove", arity=2)
 def remove_from_queue(ctx: Context, collection: Term, item: Term) -> bool:
-    """``.queue.remove(Q, X)`` takes the next element out, which *X* is.  Fails when there is none."""
+    """``.queue.remove(Q, X)`` removes the next element, *X*. Fails for an empty queue."""
     found = _queue(ctx, collection).remove()
     return found is not None and ctx.unify(item, found)
 
@@ -199,13 +199,13 @@ def list_of_queue(ctx: Context, collection: Term, result: Term) -> bool:
 
 @internal_action(".queue.copy", arity=2)
 def copy_queue(ctx: Context, collection: Term, copy: Term) -> bool:
-    """``.queue.copy(Q, C)``: *C* is another queue with the same elements."""
+    """``.queue.copy(Q, C)``: *C* is a new queue with the same elements."""
     return ctx.unify(copy, _queue(ctx, collection).copy())
 
 
 @internal_action(".queue.clear", arity=1)
 def clear_queue(ctx: Context, collection: Term) -> None:
-    """``.queue.clear(Q)`` takes all elements out."""
+    """``.queue.clear(Q)`` removes all elements."""
     _queue(ctx, collection).clear()
 
 

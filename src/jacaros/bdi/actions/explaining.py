@@ -1,4 +1,4 @@
-"""The internal action that asks why: an agent's question about its own run, answered as terms."""
+"""The internal action ``.why``: an agent's question about its own run, answered as terms."""
 
 import re
 from collections.abc import Mapping
@@ -11,7 +11,7 @@ from jacaros.terms.text import text
 from jacaros.terms.values import Functor, String, Term, arguments_of, atom, functor_of, make_list, structure
 
 NEVER = atom("never")
-"""The time of what never happened, or has no time."""
+"""The time of something that never happened or has no time."""
 
 
 @internal_action(".why", arity=2)
@@ -19,7 +19,7 @@ def why(ctx: Context, question: Term, answer: Term) -> bool:
     """``.why(Q, A)``: A is ``explanation(Text, Time, Facts, Causes)``.
 
     Raises:
-        ActionError: the question is not understood.
+        ActionError: the question is invalid.
     """
     try:
         found = ctx.agent.architecture.explain(written_question(question))
@@ -29,7 +29,9 @@ def why(ctx: Context, question: Term, answer: Term) -> bool:
 
 
 def written_question(question: Term) -> str:
-    """The question that a term asks, such as ``stopped``, ``"+alarm(_)"``, ``{ +alarm(_) }`` or ``plan(low)``."""
+    """Return the question that a term asks, such as ``stopped``, ``"+alarm(_)"``, ``{ +alarm(_) }`` or
+    ``plan(low)``.
+    """
     if question.__class__ is String:
         return str(question)
     kind, arguments = functor_of(question), arguments_of(question)
@@ -41,7 +43,7 @@ def written_question(question: Term) -> str:
 
 
 def _text(term: Term) -> str:
-    """A term without the numbers of its unnamed variables."""
+    """Return a term as text, without the numbers of its unnamed variables."""
     return re.sub(r"\b_\d+\b", "_", text(term))
 
 

@@ -1,4 +1,4 @@
-"""Internal actions about goals and intentions."""
+"""Internal actions on goals and intentions."""
 
 from collections.abc import Callable, Iterator
 from typing import TypeVar
@@ -42,9 +42,9 @@ ERROR, ERROR_MSG, REASON = functor("error", 1), functor("error_msg", 1), functor
 
 
 def _on_goal(ctx: Context, goal: Term, act: Callable[[Term], Result]) -> Result:
-    """Do something to all goals that match; the variables of *goal* are bound as in the first one.
+    """Apply *act* to all matching goals; the variables of *goal* are bound as in the first one.
 
-    Gives what *act* gives: true when the calling intention itself has lost its place.
+    Returns the result of *act*: true if the calling intention itself was cut.
     """
     wanted = _goal(goal)
     first = goals.first_match(ctx.agent, wanted)
@@ -68,7 +68,7 @@ def _matches_goal(ctx: Context, goal: Term, literal: Term, identity: Term, numbe
 
 @internal_action(".desire", arity=(1, 2), backtracks=True, repeatable=True)
 def desire(ctx: Context, goal: Term, identity: Term = None) -> Iterator[None]:
-    """``.desire(G [,Id])``: each goal the agent has, begun or not."""
+    """``.desire(G [,Id])``: *G* is a goal of the agent, begun or not."""
     for literal, number in list(goals.desires(ctx.agent)):
         if _matches_goal(ctx, goal, literal, identity, number):
             yield
@@ -76,7 +76,7 @@ def desire(ctx: Context, goal: Term, identity: Term = None) -> Iterator[None]:
 
 @internal_action(".intend", arity=(1, 2), backtracks=True, repeatable=True)
 def intend(ctx: Context, goal: Term, identity: Term = None) -> Iterator[None]:
-    """``.intend(G [,Id])``: each goal on the stack of an intention that is not suspended."""
+    """``.intend(G [,Id])``: *G* is a goal on the stack of an intention that is not suspended."""
     for literal, number in list(goals.intended(ctx.agent)):
         if _matches_goal(ctx, goal, literal, identity, number):
             yield
@@ -86,7 +86,7 @@ def intend(ctx: Context, goal: Term, identity: Term = None) -> Iterator[None]:
 def intention(
     ctx: Context, number: Term, state: Term, stack: Term = None, which: Term = None
 ) -> Iterator[None]:
-    """``.intention(Id, State [,Stack [,current]])``: each intention, its state and its stack."""
+    """``.intention(Id, State [,Stack [,current]])``: each intention, with its state and stack."""
     only_current = which is not None and bare(which) is atom("current")
     for candidate in list(ctx.agent.alive.values()):
         running = candidate is ctx.agent.current
@@ -108,7 +108,7 @@ def _state(candidate: Intention) -> Term:
 
 
 def _stack(ctx: Context, intention: Intention) -> Term:
-    """The list of an intention's plans, the one at work first."""
+    """Return the list of an intention's plans, the running one first."""
     frames = [frame for frame in intention.frames if not is_supervision(frame)]
     called = [frame[GOAL][0] for frame in frames[1:]]
     event = pending_event(ctx.agent, intention)
@@ -117,9 +117,10 @@ def _stack(ctx: Context, intention: Intention) -> Term:
 
 
 def _means(ctx: Context, frame: Frame, called: Trigger | None) -> Term:
-    """``im(Label, {Trigger}, {Body}, Bindings)`` of one frame; the body is what is still to be done.
+    """Return ``im(Label, {Trigger}, {Body}, Bindings)`` of one frame; the body is the rest that is still to
+    run.
 
-    *called* is the trigger of the goal that it waits for, which is part of the body as long as that is so, or None.
+    *called* is the trigger of the goal that the frame waits for, which is still part of the body; or None.
     """
     plan = frame[PLAN]
     kind = frame[GOAL][0]
@@ -137,13 +138,13 @@ def _means(ctx: Context, frame: Frame, called: Trigger | None) -> Term:
 
 
 def _lowered(frame: Frame, node: nodes.Node) -> Term:
-    """A part of a plan as a term, with the variables of a frame."""
+    """Return a part of a plan as a term, with the variables of a frame."""
     values = variables_of(frame)
     return lower(node, lambda name: values[name] if name in values else Var(name))
 
 
 def _calling(frame: Frame, called: Trigger | None) -> Iterator[nodes.Node]:
-    """The step of a plan for whose goal it waits."""
+    """Yield the step whose goal the plan waits for."""
     if called is None or called.failing or not called.kind:
         return
     after = frame[STEP].__name__ if frame[STEP] is not None else "None"
@@ -154,7 +155,7 @@ def _calling(frame: Frame, called: Trigger | None) -> Iterator[nodes.Node]:
 
 
 def _posts(node: nodes.Node, called: Trigger) -> bool:
-    """Whether a step may be the one that posted a goal."""
+    """Return whether a step may be the one that posted a goal."""
     if called.kind == "!":
         posted: nodes.Node | None = (
             node.goal if isinstance(node, nodes.Achieve) and not node.separate else None
@@ -167,7 +168,7 @@ def _posts(node: nodes.Node, called: Trigger) -> bool:
 
 
 def _remaining(step: Callable[..., object] | None) -> Iterator[nodes.Node]:
-    """The formulae from a step on, each once."""
+    """Yield the formulae from a step on, each once."""
     by_name = dict(getattr(step, "steps", {}))
     name = step.__name__ if step is not None else "None"
     while name in by_name:
@@ -178,7 +179,7 @@ def _remaining(step: Callable[..., object] | None) -> Iterator[nodes.Node]:
 
 @internal_action(".current_intention", arity=1)
 def current_intention(ctx: Context, target: Term) -> bool:
-    """``.current_intention(I)``: the calling intention as ``intention(Id, Stack)``."""
+    """``.current_intention(I)``: *I* is the calling intention as ``intention(Id, Stack)``."""
     current = ctx.intention
     if current is None:
         return False
@@ -188,7 +189,9 @@ def current_intention(ctx: Context, target: Term) -> bool:
 
 @internal_action(".drop_intention", arity=(0, 1), suspends=True)
 def drop_intention(ctx: Context, goal: Term = None) -> None:
-    """``.drop_intention [(G)]``: the own intention, or all that have the goal, vanish without failure."""
+    """``.drop_intention [(G)]`` drops the calling intention, or all that have the goal, without a failure
+    event.
+    """
     if goal is None:
         assert ctx.intention is not None
         goals.drop_intention(ctx.agent, ctx.intention)
@@ -198,7 +201,7 @@ def drop_intention(ctx: Context, goal: Term = None) -> None:
 
 @internal_action(".drop_future_intention", arity=1, suspends=True)
 def drop_future_intention(ctx: Context, goal: Term) -> None:
-    """``.drop_future_intention(G)``: intentions whose plan on top has ``!G`` (or ``!!G``) in its body vanish."""
+    """``.drop_future_intention(G)`` drops intentions whose top plan has ``!G`` (or ``!!G``) in its body."""
     wanted = _goal(goal)
     for candidate in list(ctx.agent.alive.values()):
         if candidate.frames and any(goals.matches(ctx.agent, wanted, g) for g in _goals_in(candidate)):
@@ -206,7 +209,7 @@ def drop_future_intention(ctx: Context, goal: Term) -> None:
 
 
 def _goals_in(candidate: Intention) -> Iterator[Term]:
-    """The goals that stand in the body of the plan on top."""
+    """Yield the goals in the body of the top plan."""
     frame = candidate.frames[-1]
     for node in walk(frame[PLAN].node.body):
         if isinstance(node, nodes.Achieve):
@@ -215,38 +218,38 @@ def _goals_in(candidate: Intention) -> Iterator[Term]:
 
 @internal_action(".drop_event", arity=1, suspends=True)
 def drop_event(ctx: Context, goal: Term) -> None:
-    """``.drop_event(G)``: goals that were posted and not taken up yet vanish."""
+    """``.drop_event(G)`` drops posted goals that have not been handled yet."""
     _on_goal(ctx, goal, lambda wanted: goals.drop_events(ctx.agent, wanted))
 
 
 @internal_action(".drop_desire", arity=1, suspends=True)
 def drop_desire(ctx: Context, goal: Term) -> None:
-    """``.drop_desire(G)``: `.drop_event` and `.drop_intention` together."""
+    """``.drop_desire(G)`` combines `.drop_event` and `.drop_intention`."""
     _on_goal(ctx, goal, lambda wanted: goals.drop_desire(ctx.agent, wanted))
 
 
 @internal_action(".drop_all_intentions", arity=0, suspends=True)
 def drop_all_intentions(ctx: Context) -> None:
-    """All intentions but the calling one vanish."""
+    """``.drop_all_intentions`` drops all intentions except the calling one."""
     goals.drop_all_intentions(ctx.agent)
 
 
 @internal_action(".drop_all_events", arity=0, suspends=True)
 def drop_all_events(ctx: Context) -> None:
-    """All pending events vanish."""
+    """``.drop_all_events`` drops all pending events."""
     goals.drop_all_events(ctx.agent)
 
 
 @internal_action(".drop_all_desires", arity=0, suspends=True)
 def drop_all_desires(ctx: Context) -> None:
-    """All events and all intentions but the calling one vanish."""
+    """``.drop_all_desires`` drops all events, and all intentions except the calling one."""
     goals.drop_all_goal_events(ctx.agent)
     goals.drop_all_intentions(ctx.agent)
 
 
 @internal_action(".suspend", arity=(0, 1), suspends=True, body_only=True)
 def suspend(ctx: Context, goal: Term = None) -> object:
-    """``.suspend [(G)]``: the intentions with the goal (or the own one) stop until `.resume`."""
+    """``.suspend [(G)]`` suspends the intentions with the goal (or the calling one) until `.resume`."""
     current = ctx.intention
     if goal is None:
         assert current is not None
@@ -256,25 +259,28 @@ def suspend(ctx: Context, goal: Term = None) -> object:
         _on_goal(ctx, goal, lambda wanted: goals.suspend_goal(ctx.agent, wanted, reason))
     if current is None or current.suspended is None:
         return None
-    # The step lasts until the intention is resumed: a last step does not end its goal before.
+    # The step lasts until the intention is resumed, so that a last step does not end its goal before that.
     return OwnSuspension(current)
 
 
 @internal_action(".resume", arity=1, suspends=True)
 def resume(ctx: Context, goal: Term) -> None:
-    """``.resume(G)``: suspended intentions with the goal go on."""
+    """``.resume(G)`` resumes suspended intentions with the goal."""
     _on_goal(ctx, goal, lambda wanted: goals.resume_goal(ctx.agent, wanted))
 
 
 @internal_action(".suspended", arity=2, backtracks=True)
 def suspended(ctx: Context, goal: Term, reason: Term) -> Iterator[None]:
-    """``.suspended(G, R)``: whether an intention with the goal is suspended or waits, and why (``act`` for an action)."""
+    """``.suspended(G, R)``: an intention with the goal is suspended or waiting, and *R* is the reason
+    (``act`` for an
+    action).
+    """
     for candidate in goals.intentions_for(ctx.agent, _goal(goal)):
         why = candidate.suspended
         waiting = candidate.waiting
         lost = goals.is_preempted(candidate)
         if waiting is not None and waiting.reason is not OWN_SUSPENSION and not lost:
-            # As in Jason: one that is suspended while it waits for something is told with that.
+            # As in Jason, an intention that is suspended while it waits is reported with what it waits for.
             why = atom("act") if is_action(waiting.reason) else waiting.reason
         found = goals.goal_of(ctx.agent, candidate, goal)
         if why is not None and found is not None and ctx.unify_all((goal, found), (reason, why)):
@@ -295,28 +301,28 @@ def _event(event: Event) -> Term:
 
 @internal_action(".succeed_goal", arity=1, suspends=True)
 def succeed_goal(ctx: Context, goal: Term) -> object:
-    """``.succeed_goal(G)``: matching goals end as achieved."""
+    """``.succeed_goal(G)`` ends matching goals as achieved."""
     own = _on_goal(ctx, goal, lambda wanted: goals.succeed_goal(ctx.agent, wanted))
     return _ended(ctx, own)
 
 
 @internal_action(".fail_goal", arity=1, suspends=True)
 def fail_goal(ctx: Context, goal: Term) -> object:
-    """``.fail_goal(G)``: matching goals end as failed; the failure event carries no ``error``."""
+    """``.fail_goal(G)`` ends matching goals as failed; the failure event has no ``error`` annotation."""
     reason = nowhere(told=f".fail_goal{_caller(ctx)} ended it")
     own = _on_goal(ctx, goal, lambda wanted: goals.fail_goal(ctx.agent, wanted, reason))
     return SUSPENDED if own else None
 
 
 def _caller(ctx: Context) -> str:
-    """Of which plan the calling step is, for people."""
+    """Describe the plan of the calling step, for messages."""
     if ctx.intention is None or not ctx.intention.frames:
         return ""
     return f" in the plan of {shown_goal(ctx.intention.frames[-1][GOAL])}"
 
 
 def _ended(ctx: Context, own: bool) -> object:
-    """The calling intention was cut: its rest goes on in the next cycle, not with this step."""
+    """Handle a cut of the calling intention: its rest continues in the next cycle, not with this step."""
     if not own:
         return None
     agent, current = ctx.agent, ctx.intention
@@ -328,7 +334,7 @@ def _ended(ctx: Context, own: bool) -> object:
 
 @internal_action(".done", arity=0, suspends=True)
 def done(ctx: Context) -> object:
-    """End the own goal as achieved."""
+    """``.done`` ends the goal of the calling plan as achieved."""
     current = ctx.intention
     assert current is not None
     if current.outer is not None and not any(frame[GOAL][0].kind for frame in current.frames):
@@ -338,8 +344,11 @@ def done(ctx: Context) -> object:
 
 
 def _own_goal(current: Intention) -> int:
-    """Index of the frame that `.done` ends: of the plan that calls it, of the goal around a reacting sub-plan, of the
-    failed goal when a handler calls it."""
+    """Return the index of the frame that `.done` ends.
+
+    That is the plan that calls it, the goal around a reacting sub-plan, or the failed goal if a handler calls
+    it.
+    """
     top = next(
         i for i in reversed(range(len(current.frames))) if i == 0 or not is_body_frame(current.frames[i])
     )
@@ -352,7 +361,7 @@ def _own_goal(current: Intention) -> int:
 
 
 def _outer_done(ctx: Context, current: Intention) -> object:
-    """In a sub-plan that reacts to something, the goal is that of the plan around it."""
+    """End the goal of the plan around a sub-plan that reacts to an event."""
     assert current.outer is not None
     owner, frame = current.outer
     if not owner.dropped and any(frame is other for other in owner.frames):
@@ -366,9 +375,9 @@ def _outer_done(ctx: Context, current: Intention) -> object:
 
 @internal_action(".fail", suspends=True)
 def fail(ctx: Context, *annotations: Term) -> object:
-    """``.fail(a, b…)``: fail, with these annotations on the failure event.
+    """``.fail(a, b…)`` fails, with these annotations on the failure event.
 
-    An ``error(internal_action)`` and an ``error_msg`` are added where none of that name is given.
+    An ``error(internal_action)`` and an ``error_msg`` are added unless annotations of these names are given.
     """
     del ctx
     if not annotations:

@@ -1,4 +1,4 @@
-"""How a Python function becomes an internal action, and the checks of arguments that actions share.
+"""Declare Python functions as internal actions, and check their arguments.
 
     @internal_action(".member", arity=2, backtracks=True)
     def member(ctx, item, collection):
@@ -6,12 +6,16 @@
             if ctx.unify(item, candidate):
                 yield
 
-The decorator holds all that is known of an action: parser, checker, compiler and mind ask it there and know no names.
-The docstring of an action says what its arguments are; others raise `WrongArguments`.
-The arguments arrive with all bindings applied (`jacaros.terms.substitution.resolve`); unbound ones are `Var`.  A plain
-function succeeds unless it returns False.  A generator (``backtracks``) yields once for every answer; bindings
-made before a yield are taken back before the next one is looked for.  A function that suspends the intention
-(``suspends``) calls `Context.suspend` and returns what that gave.
+The decorator holds all that is known of an action; the parser, checker, compiler and mind read it there and
+know no
+names. The docstring of an action describes its arguments; other arguments raise `WrongArguments`.
+All bindings of arguments are applied (`jacaros.terms.substitution.resolve`); unbound variables are `Var`. A
+plain
+function succeeds unless it returns False. A generator (``backtracks``) yields once per answer; bindings made
+before a
+yield are undone before the next answer is searched. A function that suspends the intention (``suspends``)
+calls
+`Context.suspend` and returns its result.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -28,7 +32,7 @@ from jacaros.terms.values import String, Term, is_list, list_items
 Function = Callable[..., Any]
 Declared = TypeVar("Declared", bound=Function)
 Written = tuple[Term | None, ...]
-"""The arguments of a call as far as they are written out in a program; None for those that are known at run time."""
+"""The arguments of a call as far as the program fixes them; None for those known only at run time."""
 
 
 class WrongArguments(Exception):
@@ -36,7 +40,7 @@ class WrongArguments(Exception):
 
 
 class ActionError(Exception):
-    """The action could not be done: the step fails with ``error(internal_action)`` or the given terms.
+    """The action failed: the step fails with ``error(internal_action)`` or the given terms.
 
     Attributes:
         annotations: terms for the failure event; an ``error(..)`` among them replaces the default one.
@@ -48,7 +52,7 @@ class ActionError(Exception):
 
 
 class Crashed(Exception):
-    """Mixed into the failures of a project's own Python code that nobody meant: people are told of them too."""
+    """Mixed into failures that are bugs in a project's own Python code: they are logged, too."""
 
 
 def _undefined(*_: object) -> None:
@@ -57,7 +61,7 @@ def _undefined(*_: object) -> None:
 
 @dataclass(frozen=True, slots=True)
 class InternalAction(Declaration):
-    """An internal action with all that is known of it, as the registry keeps it.
+    """An internal action with its declaration, as the registry keeps it.
 
     As a decorator it registers a function as the standard internal action that it declares.
 
@@ -65,15 +69,15 @@ class InternalAction(Declaration):
         name: with the leading dot of the standard ones.
         function: called with a `Context` and the arguments.
         backtracks: the function is a generator of answers.
-        direct: asked for a quicker function for a call with the arguments that a program writes out, or None: it is called
-            with the agent itself and all arguments, bindings not applied, and never suspends.
-        values: gives what the first argument is in each answer, called with the others while that one is a variable without
-            value; None where this takes the function itself.  It must not look at beliefs.
-        collects: the function is called with a list instead: what the template is in each answer of the `condition`.
-            It returns the value of the last argument.  The template is the argument before the condition, if there is one.
-        by_name: it reaches variables by their names, so all variables of the plan are kept for it.
-        repeatable: it only looks, so it may be called once more to explain a failure; it neither acts nor throws dice.
-        restricted: fewest arguments with which a restricted run refuses it; None for never.
+        direct: returns a faster function for a call with the constant arguments of a program, or None. That function is
+            called with the agent itself and all arguments, bindings not applied, and never suspends.
+        values: returns the values of the first argument in all answers, called with the other arguments if the first one
+            is unbound; None if `function` is needed. It must not read beliefs.
+        collects: the function is called with a list instead: the values of the template in all answers of the `condition`.
+            It returns the value of the last argument. The template is the argument before the condition, if there is one.
+        by_name: it accesses variables by name, so all variables of the plan are kept for it.
+        repeatable: it has no effects and uses no random numbers, so it may be called again to explain a failure.
+        restricted: minimum number of arguments with which a restricted run refuses it; None for never.
     """
 
     name: str
@@ -104,37 +108,38 @@ STANDARD: Final[Mapping[str, InternalAction]] = MappingProxyType(_declared)
 """The internal actions of the language; an agent may have more."""
 
 
-# Each of these raises `WrongArguments` for another term, with a message that begins with *what*: "the first argument".
+# Each of these raises `WrongArguments` for another term, with a message that begins with *what*: "the first
+# argument".
 
 
 def number(term: Term, what: str) -> float:
-    """The value of a number; an expression of unbound variables is none."""
+    """Return the value of a number; an expression with unbound variables is rejected."""
     if term.__class__ is float:
         return float(term)
     raise WrongArguments(f"{what} must be a number, not {text(term)}")
 
 
 def whole(term: Term, what: str) -> int:
-    """A number without its fraction, cut to 32 bits as in Jason."""
+    """Return a number without its fraction, cut to 32 bits as in Jason."""
     return to_int(number(term, what))
 
 
 def string(term: Term, what: str) -> str:
-    """The characters of a string."""
+    """Return the characters of a string."""
     if term.__class__ is String:
         return str(term)
     raise WrongArguments(f"{what} must be a string, not {text(term)}")
 
 
 def elements(term: Term, what: str) -> list[Term]:
-    """The elements of a list; an open end is passed over."""
+    """Return the elements of a list; an open tail is ignored."""
     if is_list(term):
         return list(list_items(term))
     raise WrongArguments(f"{what} must be a list, not {text(term)}")
 
 
 def members(term: Term, what: str) -> list[Term]:
-    """The elements of a list, set or queue."""
+    """Return the elements of a list, set or queue."""
     if isinstance(term, (SetValue, QueueValue)):
         return list(term)
     if is_list(term):
@@ -143,5 +148,5 @@ def members(term: Term, what: str) -> list[Term]:
 
 
 def characters(term: Term) -> str:
-    """A string bare, any other term as it is written."""
+    """Return a string without quotes, or any other term as text."""
     return str(term) if term.__class__ is String else text(term)

@@ -1,4 +1,4 @@
-"""Format strings as Java's ``String.format`` reads them, for numbers that are doubles."""
+"""Java's ``String.format`` for numbers that are doubles."""
 
 import re
 from collections.abc import Sequence
@@ -11,13 +11,14 @@ _EXACT = Context(prec=2000, rounding=ROUND_HALF_UP)
 
 
 def java_format(template: str, arguments: Sequence[float | str | bool]) -> str:
-    """Put the arguments into the places that *template* has for them.
+    """Insert the arguments into *template*.
 
-    Known conversions are ``%s %b %f %e %g``, their capital forms, ``%n`` and ``%%``, with flags, width,
-    precision and argument number.  Halves are rounded up, looking at the shortest digits of the number.
+    Supported conversions are ``%s %b %f %e %g``, their upper-case forms, ``%n`` and ``%%``, with flags,
+    width,
+    precision and argument number. Halves are rounded up, based on the shortest digits of the number.
 
     Raises:
-        ValueError: for any other conversion, a missing argument or one that does not fit.
+        ValueError: another conversion, or an argument that is missing or does not fit.
     """
     result: list[str] = []
     position = following = 0
@@ -32,7 +33,7 @@ def java_format(template: str, arguments: Sequence[float | str | bool]) -> str:
                 following += 1
             number = following if index is None else int(index)
             if not 1 <= number <= len(arguments):
-                raise ValueError(f"there is no argument for {match.group()}")
+                raise ValueError(f"missing argument for {match.group()}")
             places = None if precision is None else int(precision)
             piece = _convert(arguments[number - 1], conversion, flags, int(width or 0), places)
         result.append(piece.ljust(int(width or 0)) if "-" in flags else piece.rjust(int(width or 0)))
@@ -42,7 +43,7 @@ def java_format(template: str, arguments: Sequence[float | str | bool]) -> str:
 
 def _literal(text: str) -> str:
     if "%" in text:
-        raise ValueError(f"'{text[text.index('%') :]}' is no conversion")
+        raise ValueError(f"invalid conversion '{text[text.index('%') :]}'")
     return text
 
 
@@ -54,11 +55,11 @@ def _convert(value: float | str | bool, conversion: str, flags: str, width: int,
         piece = (_plain(value) if isinstance(value, bool) else "true")[:places]
     elif lower in ("f", "e", "g"):
         if not isinstance(value, float):
-            raise ValueError(f"%{conversion} needs a number, not {value}")
+            raise ValueError(f"%{conversion} expects a number, found {value}")
         piece = _signed(value, lower, flags, width, 6 if places is None else places)
     else:
         help = ": numbers are doubles, use %.0f" if lower in "dxo" else ""
-        raise ValueError(f"%{conversion} is not known{help}")
+        raise ValueError(f"unknown conversion %{conversion}{help}")
     return piece.upper() if conversion.isupper() else piece
 
 

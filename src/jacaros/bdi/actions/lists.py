@@ -1,4 +1,4 @@
-"""Internal actions on lists; several of them take strings, sets and queues as well."""
+"""Internal actions on lists; several of them also accept strings, sets and queues."""
 
 from collections.abc import Iterator
 
@@ -58,9 +58,9 @@ def _size(collection: Term) -> int | None:
 
 @internal_action(".member", arity=2, backtracks=True, repeatable=True)
 def member(ctx: Context, item: Term, collection: Term) -> Iterator[None]:
-    """``.member(X, C)``: *X* is an element of a list, set or queue; one answer for each that unifies.
+    """``.member(X, C)``: *X* is an element of a list, set or queue; one answer for each element that unifies.
 
-    A ground *X* is an element of a set or queue once, its annotations being compared as well.
+    A ground *X* matches an element of a set or queue at most once; annotations are compared as well.
     """
     if isinstance(collection, (SetValue, QueueValue)) and is_ground(item):
         if _holds(collection, item):
@@ -69,7 +69,7 @@ def member(ctx: Context, item: Term, collection: Term) -> Iterator[None]:
     if (
         collection.__class__ is List
         and item.__class__ in ATOMIC
-        and item == item  # not a number is in no list
+        and item == item  # NaN is not in any list
         and collection.is_settled()  # pyright: ignore[reportAttributeAccessIssue]
         and collection.depth == 1  # pyright: ignore[reportAttributeAccessIssue]
     ):
@@ -91,10 +91,10 @@ def _holds(collection: SetValue | QueueValue, item: Term) -> bool:
 def nth(ctx: Context, index: Term, collection: Term, item: Term) -> Iterator[None]:
     """``.nth(I, L, X)``: the element at position *I* (from 0) of a list, or character of a string, is *X*.
 
-    With *I* unbound there is an answer for each position whose element unifies with *X*.
+    With *I* unbound, there is an answer for each position whose element unifies with *X*.
 
     Raises:
-        ActionError: there is no such position.
+        ActionError: the position does not exist.
     """
     if collection.__class__ is List and index.__class__ is float and 0 <= index < collection.size:
         if ctx.unify(item, collection.stack[collection.size - 1 - int(index)]):
@@ -111,20 +111,20 @@ def nth(ctx: Context, index: Term, collection: Term, item: Term) -> Iterator[Non
         return
     position = whole(index, "the first argument of .nth")
     if not 0 <= position < len(values):
-        raise ActionError(f".nth: there is no position {position} in {len(values)} elements")
+        raise ActionError(f".nth: position {position} is outside the {len(values)} elements")
     if ctx.unify(item, values[position]):
         yield
 
 
 @internal_action(".concat", arity=(2, None), repeatable=True)
 def concat(ctx: Context, *arguments: Term) -> bool:
-    """``.concat(A, ..., R)``: *R* is the list or string made of the others joined.
+    """``.concat(A, ..., R)``: *R* is the concatenation of the other arguments, lists or strings.
 
-    The first one decides which.  For a string the other terms are taken as they are written, quoted atoms
-    without their quotes.
+    The first argument decides which. For a string, other terms are converted to text, quoted atoms without
+    their quotes.
 
     Raises:
-        ActionError: *R* is something else than the list that it has to be, or a list has an open end.
+        ActionError: *R* is bound to something other than a list when a list is needed, or a list has an open tail.
     """
     *parts, result = arguments
     if not is_list(parts[0]):
@@ -138,14 +138,14 @@ def concat(ctx: Context, *arguments: Term) -> bool:
         items = elements(part, f"argument {position} of .concat")
         if position < len(parts):
             if _open_end(part) is not None:
-                raise ActionError(f".concat: {text(part)} has an open end")
+                raise ActionError(f".concat: {text(part)} has an open tail")
             both = part.__class__ is List and joined.__class__ is List
             joined = part.followed_by(joined) if both else make_list(items, joined)
     return ctx.unify(joined, result)
 
 
 def _open_end(collection: Term) -> Term | None:
-    """What stands behind the bar of a list that is not closed."""
+    """Return the tail of a list that is not closed."""
     end = parted(collection)[1]
     return None if end is NIL else end
 
@@ -159,23 +159,22 @@ def _unquoted(term: Term) -> str:
 
 @internal_action(".delete", arity=(3, 4), repeatable=True)
 def delete(ctx: Context, what: Term, *arguments: Term) -> bool:
-    """``.delete(What, C, R)``: *R* is the list or string *C* without something.
+    """``.delete(What, C, R)``: *R* is the list or string *C* with some elements removed.
 
     ==================  =====================================================================
-    *What*              is left out
+    *What*              is removed
     ==================  =====================================================================
     number              the element or character at this position (from 0)
     two numbers A, B    ``.delete(A, B, C, R)``: positions A to B-1
     string              from the text of *C*: every match of this regular expression (of Java)
     any other term      from a list: every element that unifies with it; variables keep the values that
-                        they have in the first one (``f(_)`` leaves ``f(3)`` behind ``f(1)`` in place)
+                        they get from the first one (``f(_)`` removes ``f(1)`` and then keeps ``f(3)``)
     ==================  =====================================================================
 
-    Nothing is left out of a list at a position that it does not have, nor of a string when a position is
-    outside of it.
+    Positions outside the list or string remove nothing.
 
     Raises:
-        ActionError: the regular expression is wrong.
+        ActionError: the regular expression is invalid.
     """
     if what.__class__ is float:
         start = whole(what, "the position")
@@ -195,7 +194,7 @@ def delete(ctx: Context, what: Term, *arguments: Term) -> bool:
 
 
 def _not_matching(pattern: Term, items: list[Term]) -> list[Term]:
-    """The items that the pattern, with the variables bound by its first match, does not unify with."""
+    """Return the items that do not unify with the pattern, whose variables are bound by its first match."""
     kept: list[Term] = []
     trail = Trail()
     matched = False
@@ -227,9 +226,10 @@ def _delete_range(ctx: Context, start: int, end: int, collection: Term, result: 
 
 @internal_action(".reverse", arity=2, repeatable=True)
 def reverse(ctx: Context, collection: Term, result: Term) -> bool:
-    """``.reverse(C, R)``: *R* is the list or string *C* turned around; an open end of a list stays the end.
+    """``.reverse(C, R)``: *R* is the list or string *C* in reverse order; an open tail of a list stays at the
+    end.
 
-    Terms that are no lists are taken as they are written.
+    Terms that are not lists are converted to text.
     """
     if is_list(collection):
         if result.__class__ is not Var:
@@ -255,7 +255,7 @@ def sort(ctx: Context, collection: Term, result: Term) -> bool:
 
 @internal_action(".shuffle", arity=2)
 def shuffle(ctx: Context, collection: Term, result: Term) -> bool:
-    """``.shuffle(L, R)``: *R* is the list *L* in random order, drawn by the agent's own generator."""
+    """``.shuffle(L, R)``: *R* is the list *L* in random order, from the agent's own generator."""
     items = elements(collection, "the first argument of .shuffle")
     ctx.architecture.random.shuffle(items)
     return ctx.unify(result, make_list(items))
@@ -267,7 +267,7 @@ def _range(first: Term, last: Term, step: Term) -> tuple[int, int, int]:
 
 
 def _numbers(first: Term, last: Term, step: Term = 1.0) -> Iterator[float]:
-    """The values of *X* in ``.range(X, First, Last[, Step])``."""
+    """Yield the values of *X* in ``.range(X, First, Last[, Step])``."""
     start, end, by = _range(first, last, step)
     if by == 0:
         raise WrongArguments("the step of .range must not be 0")
@@ -278,7 +278,7 @@ def _numbers(first: Term, last: Term, step: Term = 1.0) -> Iterator[float]:
 def range_(ctx: Context, value: Term, first: Term, last: Term, step: Term = 1.0) -> Iterator[None]:
     """``.range(X, First, Last[, Step])``: *X* is each number from *First* to *Last* inclusive, in turn.
 
-    A number *X* is only tested for lying between the two, whatever the step.  Fractions are cut off.
+    A bound *X* is only tested to lie between the two, whatever the step. Fractions are cut off.
     """
     if value.__class__ is not Var:
         start, end, _ = _range(first, last, step)
@@ -292,21 +292,24 @@ def range_(ctx: Context, value: Term, first: Term, last: Term, step: Term = 1.0)
 
 @internal_action(".union", arity=3, repeatable=True)
 def union(ctx: Context, left: Term, right: Term, result: Term) -> bool:
-    """``.union(A, B, R)``: *R* is the sorted list of what is in the list *A* or in *B*, each once."""
+    """``.union(A, B, R)``: *R* is the sorted list of elements of the list *A* or *B*, without duplicates."""
     first, second = _two_lists(left, right, result, ".union")
     return ctx.unify(result, make_list(sorted_set([*second, *first])))
 
 
 @internal_action(".intersection", arity=3, repeatable=True)
 def intersection(ctx: Context, left: Term, right: Term, result: Term) -> bool:
-    """``.intersection(A, B, R)``: *R* is the sorted list of what is in both lists, each once."""
+    """``.intersection(A, B, R)``: *R* is the sorted list of elements of both lists, without duplicates."""
     first, second = _two_lists(left, right, result, ".intersection")
     return ctx.unify(result, make_list(_parted(second, first)[0]))
 
 
 @internal_action(".difference", arity=3, repeatable=True)
 def difference(ctx: Context, left: Term, right: Term, result: Term) -> bool:
-    """``.difference(A, B, R)``: *R* is the sorted list of what is in the list *A* but not in *B*, each once."""
+    """``.difference(A, B, R)``: *R* is the sorted list of elements of the list *A* that are not in *B*,
+    without
+    duplicates.
+    """
     first, second = _two_lists(left, right, result, ".difference")
     return ctx.unify(result, make_list(_parted(first, second)[1]))
 
@@ -318,7 +321,9 @@ def _two_lists(left: Term, right: Term, result: Term, name: str) -> tuple[list[T
 
 
 def _parted(items: list[Term], others: list[Term]) -> tuple[list[Term], list[Term]]:
-    """The items that are also among *others*, and those that are not, both sorted, each once."""
+    """Return the items that are also in *others* and those that are not, both sorted and without
+    duplicates.
+    """
     if ordered_by_python(items) and ordered_by_python(others):
         among = set(others)
         ordered = sorted_set(items)
@@ -339,9 +344,9 @@ Bounds = tuple[int, int]
 
 @internal_action(".sublist", arity=2, backtracks=True, repeatable=True)
 def sublist(ctx: Context, part: Term, whole: Term) -> Iterator[None]:
-    """``.sublist(S, L)``: *S* is a contiguous part of the list *L*; one answer for each that unifies.
+    """``.sublist(S, L)``: *S* is a contiguous part of the list *L*; one answer for each part that unifies.
 
-    Parts that begin further left come first, longer ones before shorter ones, the empty list last.
+    Parts with an earlier start come first, longer ones before shorter ones, the empty list last.
     """
     items = _whole_of(part, whole, ".sublist")
     size = len(items)
@@ -365,7 +370,7 @@ def suffix(ctx: Context, part: Term, whole: Term) -> Iterator[None]:
 
 
 def _whole_of(part: Term, whole: Term, name: str, strings: bool = False) -> list[Term] | String:
-    """The elements of the second argument; the first one is checked too."""
+    """Return the elements of the second argument; the first one is checked too."""
     if strings and whole.__class__ is String:
         fits = part.__class__ in (String, Var)
         items: list[Term] | String = whole
@@ -378,7 +383,9 @@ def _whole_of(part: Term, whole: Term, name: str, strings: bool = False) -> list
 
 
 def _parts(ctx: Context, part: Term, items: list[Term] | String, bounds: Iterator[Bounds]) -> Iterator[None]:
-    """The parts that unify, the empty one after all others; only those of the right length are built."""
+    """Yield an answer for each part that unifies, the empty one last; only parts of the right length are
+    built.
+    """
     length = _known_length(part)
     for start, end in bounds:
         if length in (None, end - start) and ctx.unify(part, _cut(items, start, end)):
@@ -392,7 +399,7 @@ def _cut(items: list[Term] | String, start: int, end: int) -> Term:
 
 
 def _known_length(part: Term) -> int | None:
-    """The length of a closed list or string, None when it may have any."""
+    """Return the length of a closed list or string; None if the length is open."""
     if part.__class__ is String:
         return len(part)
     items, end = parted(part)

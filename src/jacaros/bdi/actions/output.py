@@ -1,4 +1,4 @@
-"""Internal actions that show text to people."""
+"""Internal actions for output."""
 
 import re
 from dataclasses import replace
@@ -25,9 +25,10 @@ _EXPRESSION = re.compile(r"#\{([^{}]+)\}")
 @internal_action(".print", prints=True)
 @internal_action(".println", prints=True)
 def print_(ctx: Context, *arguments: Term) -> None:
-    """``.print(A, ...)`` and ``.println(A, ...)`` show their arguments joined without separators.
+    """``.print(A, ...)`` and ``.println(A, ...)`` print their arguments joined without separators.
 
-    Strings come out bare, strings inside other terms in quotes, unbound variables as ``X<no-value>``.
+    Strings are printed without quotes, strings inside other terms with quotes, unbound variables as
+    ``X<no-value>``.
     Line breaks in strings are kept.
     """
     ctx.architecture.print("".join(map(display, arguments)))
@@ -35,14 +36,16 @@ def print_(ctx: Context, *arguments: Term) -> None:
 
 @internal_action(".printf", arity=(1, None), prints=True)
 def printf(ctx: Context, template: Term, *arguments: Term) -> None:
-    """``.printf(Format, A, ...)`` shows a text made by a format of Java, such as ``%8.2f``.
+    """``.printf(Format, A, ...)`` prints a text made with a Java format such as ``%8.2f``.
 
-    Numbers are doubles: use ``%.0f`` where ``%d`` is meant.  See `java_format` for what is known.
+    Numbers are doubles: use ``%.0f`` instead of ``%d``. See `java_format` for the supported conversions.
 
     Raises:
-        ActionError: the format is wrong or does not fit the arguments.
+        ActionError: the format is invalid or does not fit the arguments.
     """
-    from jacaros.bdi.actions.java_format import java_format  # here: few programs use it, and it needs decimal
+    from jacaros.bdi.actions.java_format import (
+        java_format,
+    )  # imported here: few programs use it, and it needs decimal
 
     pattern = string(template, "the first argument of .printf")
     try:
@@ -60,10 +63,11 @@ def _value(term: Term) -> float | str | bool:
 
 @internal_action(".puts", arity=(1, 2), prints=True, by_name=True)
 def puts(ctx: Context, template: Term, result: Term = None) -> bool:
-    """``.puts(Text[, Result])`` shows a text in which every ``#{expression}`` is replaced by its value.
+    """``.puts(Text[, Result])`` prints a text in which every ``#{expression}`` is replaced by its value.
 
-    What cannot be read as a term is left as it is.  With an unbound *result* nothing is shown: the text is
-    its value.  A *result* that is a string is appended.
+    Expressions that do not parse as terms are left as they are. With an unbound *result*, nothing is printed:
+    the text
+    becomes its value. If *result* is a string, it is appended to the text.
     """
     filled = _fill(ctx, string(template, "the first argument of .puts"))
     if result.__class__ is Var:
@@ -86,7 +90,7 @@ def _fill(ctx: Context, template: str) -> str:
 
 @internal_action(".log", arity=(1, None), prints=True)
 def log(ctx: Context, level: Term, *arguments: Term) -> None:
-    """``.log(Level, A, ...)`` tells people something outside of the program's output.
+    """``.log(Level, A, ...)`` logs a message, separate from the program's output.
 
     *level* is ``severe``, ``warning``, ``info``, ``fine``, ``finer``, ``finest``; other atoms mean ``info``.
     """
@@ -97,8 +101,9 @@ def log(ctx: Context, level: Term, *arguments: Term) -> None:
 
 @internal_action(".verbose", arity=1)
 def verbose(ctx: Context, level: Term) -> None:
-    """``.verbose(N)``: what people are told of the agent from now on, besides what it prints: 0 only trouble, 1 the
-    usual, 2 details as well.
+    """``.verbose(N)`` sets how much is logged about the agent from now on: 0 only problems, 1 the default, 2
+    details as
+    well.
     """
     wanted = whole(level, "the argument of .verbose")
     if not 0 <= wanted <= 2:
@@ -108,7 +113,7 @@ def verbose(ctx: Context, level: Term) -> None:
 
 @internal_action(".print_unifier", arity=0, by_name=True)
 def print_unifier(ctx: Context) -> None:
-    """``.print_unifier`` shows the variables of the plan that have a value, one a line, and ``done``."""
+    """``.print_unifier`` prints the bound variables of the plan, one per line, and ``done``."""
     if ctx.intention is not None:
         frame = ctx.intention.frames[-1]
         for name, slot in frame[PLAN].slots.items():

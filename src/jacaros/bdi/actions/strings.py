@@ -1,8 +1,9 @@
-"""Internal actions on strings, and the regular expressions of Java that programs use, in terms of Python's.
+"""Internal actions on strings, and Java's regular expressions translated to Python's.
 
-The two languages of regular expressions agree on most of the syntax.  Translated are named groups, quoting with
-``\\Q…\\E``, the classes ``\\p{Alpha}`` and so on, ``\\z`` and ``\\Z``, and the replacement text with ``$1`` and
-``${name}``.  The classes ``\\d \\w \\s`` are ASCII, as in Java.  Classes inside classes and ``&&`` are refused.
+The two languages of regular expressions agree on most of the syntax. Translated are named groups, quoting
+with
+``\\Q…\\E``, the classes ``\\p{Alpha}`` and so on, ``\\z`` and ``\\Z``, and replacement texts with ``$1`` and
+``${name}``. The classes ``\\d \\w \\s`` are ASCII, as in Java. Nested classes and ``&&`` are rejected.
 """
 
 import re
@@ -40,15 +41,16 @@ _REFERENCE = re.compile(r"\\(.)|\$\{(\w+)\}|\$(\d+)|(\$|\\$)", re.DOTALL)
 def substring(
     ctx: Context, part: Term, whole_term: Term, start: Term = None, end: Term = None
 ) -> Iterator[None]:
-    """``.substring(Part, S[, Start[, End]])`` finds or cuts out a part of a text.
+    """``.substring(Part, S[, Start[, End]])`` finds or extracts a part of a text.
 
-    ``.substring("b", "abc")`` tests.  ``.substring("a", "banana", I, J)`` has an answer for each place, with
-    the positions (from 0) of the first and of the last character.  ``.substring(X, "hello", 1, 3)`` cuts:
-    from a position up to, but without, another one (default: the end).  Terms that are no strings are taken
-    as they are written.
+    ``.substring("b", "abc")`` tests. ``.substring("a", "banana", I, J)`` has an answer for each occurrence,
+    with
+    the positions (from 0) of the first and of the last character. ``.substring(X, "hello", 1, 3)`` extracts
+    from a position up to, but not including, another one (default: the end). Terms that are not strings are
+    converted to text.
 
     Raises:
-        ActionError: the positions of the part to be cut out are not in the text.
+        ActionError: the positions of the part to extract are outside the text.
     """
     found, searched = characters(part), characters(whole_term)
     if start is None:
@@ -81,7 +83,7 @@ def _cut(source: str, start: Term, end: Term) -> String:
     first = whole(start, "the start")
     last = whole(end, "the end") if end.__class__ is float else len(source)
     if not 0 <= first <= last <= len(source):
-        raise ActionError(f".substring: there is no part {first} to {last} in {len(source)} characters")
+        raise ActionError(f".substring: part {first} to {last} is outside the {len(source)} characters")
     return String(source[first:last])
 
 
@@ -89,10 +91,10 @@ def _cut(source: str, start: Term, end: Term) -> String:
 def replace(ctx: Context, source: Term, pattern: Term, by: Term, result: Term) -> bool:
     """``.replace(S, Regex, By, R)``: *R* is *S* with every match of a regular expression (of Java) replaced.
 
-    *by* may name groups of the match (``$1``).  An *S* that is no string is taken as it is written.
+    *by* may refer to groups of the match (``$1``). An *S* that is not a string is converted to text.
 
     Raises:
-        ActionError: one of them is wrong, or beyond what `replace_all` knows.
+        ActionError: one of them is invalid, or not supported by `replace_all`.
     """
     expression = string(pattern, "the second argument of .replace")
     replacement = string(by, "the third argument of .replace")
@@ -105,13 +107,13 @@ def replace(ctx: Context, source: Term, pattern: Term, by: Term, result: Term) -
 
 @internal_action(".upper_case", arity=2, repeatable=True)
 def upper_case(ctx: Context, source: Term, result: Term) -> bool:
-    """``.upper_case(S, R)``: *R* is the string *S* in capitals; other terms are taken as written."""
+    """``.upper_case(S, R)``: *R* is the string *S* in upper case; other terms are converted to text."""
     return ctx.unify(result, String(characters(source).upper()))
 
 
 @internal_action(".lower_case", arity=2, repeatable=True)
 def lower_case(ctx: Context, source: Term, result: Term) -> bool:
-    """``.lower_case(S, R)``: *R* is the string *S* in small letters; other terms are taken as written."""
+    """``.lower_case(S, R)``: *R* is the string *S* in lower case; other terms are converted to text."""
     return ctx.unify(result, String(characters(source).lower()))
 
 
@@ -119,7 +121,7 @@ def lower_case(ctx: Context, source: Term, result: Term) -> bool:
 def term2string(ctx: Context, term: Term, written: Term) -> bool:
     """``.term2string(T, S)``: *S* is the text of the term *T*, strings in quotes.
 
-    With *T* unbound, *S* is read; variables in it are those of the running plan.  Text that is no term
+    With *T* unbound, *S* is parsed; its variables are those of the running plan. A text that is not a term
     becomes an atom.
 
     Raises:
@@ -138,20 +140,20 @@ def term2string(ctx: Context, term: Term, written: Term) -> bool:
 
 
 def replace_all(source: str, pattern: str, by: str) -> str:
-    """*source* with every match of *pattern* replaced.
+    """Return *source* with every match of *pattern* replaced.
 
     Raises:
-        ValueError: for a pattern or replacement that is wrong or beyond what is translated.
+        ValueError: the pattern or replacement is invalid or not supported.
     """
     compiled = _compile(pattern)
     return compiled.sub(lambda match: _expand(by, match), source)
 
 
 def matches_whole(pattern: str, source: str) -> bool:
-    """Whether *pattern* matches all of *source*.
+    """Return whether *pattern* matches all of *source*.
 
     Raises:
-        ValueError: for a pattern that is wrong or beyond what is translated.
+        ValueError: the pattern is invalid or not supported.
     """
     return _compile(pattern).fullmatch(source) is not None
 
@@ -163,9 +165,7 @@ def _compile(pattern: str) -> re.Pattern[str]:
         try:
             return re.compile(_translate(pattern), re.ASCII)
         except (re.error, FutureWarning) as error:
-            raise ValueError(
-                f"'{pattern}' is no regular expression that is understood here: {error}"
-            ) from None
+            raise ValueError(f"invalid regular expression '{pattern}': {error}") from None
 
 
 def _translate(pattern: str) -> str:
@@ -179,7 +179,7 @@ def _translate(pattern: str) -> str:
         found = match.group()
         if kind == "open":
             if inside:
-                raise ValueError(f"'{pattern}' has a class inside a class, which is not understood here")
+                raise ValueError(f"nested classes in '{pattern}' are not supported")
             inside = True
             result.append(found)
         elif kind == "close":
@@ -200,12 +200,12 @@ def _translate(pattern: str) -> str:
 def _posix_class(name: str, negated: bool, inside: bool, pattern: str) -> str:
     characters = _CLASSES.get(name)
     if characters is None or (negated and inside):
-        raise ValueError(f"'{pattern}' uses the class {name}, which is not understood here")
+        raise ValueError(f"class {name} in '{pattern}' is not supported")
     return characters if inside else f"[{'^' if negated else ''}{characters}]"
 
 
 def _expand(replacement: str, match: re.Match[str]) -> str:
-    """The replacement for one match, with its references filled in."""
+    """Return the replacement for one match, with its group references filled in."""
     result: list[str] = []
     position = 0
     for reference in _REFERENCE.finditer(replacement):
@@ -213,7 +213,7 @@ def _expand(replacement: str, match: re.Match[str]) -> str:
         position = reference.end()
         escaped, name, digits, stray = reference.groups()
         if stray is not None:
-            raise ValueError(f"'{replacement}' has a lone {stray}")
+            raise ValueError(f"unescaped {stray} in '{replacement}'")
         if escaped is not None:
             result.append(escaped)
         elif name is not None:
@@ -226,7 +226,7 @@ def _expand(replacement: str, match: re.Match[str]) -> str:
 
 
 def _known_group(digits: str, match: re.Match[str]) -> str:
-    """As many of the digits as name a group, at least one."""
+    """Return as many of the digits as name a group, at least one."""
     used = digits[0]
     for digit in digits[1:]:
         if int(used + digit) > match.re.groups:
@@ -239,6 +239,4 @@ def _group(match: re.Match[str], which: int | str, replacement: str) -> str:
     try:
         return match.group(which) or ""
     except IndexError:
-        raise ValueError(
-            f"'{replacement}' names the group {which}, which the pattern does not have"
-        ) from None
+        raise ValueError(f"unknown group {which} in '{replacement}'") from None

@@ -1,4 +1,4 @@
-"""Internal actions that test terms, and make terms of terms: types, copies and annotations."""
+"""Internal actions that test and create terms: types, copies and annotations."""
 
 from collections.abc import Callable, Iterator
 
@@ -45,16 +45,17 @@ def copy_term(ctx: Context, term: Term, copy: Term) -> bool:
 def add_annot(ctx: Context, term: Term, annotation: Term, result: Term) -> bool:
     """``.add_annot(L, A, R)``: *R* is the literal *L* with the annotation *A*.
 
-    In a list (and lists in it) each literal gets it; what is no literal stays as it is.
+    In a list (and nested lists) it is added to each literal; other elements are unchanged.
     """
     return ctx.unify(_in_lists(term, lambda literal: annotated(literal, (annotation,))), result)
 
 
 @internal_action(".add_nested_source", arity=3)
 def add_nested_source(ctx: Context, term: Term, source: Term, result: Term) -> bool:
-    """``.add_nested_source(L, Ag, R)``: *R* is the literal *L* as told by *Ag*, its sources so far inside.
+    """``.add_nested_source(L, Ag, R)``: *R* is the literal *L* with the source *Ag*, its previous sources
+    nested inside.
 
-    ``p[source(bob)]`` from carl gives ``p[source(carl)[source(bob)]]``.  Lists are treated as by
+    ``p[source(bob)]`` from carl gives ``p[source(carl)[source(bob)]]``. Lists are handled as by
     ``.add_annot``.
     """
     return ctx.unify(_in_lists(term, lambda literal: told_by(literal, source)), result)
@@ -79,14 +80,14 @@ def _in_lists(term: Term, change: Callable[[Term], Term]) -> Term:
 
 
 def annotated(term: Term, annotations: tuple[Term, ...]) -> Term:
-    """The literal with *annotations* besides those that it has."""
+    """Return the literal with *annotations* in addition to its own."""
     if isinstance(term, Annotated):
         return Annotated(term.term, annotation_set((*term.annotations, *annotations)), term.tail)
     return Annotated(term, annotation_set(annotations)) if annotations else term
 
 
 def told_by(term: Term, source: Term) -> Term:
-    """The literal as heard from *source*: its own sources become annotations of the new one."""
+    """Return the literal as received from *source*: its own sources are nested in the new one."""
     sources = tuple(a for a in annotations_of(term) if is_source(a))
     return annotated(without_sources(term), (annotated((SOURCE, source), sources),))
 
@@ -99,8 +100,10 @@ def _without_source(term: Term) -> Term:
 
 @internal_action(".get_src_info", arity=2)
 def get_src_info(ctx: Context, term: Term, result: Term) -> bool:
-    """``.get_src_info(L, R)``: *R* is the literal *L* with ``code_line(N)`` and ``code_src("file:…")``: where it is
-    written, that is, the place of the step that asks.  Fails when *L* is no literal."""
+    """``.get_src_info(L, R)``: *R* is the literal *L* with ``code_line(N)`` and ``code_src("file:…")``: the
+    place of the
+    step that asks. Fails if *L* is not a literal.
+    """
     inner = _only_operand(term)
     if functor_of(inner) is None:
         return False
@@ -115,7 +118,7 @@ def get_src_info(ctx: Context, term: Term, result: Term) -> bool:
 
 
 def _only_operand(term: Term) -> Term:
-    """What the only step of a plan body is about; any other term is itself."""
+    """Return the operand of a plan body with one step; any other term is returned unchanged."""
     steps = list(body_steps(term)) if is_body(term) else []
     return step_parts(steps[0])[1][0] if len(steps) == 1 else term
 
@@ -128,13 +131,13 @@ def is_string(_ctx: Context, term: Term) -> bool:
 
 @internal_action(".list", arity=1, repeatable=True)
 def is_a_list(_ctx: Context, term: Term) -> bool:
-    """``.list(X)``: *X* is a list, be it empty."""
+    """``.list(X)``: *X* is a list, possibly empty."""
     return is_list(term)
 
 
 @internal_action(".number", arity=1, repeatable=True)
 def is_number(_ctx: Context, term: Term) -> bool:
-    """``.number(X)``: *X* is a number, or an expression that waits for its variables."""
+    """``.number(X)``: *X* is a number, or an expression with unbound variables."""
     return term.__class__ is float or (term.__class__ is tuple and term[0].kind in (ARITHMETIC, FUNCTION))
 
 
@@ -146,26 +149,26 @@ def is_atom(_ctx: Context, term: Term) -> bool:
 
 @internal_action(".literal", arity=1, repeatable=True)
 def is_literal(_ctx: Context, term: Term) -> bool:
-    """``.literal(X)``: *X* is an atom or structure, also a negated or annotated one, but no list."""
+    """``.literal(X)``: *X* is an atom or structure, possibly negated or annotated, but not a list."""
     symbol = functor_of(term)
     return symbol is not None and symbol.kind not in (ARITHMETIC, FUNCTION)
 
 
 @internal_action(".structure", arity=1, repeatable=True)
 def is_structure(ctx: Context, term: Term) -> bool:
-    """``.structure(X)``: *X* is a list, or a literal other than a plain atom (so does Jason run)."""
+    """``.structure(X)``: *X* is a list, or a literal other than a plain atom (as Jason implements it)."""
     return is_list(term) or (is_literal(ctx, term) and not is_atom(ctx, term))
 
 
 @internal_action(".ground", arity=1, repeatable=True)
 def has_no_variables(_ctx: Context, term: Term) -> bool:
-    """``.ground(X)``: there is no unbound variable in *X*."""
+    """``.ground(X)``: *X* has no unbound variables."""
     return is_ground(term)
 
 
 @internal_action(".internal_action", arity=1)
 def is_internal_action(_ctx: Context, term: Term) -> bool:
-    """``.internal_action(X)``: *X* is the call of an internal action, such as ``.print(a)``."""
+    """``.internal_action(X)``: *X* is a call of an internal action, such as ``.print(a)``."""
     symbol = functor_of(term)
     return symbol is not None and symbol.kind == ACTION
 
@@ -189,7 +192,7 @@ _TESTS: dict[str, Callable[[Context, Term], bool]] = {
 
 @internal_action(".type", arity=2, backtracks=True, repeatable=True)
 def type_(ctx: Context, term: Term, kind: Term) -> Iterator[None]:
-    """``.type(X, T)``: *T* is a type of *X*; with *T* unbound, each of them in turn.
+    """``.type(X, T)``: *T* is a type of *X*; with *T* unbound, each of its types in turn.
 
     Types are ``number atom literal string list set map structure rule plan queue ground free``, in this order
     (``plan`` is a plan body; ``free`` an unbound variable).

@@ -1,4 +1,4 @@
-"""Internal actions that wait, that post events later, and that read the run's clock."""
+"""Internal actions that wait, post events later, and read the run's clock."""
 
 import re
 from typing import TYPE_CHECKING, Any
@@ -26,11 +26,13 @@ TIME, WAIT = functor("time", 1), functor("wait", 1)
 def wait(ctx: Context, what: Term, limit: Term = None, elapsed: Term = None) -> Any:
     """``.wait(Ms)``, ``.wait({+e} [,Ms [,Elapsed]])``, ``.wait(Condition [,Ms [,Elapsed]])``.
 
-    Waits for a time in milliseconds, an event, or until a condition holds.  After *Ms* milliseconds it fails with
-    ``error(wait_timeout)``, unless *Elapsed* is given: then that is the time waited, in milliseconds.
+    Waits for a time in milliseconds, for an event, or until a condition holds. After *Ms* milliseconds it
+    fails with
+    ``error(wait_timeout)``, unless *Elapsed* is given: then it succeeds, and *Elapsed* is the time waited, in
+    milliseconds.
     """
     if limit is not None and limit.__class__ is not float:
-        raise WrongArguments(f"the time-out must be a number of milliseconds, not {text(limit)}")
+        raise WrongArguments(f"the timeout must be a number of milliseconds, not {text(limit)}")
     agent, intention, began = ctx.agent, ctx.suspendable(), ctx.architecture.now()
     if what.__class__ is float:
         timed = TimedWait(intention, _reason(intention, (TIME, what)), elapsed, began)
@@ -54,7 +56,7 @@ def wait(ctx: Context, what: Term, limit: Term = None, elapsed: Term = None) -> 
 
 
 def _reason(intention: Intention, awaited: Term) -> Term:
-    """As in Jason: with the number of the intention, and what it waits for."""
+    """Return the reason as Jason does: the number of the intention, and what it waits for."""
     return Annotated((WAIT, float(intention.id)), (awaited,))
 
 
@@ -71,32 +73,34 @@ def _unit(word: str) -> str | None:
 
 @internal_action(".at", arity=2)
 def at(ctx: Context, moment: Term, event: Term) -> None:
-    """``.at("now +5 s", {+!g})``: post an event later; units ms (when none is given), s, m, h and d.
+    """``.at("now +5 s", {+!g})`` posts an event later; units ms (the default), s, m, h and d.
 
-    ``.drop_all_intentions`` takes it back.
+    ``.drop_all_intentions`` cancels it.
     """
     found = trigger_of(event)
     match = _MOMENT.match(str(moment)) if moment.__class__ is String else None
     unit = _unit(match.group(2) or "") if match else None
     if found is None or found[0] is None or match is None or unit is None:
-        raise WrongArguments('.at takes a moment such as "now +5 s" and an event such as {+!g}')
+        raise WrongArguments('.at expects a moment such as "now +5 s" and an event such as {+!g}')
     delay = float(match.group(1) or 0) * _UNITS[unit]
     set_alarm(ctx.agent, delay, post_external, found[0], rename(found[1]))
 
 
 @internal_action(".signal", arity=(1, 2))
 def signal(ctx: Context, event: Term, kind: Term = None) -> None:
-    """``.signal({+e})``: post an event without changing beliefs."""
+    """``.signal({+e})`` posts an event without changing beliefs."""
     del kind
     found = trigger_of(event)
     if found is None or found[0] is None:
-        raise WrongArguments(".signal takes an event such as {+e}")
+        raise WrongArguments(".signal expects an event such as {+e}")
     post_external(ctx.agent, found[0], found[1])
 
 
 @internal_action(".time", arity=(3, 4), repeatable=True)
 def time(ctx: Context, hour: Term, minute: Term, second: Term, *millisecond: Term) -> bool:
-    """``.time(H, M, S[, Ms])``: the time of day in UTC, as whole numbers.  Fails when it is another."""
+    """``.time(H, M, S[, Ms])``: the time of day in UTC, as integers. Fails if the arguments are another
+    time.
+    """
     now = _now(ctx)
     parts = (now.hour, now.minute, now.second, now.microsecond // 1000)
     asked = (hour, minute, second, *millisecond)
@@ -105,7 +109,9 @@ def time(ctx: Context, hour: Term, minute: Term, second: Term, *millisecond: Ter
 
 @internal_action(".date", arity=3, repeatable=True)
 def date(ctx: Context, year: Term, month: Term, day: Term) -> bool:
-    """``.date(Y, M, D)``: the date in UTC, month and day counted from 1.  Fails when it is another."""
+    """``.date(Y, M, D)``: the date in UTC, month and day counted from 1. Fails if the arguments are another
+    date.
+    """
     now = _now(ctx)
     return ctx.unify(
         make_list((year, month, day)), make_list([float(now.year), float(now.month), float(now.day)])
@@ -114,12 +120,14 @@ def date(ctx: Context, year: Term, month: Term, day: Term) -> bool:
 
 @internal_action(".nano_time", arity=1)
 def nano_time(ctx: Context, nanoseconds: Term) -> bool:
-    """``.nano_time(T)``: nanoseconds since the Unix epoch, as exact as a double holds them."""
+    """``.nano_time(T)``: *T* is the number of nanoseconds since the Unix epoch, with the precision of a
+    double.
+    """
     return ctx.unify(nanoseconds, float(round(ctx.architecture.now() * 1e9)))
 
 
 def _now(ctx: Context) -> "datetime":
     """The present in UTC, not in local time: programs behave the same everywhere, and on a virtual clock."""
-    from datetime import UTC, datetime  # here: few programs ask for the time
+    from datetime import UTC, datetime  # imported here: few programs ask for the time
 
     return datetime.fromtimestamp(ctx.architecture.now(), UTC)

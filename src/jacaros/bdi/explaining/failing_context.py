@@ -1,9 +1,12 @@
 """Where the context of a plan fails: its first failing conjunct, with the values of its variables.
 
-Compiled contexts only say whether they hold.  When a goal is lost, the contexts of its plans are searched once more,
-conjunct by conjunct, and the deepest one that any answer of those before it reached is reported.  This search changes
-nothing and is bounded: rules are interpreted, only internal actions and functions without effects are called, nothing is
-logged, and it ends after `MOST_STEPS` steps.
+Compiled contexts only return whether they hold. When a goal is lost, the contexts of its plans are searched
+again,
+conjunct by conjunct, and the deepest failing conjunct is reported. This search changes nothing and is
+bounded: rules are
+interpreted, only internal actions and functions without effects are called, nothing is logged, and it ends
+after
+`MOST_STEPS` steps.
 """
 
 from collections.abc import Callable, Generator, Iterator
@@ -38,26 +41,29 @@ from jacaros.terms.unifier import Trail, undo, unify
 from jacaros.terms.values import Functor, Term, Var, deref, functor_of
 
 MOST_STEPS = 1_000
-"""Steps of the search for one plan (some ten microseconds each): answers of conjuncts, rules and internal actions."""
+"""Maximum number of steps of the search for one plan (about ten microseconds each): answers of conjuncts,
+rules and
+internal actions.
+"""
 FACTS_PER_STEP = 16
-"""Beliefs that are compared with a question in one step."""
+"""Number of beliefs compared with a question in one step."""
 LONGEST_CONJUNCT, LONGEST_VALUE = 100, 40
-"""Characters of a conjunct and of the value of a variable that are shown."""
+"""Maximum numbers of characters shown of a conjunct and of the value of a variable."""
 
 
 class NotRepeatable(Exception):
-    """A formula calls something that may have an effect."""
+    """Raised when a formula calls something that may have an effect."""
 
 
 class _Stop(NamedTuple):
-    """The conjunct that a context stops at.
+    """The conjunct at which a context stops.
 
     Attributes:
-        depth: how many conjuncts hold before it.
-        conjunct: as it is written.
+        depth: number of conjuncts before it that hold.
+        conjunct: as written.
         values: of its variables, as ``Name=value``, for the first answer of the conjuncts before it.
-        answers: how many answers of the conjuncts before it there are.
-        missing: what the agent does not believe at all, empty unless that is why.
+        answers: number of answers of the conjuncts before it.
+        missing: the belief that the agent lacks entirely; empty unless that is the reason.
     """
 
     depth: int
@@ -77,7 +83,7 @@ class FailingContexts:
     """Finds the failing conjuncts of the plans for one goal.
 
     Args:
-        agent: whose plans they are; its beliefs must still be as they were when no plan was found.
+        agent: the agent; its beliefs must still be as they were when no plan was found.
         goal: the goal or failure event, which begins with its `Trigger`.
         annotations: of the goal.
     """
@@ -86,7 +92,7 @@ class FailingContexts:
         self._agent, self._goal, self._annotations = agent, goal, annotations
 
     def fits(self, plan: Plan) -> bool:
-        """Whether the trigger of a plan fits the goal; True when that cannot be found out."""
+        """Return whether the trigger of a plan fits the goal; True if that cannot be determined."""
         trail = Trail()
         try:
             return self._matches(plan, Names().__getitem__, trail)
@@ -96,7 +102,9 @@ class FailingContexts:
             undo(trail, 0)
 
     def stop(self, plan: Plan) -> str:
-        """Where the context of a plan fails, in words; empty when it has none, or nothing is to be said of it."""
+        """Describe where the context of a plan fails; empty if it has none, or nothing can be said about
+        it.
+        """
         context = plan.node.context
         if context is None:
             return ""
@@ -111,7 +119,7 @@ class FailingContexts:
                 return ""
             return _Search(view, context, names, trail).outcome()
         except Exception:
-            # A message for people can never make the run fail.
+            # A message in a log must never make the run fail.
             return ""
         finally:
             undo(trail, 0)
@@ -124,7 +132,7 @@ class FailingContexts:
 
 
 def holds(agent: Circumstance, condition: nodes.Node) -> bool:
-    """Whether a condition holds now, by the same search; False when that cannot be found out."""
+    """Return whether a condition holds now, by the same search; False if that cannot be determined."""
     trail = Trail()
     trail.serial = agent.trail.serial
     view = _LookOnly(agent, SearchBudget(MOST_STEPS))
@@ -150,7 +158,7 @@ class _Search:
         self._deepest: _Stop | None = None
 
     def outcome(self) -> str:
-        """Search until the context holds or there is nothing left to search."""
+        """Search until the context holds or nothing is left to search."""
         searches = [self._answers(0)]
         answered = [False]
         try:
@@ -177,7 +185,7 @@ class _Search:
         return f"stops at {self._deepest}"
 
     def _answers(self, depth: int) -> Generator[bool, None, None]:
-        """The answers of one conjunct; an error inside ends them."""
+        """Yield the answers of one conjunct; an error inside ends them."""
         conjunct, mark = self._conjuncts[depth], len(self._trail)
         self._agent.refuse_effects(conjunct)
         try:
@@ -193,7 +201,7 @@ class _Search:
             undo(self._trail, mark)
 
     def _note(self, depth: int) -> None:
-        """A conjunct has no answer with the present values."""
+        """Record that a conjunct has no answer with the present values."""
         deepest = self._deepest
         if deepest is None or depth > deepest.depth:
             conjunct = self._conjuncts[depth]
@@ -203,7 +211,7 @@ class _Search:
             self._deepest = deepest._replace(answers=deepest.answers + 1)
 
     def _missing(self, conjunct: nodes.Node) -> str:
-        """What of a literal the agent does not believe at all, with a near name."""
+        """Describe which belief of a literal the agent lacks entirely, with a similar name."""
         if not isinstance(conjunct, nodes.Literal):
             return ""
         symbol = functor_of(lower(conjunct, self._names.__getitem__))
@@ -239,7 +247,7 @@ def _short(written: str, longest: int) -> str:
 
 
 class _LookOnly:
-    """What searches need of an agent, for one that changes nothing, logs nothing and counts its steps."""
+    """The view of an agent for a search that changes nothing, logs nothing and counts its steps."""
 
     def __init__(self, agent: Circumstance, budget: SearchBudget) -> None:
         self.beliefs = _Beliefs(self, agent, budget)
@@ -251,15 +259,15 @@ class _LookOnly:
         self._repeatable: dict[int, nodes.Node] = {}
 
     def answers(self, formula: Term, trail: Trail) -> Iterator[Any]:
-        """The answers of a formula."""
+        """Return the answers of a formula."""
         view = cast("Circumstance", self)
         return run(solve_formula(view, formula, trail), self.options.rule_depth)
 
     def refuse_effects(self, formula: nodes.Node) -> None:
-        """Look through a formula for what may have an effect.
+        """Check a formula for calls that may have an effect.
 
         Raises:
-            NotRepeatable: it holds a function of the agent or the project, or a predicate whose namespace is a variable.
+            NotRepeatable: it calls a function of the agent or the project, or a predicate whose namespace is a variable.
         """
         if id(formula) in self._repeatable:
             return
@@ -273,21 +281,21 @@ class _LookOnly:
         self._repeatable[id(formula)] = formula
 
     def call_own(self, term: Term) -> Term:
-        """The value of a function that needs the agent, as `jacaros.bdi.rules.functions.call_own` has it."""
+        """Return the value of a function that needs the agent, as `jacaros.bdi.rules.functions.call_own`."""
         own = OF_AGENT.get(term[0].name)
         view = cast("Circumstance", self)
         return self._agent.call_own(term) if own is None else own.evaluate(view, term)
 
     def missing_belief(self, symbol: Functor) -> str:
-        """Whether the agent has no belief of that name at all, in words."""
+        """Describe that the agent has no belief of that name at all."""
         return missing_belief(self._agent.beliefs, symbol)
 
     def warn_of_operand(self, what: str, value: Term) -> None:
-        """Say nothing: the warning has been logged."""
+        """Do nothing: the warning has been logged."""
 
 
 class _Silent(Context):
-    """A context for internal actions whose errors have been reported already."""
+    """A context for internal actions whose errors have already been reported."""
 
     __slots__ = ("_view",)
 
@@ -296,37 +304,37 @@ class _Silent(Context):
         self._view, self.trail = view, Trail()
 
     def answers(self, formula: Term) -> Iterator[None]:
-        """The answers of a formula, in the same view of the agent."""
+        """Return the answers of a formula, in the same view of the agent."""
         for _ in self._view.answers(formula, self.trail):
             yield
 
     def report(self, action: str, fault: object) -> None:
-        """Say nothing."""
+        """Do nothing."""
 
 
 class _Actions:
-    """The internal actions that may be called once more."""
+    """The internal actions that may be called again."""
 
     def __init__(self, agent: Circumstance) -> None:
         self._actions = agent.engine.actions
         self.actions = self
 
     def get(self, name: str) -> InternalAction | None:
-        """The action of a name.
+        """Return the action of a name.
 
         Raises:
             NotRepeatable: it may have an effect.
         """
         action = self._actions.get(name)
         if action is not None and action.prints:
-            return InternalAction(name, lambda *_: True)  # it always holds; nothing is printed again
+            return InternalAction(name, lambda *_: True)  # it always succeeds; nothing is printed again
         if action is not None and not action.repeatable:
             raise NotRepeatable
         return action
 
 
 class _Beliefs:
-    """The tables of a belief base; each entry that is looked at counts."""
+    """The tables of a belief base; each entry that is read counts."""
 
     def __init__(self, agent: _LookOnly, mind: Circumstance, budget: SearchBudget) -> None:
         self._agent, self._beliefs, self.budget = agent, mind.beliefs, budget
@@ -336,14 +344,14 @@ class _Beliefs:
         if table is None:
             table = Table(symbol)
         if type(table).candidates is not Table.candidates:
-            raise NotRepeatable  # a class of the project looks beliefs up elsewhere
+            raise NotRepeatable  # a project's class looks up beliefs elsewhere
         return _Table(self._agent, table, self.budget)
 
     def items(self) -> NoReturn:
-        """All tables.
+        """Raise an exception: a variable as a question may stand for anything.
 
         Raises:
-            NotRepeatable: always: a variable that is asked for may stand for anything.
+            NotRepeatable: always.
         """
         raise NotRepeatable
 
@@ -374,7 +382,7 @@ class _Interpreted:
         self._agent, self._rule = agent, rule.node
 
     def search(self, _agent: object, arguments: tuple[Term, ...], trail: Trail) -> Answers:
-        """A generator of the answers, see `jacaros.bdi.rules.searching.run`."""
+        """Return a generator of the answers, see `jacaros.bdi.rules.searching.run`."""
         self._agent.refuse_effects(self._rule.body)
         view = cast("Circumstance", self._agent)
         return interpret_rule(view, self._rule, arguments, trail)

@@ -1,4 +1,4 @@
-"""Why a goal failed: the annotations of its failure event, and what people are told of it."""
+"""Why a goal failed: the annotations of its failure event, and the description in logs."""
 
 from collections.abc import Callable
 
@@ -26,14 +26,14 @@ _REASONS = frozenset({ERROR, ERROR_MSG, CODE, CODE_LINE, CODE_SRC})
 
 
 class FailureReason:
-    """The annotations of a failure event; they are put together when a plan first asks for them.
+    """The annotations of a failure event, composed when a plan first asks for them.
 
     Attributes:
         goal_annotations: those of the goal whose failure event it is for; None before there is one.
-        goal_number: by which observers know that goal, when it had no plan and so no frame on the stack.
-        goals: those of the intention that was lost, as people read them, the one that failed first; noted when it ends.
-        candidates: of a goal without applicable plan, the plans that there were and where their contexts fail, as lines for
-            people; noted at the same time.
+        goal_number: the number by which observers know that goal, if it had no plan and so no frame on the stack.
+        goals: the goals of the lost intention as text, the one that failed first; recorded when it ends.
+        candidates: for a goal without applicable plan, its plans and where their contexts fail, as lines for the log;
+            recorded at the same time.
     """
 
     __slots__ = ("_at", "_made", "_terms", "candidates", "goal_annotations", "goal_number", "goals")
@@ -48,9 +48,9 @@ class FailureReason:
         """Make a reason.
 
         Args:
-            terms: ``error(..)``, ``error_msg(..)`` and what else was given; or what makes them.
-            at: the place; or the frame whose step failed, which stays as it is: its plan goes no further.
-            goal_annotations: of the goal that failed, when that is known already.
+            terms: ``error(..)``, ``error_msg(..)`` and other given terms; or a function that returns them.
+            at: the place; or the frame whose step failed, which is kept as it is: its plan does not continue.
+            goal_annotations: of the goal that failed, if it is already known.
             goal_number: see above.
         """
         self._terms = terms
@@ -62,7 +62,9 @@ class FailureReason:
         self._made: _Terms | None = None
 
     def for_goal(self, annotations: EventAnnotations, number: int | None = None) -> "FailureReason":
-        """The same reason for the failure event of a goal: this very one, unless it is for another goal already."""
+        """Return the reason for the failure event of a goal: this object, unless it already belongs to
+        another goal.
+        """
         if self.goal_annotations is None:
             self.goal_annotations = annotations
             self.goal_number = number
@@ -77,17 +79,17 @@ class FailureReason:
 
     @property
     def terms(self) -> _Terms:
-        """``error(..)``, ``error_msg(..)`` and what else was given."""
+        """Return ``error(..)``, ``error_msg(..)`` and other given terms."""
         if not isinstance(self._terms, tuple):
             self._terms = self._terms()
         return self._terms
 
     def add(self, *terms: Term) -> None:
-        """Say more about the failure: to plans for the goals further down, and to people."""
+        """Add terms: for plans of the goals further down, and for logs."""
         self._terms, self._made = (*self.terms, *terms), None
 
     def annotations(self) -> tuple[Term, ...]:
-        """All annotations, sorted."""
+        """Return all annotations, sorted."""
         if self._made is None:
             goal = self.goal_annotations
             own = goal if isinstance(goal, tuple) else goal.annotations() if goal is not None else ()
@@ -95,57 +97,63 @@ class FailureReason:
         return self._made
 
     def error(self) -> str:
-        """The id of the error, for messages."""
+        """Return the id of the error, for messages."""
         return self.known_error() or "unknown"
 
     def known_error(self) -> str:
-        """The id of the error, or an empty text: failures by ``.fail_goal`` have none."""
+        """Return the id of the error, or an empty string: failures by ``.fail_goal`` have none."""
         for term in self.terms:
             if term.__class__ is tuple and term[0] is ERROR:
                 return text(term[1])
         return ""
 
     def message(self) -> str:
-        """The text for people, or an empty one."""
+        """Return the message, or an empty string."""
         for term in self.terms:
             if term.__class__ is tuple and term[0] is ERROR_MSG:
                 return str(term[1])
         return str(self._place.told())
 
     def others(self) -> list[Term]:
-        """The terms besides ``error`` and ``error_msg``, such as ``env_failure_reason(..)``."""
+        """Return the terms other than ``error`` and ``error_msg``, such as ``env_failure_reason(..)``."""
         return [t for t in self.terms if not (t.__class__ is tuple and t[0] in (ERROR, ERROR_MSG))]
 
     def step(self) -> str:
-        """The step that failed, with the values of its variables; empty when a goal without plan is the reason."""
+        """Return the step that failed, with the values of its variables; empty if a goal without plan is the
+        reason.
+        """
         return str(self._place.step())
 
     def inner_goals(self) -> tuple[Goal, ...]:
-        """The goals for which the step was made, as far as they are not on the stack any more."""
+        """Return the goals of the step that are no longer on the stack."""
         found: tuple[Goal, ...] = self._place.inner_goals()
         return found
 
     def unplanned(self) -> tuple[Goal, EventAnnotations] | None:
-        """The goal that no plan fits and its annotations, None when that is not the reason."""
+        """Return the goal that no plan fits and its annotations; None if that is not the reason."""
         found: tuple[Goal, EventAnnotations] | None = self._place.unplanned()
         return found
 
     def interrupted(self, frames: list[Frame]) -> "FailureReason":
-        """The same reason, for goals that were ended from outside: *frames* served them, the last one was at work."""
+        """Return the reason for goals that were ended from outside: *frames* served them, the last one was
+        running.
+        """
         return FailureReason(self.terms, _Interrupted(self._place.told(), frames), self.goal_annotations)
 
     def where(self) -> str:
-        """``file:line``, or an empty text."""
+        """Return ``file:line``, or an empty string."""
         return str(self._place.where())
 
     def span(self) -> Span | None:
-        """The place of the formula that failed, or of the call of the goal without plan; None when there is none."""
+        """Return the place of the formula that failed, or of the call of the goal without plan, if there is
+        one.
+        """
         found: Span | None = self._place.span()
         return found
 
 
 class _Nowhere:
-    """No formula: something from outside ended the goal; *told* says what, where no ``error_msg`` does."""
+    """No formula: something from outside ended the goal; *told* describes it in place of an ``error_msg``."""
 
     __slots__ = ("_told",)
 
@@ -200,17 +208,17 @@ class StepPlace(_Nowhere):
         return step_text(self.info.node, self._resolved(excerpt(term)))
 
     def _resolved(self, term: Term) -> Term:
-        """The formula, with the values of its variables."""
+        """Return the formula, with the values of its variables."""
         node = self.node
         try:
             term = resolve(term)
         except (ArithmeticFault, CyclicTerm, RecursionError):
-            # The formula holds the very expression that has no value: it is shown as it is written.
+            # The formula contains the very expression that has no value: show it as written.
             term = String(format_term(node)) if isinstance(node, nodes.Term) else String("")
         return term
 
     def _value(self, name: str) -> Term:
-        """The value of a variable, as far as it has one."""
+        """Return the value of a variable, as far as it is bound."""
         slot = self.plan.slots.get(name, len(self.frame))
         value = self.frame[slot] if slot < len(self.frame) else None
         return Var(name) if value is None else value
@@ -224,7 +232,7 @@ class StepPlace(_Nowhere):
 
 
 def _failed_formula(node: nodes.Node) -> nodes.Node:
-    """What ``code(..)`` shows of a step: the formula, without the operator of a test."""
+    """Return what ``code(..)`` shows of a step: the formula, without the operator of a test."""
     if isinstance(node, nodes.Test):
         return node.formula
     if isinstance(node, nodes.Constraint):
@@ -241,7 +249,9 @@ def _failed_formula(node: nodes.Node) -> nodes.Node:
 
 
 class _Interrupted(_Nowhere):
-    """What an intention was at when a goal of it was ended from outside; plans are not told of it."""
+    """The running plans of an intention when a goal of it was ended from outside; only for logs, not for
+    plans.
+    """
 
     def __init__(self, told: str, frames: list[Frame]) -> None:
         super().__init__(told)
@@ -271,7 +281,8 @@ class GoalPlace(_Nowhere):
         self.caller = caller
 
     def annotations(self) -> tuple[Term, ...]:
-        # A goal that was posted again by its handler has the reasons of its last failure: they would double each time.
+        # A goal that its handler posted again has the reasons of its last failure: they would double each
+        # time.
         shown = tuple(a for a in annotations_of_event(self.goal_annotations) if functor_of(a) not in _REASONS)
         try:
             term = resolve(literal_of(self.goal, shown))
@@ -297,10 +308,12 @@ class GoalPlace(_Nowhere):
 
 
 def place_of_call(caller: Frame, symbol: Functor | None) -> Span | None:
-    """Where the plan of a frame called the goal that it now waits for; *symbol* is the functor of the goal.
+    """Return where the plan of a frame called the goal that it waits for; *symbol* is the functor of the
+    goal.
 
-    Steps do not know the ones before them.  Several may come before the present one, as at the ends of two branches:
-    those that call a goal of that functor are taken first.
+    Steps do not know the steps before them. Several may precede the present one, as at the ends of two
+    branches: those that
+    call a goal of that functor are preferred.
     """
     plan = caller[PLAN]
     following = caller[STEP].__name__ if caller[STEP] is not None else "None"
@@ -326,13 +339,13 @@ def _code(term: Term, span: Span | None, file: str) -> tuple[Term, ...]:
 
 
 def code_place(span: Span | None, file: str) -> tuple[Term, ...]:
-    """``code_src`` and ``code_line`` of a place in a program, as far as they are known."""
+    """Return ``code_src`` and ``code_line`` of a place in a program, as far as they are known."""
     source = ((CODE_SRC, String(f"file:{file}")),) if file else ()
     return source if span is None else (*source, (CODE_LINE, float(span.line)))
 
 
 def goal_text(goal: Goal) -> str:
-    """A goal for people; one whose arguments have no value (``g(1 div 0)``) by its name."""
+    """Return a goal as text; one whose arguments have no value (``g(1 div 0)``) by its name."""
     try:
         return text(literal_of(goal, ()))
     except (ArithmeticFault, CyclicTerm):
@@ -340,7 +353,9 @@ def goal_text(goal: Goal) -> str:
 
 
 def shown_goal(goal: Goal) -> str:
-    """The beginning of a goal or another event, with its signs: ``!go(home)``, ``-!go(home)``, ``+low(9)``."""
+    """Return the beginning of a goal or another event, with its signs: ``!go(home)``, ``-!go(home)``,
+    ``+low(9)``.
+    """
     trigger = goal[0]
     sign = "" if trigger.operator == "+" and trigger.kind else trigger.operator
     try:
@@ -351,5 +366,5 @@ def shown_goal(goal: Goal) -> str:
 
 
 def nowhere(*terms: Term, told: str = "") -> FailureReason:
-    """A reason without a formula, as ``.fail_goal`` gives it; *told* is for people."""
+    """Return a reason without a formula, as for ``.fail_goal``; *told* is its description in logs."""
     return FailureReason(terms, _Nowhere(told))

@@ -1,4 +1,4 @@
-"""What people are told of a goal that failed and that no plan saved: where, at which step, for which goals, and why."""
+"""Describe goals that failed and that no plan handled: where, at which step, for which goals, and why."""
 
 from collections.abc import Iterator
 from itertools import islice
@@ -21,22 +21,22 @@ from jacaros.terms.values import functor, functor_of
 ENV_FAILURE_REASON, ENV_FAILURE_DETAIL = functor("env_failure_reason", 1), functor("env_failure_detail", 1)
 
 MOST_GOALS = 6
-"""So many goals of a deeper stack are told, those next to the failure."""
+"""Maximum number of goals listed of a deeper stack, those next to the failure."""
 MOST_PLANS = 3
-"""So many of the plans that did not fit are told."""
+"""Maximum number of unfit plans listed."""
 LONGEST = 120
-"""Characters of a term that are shown, as of a list with all ranges of a laser."""
+"""Maximum number of characters of a term shown, such as a list with all ranges of a laser."""
 LONGEST_MESSAGE = 600
-"""Characters of an ``error_msg`` that are shown; plans get all of it."""
+"""Maximum number of characters of an ``error_msg`` shown; plans get all of it."""
 
 
 class Loss(NamedTuple):
-    """A goal that is lost, in words.
+    """The description of a lost goal.
 
     Attributes:
         told: the first line: what failed, with what error, and where.
-        details: further lines: the step and the goals it served, the plans that did not fit, the reasons for plans.
-        span: where in the program, None when that is unknown.
+        details: further lines: the step and the goals it served, plans that did not fit, reason terms for plans.
+        span: the place in the program, None if it is unknown.
     """
 
     told: str
@@ -44,18 +44,18 @@ class Loss(NamedTuple):
     span: Span | None
 
     def text(self) -> str:
-        """All of it; details are indented."""
+        """Return the whole text; details are indented."""
         return "\n  ".join((self.told, *self.details))
 
 
 def loss(agent: Circumstance, intention: Intention, reason: FailureReason, goal: Goal | None) -> Loss:
-    """What is told of an intention without a plan for its failure.
+    """Describe an intention without a plan for its failure.
 
     Args:
-        agent: whose intention it is.
+        agent: the agent of the intention.
         intention: with the stack as it was.
         reason: of the failure.
-        goal: the goal that failed, when it is not on the stack.
+        goal: the goal that failed, if it is not on the stack.
     """
     stack = note_goals(agent, intention, reason, goal)
     wanted = next((each for each in reversed(stack) if each[0].operator == "+" and each[0].kind), None)
@@ -69,7 +69,7 @@ def loss(agent: Circumstance, intention: Intention, reason: FailureReason, goal:
 def note_goals(
     agent: Circumstance, intention: Intention, reason: FailureReason, goal: Goal | None
 ) -> list[Goal]:
-    """Keep with a reason what only the stack of the intention and the plans of the agent tell, before they change.
+    """Record with a reason the goals on the stack and the agent's plans, before they change.
 
     Returns:
         the goals that failed with the step, the inner ones first.
@@ -82,7 +82,7 @@ def note_goals(
 
 
 def loss_of(what: str, reason: FailureReason) -> Loss:
-    """What is told of *what*, such as ``the goal !go``, whose goals were noted in the reason."""
+    """Describe *what*, such as ``the goal !go``, whose goals were recorded in the reason."""
     told = f"{what} failed and has no plan for its failure{_why(reason)}{_place(reason)}"
     return Loss(told, details(reason, what), reason.span())
 
@@ -90,7 +90,7 @@ def loss_of(what: str, reason: FailureReason) -> Loss:
 def lost_in_handler(
     agent: Circumstance, intention: Intention, goal: Goal, reason: FailureReason | None
 ) -> Loss:
-    """What is told of a failure event whose plans do not fit."""
+    """Describe a failure event whose plans do not fit."""
     told = f"no applicable plan for the failure event {shown_goal(goal)}; the intention is dropped"
     if reason is None:
         return Loss(told, (), None)
@@ -100,14 +100,15 @@ def lost_in_handler(
 
 
 def inapplicable(agent: Circumstance, event: Goal, annotations: EventAnnotations) -> Loss:
-    """What is told of an event whose plans are not applicable."""
+    """Describe an event whose plans are not applicable."""
     return Loss(f"no applicable plan for {shown_goal(event)}", _candidates(agent, event, annotations), None)
 
 
 def lost_question(asker: str, goal: Goal, reason: FailureReason) -> Loss | None:
-    """What is told of a question from *asker* whose plan failed; its goals were noted in the reason.
+    """Describe a question from *asker* whose plan failed; its goals were recorded in the reason.
 
-    None when no plan was applicable: that is an answer, as of a plan whose context checks who asks.
+    Return None if no plan was applicable: that is an answer, for example of a plan whose context checks the
+    asker.
     """
     unplanned = reason.unplanned()
     if unplanned is not None and unplanned[0] is goal:
@@ -119,8 +120,10 @@ def lost_question(asker: str, goal: Goal, reason: FailureReason) -> Loss | None:
 
 
 def why(reason: FailureReason) -> str:
-    """A reason for records of a run, in lines: error, message and place; the step; plans that did not fit, once they have
-    been noted; the terms for plans."""
+    """Describe a reason for records of a run, in lines: error, message and place; the step; plans that did
+    not fit, once
+    recorded; the terms for plans.
+    """
     step = _step(reason)
     return "\n".join(
         (
@@ -133,7 +136,7 @@ def why(reason: FailureReason) -> str:
 
 
 def details(reason: FailureReason, what: str = "") -> tuple[str, ...]:
-    """What is to be told besides message and place; *what*, such as ``the goal !go``, has been named already."""
+    """Return the lines after message and place; *what*, such as ``the goal !go``, has already been named."""
     goals = [_short(goal) for goal in reason.goals]
     if len(goals) == 1 and what.endswith(f" {goals[0]}"):
         goals = []
@@ -141,21 +144,21 @@ def details(reason: FailureReason, what: str = "") -> tuple[str, ...]:
     step = _step(reason)
     if step:
         lines.append(f"step: {step}{', for ' if goals else ''}{', '.join(goals)}")
-    elif len(goals) > 2:  # the first and the last are named in the message
+    elif len(goals) > 2:  # the message names the first and the last
         lines.append(f"for: {', '.join(goals[1:])}")
     return (*lines, *reason.candidates, *_terms(reason))
 
 
 def _step(reason: FailureReason) -> str:
     step = reason.step()
-    # The reason that it hands on stands in the other lines.
+    # The reason that it passes on is in the other lines.
     return ".fail(...)" if step.startswith(".fail(") else _short(step)
 
 
 def _terms(reason: FailureReason) -> list[str]:
-    """The line with the annotations that plans can ask for.
+    """Return the line with the annotations that plans can ask for.
 
-    Where CArtAgO's reason holds no more than the action itself, there is another one that tells more.
+    CArtAgO's reason is left out if it contains only the action itself and another term says more.
     """
     terms = reason.others()
     if any(functor_of(term) is ENV_FAILURE_DETAIL for term in terms):
@@ -164,7 +167,9 @@ def _terms(reason: FailureReason) -> list[str]:
 
 
 def goals_below(intention: Intention) -> Iterator[Goal]:
-    """What the stack of an intention is for, the goal on top first; for a handler the failure event that it handles."""
+    """Yield the goals on the stack of an intention, the top one first; for a handler the failure event that
+    it handles.
+    """
     frames = intention.frames
     handlers = len(intention.handlers)
     index = len(frames) - 1
@@ -179,7 +184,7 @@ def goals_below(intention: Intention) -> Iterator[Goal]:
 
 
 def _shown(stack: list[Goal]) -> tuple[str, ...]:
-    """Goals for people; of a stack of thousands only the first and the last."""
+    """Return goals as text; of a stack of thousands only the first and the last."""
     left = len(stack) - MOST_GOALS
     if left <= 1:
         return tuple(map(shown_goal, stack))
@@ -205,7 +210,9 @@ def _short(told: str, longest: int = LONGEST) -> str:
 
 
 def _candidates(agent: Circumstance, goal: Goal, annotations: EventAnnotations) -> tuple[str, ...]:
-    """The plans that there were for a goal, those whose trigger fits it first, each with what its context stops at."""
+    """Return the plans for a goal, those whose trigger fits first, each with the conjunct at which its
+    context stops.
+    """
     plans = agent.library.relevant(goal[0])
     contexts = FailingContexts(agent, goal, annotations)
     shown = list(islice(filter(contexts.fits, plans), MOST_PLANS))
@@ -216,7 +223,9 @@ def _candidates(agent: Circumstance, goal: Goal, annotations: EventAnnotations) 
 
 
 def _candidate(plan: Plan, stop: str) -> str:
-    """A plan that did not fit: trigger, place and the conjunct that its context stops at, or else the whole context."""
+    """Describe a plan that did not fit: trigger, place and the conjunct at which its context stops, or its
+    context.
+    """
     node = plan.node
     trigger = node.trigger
     told = f"{trigger.operator}{trigger.kind}{format_term(trigger.literal)}"

@@ -1,4 +1,4 @@
-"""What a condition asks for and an agent does not believe at all: no fact and no rule has that name."""
+"""Beliefs that a condition asks for and an agent lacks entirely: no fact and no rule has that name."""
 
 from collections.abc import Iterator, Mapping
 
@@ -7,16 +7,18 @@ from jacaros.bdi.state.belief_base import Table
 from jacaros.terms.values import Functor
 
 LIKE = 0.75
-"""How like two names are, from 0 to 1, for one to be suggested for the other."""
+"""Minimum similarity of two names, from 0 to 1, to suggest one for the other."""
 
 
 def missing_belief(tables: Mapping[Functor, Table], wanted: Functor) -> str:
-    """Return ``no belief `ready```, with a near name if there is one; empty if facts or rules of that name are held, or if
-    there is nothing to add to a name without arguments.
+    """Return ``no belief `ready```, with a similar name if there is one.
+
+    Return an empty string if facts or rules of that name exist, or if nothing can be added to a name without
+    arguments.
 
     Args:
         tables: facts and rules of the agent by functor.
-        wanted: functor of the literal that is asked for.
+        wanted: functor of the literal in the condition.
     """
     if _is_held(tables.get(wanted)):
         return ""
@@ -33,7 +35,7 @@ def missing_belief(tables: Mapping[Functor, Table], wanted: Functor) -> str:
 
 
 def _held(tables: Mapping[Functor, Table], wanted: Functor) -> Iterator[Functor]:
-    """The functors of what is held that differ from *wanted* by name or number of arguments only."""
+    """Yield the functors in use that differ from *wanted* only by name or number of arguments."""
     for symbol, table in tables.items():
         if _is_held(table) and (symbol.namespace, symbol.negated) == (wanted.namespace, wanted.negated):
             yield symbol

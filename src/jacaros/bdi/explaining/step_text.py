@@ -1,4 +1,4 @@
-"""Steps of plans as people read them, with the values that their variables had."""
+"""Steps of plans as text, with the values of their variables."""
 
 from jacaros.asl import nodes
 from jacaros.terms.text import text
@@ -6,7 +6,7 @@ from jacaros.terms.values import String, Term
 
 
 def step_text(node: nodes.Node, term: Term) -> str:
-    """A step for people, with the values of its variables; *term* is its formula."""
+    """Return a step as text, with the values of its variables; *term* is its formula."""
     shown = str(term) if term.__class__ is String else text(term)
     if isinstance(node, nodes.Test):
         return f"?{shown}"
@@ -20,7 +20,7 @@ def step_text(node: nodes.Node, term: Term) -> str:
 
 
 def unbracketed(shown: str) -> str:
-    """An operator's term without the brackets around it."""
+    """Return an operator's term without the brackets around it."""
     if not (shown.startswith("(") and shown.endswith(")")):
         return shown
     depth = 0

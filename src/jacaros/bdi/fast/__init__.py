@@ -1,1 +1,1 @@
-"""What makes the mind fast: each file stands for a rule and may be left out."""
+"""Faster versions of rules: each file replaces a part of `jacaros.bdi.rules` and may be left out."""

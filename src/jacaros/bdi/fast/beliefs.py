@@ -1,7 +1,8 @@
 """Changes of beliefs that are facts, and percepts that change such beliefs.
 
-Stands for `add_belief`, `replace_belief` and `delete_belief` of `jacaros.bdi.rules.belief_update`, and for `take_in` of
-`jacaros.bdi.rules.perceiving`.  What is rarer is left to these.
+Replaces `add_belief`, `replace_belief` and `delete_belief` of `jacaros.bdi.rules.belief_update`, and
+`take_in` of
+`jacaros.bdi.rules.perceiving`. Rarer cases are left to these.
 """
 
 from typing import Any
@@ -117,7 +118,7 @@ def take_in(agent: Circumstance, percepts: list[Percept]) -> None:  # noqa: C901
         if row is None or not table.plain or table.indexes or table.__class__ is not Table:
             perceiving.take(agent, percept)
             continue
-        # Nearly all percepts are structures that only one property shows: that needs a look into two tables.
+        # Nearly all percepts are structures shown by one property only: two table lookups.
         rows, literal, annotations = table.rows, percept.literal, percept.annotations
         if percept.kind == "add":
             if literal in holders or row in rows:
@@ -143,7 +144,7 @@ def take_in(agent: Circumstance, percepts: list[Percept]) -> None:  # noqa: C901
 
 
 def _is_usual(agent: Circumstance, count: int) -> bool:
-    """Whether that number of events need only be put into the queue; derived beliefs and a `MindObserver` hear of them."""
+    """Return whether events need only be queued; derived beliefs and a `MindObserver` must be notified."""
     return (
         not agent.waits.events
         and not agent.waits.conditions
@@ -164,7 +165,7 @@ def _keep(agent: Circumstance, percept: Percept) -> Kept:
         else (functor_of(literal), arguments_of(literal))
     )
     if symbol is None:
-        raise InternalError(f"a percept is no literal: {literal!r}")
+        raise InternalError(f"a percept is not a literal: {literal!r}")
     table = agent.beliefs[symbol]
     change = table.deleted if percept.kind == "remove" else table.added
     flat: Row | None = row
@@ -180,12 +181,14 @@ def _keep(agent: Circumstance, percept: Percept) -> Kept:
 
 
 def belief_base(engine: Engine, agent: Any, limit: int) -> BeliefTables:
-    """A belief base that counts nothing, unless its limit is small: until `watch` finds it half full."""
+    """Return a belief base that counts only if its limit is small; otherwise `watch` makes it count once it
+    is half full.
+    """
     return BoundedBeliefs(agent, limit, engine) if limit <= SMALL else BeliefTables(engine)
 
 
 def watch(agent: Circumstance) -> None:
-    """Count the beliefs from now on when half of the limit is reached."""
+    """Count the beliefs from now on if half of the limit is reached."""
     beliefs, limit = agent.beliefs, agent.options.belief_limit
     if beliefs.__class__ is not BeliefTables or 2 * sum(map(len, beliefs.values())) < limit:
         return

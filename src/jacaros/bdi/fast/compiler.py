@@ -1,6 +1,6 @@
-"""Plans and rules as code that is generated for them.
+"""Run plans and rules with code generated for them.
 
-Stands for `jacaros.bdi.rules.interpreter`, which carries out what is not compiled.
+Replaces `jacaros.bdi.rules.interpreter`, which runs what is not compiled.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -29,17 +29,19 @@ from jacaros.terms.unifier import Trail
 from jacaros.terms.values import Term, functor
 
 FEW = 4
-"""So many plans for one kind of event become one function, at their first event if there was no time before."""
+"""Up to this number of plans for one kind of event become one function, at the latest at their first
+event.
+"""
 TOO_LARGE = (SyntaxError, RecursionError, MemoryError)
-"""What Python says of code that is beyond its limits for one function."""
+"""What Python raises for code that exceeds its limits for one function."""
 
 
 class Compiler(Interpreter):
-    """Carries out plans and rules by generated code, see `jacaros.bdi.state.engine.Engine`.
+    """Runs plans and rules with generated code, see `jacaros.bdi.state.engine.Engine`.
 
     Args:
         actions: the internal actions that plans may call.
-        cache: where the code is kept from run to run; None for nowhere.
+        cache: where the code is kept between runs; None to keep none.
     """
 
     def __init__(self, actions: Mapping[str, InternalAction], cache: CodeCache | None = None) -> None:
@@ -52,7 +54,7 @@ class Compiler(Interpreter):
     run = staticmethod(loop.run)
 
     def belief_base(self, agent: Circumstance, limit: int) -> BeliefTables:
-        """A belief base that counts its beliefs only when there are many."""
+        """Return a belief base that counts its beliefs only if there are many."""
         return beliefs.belief_base(self, agent, limit)
 
     def select(self, trigger: Trigger, plans: Sequence[Plan], outer: Plan | None = None) -> Select:
@@ -104,13 +106,15 @@ class Compiler(Interpreter):
         return step
 
     def begin(self, agent: Circumstance) -> None:
-        """An agent is about to begin: compile what is urgent, and tell what is too large.  Done for the first one."""
+        """Compile the urgent part before an agent starts, and warn of plans that are too large. Done for the
+        first agent.
+        """
         if self._begun:
             return
         self._begun = True
         program = agent.library.program
         for _, told in too_large(program.plans, self._units):
-            agent.architecture.log("warning", f"{told}: it takes longer")
+            agent.architecture.log("warning", f"{told}: it runs slower")
         urgencies = agent.selections.urgencies
         if urgencies is not None:
             for kind in filter(urgencies.__getitem__, program.kinds()):
@@ -118,7 +122,7 @@ class Compiler(Interpreter):
                     pass
 
     def compile_ahead(self, program: ProgramPlans) -> bool:
-        """Compile something that no event has asked for yet; False when there is nothing left."""
+        """Compile something that no event has needed yet; return False if there is nothing left."""
         return any(self._compile_ahead(program, kind) for kind in program.kinds())
 
     def _compile_ahead(self, program: ProgramPlans, kind: Trigger) -> bool:
@@ -137,7 +141,7 @@ class Compiler(Interpreter):
         functions = self._functions if rule.of_program else {}
         key = (id(rule.written),)
         if key not in functions:
-            # What was written is held, so that nothing else can be at its place in memory.
+            # Hold the syntax, so that no other object can get the same id.
             functions[key] = (self._units.rule(rule), rule.written)
         return functions[key][0]
 
@@ -154,7 +158,7 @@ _LARGE = 100
 
 
 def too_large(plans: Sequence[Plan], units: Units) -> Iterator[tuple[Plan, str]]:
-    """The plans that are too large to be compiled, each with what is to be said of it."""
+    """Yield the plans that are too large to compile, each with a description."""
     for plan in plans:
         if sum(1 for _ in islice(walk(plan.node), _LARGE)) < _LARGE:
             continue
@@ -167,4 +171,4 @@ def too_large(plans: Sequence[Plan], units: Units) -> Iterator[tuple[Plan, str]]
             name = f"{head.operator}{head.kind}{'_' if symbol is None else repr(symbol)}"
             span = plan.node.span
             place = "" if span is None else f" ({span.file.name}:{span.line})"
-            yield plan, f"the plan {name}{place} is too large to be compiled ({fault})"
+            yield plan, f"plan {name}{place} is too large to compile ({fault})"

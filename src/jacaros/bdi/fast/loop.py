@@ -1,8 +1,8 @@
-"""The reasoning cycle of an agent with nothing out of the ordinary about it.
+"""The reasoning cycle of an ordinary agent.
 
-Stands for `jacaros.bdi.rules.cycle` with all that it calls: `sel_ev`, `applicable_plans`, `add_im`, `exec_int`
-and `clr_int`.  With empty queues the next cycle would pick the very event and intention of this one, so an
-intention goes on as long as nothing else wants a cycle.  What an agent has that is rarer is left to the rules.
+Replaces `jacaros.bdi.rules.cycle` with all that it calls: `sel_ev`, `applicable_plans`, `add_im`, `exec_int`
+and `clr_int`. With empty queues, the next cycle would select the very event and intention of this one, so an
+intention continues as long as nothing else needs a cycle. Rarer features of agents are left to the rules.
 """
 
 from typing import Any
@@ -30,10 +30,10 @@ from jacaros.terms.values import BY_SELF
 
 
 def run(agent: Circumstance, fuel: int) -> bool:  # noqa: C901 - written out for speed
-    """Make at most *fuel* cycles; True when there is more to do."""
+    """Run at most *fuel* cycles; return True if there is more to do."""
     options = agent.options
     if options.search_limit and fuel > 1:
-        # Each cycle has the whole budget of searches.
+        # Each cycle gets the whole budget of searches.
         return all(run(agent, 1) for _ in range(fuel))
     if agent.crowd or options.search_limit:
         begin_turn(agent)
@@ -136,9 +136,10 @@ def look_around(agent: Circumstance, cycle: int) -> None:
 
 
 def handle_event(agent: Circumstance) -> Intention | None:  # noqa: C901 - written out for speed
-    """Rule SelEv and what follows: one event is handled; external events without plan are passed over.
+    """Rule SelEv and the rules after it: handle one event; external events without a plan are skipped.
 
-    When this begins an intention and there is no other, it need not queue: it is given back, and has its turn now.
+    If this begins an intention and there is no other, the intention need not queue: it is returned, and runs
+    now.
     """
     events = agent.events
     while events:
@@ -219,7 +220,7 @@ def push(agent: Circumstance, intention: Intention, goal: Goal, annotations: Eve
 
 
 def execute_atomic(agent: Circumstance, intention: Intention, fuel: int) -> int:
-    """Steps of an atomic intention while nothing new comes in; gives the fuel left.
+    """Run steps of an atomic intention while no new input arrives; return the remaining fuel.
 
     After a step it is the last of those that can run, and the one that `select_intention` would find.
     """
@@ -240,11 +241,13 @@ def execute_atomic(agent: Circumstance, intention: Intention, fuel: int) -> int:
 
 
 def execute_usual(agent: Circumstance, intention: Intention, fuel: int) -> int:  # noqa: C901 - see below
-    """Steps of one intention while nothing else wants a cycle; gives the fuel left.
+    """Run steps of one intention while nothing else needs a cycle; return the remaining fuel.
 
-    This is where an agent spends its time, so what happens in nearly every cycle is written out here: `pop_finished`,
-    `is_alone`, `select_plan` and `add_frame`.  A step may make the agent another than a usual one; then it is left to the
-    next cycle to go on, which with empty queues comes to the same.
+    An agent spends its time here, so what happens in nearly every cycle is inlined: `pop_finished`,
+    `is_alone`,
+    `select_plan` and `add_frame`. If a step makes the agent an unusual one, the next cycle continues, with
+    the same effect
+    when the queues are empty.
     """
     agent.current = intention
     frames, handlers, trail, selects = (

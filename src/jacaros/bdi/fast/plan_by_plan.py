@@ -1,9 +1,12 @@
-"""Many plans for one kind of event, each compiled by itself.
+"""Many plans for one kind of event, each compiled separately.
 
-Stands for `jacaros.bdi.rules.applicable_plans.Selection`.  To compile fifty plans takes a tenth of a second, so it is not
-done all at once while a robot waits for the reaction to an event.  Whoever has time compiles them ahead (`compile_next`).
-A plan that is asked before is interpreted the first few times; only if it applies, it is compiled at once, for its body may
-have much to do.
+Replaces `jacaros.bdi.rules.applicable_plans.Selection`. Compiling fifty plans takes a tenth of a second, too
+long while a
+robot waits for the reaction to an event. The host compiles them ahead when it is idle (`compile_next`). A
+plan that is
+tried before that is interpreted the first few times; it is compiled immediately only if it applies, as its
+body may have
+much to do.
 """
 
 from collections.abc import Callable, Sequence
@@ -21,10 +24,10 @@ from jacaros.terms.substitution import ATOMIC
 from jacaros.terms.values import CONS, NIL, List, String, Term
 
 _INTERPRETED = 2
-"""So many times a plan is asked before it is compiled."""
+"""Number of times a plan is tried before it is compiled."""
 
 _WORTH_A_TABLE = 6
-"""So many different first arguments make a look-up cheaper than trying one plan after the other."""
+"""With this number of different first arguments, a lookup is cheaper than trying one plan after another."""
 
 Compile = Callable[[Sequence[Plan], Plan | None], Select]
 """Gives what tries plans, one at least, and gives them their steps."""
@@ -128,10 +131,12 @@ class _Waiting:
 
 
 def _grouped(plans: Sequence[Plan]) -> list[tuple[Term, list[Plan]]] | None:
-    """The plans in their order, neighbours with the same first argument together; None when that is not worth while.
+    """Group the plans, in order, with neighbours that have the same first argument; return None if that is
+    not worthwhile.
 
-    The first argument is told by a key: the atom, number or string itself, of a structure or list its functor.  None
-    stands for plans that may be relevant whatever it is.
+    The first argument is represented by a key: the atom, number or string itself, or the functor of a
+    structure or list.
+    None stands for plans that may be relevant for any argument.
     """
     groups: list[tuple[Term, list[Plan]]] = []
     for plan in plans:

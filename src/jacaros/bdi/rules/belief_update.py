@@ -49,7 +49,7 @@ def replace_belief(agent: Circumstance, symbol: Functor, row: Row, annotations: 
 
 
 def add_belief_last(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations) -> Raised:
-    """``+>b``: the belief answers after all others."""
+    """``+>b``: the belief answers last."""
     return own_event(agent, symbol, row, insert(agent, symbol, row, annotations, last=True))
 
 
@@ -79,7 +79,7 @@ def _tell_change(
     cause: Cause | None,
     believed: bool = True,
 ) -> None:
-    """Tell observers of a belief that changed, or (not *believed*) of a signal."""
+    """Notify observers of a belief that changed, or (not *believed*) of a signal."""
     observers, table = agent.observers, agent.beliefs[symbol]
     if observers.derived is not None:
         observers.derived.heard(operator, symbol, row, cause)
@@ -91,7 +91,9 @@ def _tell_change(
 
 
 def _raise(agent: Circumstance, goal: Goal, annotations: Annotations, apart: bool) -> Raised:
-    """Hand the event to the step's intention, or queue it as an external one; None when nobody cares."""
+    """Pass the event to the step's intention, or queue it as external; None if no plan or observer needs
+    it.
+    """
     unplanned = agent.library.selects[goal[0]] is None and not _is_kept(agent, goal[0])
     if apart or agent.options.new_focus:
         if unplanned and not agent.waits.events:
@@ -99,30 +101,30 @@ def _raise(agent: Circumstance, goal: Goal, annotations: Annotations, apart: boo
         agent.post((with_own_variables(goal), None, annotations, agent.cause_now()))
         return None
     if unplanned and not (agent.events or agent.intentions or agent.waits.events):
-        # Nothing comes in between: the event would only be taken up and passed over.
+        # Nothing comes in between: the event would only be taken up and skipped.
         return None
     return goal if annotations is BY_SELF else Posted(goal, annotations)
 
 
 def _is_kept(agent: Circumstance, kind: Trigger) -> bool:
-    """Whether an external event would not simply be taken up and passed over."""
+    """Return whether an external event would be handled rather than skipped."""
     return agent.may_handle(kind) or agent.options.events != "discard"
 
 
 def note_change(agent: Circumstance, symbol: Functor, row: Row) -> None:
-    """A belief changed: the agent looks again at the awaited conditions that ask for such beliefs."""
+    """Note that a belief changed: awaited conditions on such beliefs are tested again."""
     if agent.waits.conditions and agent.waits.conditions.changed(symbol, row):
         agent.do_soon(look_again)
 
 
 def look_again(_: Circumstance) -> None:
-    """A task that does nothing: for its sake the agent looks at awaited conditions again."""
+    """Do nothing: a task that makes the agent test awaited conditions again."""
 
 
 def insert(
     agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations, last: bool = False
 ) -> Annotations | None:
-    """Add a belief; gives the annotations that are new, None when there are none (then there is no event)."""
+    """Add a belief; return its new annotations, or None (then there is no event)."""
     table = agent.beliefs[symbol]
     if not all(map(is_key, row)):
         return _insert_aside(table, symbol, row, annotations, last)
@@ -150,7 +152,9 @@ def _insert_aside(
 def delete_belief(
     agent: Circumstance, symbol: Functor, arguments: Row, annotations: Annotations, apart: bool
 ) -> Raised:
-    """``-b`` and ``--b``: the named annotations (at least the own source) of the first match are taken away."""
+    """``-b`` and ``--b``: remove the given annotations (at least the agent's own source) of the first
+    match.
+    """
     if _is_property(agent, symbol, arguments, annotations):
         return None
     removed = _remove_first(agent, symbol, arguments, annotations, bind=not apart)
@@ -166,9 +170,9 @@ def deleted(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotat
 
 
 def _is_property(agent: Circumstance, symbol: Functor, arguments: Row, annotations: Annotations) -> bool:
-    """Whether ``-b[source(percept)]`` names one observable property: that is left to its artifact.
+    """Return whether ``-b[source(percept)]`` names one observable property: only its artifact may change it.
 
-    As in CArtAgO, only ``-b(_)[source(percept)]`` takes one away (and ``.abolish``).
+    As in CArtAgO, only ``-b(_)[source(percept)]`` removes one (and ``.abolish``).
     """
     if SOURCE_PERCEPT not in annotations:
         return False
@@ -184,7 +188,9 @@ def _is_property(agent: Circumstance, symbol: Functor, arguments: Row, annotatio
 def _remove_first(
     agent: Circumstance, symbol: Functor, arguments: Row, annotations: Annotations, bind: bool
 ) -> Row | None:
-    """Remove the first match; the row as asked for, with variables bound, or None when nothing matches."""
+    """Remove the first match; return the row of the pattern with variables bound, or None if nothing
+    matches.
+    """
     table, trail = agent.beliefs[symbol], agent.trail
     for entry, held in table.candidates(arguments):
         mark = len(trail)
@@ -222,7 +228,7 @@ def delete_any(agent: Circumstance, symbol: Functor, annotations: Annotations = 
 
 
 def operand_error(term: Term) -> str:
-    """The error of a term that is believed or given up and is not a literal."""
+    """Return the error for a term that is added or deleted as a belief and is not a literal."""
     return (
         "body_var_without_value"
         if free_variables(term) and bare(term) is not None
@@ -234,7 +240,9 @@ def operand_error(term: Term) -> str:
 
 
 def tell(agent: Circumstance, term: Term, cause: Cause | None = None) -> bool:
-    """Add a belief from outside (a message, the project file); the event is external.  False for no literal."""
+    """Add a belief from outside (a message, the project file); the event is external. Return False if it is
+    not a literal.
+    """
     symbol, row, annotations = parts(term)
     if symbol is None:
         return False
@@ -252,7 +260,7 @@ def believe(
 
 
 def untell(agent: Circumstance, term: Term) -> bool:
-    """Take a source off a belief; the event is external."""
+    """Remove a source of a belief; the event is external."""
     symbol, row, annotations = parts(term)
     if symbol is None:
         return False
@@ -279,7 +287,9 @@ def external_change(
     cause: Cause | None = None,
     believed: bool = True,
 ) -> None:
-    """Raise the external event of a belief change, or (not *believed*) of a signal, if anybody cares."""
+    """Raise the external event of a belief change, or (not *believed*) of a signal, if a plan or observer
+    needs it.
+    """
     if agent.observers.hear_beliefs:
         cause = cause or agent.cause_now()
         _tell_change(agent, operator, symbol, row, annotations, cause, believed)
@@ -291,7 +301,7 @@ def external_change(
 
 
 def abolish(agent: Circumstance, pattern: Term) -> None:
-    """``.abolish``: delete all matches, each with all its sources, whichever of them the pattern names."""
+    """``.abolish``: delete all matches, with all their sources, whichever of them the pattern names."""
     symbol, arguments, annotations = parts(pattern)
     tables = list(agent.beliefs.items()) if symbol is None else [(symbol, agent.beliefs[symbol])]
     for functor_, table in tables:

@@ -1,11 +1,14 @@
 """What the steps of a plan body mean: one function for each kind of formula (rule ExecInt).
 
-``step(agent, frame)`` carries out its formula and sets ``frame[0]`` to the next step.  It returns None, or one goal (a
-tuple that begins with its trigger) to be handled for this intention, or `SUSPENDED`.  A formula that does not hold returns
-`FAILED` or raises an exception, before ``frame[0]`` changes: so it is known which one failed.
+``step(agent, frame)`` runs its formula and sets ``frame[0]`` to the next step. It returns None, or one goal
+(a tuple
+that begins with its trigger) to be handled for this intention, or `SUSPENDED`. If the formula does not hold,
+it returns
+`FAILED` or raises an exception before ``frame[0]`` changes, so the failed step is known.
 
-A variable that gets its value on one branch only may have none afterwards; what a round of a loop binds, the next round
-finds unbound.
+A variable that is bound on one branch only may be unbound afterwards. Variables that one round of a loop
+binds are
+unbound in the next round.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -55,11 +58,11 @@ class Step:
         self.place = 0
 
     def __call__(self, agent: Any, frame: Frame) -> object:
-        """Carry out the step."""
+        """Run the step."""
         return _MEANING[type(self.node)](self, self.node, agent, frame)
 
     def go_on_with(self, behind: Next) -> None:
-        """Have the step followed by another one."""
+        """Set the step that follows."""
         self.next = behind
         self.info.next = "None" if behind is None else behind.__name__
 
@@ -73,8 +76,9 @@ class Step:
         )
 
     def keep(self, frame: Frame, names: Names) -> None:
-        """Store the variables that the step has brought.  Those that were there keep their places: a loop around gives
-        them back without a value."""
+        """Store the variables that the step has bound. Known variables keep their places: a loop around
+        unbinds them.
+        """
         slots = frame[PLAN].slots
         for name in self.names:
             if name in slots and name in names and frame[slots[name]] is None:
@@ -93,7 +97,7 @@ class Round(Step):
     __slots__ = ()
 
     def __call__(self, agent: Any, frame: Frame) -> None:
-        """Carry out the step."""
+        """Run the step."""
         if isinstance(self.node, nodes.While):
             _while_round(self, self.node, agent, frame)
         elif isinstance(self.node, nodes.For):
@@ -104,11 +108,11 @@ class InterpretedBody:
     """The steps of a plan body.
 
     Attributes:
-        first: the first of them; None when there are none.
-        steps: what is known of each, by its name.
+        first: the first one, or None.
+        steps: what is known of each, by name.
         by_name: the steps themselves.
-        known: the variables that have a value when the body begins: those of trigger and context.
-        extra: how many places of the frame they need for themselves.
+        known: the variables that are bound when the body begins: those of trigger and context.
+        extra: number of places that they need in the frame for themselves.
     """
 
     def __init__(self, plan: Plan) -> None:
@@ -124,7 +128,7 @@ class InterpretedBody:
         self.first = self._steps(body.steps, self._name(), None) if body.steps else None
 
     def _steps(self, formulae: Sequence[nodes.Step], first: str, behind: Next) -> Next:
-        """The steps for formulae, one after the other; *first* is the name of the first one."""
+        """Make the steps for formulae, in order; *first* is the name of the first one."""
         if not formulae:
             return behind
         names = [first, *(self._name() for _ in formulae[1:])]
@@ -172,7 +176,7 @@ class InterpretedBody:
 
 
 def interpreted(plan: Plan) -> InterpretedBody:
-    """The steps of a plan, made when they are first needed."""
+    """Return the steps of a plan, made when first needed."""
     body: InterpretedBody | None = plan.interpreted
     if body is None:
         body = plan.interpreted = InterpretedBody(plan)
@@ -184,7 +188,7 @@ def interpreted(plan: Plan) -> InterpretedBody:
 
 
 class GoalCondition:
-    """Tells whether the goal of a frame is achieved; it leaves no bindings behind."""
+    """Tests whether the goal of a frame is achieved, without leaving bindings behind."""
 
     __slots__ = ("names", "node")
 
@@ -295,7 +299,7 @@ def _if(step: Step, node: nodes.If, agent: Any, frame: Frame) -> None:
 
 
 def _loop(step: Step, frame: Frame) -> Loop:
-    """What a loop that begins has to give back as it is now."""
+    """Return what a new loop has to unbind in each round."""
     shared = [c.value for c in nodes_in(nodes.Constant, step.node)]
     slots = frame[PLAN].slots
     held = [frame[slot] for slot in slots.values() if frame[slot] is not None]
@@ -330,13 +334,13 @@ def _for(step: Step, node: nodes.For, agent: Any, frame: Frame) -> object:
 
 
 def _rounds(node: nodes.For, agent: Any, names: Names, wanted: list[str]) -> Iterator[tuple[Term, ...]]:
-    """What the variables of a ``for`` are in each round."""
+    """Yield the values of the variables of a ``for`` in each round."""
     trail = Trail()
     trail.serial = agent.trail.serial
     for _ in run(answers(agent, node.condition, names.__getitem__, trail), agent.options.rule_depth):
         bound = [(variable, variable.ref) for variable in trail]
         yield tuple(deref(names[name]) for name in wanted)
-        for variable, value in bound:  # the loop gave them back, and the search goes on from there
+        for variable, value in bound:  # the loop unbound them, and the search continues from there
             variable.ref = value
 
 

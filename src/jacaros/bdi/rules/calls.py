@@ -1,4 +1,4 @@
-"""Calls of internal actions that generated code makes, and what becomes of those that cannot be made."""
+"""Calls of internal actions from generated code, and the failure of calls that are invalid."""
 
 from collections.abc import Iterable, Iterator
 from typing import Protocol
@@ -18,13 +18,14 @@ class Calling(Protocol):
     trail: Trail
 
     def report(self, action: str, fault: object) -> None:
-        """Warn of an action in a condition that could not be done."""
+        """Warn that an action in a condition failed."""
 
 
 def answers_of(context: Calling, trail: Trail, action: InternalAction, *arguments: Term) -> Iterator[None]:
-    """The answers of a backtracking internal action, on the given trail; its bindings are undone in between.
+    """Yield the answers of a backtracking internal action, on the given trail; its bindings are undone in
+    between.
 
-    An error inside ends the answers and is reported: in a condition an action that cannot be done does not hold.
+    An error inside ends the answers and is reported: in a condition, a failing action does not hold.
     """
     mark = len(trail)
     generator = action.function(context, *arguments)
@@ -51,9 +52,10 @@ def answers_of(context: Calling, trail: Trail, action: InternalAction, *argument
 
 
 def values_of(context: Calling, action: InternalAction, *arguments: Term) -> Iterable[Term]:
-    """What the first argument of a backtracking internal action is in each of its answers, as `answers_of` gives them.
+    """Yield the values of the first argument in all answers of a backtracking internal action, as
+    `answers_of`.
 
-    *arguments* are the others; the first one has no value yet.
+    *arguments* are the others; the first one is unbound.
     """
     assert action.values is not None
     try:
@@ -93,14 +95,14 @@ def holds(context: Calling, trail: Trail, action: InternalAction, *arguments: Te
 
 
 def wrong_arity(action: InternalAction, count: int) -> str:
-    """What is wrong with calling an internal action with so many arguments."""
+    """Describe a call of an internal action with a wrong number of arguments."""
     most = action.maximum
     expected = (
         str(action.minimum)
         if most == action.minimum
         else f"{action.minimum} to {most if most is not None else 'any'}"
     )
-    given = f"{action.name} takes {expected} argument{'' if expected == '1' else 's'}, not {count}"
+    given = f"{action.name} expects {expected} argument{'' if expected == '1' else 's'}, found {count}"
     return (
         f"{given}; {action.result_hint}"
         if most is not None and count == most + 1 and action.result_hint
@@ -109,24 +111,24 @@ def wrong_arity(action: InternalAction, count: int) -> str:
 
 
 def refuse(action: InternalAction, count: int) -> bool:
-    """A step calls an internal action with a number of arguments that it does not take."""
+    """Fail a step that calls an internal action with a wrong number of arguments."""
     error = (functor("error", 1), atom("wrong_arguments"))
     raise Failure(error, (functor("error_msg", 1), String(wrong_arity(action, count))))
 
 
 def refuse_quietly(context: Calling, action: InternalAction, count: int) -> bool:
-    """A condition calls an internal action with a number of arguments that it does not take: it does not hold."""
+    """Report a condition that calls an internal action with a wrong number of arguments: it does not hold."""
     context.report(action.name, wrong_arity(action, count))
     return False
 
 
 def unknown(context: Calling, name: str) -> bool:
-    """A condition calls an internal action that does not exist: it does not hold."""
-    context.report(name, "there is no such internal action")
+    """Report a condition that calls an unknown internal action: it does not hold."""
+    context.report(name, "unknown internal action")
     return False
 
 
 def cannot_wait(context: Calling, action: InternalAction) -> bool:
-    """A condition calls an internal action that may suspend the intention: it does not hold."""
-    context.report(action.name, "it takes time, or acts on the intention, and cannot be a condition")
+    """Report a condition that calls an internal action that may suspend the intention: it does not hold."""
+    context.report(action.name, "it takes time or acts on the intention, and cannot be a condition")
     return False

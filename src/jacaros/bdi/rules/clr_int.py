@@ -1,4 +1,6 @@
-"""Goals leave the stack: finished plans (rule ClrInt), those whose goal condition holds, and those cut from outside."""
+"""Goals leave the stack: finished plans (rule ClrInt), those whose goal condition holds, and those cut from
+outside.
+"""
 
 from jacaros.bdi.rules import failure, meta_events
 from jacaros.bdi.rules.forks import leave
@@ -57,7 +59,9 @@ def end_achieved_goals(agent: Circumstance) -> None:
 
 
 def _is_achieved(agent: Circumstance, frame: Frame) -> bool:
-    """Whether the goal condition of a frame holds; one that cannot be evaluated does not, which is told once."""
+    """Return whether the goal condition of a frame holds. If it cannot be evaluated, it does not; this is
+    logged once.
+    """
     achieved = frame[PLAN].goal_condition
     if achieved is None:
         return False
@@ -69,7 +73,7 @@ def _is_achieved(agent: Circumstance, frame: Frame) -> bool:
         undo(agent.trail, 0)
         if frame[PLAN] not in agent.library.blamed:
             agent.library.blamed.add(frame[PLAN])
-            failure.passed_over(agent, f"the goal condition of plan {text(frame[PLAN].label)}", fault)
+            failure.passed_over(agent, f"goal condition of plan {text(frame[PLAN].label)}", fault)
         return False
 
 

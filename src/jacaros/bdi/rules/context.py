@@ -119,20 +119,18 @@ class Context:
         return names
 
     def report(self, action: str, fault: object) -> None:
-        """Tell people of an internal action that could not be done in a condition."""
+        """Warn of an internal action that failed in a condition."""
         current = self.intention
         plan = (
             f" in plan {text(current.frames[-1][4].label)}" if current is not None and current.frames else ""
         )
         self.architecture.log(
-            "warning", f"the condition {action}{plan} does not hold because of an error: {fault}"
+            "warning", f"condition {action}{plan} does not hold because of an error: {fault}"
         )
 
     def report_plan(self, plan: Plan, fault: object) -> None:
-        """Tell people of a plan whose context cannot be evaluated; the plans behind it are tried."""
-        self.architecture.log(
-            "warning", f"the context of plan {text(plan.label)} cannot be evaluated: {fault}"
-        )
+        """Warn of a plan whose context cannot be evaluated; later plans are tried."""
+        self.architecture.log("warning", f"cannot evaluate the context of plan {text(plan.label)}: {fault}")
 
     def suspendable(self) -> Intention:
         """The calling intention, for an action that returns what it waits for (`jacaros.bdi.state.waiting.Waiting`)."""

@@ -58,7 +58,7 @@ def _fail_late(agent: Circumstance, supervision: Supervision, number: int, reaso
 
 
 def _fail_goal(agent: Circumstance, intention: Intention, index: int, reason: FailureReason) -> None:
-    """The goal whose pursuit is at *index* fails, whatever its plans are at; it is not tried again."""
+    """Fail the supervised goal at *index*, whatever its plans are doing; it is not tried again."""
     frame = intention.frames[index]
     supervised: GoalSupervision = frame[SUPERVISION]
     goal: Goal = (supervised.kind, *frame[SUPERVISION + 1 :])

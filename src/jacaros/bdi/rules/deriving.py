@@ -109,7 +109,7 @@ class Derived:
             belief_update.believe(agent, *self.row, _ANNOTATIONS, cause)
 
     def forget(self) -> None:
-        """Give up the belief, if there is one."""
+        """Remove the belief, if there is one."""
         if self.row is not None:
             symbol, row = self.row
             self.row = None
@@ -184,7 +184,7 @@ class DerivedBeliefs:
         self.declare(new.derived)
 
     def _end(self, derived: Derived) -> None:
-        """Give up a declaration, with its belief."""
+        """End a declaration, and remove its belief."""
         for streams in self._streams.values():
             for name, stream in list(streams.items()):
                 stream.listeners = [each for each in stream.listeners if each[0] is not derived]
@@ -242,7 +242,7 @@ class DerivedBeliefs:
         return [each.row for each in self._all.values() if each.row is not None]
 
     def heard(self, operator: str, symbol: Functor, row: Row, cause: Cause | None) -> None:
-        """Hear of a belief that came or went, or of a signal."""
+        """Handle a belief that was added or deleted, or a signal."""
         self.histories.heard(symbol, row)
         streams = self._streams.get(symbol)
         if streams is None:
@@ -287,7 +287,7 @@ class DerivedBeliefs:
         self.agent.architecture.ready()
 
     def _now(self) -> float:
-        """The time of the run's clock; when that is set back, time goes on from where it was."""
+        """Return the time of the run's clock; if that is set back, time continues from its last value."""
         now = self.agent.architecture.now() + self._offset
         if now < self._latest:
             self._offset += self._latest - now
@@ -340,7 +340,7 @@ def _begun(agent: Circumstance) -> DerivedBeliefs:
     if observers.derived is None:
         observers.derived = DerivedBeliefs(agent)
         observers.hear_beliefs = True
-        # What is written out for speed tells nobody of changes that no plan handles.
+        # The fast paths do not notify observers of changes that no plan handles.
         agent.features.usual_events = observers.usual_events = False
     return _derived(agent)
 

@@ -62,7 +62,9 @@ def execute(agent: Circumstance, intention: Intention) -> None:
 
 
 def _step(agent: Circumstance, intention: Intention, frame: Frame) -> Any:
-    """Make the next step of a plan; what it gives, or the event for its failure.  An intention that nobody saves ends."""
+    """Run the next step of a plan; return its result, or the event for its failure. An unhandled failure ends
+    the intention.
+    """
     goal: Any = None
     try:
         goal = frame[0](agent, frame)
@@ -91,7 +93,9 @@ def _pursue(agent: Circumstance, intention: Intention, posted: Any) -> None:
 
 
 def step_failed(agent: Circumstance, intention: Intention, fault: Exception | None = None) -> Posted | None:
-    """A step failed, or raised an exception: the event for the nearest handler, None when there is none."""
+    """A step failed, or raised an exception: return the event for the nearest handler, or None without
+    one.
+    """
     if agent.trail:
         undo(agent.trail, 0)
     if fault is not None and fault.__class__ is not Fail:
@@ -102,7 +106,7 @@ def step_failed(agent: Circumstance, intention: Intention, fault: Exception | No
 
 
 def _report(agent: Circumstance, fault: Exception) -> None:
-    """Python errors inside internal actions are shown to people as well as to the plan."""
+    """Log Python errors inside internal actions; the plan gets them as well."""
     if isinstance(fault, Crashed):
         agent.architecture.log("error", str(fault))
     elif not isinstance(fault, Fail) and agent.options.verbose > 1:
@@ -110,7 +114,7 @@ def _report(agent: Circumstance, fault: Exception) -> None:
 
 
 def announce(agent: Circumstance, intention: Intention, goal: Goal, annotations: EventAnnotations) -> None:
-    """Tell those who wait for a goal or event that it has been posted."""
+    """Notify waiting intentions that a goal or event has been posted."""
     if agent.waits.events:
         agent.notify_event_waits((goal, intention, annotations, None))
     if agent.features.meta and goal[0].operator == "+" and goal[0].kind:
@@ -118,7 +122,7 @@ def announce(agent: Circumstance, intention: Intention, goal: Goal, annotations:
 
 
 def tell_waiting(agent: Circumstance, intention: Intention) -> None:
-    """Tell those who want to know it that an intention waits."""
+    """Notify observers that an intention waits."""
     waiting = intention.waiting
     if waiting is not None and waiting.reason is not OWN_SUSPENSION:
         meta_events.top_goal_state(agent, intention, "waiting", waiting.reason)

@@ -1,6 +1,9 @@
-"""Failure: what becomes of a formula that fails or a goal without plan.  The only place where exceptions of internal
-actions become failures of goals.  What no rule of the language foresees, such as a lack of memory, costs an agent one
-message, event or intention; it says so, and lives on.
+"""Failure of formulae, and of goals without a plan. Only here exceptions of internal actions become failures
+of goals.
+
+An exception that no rule of the language foresees, such as a lack of memory, costs an agent one message,
+event or
+intention; it is logged, and the agent continues.
 """
 
 from jacaros.asl import nodes
@@ -42,18 +45,20 @@ def error_terms(error: str, message: str) -> tuple[Term, ...]:
 
 
 def output_misfit(output: Term, value: Term) -> tuple[Term, ...]:
-    """The reason of an external action whose *output* has another value than the one that it gave, as where the same
-    variable is written for two outputs."""
+    """Return the reason for an external action with an *output* that is already bound to another value.
+
+    This happens, for example, if the same variable is written for two outputs.
+    """
     message = f"an output of the action would be {text(value)}, but is {text(output)} already"
     reason = (_BIND_PARAM_ERROR, resolve(output), String(display(value)))
     return (*error_terms("action_failed", message), (_ENV_FAILURE_REASON, reason))
 
 
 def step_failure(frame: Frame, fault: Exception | None = None) -> FailureReason:
-    """The reason of a step that failed, or that raised *fault*.
+    """Return the reason of a step that failed, or that raised *fault*.
 
     Raises:
-        InternalError: when the fault is a defect of ours.
+        InternalError: the fault is a defect of JaCaROS.
     """
     info: StepInfo | None = getattr(frame[STEP], "info", None)
     if info is None:
@@ -73,7 +78,7 @@ _ERRORS = (
     (RecursionError, "too_deep"),
     (CyclicTerm, "cyclic_term"),
 )
-"""Faults that say themselves what is wrong, and their errors."""
+"""Exceptions whose text is the message, and their error ids."""
 
 
 def _terms_of(fault: Exception, info: StepInfo) -> tuple[Term, ...]:
@@ -105,7 +110,7 @@ _MESSAGES = {
 
 
 def _default_message(fault: Failure) -> str:
-    """What people are told of a failure whose cause gives no words."""
+    """Return the message of a failure without one."""
     found = (text(term[1]) for term in fault.annotations if term.__class__ is tuple and term[0] is ERROR)
     error = next(found, "unknown")
     return _MESSAGES.get(error, error.replace("_", " "))
@@ -129,7 +134,7 @@ def _plain_failure(node: nodes.Node) -> tuple[str, str]:
 def no_plan(
     agent: Circumstance, goal: Goal, annotations: EventAnnotations, caller: Frame | None
 ) -> FailureReason:
-    """The reason of a goal that has no relevant or no applicable plan."""
+    """Return the reason of a goal that has no relevant or no applicable plan."""
     if agent.library.selects[goal[0]] is None:
         error, told = "no_relevant", "no relevant plan"
     elif agent.selections.refused:
@@ -147,7 +152,7 @@ def no_plan(
 
 
 def too_deep(goal: Goal, annotations: EventAnnotations, caller: Frame, depth: int) -> FailureReason:
-    """The reason of a goal whose plan finds no room on the stack of its intention."""
+    """Return the reason of a goal whose plan would exceed the maximum stack of its intention."""
     message = f"more than {depth} plans are on the stack of the intention (option goal_depth)"
     return FailureReason(error_terms("too_deep", message), GoalPlace(goal, annotations, caller))
 
@@ -156,7 +161,7 @@ _MAY_BE_BOUND = frozenset({Var, tuple, List})
 
 
 def release_bindings(goal: Goal, serial: int) -> None:
-    """Give the variables of a failed goal back as they were when it was posted."""
+    """Undo the bindings of the variables of a failed goal since it was posted."""
     stack: list[Term] = []
     for argument in goal:
         if argument.__class__ in _MAY_BE_BOUND:
@@ -177,10 +182,12 @@ def release_bindings(goal: Goal, serial: int) -> None:
 
 
 def handler_event(agent: Circumstance, intention: Intention, reason: FailureReason) -> Posted | int | None:
-    """Find the nearest goal down the stack that has a handler; None when there is none.
+    """Find the nearest goal down the stack that has a handler, or return None.
 
-    The failed frames stay on the stack under the handler until it ends.  A failure inside a handler goes on to the goals
-    below the one it handles.  A goal that is to be tried again comes before its handler: the index of its frame is given.
+    The failed frames stay on the stack under the handler until it ends. A failure inside a handler is passed
+    to the goals
+    below the one it handles. A goal with attempts left comes before its handler: the index of its frame is
+    returned.
     """
     frames, selects = intention.frames, agent.library.selects
     handlers = len(intention.handlers)
@@ -214,7 +221,9 @@ def handler_event(agent: Circumstance, intention: Intention, reason: FailureReas
 
 
 def has_handler(agent: Circumstance, intention: Intention, above: int) -> bool:
-    """Whether a goal higher on the stack than the frame *above* has a handler that is not already at work."""
+    """Return whether a goal higher on the stack than the frame *above* has a handler that is not already
+    running.
+    """
     handlers = len(intention.handlers)
     index = len(intention.frames) - 1
     while index > above:
@@ -232,29 +241,29 @@ def has_handler(agent: Circumstance, intention: Intention, above: int) -> bool:
 
 
 def told(fault: BaseException) -> str:
-    """An exception in words."""
+    """Describe an exception."""
     message = str(fault)
     return f"{type(fault).__name__}: {message}" if message else type(fault).__name__
 
 
 def note_lack_of_memory(agent: Circumstance, fault: BaseException) -> None:
-    """Report a `MemoryError` to the host, before anything else is done that needs memory."""
+    """Report a `MemoryError` to the host, before anything else that needs memory."""
     if isinstance(fault, MemoryError):
         agent.architecture.out_of_memory()
 
 
 def passed_over(agent: Circumstance, what: str, fault: Exception) -> None:
-    """Something cannot be dealt with and is left out."""
+    """Report that something was skipped because of an exception."""
     note_lack_of_memory(agent, fault)
     undo(agent.trail, 0)
-    agent.architecture.log("error", f"{what} is passed over: {told(fault)}")
+    agent.architecture.log("error", f"{what} skipped: {told(fault)}")
 
 
 def give_up(agent: Circumstance, intention: Intention, fault: Exception) -> None:
-    """An intention cannot go on: it ends without failure events."""
+    """End an intention that cannot continue, without failure events."""
     note_lack_of_memory(agent, fault)
     undo(agent.trail, 0)
     agent.current = None
     if not intention.dropped:
-        agent.architecture.log("error", f"intention {intention.id} is given up: {told(fault)}")
+        agent.architecture.log("error", f"intention {intention.id} dropped: {told(fault)}")
         agent.finish(intention)

@@ -1,7 +1,8 @@
 """Concurrency inside a plan: ``a |&| b`` (all branches) and ``a ||| b`` (the first one).
 
-Each branch is an intention of its own with a copy of the stack, so what it binds stays with it; the branch that finishes
-last (``|&|``) or first (``|||``) goes on with the rest of the plan.
+Each branch is an intention of its own with a copy of the stack, so its bindings stay local. The branch that
+finishes
+last (``|&|``) or first (``|||``) continues with the rest of the plan.
 """
 
 from collections.abc import Sequence
@@ -17,12 +18,12 @@ _HOLDERS = HOLDERS | {Var}
 
 
 class Fork:
-    """One fork that is under way.
+    """A running fork.
 
     Attributes:
         joins_all: True for ``|&|``.
         depth: index of the forking plan's frame on every branch's stack.
-        next_step: where the plan goes on.
+        next_step: where the plan continues.
         open: numbers of the branches that have neither finished nor failed.
     """
 
@@ -100,7 +101,7 @@ def _copied_with_loops(frames: list[Frame]) -> list[Frame]:
 
 
 def join_branch(agent: Circumstance, frame: Frame) -> object:
-    """The step behind the last one of a branch: it has come to its end."""
+    """The step after the last one of a branch: the branch has ended."""
     intention = agent.current
     assert intention is not None
     point, number = intention.forks[-1]
@@ -115,7 +116,9 @@ def join_branch(agent: Circumstance, frame: Frame) -> object:
 
 
 def branch_failed(agent: Circumstance, intention: Intention) -> bool:
-    """A branch failed and nobody on it takes care: True when that is a failure of the plan that forked."""
+    """Handle a branch that failed without a handler; return True if that is a failure of the plan that
+    forked.
+    """
     point, number = intention.forks[-1]
     point.open.discard(number)
     if not point.joins_all and point.open:

@@ -1,4 +1,6 @@
-"""Arithmetic functions that need an agent: those about its beliefs, its clock, its dice, and those of its program."""
+"""Arithmetic functions that need an agent: its beliefs, clock, random numbers, and the functions of its
+program.
+"""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -29,23 +31,25 @@ class RegisteredFunction(NamedTuple):
 
 
 def known_names(agent: Circumstance) -> FunctionNames:
-    """The functions that what is read at run time may call, for the parser."""
+    """Names of functions that terms parsed at run time may call."""
     registered = {name: function.arity for name, function in agent.functions.own.items()}
     return FunctionNames(registered, agent.functions.project.functions)
 
 
 def call_function(agent: Circumstance, term: Term) -> Term:
-    """Evaluate a function call; the call itself comes back while arguments are unknown.
+    """Evaluate a function call; return the call itself while arguments are unknown.
 
     Raises:
-        ArithmeticFault: when a function of the program gives no number.
+        ArithmeticFault: a function of the program does not return a number.
     """
     value = call_own(agent, term)
     return settle(term) if value is None else value
 
 
 def call_own(agent: Circumstance, term: Term) -> Term:
-    """The value of a function that needs the agent; None when it is none of these or has no value yet."""
+    """Return the value of a function that needs the agent; None for other functions, or if it has no value
+    yet.
+    """
     name = term[0].name
     standard = OF_AGENT.get(name)
     if standard is not None:
@@ -90,7 +94,9 @@ OF_AGENT: Final = {
 
 
 def _call_registered(agent: Circumstance, function: RegisteredFunction, term: Term) -> Term:
-    """The first answer of the rule or internal action, which must be a number; None while arguments are unknown."""
+    """Return the first answer of the rule or internal action, which must be a number; None while arguments
+    are unknown.
+    """
     if free_variables(term):
         return None
     value = Var("Result")
@@ -102,10 +108,10 @@ def _call_registered(agent: Circumstance, function: RegisteredFunction, term: Te
         undo(trail, mark)
         if found.__class__ is float:
             return found
-        raise ArithmeticFault(f"the value of the function {term[0].name} is no number but {text(found)}")
+        raise ArithmeticFault(f"value of function {term[0].name} is not a number: {text(found)}")
     undo(trail, mark)
     raise ArithmeticFault(
-        f"the function {term[0].name} has no value: {function.implementation}/{function.arity + 1} does not hold"
+        f"function {term[0].name} has no value: {function.implementation}/{function.arity + 1} does not hold"
     )
 
 
@@ -117,7 +123,7 @@ def _symbol(function: RegisteredFunction) -> Functor:
 
 @contextmanager
 def evaluating(agent: Circumstance) -> Iterator[None]:
-    """While it is open, calls inside terms are evaluated for this agent."""
+    """Evaluate calls inside terms for this agent within the context."""
     before = RUNNING.set(agent)  # pyright: ignore[reportArgumentType]
     try:
         yield

@@ -1,4 +1,4 @@
-"""What becomes of a goal that failed: its own handler, that of a goal further down, or the end of the intention."""
+"""Handle the failure of a goal: its own handler, that of a goal further down, or the end of the intention."""
 
 from typing import Any
 
@@ -36,7 +36,7 @@ def unplanned(
 
 
 def has_room(agent: Circumstance, intention: Intention) -> bool:
-    """Whether the plan just put on a full stack may stay: handlers have some room of their own, to deal with that."""
+    """Return whether the plan just put on a full stack may stay: handlers have some extra room."""
     depth = agent.options.goal_depth
     is_handler = intention.frames[-1][GOAL][0].failing
     return is_handler and len(intention.frames) <= depth + depth // 10 + 100
@@ -49,7 +49,7 @@ def too_deep(agent: Circumstance, intention: Intention) -> Posted | None:
     failure.release_bindings(goal, frame[SERIAL])
     reason = failure.too_deep(goal, annotations, caller_of(intention) or frame, agent.options.goal_depth)
     if goal[0].failing:
-        # Handlers of handlers without end: nobody is left who could deal with it.
+        # Handlers of handlers without end: no handler is left that could deal with it.
         intention.handlers.clear()
         observe_failed(agent, intention, 1, reason)
         del intention.frames[1:]
@@ -150,7 +150,7 @@ def _tell_unplanned(
     reason: FailureReason,
     over: bool = False,
 ) -> None:
-    """Tell that a goal without a frame has failed, after it was found out why; *over*: no plan of its own saves it."""
+    """Report that a goal without a frame has failed; *over*: none of its own plans handles the failure."""
     if unplanned is None or not agent.features.meta:
         return
     goal, annotations, number = unplanned
@@ -162,7 +162,7 @@ def _tell_unplanned(
 
 
 def _tell_failed(agent: Circumstance, intention: Intention, reason: FailureReason) -> None:
-    """All goals of an intention that nobody saved have failed, and are over."""
+    """Report that all goals of an intention have failed without a handler."""
     observe_failed(agent, intention, 0, reason)
     for frame in reversed(intention.frames):
         if not frame[GOAL][0].failing:
@@ -173,7 +173,7 @@ def _tell_failed(agent: Circumstance, intention: Intention, reason: FailureReaso
 def observe_failed(
     agent: Circumstance, intention: Intention, first: int, reason: FailureReason | None
 ) -> None:
-    """Tell the observer that the goals of the frames from the one at *first* failed and are over."""
+    """Report to the observer that the goals of the frames from *first* on failed and are over."""
     if agent.observers.goal is not None:
         why = lost_goals.why(reason) if reason is not None else ""
         for frame in reversed(intention.frames[first:]):
@@ -210,6 +210,6 @@ def _lost_in_handler(
         meta_events.observe_goal(agent, intention, goal, number, "failed")
         meta_events.observe_goal(agent, intention, goal, number, "finished")
     while intention.forks and branch_failed(agent, intention):
-        pass  # the others would wait for this branch for ever
+        pass  # the others would wait forever for this branch
     observe_failed(agent, intention, meta_events.shared(agent, intention), reason)
     agent.finish(intention)

@@ -134,7 +134,7 @@ def intended(agent: Circumstance, include_suspended: bool = False) -> Iterator[t
 
 
 def drop_intention(agent: Circumstance, intention: Intention) -> None:
-    """An intention vanishes without failure events; what it waits for is cancelled."""
+    """Drop an intention without failure events; what it waits for is cancelled."""
     if agent.features.meta:
         for frame in intention.frames:
             meta_events.goal_state(agent, frame[GOAL], frame[ANNOTATIONS], "dropped")
@@ -273,7 +273,7 @@ def resume_goal(agent: Circumstance, goal: Term) -> None:
 
 
 def resume_intention(agent: Circumstance, intention: Intention, by: Term = _BY_RESUME) -> None:
-    """A suspended intention goes on where it is; ``.resume`` does nothing to one that has lost a resource."""
+    """Resume a suspended intention; ``.resume`` has no effect on one that has lost a resource."""
     if intention.suspended is None or (by is _BY_RESUME and is_preempted(intention)):
         return
     intention.suspended = None
@@ -302,9 +302,9 @@ def resume_intention(agent: Circumstance, intention: Intention, by: Term = _BY_R
 
 
 def succeed_goal(agent: Circumstance, goal: Term) -> bool:
-    """End matching goals as achieved, periodic ones for good: their callers go on.
+    """End matching goals as achieved, periodic ones for good: their callers continue.
 
-    True when the running intention is concerned.
+    Return True if the running intention is concerned.
     """
     own = False
     for intention in intentions_for(agent, goal):
@@ -403,7 +403,7 @@ def _post(agent: Circumstance, intention: Intention, posted: Posted | None) -> N
 
 
 def describe(intention: Intention) -> tuple[str, Term]:
-    """State of an intention, as ``.intention`` tells it: (name, reason)."""
+    """Return the state of an intention for ``.intention``: (name, reason)."""
     if intention.suspended is not None:
         return "suspended", None
     if intention.waiting is not None:

@@ -13,7 +13,7 @@ def observe_steps(agent: Circumstance, observer: StepObserver | None) -> None:
         observers.usual_events = features.usual_events
     observers.step = observer
     observers.hear_beliefs = any(each is not None for each in (observer, observers.mind, observers.derived))
-    # What is written out for speed tells nobody of changes that no plan handles.
+    # The fast paths do not notify observers of changes that no plan handles.
     features.usual_events = observers.usual_events and not observers.hear_beliefs
     if observer is None:
         agent.held = None

@@ -60,7 +60,7 @@ def cut_in_queue(agent: Circumstance, intention: Intention, index: int) -> None:
 
 
 def post(agent: Circumstance, intention: Intention, posted: Posted | None) -> None:
-    """Queue what an intention goes on with."""
+    """Queue the continuation of an intention."""
     if posted is not None:
         agent.post((posted.goal, intention, posted.annotations, None))
         agent.architecture.ready()

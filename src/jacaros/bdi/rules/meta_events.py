@@ -122,10 +122,12 @@ def _insert(agent: Circumstance, event: Event) -> None:
 
 
 def observe_goals(agent: Circumstance, observer: GoalObserver) -> None:
-    """Have an observer told of every change of a goal that has begun.
+    """Notify an observer of every state change of goals that have begun.
 
-    The states are ``executing``, ``waiting``, ``suspended``, ``resumed``, ``achieved``, ``failed``, ``recovered``,
-    ``dropped``, ``replaced``, and last ``finished``.  A goal keeps its number when its variables get values, and in all
+    The states are ``executing``, ``waiting``, ``suspended``, ``resumed``, ``achieved``, ``failed``,
+    ``recovered``,
+    ``dropped``, ``replaced``, and last ``finished``. A goal keeps its number when its variables are bound,
+    and in all
     branches of a fork.
     """
     agent.observers.goal = observer
@@ -133,9 +135,9 @@ def observe_goals(agent: Circumstance, observer: GoalObserver) -> None:
 
 
 def observe_mind(agent: Circumstance, observer: MindObserver | None) -> None:
-    """Have an observer told of plans that are selected, of beliefs and messages; None ends that.
+    """Notify an observer of selected plans, beliefs and messages; None ends that.
 
-    All of it is done as the rules say then: what is written out for speed has no room for an observer.
+    The agent then runs by the plain rules: the fast paths do not notify observers.
     """
     agent.observers.mind = observer
     observers = agent.observers

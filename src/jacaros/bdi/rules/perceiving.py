@@ -1,6 +1,7 @@
-"""Percepts become beliefs: what bodies have noticed is believed or forgotten, and raises events, in its order.
+"""Percepts become beliefs: changes noticed by the body are added or removed, and raise events, in order.
 
-A sensor that is faster than its agent asks whether the last percept has been taken up before it tells more.
+A sensor that is faster than its agent checks whether the last percept has been handled before it sends
+another one.
 """
 
 from collections.abc import Callable, Iterator
@@ -44,14 +45,14 @@ def take_percepts(agent: Circumstance, way: Callable[[Circumstance, list[Percept
 
 
 def take(agent: Circumstance, percept: Percept) -> None:
-    """Believe or forget what one percept says, and raise its event.
+    """Add or remove the belief of one percept, and raise its event.
 
     Raises:
-        InternalError: what it says is not a literal.
+        InternalError: its literal is not a literal.
     """
     symbol, row = functor_of(percept.literal), arguments_of(percept.literal)
     if symbol is None:
-        raise InternalError(f"a percept is no literal: {percept.literal!r}")
+        raise InternalError(f"a percept is not a literal: {percept.literal!r}")
     keyed = all(is_key(argument) and not holds_collection(argument) for argument in row)
     own: Row | None
     if percept.kind == "add":
@@ -67,9 +68,10 @@ def take(agent: Circumstance, percept: Percept) -> None:
 
 
 def _believe(agent: Circumstance, symbol: Functor, row: Row, percept: Percept) -> Row | None:
-    """Believe a percept whose literal may be held already, by the agent or for other properties with the same values.
+    """Add the belief of a percept that may already be held, by the agent or for other properties with the
+    same values.
 
-    None when the base has no room for it.
+    Return None if the base has no room for it.
     """
     known = agent.beliefs.held_percepts.get(percept.literal)
     if known is not None:
@@ -85,9 +87,9 @@ def _believe(agent: Circumstance, symbol: Functor, row: Row, percept: Percept) -
 def _believe_apart(
     agent: Circumstance, symbol: Functor, row: Row, percept: Percept, known: Any
 ) -> Row | None:
-    """Believe a property beside others with the same values: a belief of its own, with its own annotations.
+    """Add a property beside others with the same values, as a belief of its own with its own annotations.
 
-    None when the base has no room for it.
+    Return None if the base has no room for it.
     """
     belief = OpenFact(literal(symbol, row), percept.annotations)
     if agent.beliefs[symbol].add(belief, percept.annotations) is None:
@@ -99,9 +101,9 @@ def _believe_apart(
 
 
 def _forget(agent: Circumstance, symbol: Functor, row: Row, percept: Percept) -> Row | None:
-    """Give up the belief of one property; others may have the same values.
+    """Remove the belief of one property; others may have the same values.
 
-    None when the belief is not held any more.
+    Return None if the belief is no longer held.
     """
     known = agent.beliefs.held_percepts.pop(percept.literal, None)
     holders: list[Holder] = known if known.__class__ is list else [] if known is None else [(known, row)]
@@ -114,7 +116,7 @@ def _forget(agent: Circumstance, symbol: Functor, row: Row, percept: Percept) ->
 
 
 def _take_away(agent: Circumstance, symbol: Functor, entry: Any, percept: Percept) -> bool:
-    """Take the annotations of a percept off its belief; False when that is not held any more."""
+    """Remove the annotations of a percept from its belief; return False if it is no longer held."""
     table = agent.beliefs[symbol]
     held = table.get(entry)
     if held is not None:
@@ -125,7 +127,7 @@ def _take_away(agent: Circumstance, symbol: Functor, entry: Any, percept: Percep
 # --- percepts that cannot be looked up by what they say --------------------------------------------------------
 
 # Python could not compare or hash very long or deeply nested terms, and of sets and maps every agent needs its own.  Such
-# a percept is told from others by the very arguments that its property was written with, and is a belief by itself.
+# a percept is identified by the argument objects of its property, and is a belief by itself.
 
 
 def _own_row(row: Row) -> Row:
@@ -153,11 +155,13 @@ def _identity(symbol: Functor, row: Row) -> tuple[object, ...]:
     return (None, symbol, *map(id, row))
 
 
-# --- whether an agent has taken up what it perceived -------------------------------------------------------------
+# --- backpressure: whether an agent has handled its percepts
+# ------------------------------------------------------
 
 
 def is_untaken(agent: Circumstance, name: str) -> bool:
-    """Whether a change of a belief called *name* has still to be noticed or handled, or its plan has still to run.
+    """Return whether a change of a belief called *name* has still to be noticed or handled, or its plan has
+    still to run.
 
     A plan that waits (for an action, a time, a condition) has had its turn.
     """

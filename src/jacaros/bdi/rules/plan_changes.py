@@ -69,11 +69,11 @@ def look_at_plans(agent: Circumstance) -> None:
 
 
 def add_plan(agent: Circumstance, term: Term, source: Term = SELF, first: bool = False) -> None:
-    """Add a plan given as a term or as text; one that is held already only gains a source.
+    """Add a plan given as a term or as text; a plan that is already held only gains a source.
 
     Raises:
-        NotAPlan: when the term is no plan.
-        AslError: when the text is none.
+        NotAPlan: the term is not a plan.
+        AslError: the text is not a plan.
     """
     term = resolve(term)
     if term.__class__ is String:
@@ -91,10 +91,10 @@ def add_plan(agent: Circumstance, term: Term, source: Term = SELF, first: bool =
 
 
 def include_plans(agent: Circumstance, plan_nodes: tuple[nodes.Plan, ...]) -> None:
-    """Take in plans of a program that is included at run time; those that are held already stay as they are.
+    """Add the plans of a program that is included at run time; those that are already held are unchanged.
 
     Raises:
-        ActionError: a label is that of another plan; nothing has been added then.
+        ActionError: another plan has the same label; nothing has been added then.
     """
     for node in plan_nodes:
         if node.label is not None:

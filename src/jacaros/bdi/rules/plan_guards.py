@@ -67,7 +67,7 @@ def _holds(agent: Circumstance, condition: Term) -> bool:
         raise
     except Exception as fault:
         agent.architecture.log(
-            "error", f"the condition {text(condition)} cannot be evaluated: {failure.told(fault)}"
+            "error", f"cannot evaluate the condition {text(condition)}: {failure.told(fault)}"
         )
         return False
     finally:

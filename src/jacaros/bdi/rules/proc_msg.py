@@ -74,7 +74,9 @@ def read_message(agent: Circumstance, message: SpeechAct) -> None:
 
 
 def _process(agent: Circumstance, message: SpeechAct) -> None:
-    """A message that may be an answer, refused, or taken up by a plan for ``+!kqml_received``, which comes first."""
+    """Process a message: an answer, refused, or handled by a plan for ``+!kqml_received``, which comes
+    first.
+    """
     if message.in_reply_to is not None and _answers_question(agent, message):
         return
     if not agent.accepts(message):
@@ -84,14 +86,16 @@ def _process(agent: Circumstance, message: SpeechAct) -> None:
     action = _ACTIONS.get(message.performative)
     if action is None:
         agent.architecture.log(
-            "warning", f"a message with unknown performative {message.performative} from {message.sender}"
+            "warning", f"unknown performative {message.performative} in a message from {message.sender}"
         )
         return
     action(agent, message)
 
 
 def _answers_question(agent: Circumstance, message: SpeechAct) -> bool:
-    """Whether the message is the answer to a question of the agent: who asked has it then, or nobody wants it any more."""
+    """Return whether the message answers a question of the agent: it is passed to the asker, or discarded if
+    none waits.
+    """
     question = message.in_reply_to
     if question in agent.waits.questions:
         take_answer(agent, agent.waits.questions[question], message)
@@ -126,7 +130,7 @@ def _end_question(agent: Circumstance, waiting: AnswerWait, value: Term) -> None
         del agent.trail[:]
         waits.succeed(agent, waiting)
     else:
-        waits.fail(agent, waiting, "the answer does not fit", (ERROR, atom("ask_failed")))
+        waits.fail(agent, waiting, "the answer does not match", (ERROR, atom("ask_failed")))
 
 
 def _with_source(agent: Circumstance, message: SpeechAct) -> Term:
@@ -143,8 +147,8 @@ def _told_by(content: Term, own_name: str, message: SpeechAct) -> Term:
 
 
 def nobody_there(receiver: str) -> tuple[str, Term]:
-    """Why a message cannot be delivered: for people, and as the error of the step."""
-    return f"there is no agent '{receiver}' to send to", (ERROR, atom("receiver_not_found"))
+    """Describe why a message cannot be delivered: for the log, and as the error of the step."""
+    return f"unknown receiver: '{receiver}'", (ERROR, atom("receiver_not_found"))
 
 
 def _handled_by_program(agent: Circumstance, message: SpeechAct) -> bool:
@@ -159,7 +163,7 @@ def _handled_by_program(agent: Circumstance, message: SpeechAct) -> bool:
 
 
 def from_sender(content: Term, sender: str) -> Term:
-    """The content with ``source(sender)``; sources it had are nested inside."""
+    """Return the content with ``source(sender)``; previous sources are nested inside."""
     content = resolve(content)
     inner = bare(content)
     others: list[Term] = []
@@ -173,7 +177,9 @@ def from_sender(content: Term, sender: str) -> Term:
 
 
 def literal_from(content: Term, sender: str) -> tuple[Functor | None, tuple[Term, ...], tuple[Term, ...]]:
-    """Functor, arguments and annotations of the content with ``source(sender)``; no functor when it is no literal."""
+    """Return functor, arguments and annotations of the content with ``source(sender)``; no functor if it is
+    not a literal.
+    """
     if is_flat(content):
         return functor_of(content), arguments_of(content), _only_from(sender)
     return parts(from_sender(content, sender))
@@ -193,7 +199,7 @@ def _contents(content: Term) -> list[Term]:
 
 def _tell(agent: Circumstance, message: SpeechAct) -> None:
     if message.flat:
-        # What agents say to each other is mostly flat, and nothing in it has to be looked at.
+        # Most messages are flat, so nothing in them has to be resolved.
         content = message.content
         symbol, row = (content[0], content[1:]) if content.__class__ is tuple else (content, ())
         if symbol is not CONS and symbol is not NIL:
@@ -250,7 +256,7 @@ def _signal(agent: Circumstance, message: SpeechAct) -> None:
 def _refuse(agent: Circumstance, message: SpeechAct) -> None:
     agent.architecture.log(
         "warning",
-        f"the content of a {message.performative} from {message.sender} is no literal: {text(message.content)}",
+        f"content of a {message.performative} from {message.sender} is not a literal: {text(message.content)}",
     )
 
 
@@ -301,7 +307,7 @@ def _ask_all(agent: Circumstance, message: SpeechAct) -> None:
 def answer(
     agent: Circumstance, question: SpeechAct, content: Term | None, performative: str = "tell"
 ) -> None:
-    """Send the answer to a question; None is the answer that there is none."""
+    """Send the answer to a question; None means that there is no answer."""
     agent.architecture.send(
         SpeechAct(
             "untell" if content is None else performative,
@@ -318,7 +324,7 @@ def answer(
 
 
 def _ask_how(agent: Circumstance, message: SpeechAct) -> None:
-    """Answer with the plans; they are told, so that whoever does not wait for the answer takes them in."""
+    """Answer with the plans, as ``tellHow``, so that a sender that does not wait for the answer adds them."""
     plans = relevant_plans(agent, message.content)
     if plans is None:
         _refuse(agent, message)
@@ -330,15 +336,13 @@ def _ask_how(agent: Circumstance, message: SpeechAct) -> None:
 
 def _tell_how(agent: Circumstance, message: SpeechAct) -> None:
     if not agent.options.plans_from_others:
-        agent.architecture.log(
-            "warning", f"a plan told by {message.sender} was refused: this run is restricted"
-        )
+        agent.architecture.log("warning", f"refused a plan from {message.sender}: this run is restricted")
         return
     for content in _contents(message.content):
         try:
             agent.add_plan(content, atom(message.sender))  # type: ignore[attr-defined]
         except (AslError, ValueError) as fault:
-            agent.architecture.log("warning", f"a plan told by {message.sender} was refused: {fault}")
+            agent.architecture.log("warning", f"refused a plan from {message.sender}: {fault}")
 
 
 def _untell_how(agent: Circumstance, message: SpeechAct) -> None:
@@ -353,9 +357,9 @@ def plan_term(content: Term) -> bool:
 
 
 def _undelivered(agent: Circumstance, message: SpeechAct) -> None:
-    """A message of the agent was accepted, but did not reach an agent of another process."""
+    """Handle a message that was accepted, but did not reach an agent of another process."""
     agent.architecture.log(
-        "warning", f"a message did not reach {message.sender}: {text(resolve(message.content))}"
+        "warning", f"message did not reach {message.sender}: {text(resolve(message.content))}"
     )
 
 

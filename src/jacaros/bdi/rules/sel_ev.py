@@ -1,4 +1,4 @@
-"""An event is taken up: rule SelEv, and the intention that it begins or goes on with."""
+"""An event is handled: rule SelEv, and the intention that it begins or continues."""
 
 from jacaros.bdi.rules import failure, meta_events, needs, subplans
 from jacaros.bdi.rules.add_im import log_inapplicable, push, select_for_reasons
@@ -15,7 +15,7 @@ from jacaros.terms.values import BY_SELF
 
 
 def handle_event(agent: Circumstance) -> None:
-    """Rule SelEv and what follows: one event is handled; external events without plan are passed over."""
+    """Rule SelEv and the rules after it: handle one event; external events without a plan are skipped."""
     while (event := agent.selections.select_event()) is not None:
         if is_held_before_event(agent, event) or _is_handled(agent, event):
             return
@@ -86,7 +86,7 @@ def event_of(agent: Circumstance, intention: Intention) -> Event | None:
 
 
 def pass_over(agent: Circumstance, event: Event, fault: Exception) -> None:
-    """What escapes while an event is handled; the agent goes on with the next one."""
+    """Report an exception that escapes while an event is handled; the agent continues with the next event."""
     agent.current = None
     failure.passed_over(agent, "an event", fault)
     intention = event[EVENT_INTENTION]

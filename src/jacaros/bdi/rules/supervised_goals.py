@@ -1,7 +1,8 @@
-"""Goals whose annotations say how they are pursued: ``!g[within(Ms), retry(N, Ms), every(Ms)]``.
+"""Goals with annotations that supervise them: ``!g[within(Ms), retry(N, Ms), every(Ms)]``.
 
-A deadline is one for all attempts.  With ``every``, the goal is pursued anew in each period, and deadline and attempts are
-those of one period.
+One deadline applies to all attempts together. With ``every``, the goal is posted again in each period, and
+deadline and
+attempts apply to each period.
 """
 
 from math import ceil, floor
@@ -24,14 +25,16 @@ RETRY, RETRY_AFTER = functor("retry", 1), functor("retry", 2)
 ACTING: frozenset[Functor] = frozenset({WITHIN, HARD_DEADLINE, EVERY, RETRY, RETRY_AFTER})
 """The annotations of goals that have an effect."""
 _EXACT = 1e-5
-"""Seconds by which a clock may be off."""
+"""Tolerance for inaccurate clocks, in seconds."""
 
 
 # --- beginning ---------------------------------------------------------------------------------------------
 
 
 def supervision_of(goal: Goal, annotations: tuple[Term, ...]) -> GoalSupervision | None:
-    """How a goal is to be pursued; None when its annotations do not say.  What is not valid has no effect."""
+    """Return the supervision of a goal, or None if its annotations ask for none. Invalid annotations have no
+    effect.
+    """
     found: GoalSupervision | None = None
     for annotation in annotations:
         inner = bare(annotation)
@@ -57,7 +60,7 @@ def _take(supervision: GoalSupervision, word: Functor, numbers: tuple[float, ...
 
 
 def posted(agent: Circumstance, goal: Goal, annotations: tuple[Term, ...]) -> Posted:
-    """Post a goal of the running intention; what its annotations say is taken care of from now on."""
+    """Post a goal of the running intention, supervised as its annotations say."""
     supervision = supervision_of(goal, annotations)
     if supervision is not None and agent.current is not None:
         goal = _begin(agent, agent.current, supervision, goal, annotations)
@@ -82,7 +85,7 @@ def adopt(agent: Circumstance, event: Event) -> None:
 def begin_watched(
     agent: Circumstance, intention: Intention, goal: Goal, annotations: tuple[Term, ...]
 ) -> None:
-    """Post the goal of an intention that Python code has begun."""
+    """Post the goal of an intention that Python code has started."""
     supervision = supervision_of(goal, annotations)
     if supervision is not None:
         goal = _begin(agent, intention, supervision, goal, annotations)
@@ -96,7 +99,7 @@ def _begin(
     goal: Goal,
     annotations: tuple[Term, ...],
 ) -> Goal:
-    """Put the frame of a pursuit on the stack; return the goal to post."""
+    """Put the frame of a supervision on the stack; return the goal to post."""
     supervision.began = agent.architecture.now()
     frame = supervising(agent, supervision, goal_ended, goal[1:])
     frame[ANNOTATIONS] = annotations
@@ -105,7 +108,9 @@ def _begin(
 
 
 def _start(agent: Circumstance, supervision: GoalSupervision, goal: Goal) -> Goal:
-    """Begin the supervision, or that of one period; return the goal to post: in each period with variables of its own."""
+    """Start the supervision of the goal or of one period; return the goal to post, with new variables in each
+    period.
+    """
     supervision.failed = 0
     if supervision.within is not None:
         set_deadline(
@@ -118,7 +123,7 @@ def _start(agent: Circumstance, supervision: GoalSupervision, goal: Goal) -> Goa
 
 
 def goal_ended(agent: Circumstance, frame: Frame) -> object:
-    """The step of a pursuit's frame: the goal has been achieved, or a plan took care of its failure."""
+    """The step of a supervision's frame: the goal was achieved, or a plan handled its failure."""
     supervision: GoalSupervision = frame[SUPERVISION]
     end(agent, supervision)
     if supervision.period is None:
@@ -135,7 +140,7 @@ def goal_ended(agent: Circumstance, frame: Frame) -> object:
 def _time_to_next(
     agent: Circumstance, supervision: GoalSupervision, goal: Goal, annotations: tuple[Term, ...]
 ) -> float:
-    """Seconds to the beginning of the next period; those that are over already have been missed."""
+    """Return the seconds until the next period; periods that are already over have been missed."""
     assert supervision.period is not None
     now = agent.architecture.now()
     if now < supervision.began + supervision.number * supervision.period - _EXACT:
@@ -146,7 +151,7 @@ def _time_to_next(
 
 
 def next_period(agent: Circumstance, frame: Frame) -> Posted:
-    """The step behind the pause between two periods."""
+    """The step after the pause between two periods."""
     intention = end_pause(agent)
     goal, annotations = frame[GOAL], frame[ANNOTATIONS]
     supervision: GoalSupervision = intention.frames[-1][SUPERVISION]
@@ -161,7 +166,7 @@ def next_period(agent: Circumstance, frame: Frame) -> Posted:
 def _skip_to(
     agent: Circumstance, supervision: GoalSupervision, number: int, goal: Goal, annotations: tuple[Term, ...]
 ) -> None:
-    """The periods behind the present one, up to one with a *number*, have been missed: tell plans, and warn."""
+    """Report that the periods up to *number* have been missed: raise events for plans, and warn."""
     missed = number - supervision.number
     if missed <= 0:
         return
@@ -175,5 +180,5 @@ def _skip_to(
         every = text(supervision.period * 1000) if supervision.period is not None else ""
         agent.architecture.log(
             "warning",
-            f"the goal !{text(literal_of(goal, ()))} has missed {count} of {every} ms: it takes longer",
+            f"goal !{text(literal_of(goal, ()))} has missed {count} of {every} ms: it takes longer",
         )

@@ -46,7 +46,7 @@ def supervising(
 
 
 def end(agent: Circumstance, supervision: Supervision) -> None:
-    """The goal or plan has ended: neither its deadline nor its condition counts any longer."""
+    """End the supervision of a goal or plan: its deadline and its condition no longer count."""
     if supervision.alarm is not None:
         cancel_alarm(agent, supervision.alarm)
         supervision.alarm = None
@@ -62,14 +62,16 @@ def end_below(agent: Circumstance, intention: Intention, index: int) -> None:
 
 
 def end_periods(intention: Intention, index: int) -> None:
-    """The goal at *index*, or the one about to get a frame there, is not pursued again after its present pursuit."""
+    """End the periods of the goal at *index* (or of one about to get a frame there) after the present one."""
     for supervision in supervisions_below(intention, index):
         if isinstance(supervision, GoalSupervision):
             supervision.period = None
 
 
 def end_above(agent: Circumstance, intention: Intention, index: int) -> None:
-    """The frames from the one at *index* on are dropped, as far as no other branch of a fork has them, too."""
+    """End the supervisions of the frames from *index* on, except those shared with other branches of a
+    fork.
+    """
     frames = intention.frames
     if any(is_supervision(frame) for frame in frames[index:]):
         for frame in frames[max(index, meta_events.shared(agent, intention)) :]:
@@ -96,7 +98,7 @@ def _has_attempt(supervision: Supervision) -> bool:
 
 
 def fails(agent: Circumstance, intention: Intention, index: int, reason: FailureReason) -> bool:
-    """The goal or plan at *index* fails; True when the goal is to be tried again."""
+    """Handle the failure of the goal or plan at *index*; return True if the goal is to be tried again."""
     for supervision in supervisions_below(intention, index):
         if _has_attempt(supervision):
             return True
@@ -116,7 +118,7 @@ def try_again(
     annotations: EventAnnotations,
     error: str,
 ) -> Posted | None:
-    """Give up the plan at *index* and post its goal again; None when it is posted later."""
+    """Drop the plan at *index* and post its goal again; return None if it is posted later."""
     frames = intention.frames
     while not isinstance(supervised := frames[index - 1][SUPERVISION], GoalSupervision):
         index -= 1
@@ -145,7 +147,9 @@ def wait_for(
     behind: NextStep,
     reason: Term,
 ) -> None:
-    """Pause a goal for *delay* seconds; *behind* is the step that follows.  It is a goal of the intention meanwhile."""
+    """Pause a goal for *delay* seconds, during which it stays a goal of the intention; *behind* is the step
+    that follows.
+    """
     agent.trail.serial += 1
     frame: Frame = [behind, *posted, agent.trail.serial, _WAITING]
     intention.frames.append(frame)

@@ -1,4 +1,4 @@
-"""Goals that are watched: those given from outside of the mind, whose end is told."""
+"""Goals posted from outside the mind, with a callback for their end."""
 
 from collections.abc import Callable
 
@@ -19,23 +19,24 @@ _WATCHED = trigger("+", "", functor("watched", 0, namespace="jacaros"))
 
 
 class WatchedGoal:
-    """An achievement goal with an intention of its own, whose end is told.
+    """An achievement goal in an intention of its own, with a callback for its end.
 
-    At the bottom of the stack stands a frame that is reached when the goal is achieved.  It is copied with the stack
-    when the plan forks, so it is reached by the branch that goes on.
+    The bottom frame of the stack is reached when the goal is achieved. It is copied with the stack when the
+    plan forks, so the
+    branch that continues reaches it.
 
     Args:
-        agent: whose goal it becomes.
+        agent: the agent that adopts the goal.
         goal: an atom or structure.
         on_end: called when the goal is achieved (with None) or has failed (with the reason, as far as it is known).
 
     Attributes:
         achieved: the goal was achieved.
-        failed: it failed, and nobody took care of that.
-        reason: why it failed, None when that is not known.
+        failed: it failed, and no plan handled the failure.
+        reason: why it failed, None if that is not known.
 
     Raises:
-        ActionError: *goal* is no literal.
+        ActionError: *goal* is not a literal.
     """
 
     def __init__(self, agent: Circumstance, goal: Term, on_end: Callable[[], None] = lambda: None) -> None:
@@ -76,7 +77,7 @@ class WatchedGoal:
         self._on_end()
 
     def end_in_failure(self, reason: FailureReason | None) -> None:
-        """The goal failed and no plan took over."""
+        """Report that the goal failed and no plan handled the failure."""
         self.failed = True
         self.reason = reason
         self._on_end()

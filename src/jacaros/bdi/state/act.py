@@ -11,7 +11,7 @@ NEEDS = functor(".needs", 3)
 """Functor of the act by which a plan or goal asks for resources: their names, the policy, the goal.  It ends when they
 are granted; they are held until it is cancelled."""
 
-# Not frozen: that would make each of them three times as dear.  Nobody changes them.
+# Not frozen: that would make creating each of them three times as slow. They are never changed.
 
 
 @dataclass(slots=True)
@@ -24,11 +24,11 @@ class Act:
         arguments: with all bindings applied; an unbound `Var` is an output.
         annotations: of the action, such as ``artifact_id(Id)``.
         intention: id of the intention, so that the environment can keep a current workspace for each.
-        cause: why it is done.
-        place: plan, file and line of the step, when somebody watches.
-        urgency: of the intention; decides who gets resources.
-        within: acts by which plans of the intention have asked for resources, outermost first.
-        yields: its resources may be taken away from it; False for that of an atomic plan.
+        cause: why it is performed.
+        place: plan, file and line of the step, while an observer watches.
+        urgency: of the intention; decides between claims for resources.
+        within: acts by which plans of the intention have requested resources, outermost first.
+        yields: its resources may be taken away from it; False for an atomic plan.
     """
 
     id: int

@@ -358,16 +358,16 @@ def _put(index: Index, key: Term, row: Row) -> None:
 
 
 class BeliefTables(dict[Functor, Table]):
-    """Tables by functor, made when first asked for.
+    """Tables by functor, made on first use.
 
     Attributes:
         searching: number of the internal action that a search is calling, 0 while none is.
-        next_call: gives the number of the next one.
-        refusals: how many beliefs from outside were refused (`jacaros.bdi.state.bounded_beliefs`).
-        budget: how much may be searched; None for any amount.
-        engine: carries out the rules.
-        held_percepts: for each literal that is perceived the annotations of the property that shows it, or a list of pairs
-            of annotations and entries when several do (decision 22).
+        next_call: returns the number of the next one.
+        refusals: number of beliefs from outside that were refused (`jacaros.bdi.state.bounded_beliefs`).
+        budget: how much may be searched; None for no limit.
+        engine: runs the rules.
+        held_percepts: for each perceived literal the annotations of the property that shows it, or a list of pairs
+            of annotations and entries if several do (decision 22).
         namespace_properties: properties that programs give to namespaces.
     """
 

@@ -36,10 +36,10 @@ class BoundedBeliefs(BeliefTables):
         return table
 
     def admits(self) -> bool:
-        """Whether there is room for one more.
+        """Return whether there is room for one more.
 
         Raises:
-            Failure: there is none, and it is a step that adds it.
+            Failure: there is no room, and a step adds the belief.
         """
         if self._held < self._limit:
             return True

@@ -1,8 +1,10 @@
-"""Budgets: how much of something an agent may hold at the same time (agent options ``belief_limit``, ``event_limit``,
+"""Budgets: how much of something an agent may hold at the same time (agent options ``belief_limit``,
+``event_limit``,
 ``intention_limit`` and ``mailbox_limit``), and how much it may search in one cycle (``search_limit``).
 
-A program that never stops growing loses some of its goals, with a reason, and not the memory of the whole run.  A search
-without end would leave nobody a turn; agents without that option count nothing.
+A program that never stops growing loses some of its goals, with a reason, instead of exhausting the memory of
+the run. An
+endless search would block all other agents; agents without that option count nothing.
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -68,8 +70,8 @@ class Budget:
             raise self.failure(held, details)
         self.refusals += 1
         if _is_worth_a_line(self.refusals):
-            count = "" if self.refusals == 1 else f" ({self.refusals} by now)"
-            text = f"{self._what} from outside are refused{count}: {self._message(held, details)}"
+            count = "" if self.refusals == 1 else f" ({self.refusals} so far)"
+            text = f"refusing {self._what} from outside{count}: {self._message(held, details)}"
             self._holder.architecture.log("error", text)
 
     def note_loss(self) -> int:

@@ -73,15 +73,15 @@ class Functions:
 
 
 class Incoming:
-    """What has come in, and has not been looked at yet.
+    """Input that has not been taken in yet.
 
     Attributes:
         messages: received.
         percepts: noticed, in groups that belong together.
-        tasks: housekeeping for the beginning of the next cycle: functions, and their arguments behind the agent.
-        called: something may want to be looked at besides events and intentions: what is here, restless conditions that
-            intentions wait for, a suspension, or because the agent has special features or its selections are not plain.
-            Whoever adds to one of them sets it.
+        tasks: housekeeping for the beginning of the next cycle: functions, and their arguments after the agent.
+        called: there may be something to look at besides events and intentions: the input here, restless conditions that
+            intentions wait for, a suspension, special features of the agent, or selections that are not plain.
+            Code that adds to one of them sets it.
     """
 
     __slots__ = ("called", "messages", "percepts", "tasks")
@@ -139,16 +139,16 @@ class HeldEvent(NamedTuple):
 
 
 class Observers:
-    """Who is told of the goals of an agent, and of its reasons.
+    """Observers of an agent's goals and reasons.
 
     Attributes:
-        goal: told of each goal that changes, or None, see `jacaros.bdi.rules.meta_events.observe_goals`.
-        lost: called with what people are told of each lost goal (first line, further lines, place), or None.
+        goal: called with each goal that changes, or None, see `jacaros.bdi.rules.meta_events.observe_goals`.
+        lost: called with the description of each lost goal (first line, further lines, place), or None.
         step: may hold the agent before an event or a step, or None, see `jacaros.bdi.rules.holding.observe_steps`.
-        mind: told of plans, beliefs and messages, or None; see `jacaros.bdi.rules.meta_events.observe_mind`.
+        mind: observes plans, beliefs and messages, or None; see `jacaros.bdi.rules.meta_events.observe_mind`.
         derived: derives beliefs from others, or None; see `jacaros.bdi.rules.deriving`.
-        hear_beliefs: whether there is one of the last three.
-        usual_events: what the feature of this name was before `step` was there.
+        hear_beliefs: whether one of the last three is set.
+        usual_events: the feature of this name before `step` was set.
     """
 
     __slots__ = ("derived", "goal", "hear_beliefs", "lost", "mind", "step", "usual_events")
@@ -181,18 +181,18 @@ class Counts:
 
 
 class Waits:
-    """What the intentions of an agent wait for, and what has been put off.
+    """What the intentions of an agent wait for, and what has been postponed.
 
     Attributes:
-        events: those who wait for an event.
-        conditions: those who wait for a condition.
-        acts: those who wait for an external action, by its number.
-        questions: those who wait for an answer, by the id of the question.
-        abandoned: ids of questions that nobody waits for any more: an answer that still comes is thrown away.
+        events: waits for an event.
+        conditions: waits for a condition.
+        acts: waits for an external action, by its number.
+        questions: waits for an answer, by the id of the question.
+        abandoned: ids of questions that no intention waits for: a late answer is discarded.
         alarms: calls that are due at a moment, by number.
         alarms_made: number of alarms so far.
         suspended_events: goal events whose goal was suspended before it became an intention.
-        needs: the resources that plans and goals have asked for, by the number of the act.
+        needs: the resources that plans and goals have requested, by the number of the act.
         preempted: the acts that have lost a resource: why, and the intentions that are suspended for it.
         requeued: external events without plan that are to be tried again (``events=requeue``).
     """
@@ -226,17 +226,17 @@ class Waits:
 
 
 class Features:
-    """What the plans and options of an agent make it look at in each cycle.
+    """What the plans and options of an agent require in each cycle.
 
     Attributes:
-        meta: plans or an observer want to hear of changes of goal states.
-        meta_plans: plans want to.
+        meta: plans or an observer react to changes of goal states.
+        meta_plans: plans do.
         goal_conditions: plans have goal conditions, which are tested in every cycle.
         subplans: plans have plans of their own.
         needs: plans or goals need resources.
-        special: meta, goal_conditions, subplans or needs, or an observer hears of its reasons or may hold the agent.
+        special: meta, goal_conditions, subplans or needs, or an observer of its reasons, or one that may hold the agent.
         edges: there may be plans for falling asleep and awaking.
-        usual_events: external events without a plan are passed over, events of belief changes in plans belong to the
+        usual_events: external events without a plan are skipped, events of belief changes in plans belong to the
             intentions that made them, and no agent class is asked about these changes.
     """
 
@@ -264,33 +264,33 @@ class Circumstance:
         name: of the agent.
         architecture: the port to its host.
         options: how it handles events, and what it may use.
-        engine: carries out plans and rules.
-        trail: bindings of the search under way; empty between two steps.
-        beliefs, library: what it believes, and its plans.
+        engine: runs plans and rules.
+        trail: bindings of the current search; empty between two steps.
+        beliefs, library: its beliefs, and its plans.
         functions: its arithmetic functions.
-        features: what its plans and options make it look at.
-        incoming: what has come in, and is taken in at the beginning of the next cycle.
+        features: what its plans and options require.
+        incoming: input, taken in at the beginning of the next cycle.
         events: the queue of events, oldest first.
         intentions: those that can run, in turn; others are waiting, suspended, or in an event.
-        crowd: intentions for goals that the agent set itself beside `CROWD` others that can run: they join these as others
-            end, and one in each turn anyway, so that an agent that sets itself more and more goals keeps its other plans.
+        crowd: intentions for goals that the agent set itself while `CROWD` others can run. They join these as others end,
+            and one in each turn anyway, so that an agent with more and more goals of its own keeps running its other plans.
         alive: every intention that is not over, by id.
         selections: which message, event, plan and intention goes first.
-        current: the intention whose step is being made.
+        current: the intention whose step is running.
         atomic: the intention that has an atomic plan on its stack, or None.
         atomic_over: its atomic plan has ended; it still makes its next step before others have their turn.
         outer_frame: frame of the plan whose sub-plans are being tried.
-        waits: what intentions wait for, and what has been put off.
-        budgets: what refuses more than a limit allows, by the name of the option.
-        observers: who is told of goals and reasons.
+        waits: what intentions wait for, and what has been postponed.
+        budgets: limits, by the name of the option.
+        observers: observers of goals and reasons.
         counts: how much it has done.
-        context: the view of itself that it gives to internal actions.
+        context: the view of itself that it passes to internal actions.
         held: the event or intention before which an observer holds the agent, in the middle of a reasoning cycle; it is in
-            its queue meanwhile.  None when the agent is not held.
-        running: the agent has its turn: whoever gave it finds out at its end whether there is more to do.
+            its queue meanwhile. None if the agent is not held.
+        running: the agent has its turn: at its end, the host checks whether there is more to do.
         stopped: the agent is over.
-        sleep: ``drowsy``: it has had nothing to do since it last awoke, and has been told so; ``asleep``: and has done what
-            its plans do before sleep.
+        sleep: ``drowsy``: it is idle since it last awoke, and has got the event for it; ``asleep``: its plans for it
+            have run.
     """
 
     __slots__ = (
@@ -372,16 +372,16 @@ class Circumstance:
         self.stopped = False
 
     def warn_of_operand(self, what: str, value: Term) -> None:
-        """Take note of an operand that is no number."""
-        self.architecture.log("warning", f"{what} is no number: {text(value)}")
+        """Warn of an operand that is not a number."""
+        self.architecture.log("warning", f"{what} is not a number: {text(value)}")
 
     def cause_now(self) -> Cause | None:
-        """Return what led to what the agent is doing, as far as it is observed."""
+        """Return the cause of what the agent is doing, as far as it is observed."""
         observer = self.observers.mind
         return None if observer is None else observer.cause()
 
     def new_intention(self, cause: Any = None) -> Intention:
-        """An intention with a number of its own; it is not in any queue yet."""
+        """Make an intention with a new number; it is not in any queue yet."""
         self.counts.intentions += 1
         intention = Intention(self.counts.intentions, cause)
         self.alive[intention.id] = intention
@@ -398,7 +398,7 @@ class Circumstance:
             self.architecture.ready()
 
     def finish(self, intention: Intention) -> None:
-        """An intention is over; what it waits for is cancelled."""
+        """End an intention; what it waits for is cancelled."""
         intention.dropped = True
         if intention.frames:
             if self.observers.goal is not None:
@@ -416,7 +416,9 @@ class Circumstance:
             self.drop_wait(waiting)
 
     def may_handle(self, kind: Trigger) -> bool:
-        """Whether there may be a plan for an event kind (sub-plans are looked at when the event is taken)."""
+        """Return whether there may be a plan for an event kind (sub-plans are checked when the event is
+        handled).
+        """
         return self.features.subplans or self.library.selects[kind] is not None
 
     def do_soon(self, function: Callable[..., None], *arguments: object) -> None:
@@ -430,13 +432,13 @@ class Circumstance:
         self.events.append(event)
 
     def note(self, kind: Trigger) -> None:
-        """An event of a kind is about to be queued, or handled at once."""
+        """Prepare for an event of a kind that is about to be queued or handled."""
         urgencies = self.selections.urgencies
         if urgencies is not None and urgencies[kind]:
             self.selections.rank()
 
     def post(self, event: Event) -> None:
-        """Put an event at the end of the queue, and resume those who wait for it."""
+        """Put an event at the end of the queue, and resume the intentions that wait for it."""
         if (
             len(self.events) >= self.options.event_limit or len(self.alive) >= self.options.intention_limit
         ) and not self._admits(event):
@@ -448,7 +450,7 @@ class Circumstance:
             self.notify_event_waits(event)
 
     def _admits(self, event: Event) -> bool:
-        """Whether an event may still come into the queue: one that an existing intention waits for may.
+        """Return whether an event may still be queued: one that an existing intention waits for may.
 
         Raises:
             Failure: it may not, and a step posts it.
@@ -462,19 +464,19 @@ class Circumstance:
         return False
 
     def line_up(self, intention: Intention) -> None:
-        """Put a new intention for a goal that the agent set itself behind all others, now that there are `CROWD`."""
+        """Put a new intention for a goal that the agent set itself last, as there are `CROWD` others."""
         (self.crowd if self.selections.may_line_up(intention) else self.intentions).append(intention)
 
     def is_in_turn(self, intention: Intention) -> bool:
-        """Whether an intention waits for its turn."""
+        """Return whether an intention waits for its turn."""
         return intention in self.intentions or intention in self.crowd
 
     def let_in(self) -> None:
-        """Let intentions of the crowd take part: as many as there is room for, and one anyway."""
+        """Let intentions of the crowd take part: as many as there is room for, and at least one."""
         intentions, crowd = self.intentions, self.crowd
         for _ in range(min(len(crowd), max(1, CROWD - len(intentions)))):
             intentions.append(crowd.popleft())
 
     def is_idle(self) -> bool:
-        """Whether there is nothing to do until something comes from outside or a timer ends."""
+        """Return whether there is nothing to do until input arrives or a timer ends."""
         return not (self.events or self.intentions or self.crowd or self.incoming)

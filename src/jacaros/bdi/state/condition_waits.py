@@ -64,7 +64,7 @@ class ConditionObserver:
 
     @property
     def ended(self) -> bool:
-        """Whether nobody waits any longer."""
+        """Whether the wait is over."""
         raise NotImplementedError
 
     def holds(self) -> bool:
@@ -86,7 +86,7 @@ class ConditionWatch:
     Attributes:
         condition: the condition.
         asked, number: as in `ConditionWait`.
-        ended: whether it is not watched any more.
+        ended: whether the watch is over.
     """
 
     __slots__ = ("asked", "condition", "ended", "number")
@@ -127,7 +127,7 @@ class ConditionWaits(dict[int, AnyWait]):
             by_values.setdefault(values, {})[wait.number] = wait
 
     def remove(self, wait: AnyWait) -> None:
-        """Wait no more; nothing happens if it is over already."""
+        """End a wait; no effect if it is already over."""
         if self.pop(wait.number, None) is None:
             return
         self.restless.pop(wait.number, None)

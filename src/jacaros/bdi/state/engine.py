@@ -1,4 +1,4 @@
-"""The port of plans and rules to what carries them out."""
+"""The port of plans and rules to the engine that runs them."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, Protocol
@@ -19,24 +19,25 @@ Every = Callable[[Any, Goal, EventAnnotations], Iterator[Frame]]
 
 
 class CodeCache(Protocol):
-    """The port to where generated code is kept from run to run; the mind itself reads and writes no files.
+    """The port to a store of generated code between runs; the mind itself reads and writes no files.
 
-    What it returns is executed.  So it must return only what was put there under the same key, by the same version of this
+    What it returns is executed. So it must return only what was put there under the same key, by the same
+    version of this
     package and of Python.
     """
 
     def get(self, key: bytes) -> bytes | None:
-        """What is kept under a key, immediately; None when there is nothing."""
+        """Return what is kept under a key, immediately; None if there is nothing."""
 
     def put(self, key: bytes, entry: bytes) -> None:
-        """Keep an entry, now or later; nothing fails when that is impossible."""
+        """Keep an entry, now or later; never fails."""
 
 
 class Engine(Protocol):
-    """What carries out the plans and rules of a program, for all agents that run it.
+    """Runs the plans and rules of a program, for all agents with that program.
 
     `jacaros.bdi.rules.interpreter.Interpreter` does it as the rules of the language say,
-    `jacaros.bdi.fast.compiler.Compiler` by code that it generates.
+    `jacaros.bdi.fast.compiler.Compiler` with code that it generates.
     """
 
     @property

@@ -22,21 +22,21 @@ STEP, GOAL, ANNOTATIONS, SERIAL, PLAN, FIRST_SLOT = range(6)
 
 
 class Intention:
-    """One thing the agent is doing.
+    """An intention of the agent.
 
     Attributes:
-        id: number, for programs and people.
+        id: number, for programs and logs.
         frames: the stack, bottom first.
         handlers: for each failure handler on the stack, to which height it is cut when the handler ends.
         suspended: why it is suspended (a term for ``.suspended``), or None.
         parked: it could run, but is suspended.
         waiting: what it waits for (`Waiting`), or None.
-        dropped: it is over; whoever still holds it lets it go.
+        dropped: it is over; code that still holds it must release it.
         cause: why it was adopted.
         forks: the forks it is a branch of, outermost first, with the number of the branch.
-        outer: intention and frame whose sub-plan reacts here to something outside, or None.
-        urgencies: the urgency of each frame with those below it; only there when the agent has urgent plans.
-        on_failed: what is called in place of the usual warning when it ends in failure, with the agent and the reason
+        outer: intention and frame whose sub-plan reacts here to an external event, or None.
+        urgencies: the urgency of each frame with those below it; only if the agent has urgent plans.
+        on_failed: called instead of the usual warning when it ends in failure, with the agent and the reason
             (`FailureReason`, or None), and the arguments that follow these; or None.
     """
 

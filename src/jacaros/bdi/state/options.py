@@ -8,23 +8,23 @@ class Options:
     """How an agent handles its events.
 
     Attributes:
-        events: what becomes of external events without a plan: ``discard``; ``requeue``, they wait until there is one;
-            ``retrieve``, the choice among no plans is left to the selection function, and is none without one.
+        events: what happens to external events without a plan: ``discard``; ``requeue``, they wait until there is one;
+            ``retrieve``, the selection function chooses among no plans, and selects none by default.
         new_focus: belief changes of plans are handled as intentions of their own (``intBels=newFocus``).
         tail_calls: a plan whose last formula calls its own goal again is replaced by the new one (``tro``).
-        verbose: what people are told of the agent besides what it prints: 0 only trouble, 2 details as well.
-        percept_interval: percepts and messages are looked at every so many cycles (``nrcbp``), and when there is nothing
-            else to do.
+        verbose: how much is logged about the agent besides its output: 0 only problems, 2 details as well.
+        percept_interval: percepts and messages are taken in every that number of cycles (``nrcbp``), and when the agent
+            is idle.
         urgency: names of events, with the urgency of all plans for them (`jacaros.bdi.rules.urgency`).
-        rule_depth: how many rules and conditions may be open at the same time in one search; one more and it fails
+        rule_depth: maximum number of rules and conditions open at the same time in one search; one more fails it
             (some kilobytes each).
-        goal_depth: how many plans may be on the stack of an intention; a goal that would be one more fails (a quarter
+        goal_depth: maximum number of plans on the stack of an intention; a goal that exceeds it fails (a quarter
             of a kilobyte each, and what the plans hold).
-        search_limit: how many rules may be called, and answers of internal actions taken, in one cycle; 0 for any number.
-        belief_limit: how many beliefs there may be.
-        event_limit: how many events may wait.
-        intention_limit: how many intentions there may be.
-        mailbox_limit: how many messages may wait.
+        search_limit: maximum number of calls of rules and answers of internal actions in one cycle; 0 for no limit.
+        belief_limit: maximum number of beliefs.
+        event_limit: maximum number of waiting events.
+        intention_limit: maximum number of intentions.
+        mailbox_limit: maximum number of waiting messages.
         plans_from_others: whether plans of messages (``tellHow``) are added.
     """
 

@@ -121,7 +121,9 @@ class Plan:
 
     @property
     def slots(self) -> dict[str, int]:
-        """Index in the frame by variable name.  A variable that is mentioned once has none: nobody reads its value."""
+        """Index in the frame by variable name. A variable that is mentioned once has none: its value is never
+        read.
+        """
         if self._slots is None:
             node = self.node
             own = occurrences(node.trigger, node.context, node.body, node.goal_condition, self.guards)
@@ -130,7 +132,7 @@ class Plan:
             calls = nodes_in(nodes.InternalAction, node.body) if self.by_name else ()
             by_name = any(call.name in self.by_name for call in calls)
             kept = [n for n, count in own.items() if by_name or count + inner.get(n, 0) + (n in outer) > 1]
-            kept += [n for n in inner if n in outer and n not in own]  # taken over, to be handed on
+            kept += [n for n in inner if n in outer and n not in own]  # taken over, to be passed on
             self._slots = {name: FIRST_SLOT + index for index, name in enumerate(kept)}
         return self._slots
 
@@ -171,7 +173,9 @@ def position_of(step: Any) -> str:
 
 
 def _urgency(annotations: tuple[Term, ...]) -> int:
-    """The greatest whole number from 0 on in an annotation ``urgency(N)``; the checker tells of what is none."""
+    """Return the greatest non-negative integer in an annotation ``urgency(N)``; the checker warns of invalid
+    ones.
+    """
     found = [
         a[1] for a in annotations if a.__class__ is tuple and a[0] is URGENCY and a[1].__class__ is float
     ]
@@ -179,7 +183,7 @@ def _urgency(annotations: tuple[Term, ...]) -> int:
 
 
 def guards_of(node: nodes.Plan) -> tuple[nodes.Literal, ...]:
-    """The annotations of a label that say what must hold while the plan runs."""
+    """Return the annotations of a label that must hold while the plan runs."""
     annotations = node.label.annotations if isinstance(node.label, nodes.Literal) else None
     return tuple(
         item

@@ -17,14 +17,15 @@ _BY_SELF = (SELF,)
 class ProgramPlans:
     """Plans in the order of the program, and the select functions made from them so far.
 
-    A plan changes no more once it is made; what an agent adds or removes at run time is its own library's business.
+    A plan does not change once it is made; what an agent adds or removes at run time is kept in its own
+    library.
 
     Args:
         plan_nodes: the syntax.
-        engine: carries them out.
+        engine: runs them.
 
     Attributes:
-        by_name: internal actions that reach variables by their names.
+        by_name: internal actions that access variables by name.
         has_subplans: whether any plan has plans of its own.
         has_goal_conditions: whether any plan, or plan of a plan, has a goal condition.
         has_meta_plans: whether any plan reacts to changes of goal states (``^!g``).
@@ -141,10 +142,10 @@ class PlanLibrary:
     Attributes:
         program: the plans that it began with; as long as no other plan concerns an event, their select function is shared
             with all agents of the program.
-        selects: the select functions; as long as no plan has come or gone they are those of the program.
-        plans_made: number of plans so far, for the labels of those that have none.
+        selects: the select functions; as long as no plan has been added or removed they are those of the program.
+        plans_made: number of plans so far, for the labels of plans without one.
         bodies: plan bodies held by variables, as plans.
-        blamed: plans whose goal condition cannot be evaluated, as people have been told.
+        blamed: plans whose goal condition could not be evaluated, and has been reported.
     """
 
     __slots__ = (
@@ -227,11 +228,11 @@ class PlanLibrary:
         )
 
     def sources(self, plan: Plan) -> tuple[Term, ...]:
-        """Who told a plan; it goes when nobody is left."""
+        """Return the sources of a plan; it is removed when none is left."""
         return self._sources.get(plan, _BY_SELF)
 
     def set_sources(self, plan: Plan, sources: Sequence[Term]) -> None:
-        """Note who told a plan."""
+        """Set the sources of a plan."""
         self._sources[plan] = tuple(sources)
 
     def label(self, plan: Plan) -> Term:

@@ -1,19 +1,19 @@
-"""What agents say to each other."""
+"""Messages between agents."""
 
 from jacaros.terms.values import Term
 
 
 class SpeechAct:
-    """A message between agents (KQML).  Nobody changes one that has been sent.
+    """A message between agents (KQML). Never changed once it has been sent.
 
     Attributes:
         performative: ``tell``, ``achieve``, ``askOne`` … in Jason's spelling.
-        sender: name of the agent that says it, ``self`` in messages to oneself.
-        receiver: name of the agent it is for.
-        content: a term; a copy of its own, so that no variable is shared between agents.
+        sender: name of the sending agent, ``self`` in messages to oneself.
+        receiver: name of the receiving agent.
+        content: a term; a copy, so that agents share no variables.
         in_reply_to: id of the question that this message answers, or None.
         flat: the content is known to be an atom, or a structure of atoms, numbers and strings: it need not be
-            copied nor looked into; False when nobody has looked.
+            copied or searched; False if this has not been checked.
     """
 
     __slots__ = ("_id", "content", "flat", "in_reply_to", "performative", "receiver", "sender")
@@ -31,8 +31,8 @@ class SpeechAct:
         """Make a message.
 
         Args:
-            id: unique in the system; or the number of the message among those of its sender, which the id is made
-                of when somebody asks for it.
+            id: unique in the system; or the number of the message among those of its sender, from which the id is made
+                on demand.
         """
         self.performative = performative
         self.sender = sender
@@ -44,13 +44,13 @@ class SpeechAct:
 
     @property
     def id(self) -> str:
-        """Name of the message, unique in the system, such as ``mid7_ann``."""
+        """Id of the message, unique in the system, such as ``mid7_ann``."""
         if isinstance(self._id, int):
             self._id = message_id(self._id, self.receiver if self.sender == "self" else self.sender)
         return str(self._id)
 
     def with_content(self, content: Term) -> "SpeechAct":
-        """The same message with another content."""
+        """Return the same message with another content."""
         return SpeechAct(self.performative, self.sender, self.receiver, content, self._id, self.in_reply_to)
 
     def __repr__(self) -> str:
@@ -58,5 +58,5 @@ class SpeechAct:
 
 
 def message_id(number: int, sender: str) -> str:
-    """The id of a message; numbers are unique for its sender."""
+    """Return the id of a message; numbers are unique for its sender."""
     return f"mid{number}_{sender}"

@@ -1,6 +1,8 @@
-"""What supervises a goal or a plan while it is pursued, as data: deadlines, attempts, periods, and conditions.
+"""The supervision of a goal or a plan while it is pursued, as data: deadlines, attempts, periods, and
+conditions.
 
-It is held by a frame of its own on the stack of the intention, right below the frame of the goal or plan that it is for.
+A frame of its own holds it on the stack of the intention, right below the frame of the goal or plan that it
+supervises.
 That frame is reached when the goal or plan has ended.
 """
 
@@ -15,13 +17,13 @@ from jacaros.terms.values import Term, functor
 SUPERVISED = trigger("+", "", functor("supervised", 0, namespace="jacaros"))
 """The trigger of frames that hold a supervision."""
 PAUSE = functor("pause", 0, namespace="jacaros")
-"""The label of the plan of a frame that stands for a goal between two of its plans."""
+"""The label of the plan of a frame that represents a goal between two of its plans."""
 SUPERVISION = FIRST_SLOT
-"""The place of the supervision in such a frame; the arguments of a goal that is pursued follow."""
+"""The place of the supervision in such a frame; the arguments of a supervised goal follow."""
 
 
 class Supervision:
-    """What supervises one goal or plan.
+    """Supervises one goal or plan.
 
     Attributes:
         alarm: of its deadline; None without one, or when the goal or plan has ended.
@@ -34,19 +36,19 @@ class Supervision:
 
 
 class GoalSupervision(Supervision):
-    """How a goal is pursued: ``!g[within(Ms), retry(N, Ms), every(Ms)]``.
+    """Supervises a goal: ``!g[within(Ms), retry(N, Ms), every(Ms)]``.
 
     Attributes:
         kind: of the goal.
-        within: seconds in which the goal must be achieved, in each period; None for any time.
+        within: seconds in which the goal must be achieved, in each period; None for no limit.
         hard: the deadline is that of ``hard_deadline``.
-        retries: number of further attempts.
-        back_off: seconds before the second attempt; twice as many before each one that follows.
+        retries: maximum number of further attempts.
+        back_off: seconds before the second attempt; doubled before each further one.
         failed: number of attempts that have failed, in this period.
-        period: seconds from the beginning of one pursuit to the next; None for a goal that is pursued once.
+        period: seconds from the beginning of one period to the next; None for a goal that is pursued once.
         began: when period 0 began, in seconds since the Unix epoch.
         number: of the present period.
-        missed: number of periods that have been missed.
+        missed: number of missed periods.
     """
 
     __slots__ = (
@@ -75,17 +77,17 @@ class GoalSupervision(Supervision):
 
     @property
     def is_acting(self) -> bool:
-        """Whether there is anything to supervise."""
+        """Return whether there is anything to supervise."""
         return self.within is not None or self.retries > 0 or self.period is not None
 
 
 class PlanGuard(Supervision):
-    """What must hold while a plan runs: ``@p[while(Condition), within(Ms), cleanup(Goal)]``.
+    """Supervises a plan: ``@p[while(Condition), within(Ms), cleanup(Goal)]``.
 
     Attributes:
         watch: of the condition that must stay true, or None.
-        cleanup: the goal that is pursued when the condition does not hold any more, or None.
-        lost: why the plan is about to fail (`FailureReason`), once the condition does not hold any more.
+        cleanup: the goal that is pursued when the condition no longer holds, or None.
+        lost: why the plan is about to fail (`FailureReason`), once the condition no longer holds.
     """
 
     __slots__ = ("cleanup", "lost", "watch")
@@ -98,22 +100,24 @@ class PlanGuard(Supervision):
 
 
 def is_supervision(frame: Frame) -> bool:
-    """Whether a frame holds a supervision."""
+    """Return whether a frame holds a supervision."""
     return frame[GOAL][0] is SUPERVISED
 
 
 def caller_of(intention: Intention) -> Frame | None:
-    """Return the frame of the plan that has posted a goal without a frame; None when it was posted from outside."""
+    """Return the frame of the plan that has posted a goal without a frame; None if it was posted from
+    outside.
+    """
     return next((frame for frame in reversed(intention.frames) if not is_supervision(frame)), None)
 
 
 def is_pause(frame: Frame) -> bool:
-    """Whether a frame stands for a goal between two of its plans."""
+    """Return whether a frame represents a goal between two of its plans."""
     return frame[PLAN].label is PAUSE
 
 
 def supervisions_below(intention: Intention, index: int) -> list[Supervision]:
-    """Return what supervises the frame at *index*, or the goal that is about to get a frame there."""
+    """Return the supervisions of the frame at *index*, or of the goal that is about to get a frame there."""
     if not index or not is_supervision(intention.frames[index - 1]):
         return []
     found: list[Supervision] = []
@@ -125,7 +129,7 @@ def supervisions_below(intention: Intention, index: int) -> list[Supervision]:
 
 
 def place_of(intention: Intention, supervision: Supervision) -> int | None:
-    """Return the index of the frame that holds a supervision; None when the intention has none."""
+    """Return the index of the frame that holds a supervision, or None."""
     for index, frame in enumerate(intention.frames):
         if is_supervision(frame) and frame[SUPERVISION] is supervision:
             return index

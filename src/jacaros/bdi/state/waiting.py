@@ -1,7 +1,8 @@
-"""What an intention waits for, as data.  `jacaros.bdi.rules.waits` says what follows when a wait ends.
+"""What an intention waits for, as data. `jacaros.bdi.rules.waits` has the rules for the end of a wait.
 
-Waits for events (``.wait({+e})``) are found by the kind of event, so that the others that wait cost an event nothing; a
-wait for a condition stands with the index that finds it (`condition_waits`).
+Waits for events (``.wait({+e})``) are indexed by the kind of event, so an event is not compared with other
+waits; waits
+for conditions are in `condition_waits`, with their index.
 """
 
 from collections.abc import Callable, Iterator
@@ -13,14 +14,14 @@ from jacaros.bdi.state.triggers import Trigger
 from jacaros.terms.values import Functor, Term, atom, functor
 
 ACTION = functor("action", 1)
-"""Functor of the reason of those who wait for the end of an external action."""
+"""Functor of the reason of a wait for the end of an external action."""
 
 OWN_SUSPENSION = atom("suspended")
-"""Reason of the steps by which an intention suspends itself: its goals are suspended, they do not wait."""
+"""Reason of the steps by which an intention suspends itself: its goals are suspended, not waiting."""
 
 
 def is_action(reason: Term) -> bool:
-    """Whether what is waited for is an external action."""
+    """Return whether the wait is for an external action."""
     return reason.__class__ is tuple and reason[0] is ACTION
 
 
@@ -48,12 +49,12 @@ class Waiting:
     """A suspended step.
 
     Attributes:
-        intention: whose step it is.
+        intention: the intention of the step.
         reason: a term for ``.intention`` and ``.suspended``.
         frame: of the step, once the step has been suspended.
-        next_step: with which the frame goes on.
+        next_step: with which the frame continues.
         ended: the step has succeeded or failed, or its intention is gone.
-        failure: why the step failed: a message, and annotations that may hold an ``error(..)``; None when it succeeded.
+        failure: why the step failed: a message, and annotations that may contain an ``error(..)``; None if it succeeded.
         alarm: what ends the wait at a moment, or None.
     """
 
@@ -68,7 +69,7 @@ class Waiting:
         self.alarm: Alarm | None = None
 
     def attach(self, frame: Frame, next_step: NextStep) -> None:
-        """The step is suspended in *frame*, and goes on with *next_step*."""
+        """Suspend the step in *frame*, which continues with *next_step*."""
         self.frame, self.next_step = frame, next_step
         self.intention.waiting = self
 
@@ -84,10 +85,10 @@ class ActWait(Waiting):
 
 
 class TimedWait(Waiting):
-    """Waits for a time, and perhaps for something that comes before.
+    """Waits for a time, and perhaps for something earlier.
 
     Attributes:
-        elapsed: unified with the milliseconds that it took; None when nobody asks.
+        elapsed: unified with the milliseconds waited, or None.
         began: when it began, in seconds since the Unix epoch.
     """
 
@@ -102,10 +103,10 @@ class AnswerWait(Waiting):
     """Waits for the answers to a question.
 
     Attributes:
-        target: unified with the answer, or with the list of the answers.
+        target: unified with the answer, or with the list of answers.
         many: the question went to a list of agents.
-        expected: how many answers there will be.
-        answers: those that have come.
+        expected: number of expected answers.
+        answers: those received so far.
         ids: of the messages that asked.
     """
 
@@ -147,7 +148,9 @@ class HeldEnd(Waiting):
 
 
 class CoroutineWait(Waiting):
-    """Waits for a coroutine of the project.  It is a live object: a mind that waits for one cannot be stored."""
+    """Waits for a coroutine of the project. It is a live object: a mind that waits for one cannot be
+    stored.
+    """
 
     __slots__ = ("task",)
 
@@ -165,9 +168,9 @@ class EventWait(TimedWait):
     """Waits for an event.
 
     Attributes:
-        kind: of the events that may be meant; None for all.
-        pattern: what the literal of the event has to unify with.
-        number: it is the so-many-th wait of the agent.
+        kind: of the events; None for all.
+        pattern: unified with the literal of the event.
+        number: number of the wait in its agent.
     """
 
     __slots__ = ("kind", "number", "pattern")
@@ -187,25 +190,25 @@ class EventWait(TimedWait):
 
 
 class EventWaits(dict[Trigger | None, dict[int, EventWait]]):
-    """The waits of one agent: those for a kind of event, by their numbers; a kind without any has no entry."""
+    """The waits of one agent for events, by kind of event and number; kinds without waits have no entry."""
 
     def __init__(self) -> None:
         super().__init__()
         self._count = 0
 
     def add(self, wait: EventWait, number: int | None = None) -> None:
-        """Begin to wait; *number* is that of a wait that was stored."""
+        """Begin to wait; *number* is that of a stored wait."""
         self._count = wait.number = self._count + 1 if number is None else number
         self.setdefault(wait.kind, {})[wait.number] = wait
 
     def remove(self, wait: EventWait) -> None:
-        """Wait no more; nothing happens if it is over already."""
+        """End a wait; no effect if it is already over."""
         held = self.get(wait.kind)
         if held is not None and held.pop(wait.number, None) is not None and not held:
             del self[wait.kind]
 
     def candidates(self, kind: Trigger) -> Iterator[EventWait]:
-        """The waits that an event of that kind may end, in the order in which they began."""
+        """Yield the waits that an event of that kind may end, in the order in which they began."""
         own, all_ = self.get(kind), self.get(None)
         if all_ is None:
             return iter(() if own is None else list(own.values()))

@@ -57,7 +57,7 @@ def test_intersection_and_difference_change_the_first_set(mind: FakeContext) -> 
     assert text(first) == "{}"
 
 
-def test_a_copy_is_a_set_of_its_own(mind: FakeContext) -> None:
+def test_a_copied_set_is_independent(mind: FakeContext) -> None:
     first, copy = created(mind, "set"), Var("D")
     mind.succeeds(".set.add", first, 1)
     assert mind.succeeds(".set.copy", first, copy)
@@ -112,7 +112,7 @@ def test_a_key_is_removed_with_its_value(mind: FakeContext) -> None:
     assert text(collection) == "{}"
 
 
-def test_a_copy_is_a_map_of_its_own(mind: FakeContext) -> None:
+def test_a_copied_map_is_independent(mind: FakeContext) -> None:
     first, copy = created(mind, "map"), Var("D")
     mind.succeeds(".map.put", first, "a", 1)
     assert mind.succeeds(".map.copy", first, copy)
@@ -146,7 +146,7 @@ def test_a_priority_queue_gives_its_smallest_element_first(mind: FakeContext) ->
     assert [mind.result(".queue.remove", collection) for _ in range(3)] == ["t(1,a)", "t(3,c)", "t(5,e)"]
 
 
-def test_a_copy_is_a_queue_of_its_own(mind: FakeContext) -> None:
+def test_a_copied_queue_is_independent(mind: FakeContext) -> None:
     first, copy = created(mind, "queue", "priority"), Var("D")
     mind.succeeds(".queue.add_all", first, [2, 1])
     assert mind.succeeds(".queue.copy", first, copy)
@@ -184,7 +184,7 @@ CHANGES = [
 ]
 
 
-def test_every_action_on_collections_is_looked_at_here() -> None:
+def test_every_action_on_collections_is_tested_here() -> None:
     actions = {
         name for name in STANDARD if name.split(".")[1] in ("set", "map", "queue") and name.count(".") == 2
     }
@@ -202,7 +202,7 @@ def test_an_unbound_variable_becomes_a_collection(
 
 @pytest.mark.parametrize(("action", "arguments", "made"), CHANGES)
 @pytest.mark.parametrize("other", [lambda: 1.0, lambda: term(["a"]), SetValue, MapValue, QueueValue])
-def test_anything_else_in_its_place_is_wrong(
+def test_any_other_first_argument_is_wrong(
     mind: FakeContext, action: str, arguments: tuple[object, ...], made: str, other: Callable[[], Term]
 ) -> None:
     value = other()
@@ -215,6 +215,6 @@ def test_anything_else_in_its_place_is_wrong(
 @pytest.mark.parametrize(
     "action", [".set.add_all", ".set.union", ".set.intersection", ".set.difference", ".queue.add_all"]
 )
-def test_only_lists_sets_and_queues_have_elements_to_take(mind: FakeContext, action: str) -> None:
+def test_only_lists_sets_and_queues_have_elements(mind: FakeContext, action: str) -> None:
     with pytest.raises(WrongArguments, match="the second argument"):
         mind.succeeds(action, Var("C"), "a")

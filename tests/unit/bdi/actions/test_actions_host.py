@@ -123,7 +123,7 @@ def test_create_agent_names_the_classes(mind: FakeContext) -> None:
 
 def test_create_agent_fails_when_the_host_cannot(mind: FakeContext) -> None:
     mind.architecture.broken = True
-    with pytest.raises(ActionError, match="dora could not be made"):
+    with pytest.raises(ActionError, match="dora could not be created"):
         mind.succeeds(".create_agent", "dora", String("x.asl"))
 
 
@@ -165,7 +165,7 @@ def test_stop_mas_needs_numbers(mind: FakeContext, arguments: tuple[object, ...]
         mind.succeeds(".stopMAS", *arguments)
 
 
-def test_stop_mas_is_no_condition() -> None:
+def test_stop_mas_is_not_a_condition() -> None:
     assert STANDARD[".stopMAS"].suspends
 
 

@@ -49,12 +49,12 @@ def test_length_fails_for_another_number_or_kind_of_term(mind: FakeContext) -> N
 
 
 @pytest.mark.parametrize("collection", [[], String(""), set_of(), queue(), MapValue()])
-def test_empty_holds_for_what_has_no_elements(mind: FakeContext, collection: object) -> None:
+def test_empty_holds_for_empty_collections(mind: FakeContext, collection: object) -> None:
     assert mind.succeeds(".empty", collection)
 
 
 @pytest.mark.parametrize("collection", [["a"], String("a"), set_of(1), "a", 0, Var("X")])
-def test_empty_fails_for_all_else(mind: FakeContext, collection: object) -> None:
+def test_empty_fails_for_other_terms(mind: FakeContext, collection: object) -> None:
     assert not mind.succeeds(".empty", collection)
 
 
@@ -73,12 +73,12 @@ def test_member_looks_for_elements_that_unify(mind: FakeContext) -> None:
     assert mind.instances(".member", ("b", item), collection, of=item) == ["1", "3"]
 
 
-def test_member_forgets_what_a_failed_attempt_bound(mind: FakeContext) -> None:
+def test_member_undoes_the_bindings_of_a_failed_attempt(mind: FakeContext) -> None:
     item = Var("X")
     assert mind.instances(".member", ("p", item, "z"), [("p", 1, "a"), ("p", 2, "z")], of=item) == ["2"]
 
 
-def test_member_wants_the_annotations_of_the_pattern_in_the_element(mind: FakeContext) -> None:
+def test_member_requires_the_annotations_of_the_pattern(mind: FakeContext) -> None:
     assert mind.succeeds(".member", "p", [annotated("p", "a")])
     assert not mind.succeeds(".member", annotated("p", "a"), ["p"])
 
@@ -129,7 +129,7 @@ def test_nth_takes_strings_by_characters(mind: FakeContext) -> None:
 
 @pytest.mark.parametrize("index", [-1, 3, 5])
 def test_nth_without_such_a_position_is_an_error(mind: FakeContext, index: int) -> None:
-    with pytest.raises(ActionError, match=f"no position {index} in 3 elements"):
+    with pytest.raises(ActionError, match=f"position {index} is outside the 3 elements"):
         mind.succeeds(".nth", index, ["a", "b", "c"], Var("X"))
 
 
@@ -148,9 +148,9 @@ def test_concat_joins_lists(mind: FakeContext) -> None:
     assert not mind.succeeds(".concat", ["a"], ["b"], ["b", "a"])
 
 
-def test_concat_keeps_the_open_end_of_the_last_list(mind: FakeContext) -> None:
+def test_concat_keeps_the_open_tail_of_the_last_list(mind: FakeContext) -> None:
     assert mind.result(".concat", ["a"], make_list([atom("b")], Var("T"))) == "[a,b|T]"
-    with pytest.raises(ActionError, match="open end"):
+    with pytest.raises(ActionError, match="open tail"):
         mind.succeeds(".concat", make_list([atom("b")], Var("T")), ["a"], Var("R"))
 
 
@@ -195,7 +195,7 @@ def test_concat_refuses_a_list_with_something_else(mind: FakeContext) -> None:
         ((Var("Any"), ["a", 1, "a"]), "[1]"),
     ],
 )
-def test_delete_leaves_out(mind: FakeContext, arguments: tuple[object, ...], rest: str) -> None:
+def test_delete_removes_elements(mind: FakeContext, arguments: tuple[object, ...], rest: str) -> None:
     assert mind.result(".delete", *arguments) == rest
 
 
@@ -205,7 +205,7 @@ def test_delete_binds_nothing_in_its_pattern(mind: FakeContext) -> None:
     assert text(pattern) == "X"
 
 
-def test_delete_fails_when_the_rest_is_another(mind: FakeContext) -> None:
+def test_delete_fails_for_another_result(mind: FakeContext) -> None:
     assert not mind.succeeds(".delete", "a", ["a", "b"], [])
 
 
@@ -217,7 +217,7 @@ def test_delete_needs_a_list(mind: FakeContext) -> None:
 
 
 def test_delete_refuses_a_wrong_regular_expression(mind: FakeContext) -> None:
-    with pytest.raises(ActionError, match="no regular expression"):
+    with pytest.raises(ActionError, match="invalid regular expression"):
         mind.succeeds(".delete", String("("), String("b"), Var("R"))
 
 

@@ -72,7 +72,7 @@ def test_bindings_are_applied_to_a_content_and_variables_are_new() -> None:
         (".send(friend, tell, p, 1)", "wrong_arguments"),
     ],
 )
-def test_what_cannot_be_sent_fails_the_step(body: str, error: str) -> None:
+def test_a_message_that_cannot_be_sent_fails_the_step(body: str, error: str) -> None:
     host = sent(body)
     assert host.printed == [error]
     assert [message.receiver for message in host.sent] == (["nobody"] if "nobody" in body else [])
@@ -95,7 +95,7 @@ def test_an_answer_names_its_question() -> None:
     assert host.sent[0].in_reply_to == "mid5_friend"
 
 
-def test_only_what_is_written_out_is_known_early() -> None:
+def test_only_constant_arguments_are_specialised() -> None:
     direct = STANDARD[".send"].direct
     assert direct is not None
     assert direct((atom("bob"), atom("tell"), None)) is not None

@@ -127,7 +127,7 @@ def test_log_needs_a_level(mind: FakeContext, level: object) -> None:
         mind.succeeds(".log", level)
 
 
-def test_verbose_sets_what_is_told(mind: FakeContext) -> None:
+def test_verbose_sets_the_level_of_logging(mind: FakeContext) -> None:
     assert mind.succeeds(".verbose", 2)
     assert mind.agent.options.verbose == 2
 

@@ -28,7 +28,7 @@ CASES = [(name, arity) for arity, names in ARITIES.items() for name in names.spl
 
 
 @pytest.mark.parametrize(("name", "arity"), CASES)
-def test_each_action_takes_so_many_arguments(name: str, arity: tuple[int, int | None]) -> None:
+def test_each_action_takes_its_number_of_arguments(name: str, arity: tuple[int, int | None]) -> None:
     action = STANDARD[name]
     assert (action.minimum, action.maximum) == arity
 

@@ -48,7 +48,7 @@ def test_substring_cuts_out_a_part(mind: FakeContext) -> None:
 
 @pytest.mark.parametrize("bounds", [(-1,), (4,), (2, 1), (0, 9)])
 def test_substring_refuses_positions_outside_of_the_text(mind: FakeContext, bounds: tuple[int, ...]) -> None:
-    with pytest.raises(ActionError, match="in 3 characters"):
+    with pytest.raises(ActionError, match="outside the 3 characters"):
         mind.succeeds(".substring", Var("X"), String("abc"), *bounds)
 
 
@@ -111,7 +111,7 @@ def test_java_expressions_are_understood(source: str, pattern: str, by: str, rep
         ("(", ""),
     ],
 )
-def test_what_is_beyond_java_expressions_is_refused(pattern: str, by: str) -> None:
+def test_unsupported_expressions_are_refused(pattern: str, by: str) -> None:
     with pytest.raises(ValueError, match="'"):
         replace_all("a", pattern, by)
 
@@ -144,7 +144,7 @@ def test_term2string_reads_terms(mind: FakeContext) -> None:
     assert text(other) == "b"
 
 
-def test_text_that_is_no_term_becomes_an_atom(mind: FakeContext) -> None:
+def test_text_that_is_not_a_term_becomes_an_atom(mind: FakeContext) -> None:
     read = Var("T")
     assert mind.succeeds(".term2string", read, String("not a ( term"))
     assert mind.succeeds(".atom", read)

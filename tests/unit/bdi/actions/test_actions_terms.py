@@ -14,7 +14,7 @@ def source(name: str, *nested: Term) -> Term:
     return Annotated(told, nested) if nested else told
 
 
-def test_copies_have_variables_of_their_own(mind: FakeContext) -> None:
+def test_copies_have_new_variables(mind: FakeContext) -> None:
     first, second, copy = Var("A"), Var("B"), Var("C")
     for action in (".copy_term", ".rename_apart"):
         assert mind.succeeds(action, ("f", first, second, first, 1), copy)

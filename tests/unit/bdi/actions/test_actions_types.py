@@ -69,7 +69,7 @@ def test_an_unknown_type_is_the_type_of_nothing(mind: FakeContext) -> None:
     assert not mind.succeeds(".type", 1, "integer")
 
 
-def test_the_empty_list_is_no_atom(mind: FakeContext) -> None:
+def test_the_empty_list_is_not_an_atom(mind: FakeContext) -> None:
     assert not mind.succeeds(".atom", [])
     assert not mind.succeeds(".literal", [])
 

@@ -59,7 +59,7 @@ def test_the_class_of_several_is_that_with_the_agents_name_or_the_one_that_is_na
         (
             "class A(PythonAgent):\n    def run(self): ...",
             "a a.py",
-            "a.py:2: TypeError: A.run is no coroutine: write async def run",
+            "a.py:2: TypeError: A.run is not a coroutine: write async def run",
         ),
         ("class A(PythonAgent):\n    def __init__(self): 1/0", "a a.py", "a.py:3, in __init__)"),
         ("class A(PythonAgent:", "a a.py", "a.py:2: "),

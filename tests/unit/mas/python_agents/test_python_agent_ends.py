@@ -164,7 +164,7 @@ async def run(self):
 def test_what_it_may_not_do_in_its_constructor_is_told(tmp_path: Path) -> None:
     result = alone(tmp_path, "def __init__(self):\n    self.print(1)")
     assert (
-        "A cannot be made: JacarosError: A does not live yet: it can do this in run, not in __init__"
+        "A cannot be made: JacarosError: A has not started yet: do this in run, not in __init__"
         in result.errors[0]
     )
     assert f"({tmp_path}/a.py:4, in __init__)" in result.errors[0]

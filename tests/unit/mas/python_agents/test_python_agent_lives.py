@@ -102,7 +102,7 @@ class A(PythonAgent):
     assert result.of("a") == [
         'bb_1c["a","b","b_1","c"]',
         'truefalse["a","b_1","c","e","e_1"]',
-        "agent d cannot be made; the log says why",
+        "cannot create agent d; see the log for the reason",
         "after",
     ]
     assert result.of("e") == ["e"]

@@ -95,7 +95,7 @@ def each_match(fn: FunctionBuilder, patterns: list[nodes.Term], held: str, then:
 
 
 def _pass_over_others(fn: FunctionBuilder, pattern: nodes.Term, candidate: str) -> None:
-    """Most annotations are no answer, which their functor tells."""
+    """Skip annotations that cannot match: their functor shows it."""
     if (
         isinstance(pattern, nodes.Literal)
         and pattern.arguments

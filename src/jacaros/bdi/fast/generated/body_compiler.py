@@ -30,7 +30,7 @@ class BodyCompiler:
     _count: int = 0
 
     def body(self, steps: Sequence[nodes.Step], after: str) -> str:
-        """Write the steps; returns the name of the first, or *after* when there are none."""
+        """Write the steps; return the name of the first, or *after* without any."""
         if not steps:
             return after
         first = self.name()
@@ -63,7 +63,7 @@ class BodyCompiler:
         self.unit.add(fn.writer)
 
     def success(self, fn: FunctionBuilder, formula: nodes.Node, next_name: str) -> list[str]:
-        """Write a test whose first answer goes on to *next_name*; gives the variables that it binds."""
+        """Write a test whose first answer continues with *next_name*; return the variables that it binds."""
         bound: list[str] = []
 
         def then() -> None:

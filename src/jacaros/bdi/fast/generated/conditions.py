@@ -1,14 +1,18 @@
 """Code for conditions: contexts, tests, bodies of rules, and the questions inside internal actions.
 
-Continuation style: ``condition(fn, formula, then)`` writes a search whose innermost point is what *then* writes; a
-literal becomes a loop over rows, a comparison an ``if``.  What is bound on the way is undone when the search goes on
+Continuation style: ``condition(fn, formula, then)`` writes a search whose innermost point is what *then*
+writes; a
+literal becomes a loop over rows, a comparison an ``if``. Bindings made on the way are undone when the search
+continues
 (`Trail`), and kept when *then* leaves the function.
 
-Predicates with rules are searched by generators.  Two ways of running them:
+Predicates with rules are searched by generators. There are two ways of running them:
 
-* in an ordinary function the generator looks like a loop over rows: it is nested (see `predicates`), or driven by ``run``
-  where it goes deep, or where its answers are taken one by one while other things happen;
-* in the body of a rule (``fn.trampoline``) the function is itself such a generator: it yields another generator to have
+* In an ordinary function the generator looks like a loop over rows: it is nested (see `predicates`), or
+driven by ``run``
+  if it goes deep, or if its answers are taken one by one while other things happen.
+* In the body of a rule (``fn.trampoline``) the function is itself such a generator: it yields another
+generator to have
   it run and is sent its next answer, so that rules of any depth need no Python recursion.
 """
 

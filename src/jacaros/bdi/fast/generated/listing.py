@@ -1,4 +1,6 @@
-"""The generated code of a program as people read it: each piece below the lines of the program that it comes from."""
+"""The generated code of a program as readable text: each piece below the lines of the program that it comes
+from.
+"""
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -99,7 +101,7 @@ def listing(piece: Piece, only: Plan | None = None) -> str:
 
 
 def _described(value: Any) -> str:
-    """A constant, without places in memory: two listings of a program are the same."""
+    """Describe a constant without memory addresses, so that two listings of a program are equal."""
     if isinstance(value, Plan):
         return f"the plan {text_of(value.label)}"
     if isinstance(value, (Functor, Trigger)):

@@ -46,7 +46,7 @@ def match(
 
 
 def _open(expected: str, value: str) -> str:
-    """Unification of an atom, number or string with what is none of these; structures are passed over at once."""
+    """Unify an atom, number or string with a value of another type; structures are skipped immediately."""
     closed = f"{value}.__class__ not in CLOSED and ({value}.__class__ is not tuple or {value}[0].kind)"
     return f"{closed} and unify({expected}, {value}, t)"
 
@@ -166,7 +166,7 @@ def match_all(fn: FunctionBuilder, patterns: list[nodes.Node], values: list[str]
 
 
 def _only_binds(fn: FunctionBuilder, pattern: nodes.Node) -> bool:
-    """Whether any value matches: a variable that is met for the first time."""
+    """Return whether any value matches: the pattern is a variable that occurs for the first time."""
     return isinstance(pattern, nodes.Variable) and _is_plain(pattern) and fn.values.get(pattern.name) is None
 
 
@@ -230,7 +230,7 @@ def loop_binding(fn: FunctionBuilder, generator: str, names: list[str], then: Th
 
 
 def undoing(fn: FunctionBuilder, test: str, names: list[str], then: Then) -> None:
-    """A test that may bind variables; the bindings are taken back when the search goes on."""
+    """Write a test that may bind variables; the bindings are undone when the search continues."""
     mark = fn.local("n")
     fn.line(f"{mark} = len(t)")
     with fn.writer.block(f"if {test}:"):

@@ -1,7 +1,8 @@
-"""Code that selects a plan: one function per event kind, holding all its plans in order.
+"""Code that selects a plan: one function per event kind, containing all its plans in order.
 
-``select(agent, goal, annotations)`` tries the plans one after the other: head, then context; the first that applies gives
-its new frame; None means that no plan is applicable (rules RelPl, ApplPl and SelAppl in one).
+``select(agent, goal, annotations)`` tries the plans in turn: head, then context. It returns the new frame of
+the first
+plan that applies, or None if no plan is applicable (rules RelPl, ApplPl and SelAppl in one).
 """
 
 from collections.abc import Sequence

@@ -59,7 +59,7 @@ class Writer:
         self.depth -= 1
 
     def prune(self) -> None:
-        """Take out the values of variables that are read and then used by nobody."""
+        """Remove the values of variables that are read and never used."""
         names = Counter(name for line in self.lines for name in _SETTLED.findall(line))
         kept = [
             index
