@@ -1,8 +1,7 @@
 """Program robots as rational agents: AgentSpeak minds, artifacts and ROS, in Python.
 
-Import the names for your Python code from here: ``from jacaros import internal_action, Agent, Out``. Each
-name is
-loaded on first use, so ``import jacaros`` costs nothing.
+Import the names for your Python code from here: ``from jacaros import internal_action, Agent, Out``. Each name is loaded
+on first use, so ``import jacaros`` costs nothing.
 """
 
 from importlib import import_module

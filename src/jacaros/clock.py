@@ -1,16 +1,12 @@
 """Time as a port: the wall clock, and a virtual clock that jumps when all agents wait.
 
-Agents, artifacts and the embedded world take time only from a `Clock`. The virtual clock belongs to an event
-loop made
-by `new_event_loop`. When no callback is ready and no other thread works for the loop, it moves to the next
-timer instead
+Agents, artifacts and the embedded world take time only from a `Clock`. The virtual clock belongs to an event loop made
+by `new_event_loop`. When no callback is ready and no other thread works for the loop, it moves to the next timer instead
 of sleeping, so a run is reproducible and as fast as the machine.
 
-A clock can be paused: it stands still and no timer rings. On a virtual clock, pending callbacks of the run
-are then held,
-too, so pausing does not change a run. `of_run` marks them; the loop continues to serve everything else, such
-as a page
-that shows the run.
+A clock can be paused: it stands still and no timer rings. On a virtual clock, pending callbacks of the run are then
+held, too, so pausing does not change a run. `of_run` marks them; the loop continues to serve everything else, such as a
+page that shows the run.
 """
 
 import asyncio
@@ -30,9 +26,7 @@ VIRTUAL_EPOCH = 1_577_836_800.0
 """2020-01-01 00:00:00 UTC, in seconds since the Unix epoch: the start of every virtual run."""
 
 real_time = time.monotonic
-"""Seconds of a monotonic clock, independent of the run's clock: to bound how long something keeps the machine
-busy.
-"""
+"""Seconds of a monotonic clock, independent of the run's clock: to bound how long something keeps the machine busy."""
 
 T = TypeVar("T")
 
@@ -112,9 +106,8 @@ def run_context() -> contextvars.Context:
 class WallClock:
     """The time of day; delays are measured on the monotonic clock.
 
-    Until it is paused or its speed changes, `now` is exactly the machine's time of day. After that, it
-    continues from its
-    last value.
+    Until it is paused or its speed changes, `now` is exactly the machine's time of day. After that, it continues from
+    its last value.
 
     Args:
         speed: seconds of this clock per second of real time, greater than 0.
@@ -126,9 +119,7 @@ class WallClock:
         self._speed = 1.0
         self._paused = False
         self._reached = self._began = 0.0
-        """Seconds of this clock, and of the monotonic clock, at the last pause, resumption or change of
-        speed.
-        """
+        """Seconds of this clock, and of the monotonic clock, at the last pause, resumption or change of speed."""
         self._ahead: float | None = None
         """`now` minus `elapsed`; None while `now` is the time of day."""
         self._timers = TimerQueue()
@@ -497,8 +488,7 @@ class VirtualEventLoop(_DaemonThreads, asyncio.SelectorEventLoop):
         self.virtual_selector.ready = self._ready  # type: ignore[attr-defined]
 
     def when_stuck(self, watcher: Callable[[], bool]) -> Callable[[], None]:
-        """Call *watcher* when everything waits and no timer is left: only an external event could continue the
-        run.
+        """Call *watcher* when everything waits and no timer is left: only an external event could continue the run.
 
         *watcher* returns True if it has given something work to do. Return a function that ends this.
         """
@@ -549,9 +539,7 @@ def new_event_loop(clock: Clock) -> asyncio.AbstractEventLoop:
 
 
 def clock_of(loop: asyncio.AbstractEventLoop) -> Clock:
-    """Return the clock of an event loop: the virtual one that `new_event_loop` made it for, or the wall
-    clock.
-    """
+    """Return the clock of an event loop: the virtual one that `new_event_loop` made it for, or the wall clock."""
     return loop.virtual_selector.clock if isinstance(loop, VirtualEventLoop) else WallClock()
 
 

@@ -15,9 +15,7 @@ MOST: Final = 100
 _UNSAFE: Final = re.compile(
     "[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200b-\u200f\u2028-\u202e\u2060-\u206f\ufeff\ufff9-\ufffb\ud800-\udfff]"
 )
-"""Characters that a terminal obeys or hides: control characters, direction marks, parts of surrogate
-pairs.
-"""
+"""Characters that a terminal obeys or hides: control characters, direction marks, parts of surrogate pairs."""
 
 
 def escaped(text: str) -> str:

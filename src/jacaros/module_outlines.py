@@ -1,11 +1,8 @@
 """The declarations of a Python file, without running it: its classes and functions with empty bodies.
 
-An outline is made from the syntax tree of the file. Of its code, only this is executed: class and function
-statements
-with the decorators of jacaros, constants, and imports of jacaros and of a few harmless modules. Whatever only
-running
-the file could show (a class made by a call, a base class of another package, an unknown decorator) becomes
-`UNSEEN`.
+An outline is made from the syntax tree of the file. Of its code, only this is executed: class and function statements
+with the decorators of jacaros, constants, and imports of jacaros and of a few harmless modules. Whatever only running
+the file could show (a class made by a call, a base class of another package, an unknown decorator) becomes `UNSEEN`.
 """
 
 import ast

@@ -1,9 +1,7 @@
 """Output that cannot hurt the program that writes it, whatever happens to the reader or the disk.
 
-The loop of a run must not wait for a terminal, a pipe or a disk, and a step must not fail because of one. An
-`Output`
-writes directly as long as its sink accepts everything. The rest waits in a bounded queue, which a daemon
-thread writes.
+The loop of a run must not wait for a terminal, a pipe or a disk, and a step must not fail because of one. An `Output`
+writes directly as long as its sink accepts everything. The rest waits in a bounded queue, which a daemon thread writes.
 If the queue stays full, or the sink raises an exception, lines are lost: they are counted and reported.
 """
 
@@ -44,8 +42,7 @@ class Stream(Protocol):
 
 
 class Output:
-    """A sink of text. `write` raises no error and waits at most `patience` seconds; it may be called in any
-    thread.
+    """A sink of text. `write` raises no error and waits at most `patience` seconds; it may be called in any thread.
 
     Args:
         stream: the text stream, or a function that returns the present one; None stands for a closed one.
@@ -317,8 +314,7 @@ class Printed(io.TextIOBase):
         self._line = ""
 
     def write(self, text: str) -> int:
-        """Write the lines that *text* completes; the rest waits for its end, for `flush`, or for a line of an
-        agent.
+        """Write the lines that *text* completes; the rest waits for its end, for `flush`, or for a line of an agent.
 
         Raises:
             TypeError: *text* is not a string.
@@ -374,8 +370,7 @@ class Printed(io.TextIOBase):
 class _Descriptor:
     """A file descriptor that is written without waiting for a reader.
 
-    On Linux, a terminal or a pipe is opened again, as all processes that write to an open file share whether
-    it blocks.
+    On Linux, a terminal or a pipe is opened again, as all processes that write to an open file share whether it blocks.
     """
 
     def __init__(self, number: int, encoding: str, errors: str) -> None:
@@ -425,9 +420,7 @@ class _Descriptor:
 
 
 def _descriptor_of(stream: Stream | None) -> _Descriptor | None:
-    """Return the descriptor of a stream of the process; None for a stream made by other code, such as a
-    test.
-    """
+    """Return the descriptor of a stream of the process; None for a stream made by other code, such as a test."""
     if os.name == "posix" and type(stream) is io.FileIO:
         return _Descriptor(stream.fileno(), "utf-8", "backslashreplace")
     if os.name != "posix" or type(stream) is not io.TextIOWrapper:

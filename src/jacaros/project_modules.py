@@ -1,9 +1,7 @@
 """The Python files of a project: ``NAME.py``, or a package ``NAME/``, in its folders.
 
-Artifacts (``artifacts.py``), internal actions, agent classes and belief bases are found here. The files are
-loaded under
-module names of their own, so that several projects with files of the same names can live in one process; the
-import path
+Artifacts (``artifacts.py``), internal actions, agent classes and belief bases are found here. The files are loaded under
+module names of their own, so that several projects with files of the same names can live in one process; the import path
 is restored after loading.
 """
 
@@ -22,9 +20,8 @@ from jacaros.text_files import file_text
 
 _numbers = itertools.count(1)
 _import_path = RLock()
-"""Held while `sys.path` and `sys.modules` show the files of one project: they belong to the process, so
-systems in
-other threads have to wait.
+"""Held while `sys.path` and `sys.modules` show the files of one project: they belong to the process, so systems in other
+threads have to wait.
 """
 
 
@@ -33,17 +30,16 @@ class ModuleUnreadable(JacarosError):
 
 
 class NotImported(JacarosError):
-    """Raised when the declarations of a project's Python file cannot be known without running it, which was
-    not requested.
+    """Raised when the declarations of a project's Python file cannot be known without running it, which was not
+    requested.
     """
 
 
 class ProjectModules:
     """The Python modules of one project; each is loaded once, on first use.
 
-    A file may import others of the project by plain names (``import gripper``) while it is loaded, and those
-    of
-    its package by relative names (``from .gripper import Gripper``). All importers share one module.
+    A file may import others of the project by plain names (``import gripper``) while it is loaded, and those of its
+    package by relative names (``from .gripper import Gripper``). All importers share one module.
 
     Args:
         folders: where the files are searched, in order.
@@ -74,8 +70,7 @@ class ProjectModules:
         return None
 
     def load(self, name: str) -> tuple[ModuleType, ...]:
-        """Return the module called *name*; of a package, all modules, its own first. Empty if it does not
-        exist.
+        """Return the module called *name*; of a package, all modules, its own first. Empty if it does not exist.
 
         Raises:
             ModuleUnreadable: a file has an error; the text names file and line.

@@ -103,8 +103,8 @@ def _line(data: bytes, at: int) -> int:
 def kept_files() -> Path | None:
     """Return the folder for files that are kept between runs to save time; None to keep none.
 
-    It is ``$JACAROS_CACHE``, by default ``jacaros`` in ``$XDG_CACHE_HOME`` or ``~/.cache``;
-    ``JACAROS_CACHE=0`` keeps none.
+    It is ``$JACAROS_CACHE``, by default ``jacaros`` in ``$XDG_CACHE_HOME`` or ``~/.cache``; ``JACAROS_CACHE=0`` keeps
+    none.
     """
     given = os.environ.get("JACAROS_CACHE")
     if given:

@@ -36,9 +36,7 @@ class QueuedTimer:
 
 
 _Entry = tuple[float, int, QueuedTimer]
-"""A moment, a number that no other timer has, and the timer: tuples compare without calling Python
-functions.
-"""
+"""A moment, a number that no other timer has, and the timer: tuples compare without calling Python functions."""
 
 
 class TimerQueue:

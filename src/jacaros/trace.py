@@ -43,6 +43,4 @@ class Tracer(Protocol):
 
 
 CURRENT: ContextVar[Cause | None] = ContextVar("CURRENT", default=None)
-"""The cause of the running code, for messages that it publishes; set for operations while a run is
-observed.
-"""
+"""The cause of the running code, for messages that it publishes; set for operations while a run is observed."""

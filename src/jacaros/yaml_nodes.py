@@ -79,8 +79,7 @@ class Node:
     ) -> dict[str, "Node"]:
         """Return the entries of a mapping that has only *known* keys and all *required* ones.
 
-        With *anchors*, keys that begin with ``x-`` are free for the author, for example for values that
-        aliases repeat.
+        With *anchors*, keys that begin with ``x-`` are free for the author, for example for values that aliases repeat.
         """
         if self.value is None and not required:
             return {}
@@ -270,9 +269,7 @@ def _parts(node: Any) -> Iterator[Any]:
 
 
 def _unusable(document: Any) -> Problem | None:
-    """Return the error of an alias inside its own value, or of aliases of aliases that make the document
-    endless.
-    """
+    """Return the error of an alias inside its own value, or of aliases of aliases that make the document endless."""
     sizes: dict[int, int] = {}
     depths: dict[int, int] = {}
     within: set[int] = set()

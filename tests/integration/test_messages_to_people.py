@@ -90,12 +90,12 @@ def test_a_syntax_error_in_a_program(project: Project) -> None:
     assert project.run_file("robot.asl") == told(
         1,
         """\
-        robot.asl:6:6: error: '(' is not closed: ')' is expected before '.print'
+        robot.asl:6:6: error: unclosed `(`: expected `)`, found `.print`
           5 |      .print("b"
             |            ^
           6 |      .print("c").
             |      ^^^^^^
-          = help: it was opened at line 5, column 12
+          = help: close it with `)`; it was opened at line 5, column 12
         """,
     )
 

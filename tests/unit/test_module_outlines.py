@@ -129,7 +129,7 @@ class Base(Artifact):
     found = [each.message for each in check_files([Path("p.jcm")]).diagnostics]
     assert [each for each in found if "X" not in each and "variable" not in each] == [
         "no artifact of the project offers onn/1",
-        "the internal action my.act cannot have no arguments",
+        "internal action `my.act` expects 1 argument, found none",
     ]
 
 

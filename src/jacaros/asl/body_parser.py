@@ -79,8 +79,8 @@ class BodyParser(TermParser):
             self.unexpected("`;` or `.`")
 
     def _next_statement(self) -> bool:
-        """Recover from an error: skip past the next ``;`` of this body; return False at the bracket that
-        closes the body.
+        """Recover from an error: skip past the next ``;`` of this body; return False at the bracket that closes the
+        body.
 
         Raises:
             SyntaxPanic: the clause ends first.

@@ -278,8 +278,7 @@ class Cursor:
     def at_plan(self, index: int | None = None) -> bool:
         """Return whether a plan begins at *index*.
 
-        A plan begins with a label, with a goal trigger at the start of a line, or with any trigger followed
-        by a
+        A plan begins with a label, with a goal trigger at the start of a line, or with any trigger followed by a
         context, a goal condition or a body. A belief trigger alone looks like a step (``+b(X)``).
         """
         at = self.index if index is None else index

@@ -17,9 +17,8 @@ Severity = OneOf["error", "warning", "note"]
 class Diagnostic:
     """One message about a program text; ``span`` is None if no single place is at fault.
 
-    ``code`` is the kind of problem; docs/reference/diagnostics.md lists them. ``opened`` is the bracket that
-    is
-    not closed.
+    ``code`` is the kind of problem; docs/reference/diagnostics.md lists them. ``opened`` is the bracket that is not
+    closed.
     """
 
     severity: Severity
@@ -30,8 +29,7 @@ class Diagnostic:
     opened: Span | None = None
 
     def render(self, with_code: bool = False) -> str:
-        """Return the message as printed: location, message (with its code, if wanted), excerpt with carets,
-        help.
+        """Return the message as printed: location, message (with its code, if wanted), excerpt with carets, help.
 
         Control characters are escaped, and long lines are cut: see `jacaros.excerpts`.
         """
@@ -101,9 +99,7 @@ def render_all(diagnostics: Sequence[Diagnostic]) -> str:
 
 
 class AslError(JacarosError):
-    """Raised for a program with errors. ``diagnostics`` holds all errors and warnings; ``str()`` shows
-    them.
-    """
+    """Raised for a program with errors. ``diagnostics`` holds all errors and warnings; ``str()`` shows them."""
 
     def __init__(self, diagnostics: Sequence[Diagnostic]) -> None:
         self.diagnostics = tuple(diagnostics)
@@ -213,6 +209,5 @@ KINDS: Final[dict[str, Kind]] = {
 }
 """All diagnostic codes. docs/reference/diagnostics.md shows an example of each.
 
-The level is the usual one: what the thesis prints and Jason rejects is only a warning in programs of the
-thesis.
+The level is the usual one: what the thesis prints and Jason rejects is only a warning in programs of the thesis.
 """

@@ -1,9 +1,8 @@
 """Syntax trees as AgentSpeak text, in the style in which `.print` shows terms.
 
-Expressions are fully bracketed (``(X > 3)``, ``(A & (B | C))``), so the text parses to the same tree. It
-differs
-from the text of the tree's term (`jacaros.terms.text`), which `.print` shows: strings are escaped, control
-statements have their own syntax, annotations keep their order and nothing is evaluated.
+Expressions are fully bracketed (``(X > 3)``, ``(A & (B | C))``), so the text parses to the same tree. It differs from
+the text of the tree's term (`jacaros.terms.text`), which `.print` shows: strings are escaped, control statements have
+their own syntax, annotations keep their order and nothing is evaluated.
 """
 
 from collections.abc import Callable, Iterable

@@ -1,9 +1,8 @@
 """Program text to tokens.
 
-One compiled expression finds all tokens. Wrong characters are reported here and never stop the lexer. An
-identifier with letters outside ASCII is passed on as if it were valid. What is unusable (such as an
-unterminated
-string) becomes a token of kind ``error``: there the parser abandons the clause without a further report.
+One compiled expression finds all tokens. Wrong characters are reported here and never stop the lexer. An identifier with
+letters outside ASCII is passed on as if it were valid. What is unusable (such as an unterminated string) becomes a token
+of kind ``error``: there the parser abandons the clause without a further report.
 """
 
 import re
@@ -52,9 +51,9 @@ _UNUSUAL: Final = frozenset({"quoted", "word", "open_string", "open_quoted", "op
 class Token:
     """One token.
 
-    ``kind`` is ``atom``, ``variable``, ``number``, ``string``, ``error`` or ``end``, and otherwise
-    (punctuation and reserved words) the text itself. ``end`` is the column after the token; tokens never
-    span lines. ``first`` marks the first token of a line.
+    ``kind`` is ``atom``, ``variable``, ``number``, ``string``, ``error`` or ``end``, and otherwise (punctuation and
+    reserved words) the text itself. ``end`` is the column after the token; tokens never span lines. ``first`` marks the
+    first token of a line.
     """
 
     __slots__ = ("column", "end", "first", "kind", "line", "text")

@@ -53,9 +53,7 @@ def read_program(
     functions: Mapping[str, tuple[int, int | None]] | None = None,
     actions: Mapping[str, Declaration] | None = None,
 ) -> tuple[nodes.Program, list[Diagnostic]]:
-    """Parse what is valid of the program in *file*; return it with all errors and warnings. See
-    `load_program`.
-    """
+    """Parse what is valid of the program in *file*; return it with all errors and warnings. See `load_program`."""
     diagnostics: list[Diagnostic] = []
     # Keep the caller's mapping even if it is empty: it may fill up as names are looked up.
     known = {} if functions is None else functions

@@ -109,8 +109,8 @@ class Annotations(Node):
 class Literal(Node):
     """An atom, structure, or literal: ``ns::~f(a, b)[annots]``.
 
-    ``functor`` keeps the quotes of a quoted atom. ``namespace`` is None for the default namespace, a name,
-    or a variable; the parser has already applied namespace directives.
+    ``functor`` keeps the quotes of a quoted atom. ``namespace`` is None for the default namespace, a name, or a
+    variable; the parser has already applied namespace directives.
     """
 
     functor: str
@@ -367,8 +367,8 @@ class RegisteredFunction(Node):
 class Derivation(Node):
     """``{ derive(name, operator(streams, options)) }``: a belief or event composed of changes of beliefs.
 
-    ``options`` are pairs of a name and a number (or a tuple of numbers), times in seconds;
-    ``turns`` are the full turns of values that are angles, for `interpolated`.
+    ``options`` are pairs of a name and a number (or a tuple of numbers), times in seconds; ``turns`` are the full turns
+    of values that are angles, for `interpolated`.
     """
 
     name: str

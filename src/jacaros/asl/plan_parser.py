@@ -37,9 +37,7 @@ class PlanParser(BodyParser):
         return nodes.Plan(label, trigger, context, inner, goal_condition, span=self.span_from(start))
 
     def _require_body_or_end(self) -> None:
-        """Report a token that cannot follow the head of a plan; a token that begins a line may be the next
-        clause.
-        """
+        """Report a token that cannot follow the head of a plan; a token that begins a line may be the next clause."""
         kind = self.token.kind
         if kind == "," and not self.token.first:
             self.fail(

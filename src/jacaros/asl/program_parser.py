@@ -62,9 +62,7 @@ class ProgramParser(PlanParser):
         return section
 
     def block(self, begin: nodes.Literal) -> nodes.Section:
-        """Parse the clauses up to ``{ end }``, which is consumed; *begin* is the directive that opened the
-        block.
-        """
+        """Parse the clauses up to ``{ end }``, which is consumed; *begin* is the directive that opened the block."""
         section = nodes.Section()
         while not self._at_end_directive():
             if self.token.kind == "end":
@@ -183,9 +181,7 @@ class ProgramParser(PlanParser):
         section.plans.append(self._plan_clause())
 
     def _finish(self, what: str) -> None:
-        """Parse the final '.' of a clause. If it is missing and the next line begins a clause, continue
-        there.
-        """
+        """Parse the final '.' of a clause. If it is missing and the next line begins a clause, continue there."""
         token = self.token
         if self.accept(".") or (token.kind == "end" and self._last_dot_optional):
             return
@@ -219,9 +215,7 @@ class ProgramParser(PlanParser):
     # recovery
 
     def _begins_clause(self, index: int) -> bool:
-        """Return whether a clause is likely to begin at *index*, which must be the first token of its
-        line.
-        """
+        """Return whether a clause is likely to begin at *index*, which must be the first token of its line."""
         token = self.tokens[index]
         if not token.first:
             return self.at_plan(index) and token.kind != "@"
@@ -305,9 +299,7 @@ def _check_context(parser: ProgramParser, formula: nodes.Term | None) -> None:
 
 
 def _acts(name: str, names: Names) -> bool:
-    """Return whether an internal action of the language acts or waits. Those of projects only cause a
-    warning.
-    """
+    """Return whether an internal action of the language acts or waits. Those of projects only cause a warning."""
     if name in CONTROL:
         return True
     return name.startswith(".") and names.actions.get(name, UNDECLARED).body_only

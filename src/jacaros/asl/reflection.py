@@ -1,7 +1,7 @@
 """Convert terms back to syntax trees, so that plans and bodies made at run time are compiled like any other.
 
-An unbound variable either stands for itself (a body that shares variables with the plan that created it:
-`Shared`), or becomes a variable of the new plan (`Closing`), for plans added to the library.
+An unbound variable either stands for itself (a body that shares variables with the plan that created it: `Shared`), or
+becomes a variable of the new plan (`Closing`), for plans added to the library.
 """
 
 from typing import cast

@@ -1,6 +1,4 @@
-"""Similarity of words, and mistakes known from other languages, for better messages than "expected X, found
-Y".
-"""
+"""Similarity of words, and mistakes known from other languages, for better messages than "expected X, found Y"."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import islice, pairwise
@@ -257,9 +255,7 @@ _LONGEST: Final = 60
 
 
 def is_slip_of(written: str, meant: str) -> bool:
-    """Return whether *written* is *meant* with one letter added, missing, wrong or swapped (not *meant*
-    itself).
-    """
+    """Return whether *written* is *meant* with one letter added, missing, wrong or swapped (not *meant* itself)."""
     if written == meant or abs(len(written) - len(meant)) > 1:
         return False
     at = next(

@@ -24,8 +24,8 @@ class SourceFile:
 class Span(NamedTuple):
     """A range of a source file: lines and columns count from 1, the end column is exclusive.
 
-    A named tuple because a program has thousands of them, and these are created three times as fast as
-    instances of a frozen dataclass.
+    A named tuple because a program has thousands of them, and these are created three times as fast as instances of a
+    frozen dataclass.
     """
 
     file: SourceFile

@@ -56,9 +56,7 @@ class Suppressions:
 
 
 def _lines_of(comment: Comment, tokens: list[Token]) -> range:
-    """Return the lines that a comment applies to: its own, or the clause that begins below, or the next
-    line.
-    """
+    """Return the lines that a comment applies to: its own, or the clause that begins below, or the next line."""
     if any(token.line == comment.line and token.column < comment.column for token in tokens[:-2]):
         return range(comment.line, comment.line + 1)
     at = comment.next_token

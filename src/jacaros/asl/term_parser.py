@@ -131,9 +131,7 @@ class TermParser(LiteralParser):
         return inner
 
     def _continues_sum(self, left: nodes.Term) -> bool:
-        """Return whether ``+`` or ``-`` after *left* is arithmetic: after a forgotten ';' or '.' it is
-        not.
-        """
+        """Return whether ``+`` or ``-`` after *left* is arithmetic: after a forgotten ';' or '.' it is not."""
         number = isinstance(left, _NUMERIC)
         if number and not self.token.first:
             return True  # X-Y <- ...: the end of a context, not a deletion of Y

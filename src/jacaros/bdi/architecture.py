@@ -1,8 +1,7 @@
 """The port of a mind to its host (Jason's agent architecture).
 
-A mind does no input or output of its own. It gets input through `Mind.receive`, `Mind.perceive` and
-`Mind.complete`,
-and reaches out through this port alone.
+A mind does no input or output of its own. It gets input through `Mind.receive`, `Mind.perceive` and `Mind.complete`, and
+reaches out through this port alone.
 """
 
 from collections.abc import Callable, Coroutine, Mapping, Sequence
@@ -36,9 +35,8 @@ class AgentSystem(Protocol):
         """End the run after *delay* seconds."""
 
     def create_agent(self, name: str, source: str | None, classes: Mapping[str, str]) -> str | None:
-        """Create an agent (from the program file *source*, default NAME.asl). Return its final name, or None
-        after logging
-        the reason.
+        """Create an agent (from the program file *source*, default NAME.asl). Return its final name, or None after
+        logging the reason.
 
         *classes* are its classes from the project's Python code, by ``agentClass``, ``agentArchClass`` and
         ``beliefBaseClass``.
@@ -103,9 +101,7 @@ class Architecture(AgentSystem, Protocol):
         """Report that a goal failed and no plan handled the failure; the warning comes through `log`."""
 
     def out_of_memory(self) -> None:
-        """Report that a step or an event raised a `MemoryError`; the agent continues as long as the host
-        allows.
-        """
+        """Report that a step or an event raised a `MemoryError`; the agent continues as long as the host allows."""
 
     def explain(self, question: str) -> Mapping[str, Any]:
         """Answer a question about the run so far, as plain data; see `jacaros.mas.history.Explanation.data`.
@@ -115,9 +111,7 @@ class Architecture(AgentSystem, Protocol):
         """
 
     def clone_agent(self, name: str) -> str | None:
-        """Create an agent with a copy of this mind; return its final name, or None after logging the
-        reason.
-        """
+        """Create an agent with a copy of this mind; return its final name, or None after logging the reason."""
 
     def read_program(self, path: str) -> tuple[str, str]:
         """Return the name and text of a program file (for ``.include``).

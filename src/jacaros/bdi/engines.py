@@ -9,9 +9,7 @@ from jacaros.bdi.state.engine import CodeCache, Engine
 
 
 def is_plain() -> bool:
-    """Return whether to leave out everything that exists only for speed (``JACAROS_PLAIN=1`` in the
-    environment).
-    """
+    """Return whether to leave out everything that exists only for speed (``JACAROS_PLAIN=1`` in the environment)."""
     return os.environ.get("JACAROS_PLAIN", "0") not in ("", "0")
 
 

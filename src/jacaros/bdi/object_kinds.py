@@ -1,7 +1,6 @@
 """How each kind of object in a mind is converted to data and restored.
 
-Plans, rules and beliefs of the program are stored as their places in it, with a digest of their text; those
-added at run
+Plans, rules and beliefs of the program are stored as their places in it, with a digest of their text; those added at run
 time as their syntax. A step is stored as the plan and its position in it.
 """
 
@@ -75,9 +74,7 @@ class ProgramParts:
         return id(part) in self._places
 
     def written(self, part: Value) -> tuple[Data, tuple[()]]:
-        """Return the place of a plan or belief, and a digest of it, as the program may have changed when it
-        is restored.
-        """
+        """Return the place of a plan or belief, and a digest of it, as the program may have changed when it is restored."""
         return [self._places[id(part)], _digest(part)], ()
 
     def plan(self, data: Data, _: Data) -> Plan:

@@ -1,9 +1,7 @@
 """Convert the objects of a mind to a flat table of data for JSON, and back.
 
-An entry is a kind of object (`jacaros.bdi.object_kinds`), plain data, and the parts: values, or the numbers
-of other
-entries. So shared objects are shared again, and nothing is nested too deeply. An immutable object comes after
-its parts;
+An entry is a kind of object (`jacaros.bdi.object_kinds`), plain data, and the parts: values, or the numbers of other
+entries. So shared objects are shared again, and nothing is nested too deeply. An immutable object comes after its parts;
 a mutable one is made empty, and filled when all others exist.
 """
 

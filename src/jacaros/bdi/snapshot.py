@@ -1,13 +1,10 @@
 """A mind as a value: convert its state to data for JSON, and back.
 
-`knowledge` is what an agent believes and its plans. ``.save_agent`` writes it as a program, ``.clone`` gives
-it to another
-agent together with events and intentions (`copy_mind`), and `stored` adds everything else. All of them use
-the one walk
-over the state, `jacaros.bdi.object_table`.
+`knowledge` is what an agent believes and its plans. ``.save_agent`` writes it as a program, ``.clone`` gives it to
+another agent together with events and intentions (`copy_mind`), and `stored` adds everything else. All of them use the
+one walk over the state, `jacaros.bdi.object_table`.
 
-Live Python objects cannot be stored (`NotStorable`): coroutines of the project that an intention waits for,
-goals and
+Live Python objects cannot be stored (`NotStorable`): coroutines of the project that an intention waits for, goals and
 conditions that Python code awaits, and opaque objects in terms.
 """
 
@@ -87,16 +84,13 @@ def stored(mind: Mind) -> dict[str, Any]:
 
 
 def restore(mind: Mind, data: dict[str, Any], *, same_host: bool = False) -> None:
-    """Restore the state that was `stored` of another mind into a new one, which has the same program and has
-    not started.
+    """Restore the state that was `stored` of another mind into a new one, which has the same program and has not
+    started.
 
-    An external action that was running fails with ``env_failure_reason(interrupted)``: its host may be gone,
-    and repeating
-    the action could move a robot twice, so the plan decides. Percept beliefs are removed without events: the
-    new host
-    reports them again. A wait that has expired meanwhile ends immediately; if the clock was set back, it ends
-    after its
-    remaining time.
+    An external action that was running fails with ``env_failure_reason(interrupted)``: its host may be gone, and
+    repeating the action could move a robot twice, so the plan decides. Percept beliefs are removed without events: the
+    new host reports them again. A wait that has expired meanwhile ends immediately; if the clock was set back, it ends
+    after its remaining time.
 
     Args:
         mind: the new mind.
@@ -183,8 +177,7 @@ def _goal_supervisions(mind: Mind) -> set[GoalSupervision]:
 def knowledge(agent: Circumstance) -> dict[str, Any]:
     """Return what an agent believes and its plans.
 
-    ``beliefs`` has for each functor the entries with their annotations, oldest first, and those that answer
-    last.
+    ``beliefs`` has for each functor the entries with their annotations, oldest first, and those that answer last.
     """
     held: dict[str, Any] = {
         "functions": agent.functions.own,
@@ -217,9 +210,8 @@ def _learn(mind: Mind, held: dict[str, Any]) -> None:
 def copy_mind(original: Mind, clone: Mind) -> None:
     """Give *clone*, a new agent with the same program, the knowledge, events and intentions of *original*.
 
-    The running intention is not copied, nor are waiting and suspended intentions and branches of forks: what
-    they wait for
-    belongs to the original.
+    The running intention is not copied, nor are waiting and suspended intentions and branches of forks: what they wait
+    for belongs to the original.
     """
     from jacaros.bdi.rules import deriving
 

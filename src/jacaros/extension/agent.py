@@ -25,13 +25,10 @@ from jacaros.terms.values import SOURCE_PERCEPT, String, Term, Var
 class Agent:
     """An agent. Internal actions receive one; subclasses change how an agent works.
 
-    A subclass is named in the project file: ``agents: bob agentClass my.Careful;`` in a ``.mas2j`` file,
-    ``agent bob { ag-class: my.Careful }`` in a ``.jcm`` file. It overrides any of `init`, the selection
-    functions
-    (`select_event`, `select_option`, `select_intention`, `select_message`), `brf`, `buf`, `soc_acc` and
-    `kill_acc`.
-    Methods that are not overridden have no cost. An exception in a method is logged, and the default is used
-    instead.
+    A subclass is named in the project file: ``agents: bob agentClass my.Careful;`` in a ``.mas2j`` file, ``agent bob {
+    ag-class: my.Careful }`` in a ``.jcm`` file. It overrides any of `init`, the selection functions (`select_event`,
+    `select_option`, `select_intention`, `select_message`), `brf`, `buf`, `soc_acc` and `kill_acc`. Methods that are not
+    overridden have no cost. An exception in a method is logged, and the default is used instead.
     """
 
     _mind: Mind
@@ -53,8 +50,7 @@ class Agent:
         return options[0]
 
     def select_intention(self, intentions: Sequence[IntentionView]) -> IntentionView:
-        """Choose the intention that runs its next step; called if there are several, in the order of their
-        turns.
+        """Choose the intention that runs its next step; called if there are several, in the order of their turns.
 
         Not called for an atomic intention, which always goes first.
         """
@@ -79,15 +75,13 @@ class Agent:
         return True
 
     def buf(self, percepts: Sequence[PerceptView]) -> Sequence[PerceptView]:
-        """Update beliefs: return those of these changes of the environment that the agent notices; the others
-        are ignored.
+        """Update beliefs: return those of these changes of the environment that the agent notices; the others are
+        ignored.
         """
         return percepts
 
     def soc_acc(self, message: Message) -> bool:
-        """Return whether to accept a message; others are ignored. Not called for answers to the agent's own
-        questions.
-        """
+        """Return whether to accept a message; others are ignored. Not called for answers to the agent's own questions."""
         return True
 
     def kill_acc(self, killer: str) -> bool:
@@ -120,8 +114,8 @@ class Agent:
         self._mind.architecture.log(level, message)
 
     def beliefs(self, functor: str | None = None, arity: int | None = None) -> Iterator[Literal]:
-        """Iterate over the agent's beliefs (rules are not included), optionally only those of a name and
-        number of arguments.
+        """Iterate over the agent's beliefs (rules are not included), optionally only those of a name and number of
+        arguments.
         """
         for term in list(self._mind.beliefs.literals()):
             belief = literal_of(term)
@@ -129,8 +123,7 @@ class Agent:
                 yield belief
 
     def ask(self, query: str) -> Iterator[dict[str, Any]]:
-        """Iterate over the answers of a query such as ``"path(X, Y) & Y > 3"``: values of its variables by
-        name.
+        """Iterate over the answers of a query such as ``"path(X, Y) & Y > 3"``: values of its variables by name.
 
         All answers are found before the first one is returned.
 
@@ -186,8 +179,7 @@ class Agent:
         self._mind.post_goal(literal_term(goal))
 
     def send(self, receiver: str, performative: str, content: object) -> bool:
-        """Send a message: a literal as text, or another Python value. Return False if the receiver does not
-        exist.
+        """Send a message: a literal as text, or another Python value. Return False if the receiver does not exist.
 
         Raises:
             AslError: the text is not a literal.
@@ -259,10 +251,9 @@ class Action:
 class AgentArch:
     """How an agent perceives, acts, and exchanges messages; to be subclassed.
 
-    A subclass is named in the project file: ``agents: bob agentArchClass my.Arch;`` in a ``.mas2j`` file,
-    ``agent bob { ag-arch: my.Arch }`` in a ``.jcm`` file. With several classes, the last one is called first,
-    and calls
-    the next with ``super()``.
+    A subclass is named in the project file: ``agents: bob agentArchClass my.Arch;`` in a ``.mas2j`` file, ``agent bob {
+    ag-arch: my.Arch }`` in a ``.jcm`` file. With several classes, the last one is called first, and calls the next with
+    ``super()``.
 
     Attributes:
         agent: the agent that the architecture belongs to.
@@ -275,12 +266,11 @@ class AgentArch:
         """Called before the agent starts, with the arguments of ``agentArchClass my.Arch(1)``."""
 
     def perceive(self) -> Iterable[object] | None:
-        """Return all that is perceived through this architecture now: texts such as ``"light(3)"``, or
-        `Literal` objects.
+        """Return all that is perceived through this architecture now: texts such as ``"light(3)"``, or `Literal`
+        objects.
 
-        Called before each reasoning cycle; None means that nothing has changed. New percepts become beliefs,
-        missing ones
-        are removed. An idle agent makes no cycles: see `wake`.
+        Called before each reasoning cycle; None means that nothing has changed. New percepts become beliefs, missing
+        ones are removed. An idle agent makes no cycles: see `wake`.
         """
         return None
 

@@ -1,7 +1,6 @@
 """Belief bases of projects: changes of an agent's beliefs go through an object of the project's class.
 
-The tables of the mind are unchanged, so compiled queries are as fast as ever. Only changes call the object,
-and
+The tables of the mind are unchanged, so compiled queries are as fast as ever. Only changes call the object, and
 questions if the class provides beliefs of its own (`BeliefBase.candidates`).
 """
 
@@ -41,11 +40,9 @@ class Keeper(Protocol):
 class BeliefBase:
     """Where an agent keeps its beliefs; to be subclassed.
 
-    A subclass is named in the project file: ``agents: bob beliefBaseClass my.LoudBB(3);`` in a ``.mas2j``
-    file,
-    ``agent bob { ag-bb-class: my.LoudBB(3) }`` in a ``.jcm`` file. Rules and beliefs with variables are kept
-    by the mind
-    alone. An exception in an overridden method is logged, and the default is used instead.
+    A subclass is named in the project file: ``agents: bob beliefBaseClass my.LoudBB(3);`` in a ``.mas2j`` file, ``agent
+    bob { ag-bb-class: my.LoudBB(3) }`` in a ``.jcm`` file. Rules and beliefs with variables are kept by the mind alone.
+    An exception in an overridden method is logged, and the default is used instead.
 
     Attributes:
         agent: the agent that the beliefs belong to.

@@ -1,6 +1,4 @@
-"""Calls of project functions by the mind: terms become values, results are unified, exceptions become
-failures.
-"""
+"""Calls of project functions by the mind: terms become values, results are unified, exceptions become failures."""
 
 import inspect
 import typing
@@ -169,8 +167,7 @@ class _Call:
         return to_value(term, self._outputs)
 
     def accept(self, value: object) -> bool:
-        """Unify the result of the function; return False if it does not unify, or if the function returned
-        False.
+        """Unify the result of the function; return False if it does not unify, or if the function returned False.
 
         Raises:
             ActionError: the function returned a value without declaring one, or one that is not a term.

@@ -1,6 +1,4 @@
-"""Find the classes that a project file names (the project's own and Jason's belief bases), and create objects
-of them.
-"""
+"""Find the classes that a project file names (the project's own and Jason's belief bases), and create objects of them."""
 
 import os
 import stat
@@ -112,9 +110,7 @@ def _is_own(value: object, kind: type[object], module: ModuleType) -> bool:
 
 
 def _modules_of(modules: ProjectModules, path: str) -> Iterator[ModuleType]:
-    """Yield the module of that path, then those of its package: ``my.Careful`` may be in
-    ``my/careful.py``.
-    """
+    """Yield the module of that path, then those of its package: ``my.Careful`` may be in ``my/careful.py``."""
     loaded = list(modules.load(path.partition(".")[0]))
     if "." in path and modules.place(path) is not None:
         loaded = list(modules.load(path))
@@ -124,13 +120,10 @@ def _modules_of(modules: ProjectModules, path: str) -> Iterator[ModuleType]:
 class TextPersistentBB(BeliefBase):
     """Keeps beliefs in a text file between runs (``jason.bb.TextPersistentBB``).
 
-    Its arguments name the predicates to keep: ``count``, ``count(_)`` or ``"count/1"``; without arguments,
-    all are kept.
-    An argument that ends with ``.bb`` is the file, relative to the project's folder; the default is the
-    agent's name with
-    ``.bb``. Kept beliefs are there from the beginning, without events; percepts are not kept. The file is
-    replaced as a
-    whole when the agent ends, never half written.
+    Its arguments name the predicates to keep: ``count``, ``count(_)`` or ``"count/1"``; without arguments, all are kept.
+    An argument that ends with ``.bb`` is the file, relative to the project's folder; the default is the agent's name
+    with ``.bb``. Kept beliefs are there from the beginning, without events; percepts are not kept. The file is replaced
+    as a whole when the agent ends, never half written.
     """
 
     def init(self, *arguments: object) -> None:

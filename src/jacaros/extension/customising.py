@@ -51,9 +51,7 @@ def _asked_first(change: Change) -> Change:
 
 
 class CustomMind(Mind):
-    """The mind of an agent with a project's class: it asks the class about changes of beliefs, if `brf` is
-    overridden.
-    """
+    """The mind of an agent with a project's class: it asks the class about changes of beliefs, if `brf` is overridden."""
 
     _revises: Callable[..., object] | None = None
     _notices: Callable[..., object] | None = None
@@ -155,9 +153,7 @@ class CustomMind(Mind):
 
 
 class Chosen(Urgent):
-    """The selection functions of an agent whose class overrides some of them; the others are the usual
-    ones.
-    """
+    """The selection functions of an agent whose class overrides some of them; the others are the usual ones."""
 
     __slots__ = ("_event", "_intention", "_message", "_mind", "_option")
 
@@ -198,9 +194,7 @@ class Chosen(Urgent):
         view: Callable[[Item], Seen],
         counts: Callable[[Item], bool],
     ) -> Item:
-        """Take out of a queue what a method chooses from the items that count; the mind itself removes the
-        others.
-        """
+        """Take out of a queue what a method chooses from the items that count; the mind itself removes the others."""
         places = [place for place, item in enumerate(queue) if counts(item)]
         if len(places) < 2 or (len(places) < len(queue) and places[0] != 0):
             return queue.popleft()

@@ -49,8 +49,7 @@ def internal_action(name: str | None = None, /) -> Callable[[Function], Function
 def internal_action(name: str | Function | None = None, /) -> object:
     """Make a function an internal action of the project's agents.
 
-    The first part of the name must lead to the module: for ``my.norm(X, Y, L)`` agents look for ``my.py``, or
-    a package
+    The first part of the name must lead to the module: for ``my.norm(X, Y, L)`` agents look for ``my.py``, or a package
     ``my/``, beside the project. The function itself is unchanged and can be called from Python, too.
 
     * A plain function succeeds unless it returns False. If it declares a return value (``-> float``),
@@ -61,9 +60,8 @@ def internal_action(name: str | Function | None = None, /) -> object:
     intention
       cancels it.
 
-    Arguments are Python values. A parameter annotated `Out` is a result: its value is unified with the
-    argument.
-    A first parameter annotated `Agent` receives the calling agent, and is not counted.
+    Arguments are Python values. A parameter annotated `Out` is a result: its value is unified with the argument. A first
+    parameter annotated `Agent` receives the calling agent, and is not counted.
 
     Args:
         name: as programs write it, with dots; by default the module and the function.
@@ -91,8 +89,7 @@ def arithmetic_function(
 ) -> object:
     """Make a function an arithmetic function of the project's programs: ``X = my.sq(3) + 1``.
 
-    It is called with Python values once all arguments are known, and returns a number. An exception fails the
-    step with
+    It is called with Python values once all arguments are known, and returns a number. An exception fails the step with
     ``error(arithmetic_error)``.
 
     Args:

@@ -86,17 +86,13 @@ def _of(
 class PythonAgent:
     """An agent written in Python; to be subclassed.
 
-    A project names the file of the subclass: ``agent painter: painter.py`` in a ``.jcm`` file, ``painter
-    painter.py;`` in a ``.mas2j`` file. `run` is the agent's behaviour. To use callbacks, override
-    `on_message`, `on_signal`
-    or `on_property` in addition, or instead. Take time from `sleep` and `clock` only, and random numbers from
-    `random`:
+    A project names the file of the subclass: ``agent painter: painter.py`` in a ``.jcm`` file, ``painter painter.py;``
+    in a ``.mas2j`` file. `run` is the agent's behaviour. To use callbacks, override `on_message`, `on_signal` or
+    `on_property` in addition, or instead. Take time from `sleep` and `clock` only, and random numbers from `random`:
     then a run with ``--clock fast`` and a seed is reproducible.
 
-    When `run` returns, the agent stays, with all artifacts that it focuses. It ends with an exception in its
-    code, when
-    another agent ends it, or with the run. Then its running operations are cancelled, and its ``finally``
-    blocks run.
+    When `run` returns, the agent stays, with all artifacts that it focuses. It ends with an exception in its code, when
+    another agent ends it, or with the run. Then its running operations are cancelled, and its ``finally`` blocks run.
     """
 
     _host: Host
@@ -114,8 +110,7 @@ class PythonAgent:
     def on_message(self, message: ReceivedMessage) -> object:
         """Called with every message except answers to `ask`; ``def`` or ``async def``, one call at a time.
 
-        If it does not reply to a question, its return value is the answer; None means that there is no
-        answer.
+        If it does not reply to a question, its return value is the answer; None means that there is no answer.
         """
 
     def on_signal(self, signal: ReceivedSignal) -> object:
@@ -211,8 +206,7 @@ class PythonAgent:
         timeout: float | None = None,
         urgency: int = 0,
     ) -> Any:
-        """Run an operation, wait for its end, and return the values of its `Out` arguments; see
-        `Session.act`.
+        """Run an operation, wait for its end, and return the values of its `Out` arguments; see `Session.act`.
 
         Raises:
             OperationFailed: with the message and the reason.

@@ -1,7 +1,6 @@
 """Views of agents for project code: events, options, intentions, messages and percepts.
 
-Projects import the views as ``jacaros.Event``, ``Intention``, ``Percept`` and ``Plan``, without the suffix
-that
+Projects import the views as ``jacaros.Event``, ``Intention``, ``Percept`` and ``Plan``, without the suffix that
 distinguishes them from the classes of the mind.
 """
 
@@ -42,8 +41,7 @@ class PlanView:
         self.annotations = tuple(to_value(resolve(annotation)) for annotation in plan.annotations)
 
     def annotation(self, functor: str, default: Any = None) -> Any:
-        """Return the argument of an annotation: 3 for ``priority`` in ``@p[priority(3)]``; *default* without
-        it.
+        """Return the argument of an annotation: 3 for ``priority`` in ``@p[priority(3)]``; *default* without it.
 
         Several arguments are returned as a tuple; an annotation without arguments returns True.
         """
@@ -217,8 +215,7 @@ class PerceptView:
 
 
 def content_of(value: object, performative: str = "tell") -> Term:
-    """Convert a Python value to the content of a message; texts are parsed as AgentSpeak, except texts of
-    plans.
+    """Convert a Python value to the content of a message; texts are parsed as AgentSpeak, except texts of plans.
 
     Raises:
         AslError: a text is not a term.
@@ -233,9 +230,7 @@ def content_of(value: object, performative: str = "tell") -> Term:
 
 
 def heard(content: Term) -> object:
-    """Convert the content of a message to Python: a `Literal`, another value such as the text of a plan, or a
-    list.
-    """
+    """Convert the content of a message to Python: a `Literal`, another value such as the text of a plan, or a list."""
     content = resolve(content)
     if is_list(content):
         return [heard(item) for item in list_items(content)]

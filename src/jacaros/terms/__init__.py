@@ -1,3 +1,1 @@
-"""Values of the language: terms, unification, order, arithmetic, text. This package does not depend on
-agents.
-"""
+"""Values of the language: terms, unification, order, arithmetic, text. This package does not depend on agents."""

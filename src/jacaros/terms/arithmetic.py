@@ -13,9 +13,8 @@ Evaluator = Callable[..., Term]
 functions: Mapping[str, Evaluator] = MappingProxyType({})
 """The functions of the language by name, registered by `jacaros.terms.functions`.
 
-They are called with the evaluated arguments and return a number, or None while the arguments are unknown.
-Functions
-that need an agent are called on the agent in `RUNNING`.
+They are called with the evaluated arguments and return a number, or None while the arguments are unknown. Functions that
+need an agent are called on the agent in `RUNNING`.
 """
 
 
@@ -69,8 +68,7 @@ _TOO_MANY = 1_000_000
 
 
 def _evaluate_iteratively(term: Term) -> Term:
-    """Evaluate arithmetic that is nested too deeply for Python's stack; calls of functions inside are not
-    evaluated.
+    """Evaluate arithmetic that is nested too deeply for Python's stack; calls of functions inside are not evaluated.
 
     Raises:
         RecursionError: it is nested without end.

@@ -115,9 +115,7 @@ _COLLECTIONS = (SetValue, MapValue, QueueValue)
 
 
 def detached(term: Term) -> Term:
-    """Return the term with its own copies of collections; a term without collections is returned
-    unchanged.
-    """
+    """Return the term with its own copies of collections; a term without collections is returned unchanged."""
     return _copy(resolve(term), {}) if holds_collection(term) else term
 
 

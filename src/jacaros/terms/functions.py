@@ -162,9 +162,7 @@ ARITIES: Final[dict[str, tuple[int, float]]] = {
     ".length": (1, 1),
     ".count": (1, 1),
 }
-"""Minimum and maximum number of arguments of each function of the language, including those that need an
-agent.
-"""
+"""Minimum and maximum number of arguments of each function of the language, including those that need an agent."""
 
 
 def is_function(name: str, arity: int, registered: Mapping[str, int]) -> bool:

@@ -1,9 +1,7 @@
 """Operations on terms that are nested too deeply for Python's stack, or contain themselves.
 
-The functions on terms are recursive. When Python's stack ends, they continue with the loops here, which keep
-a list of
-their own, so only memory limits the depth of a term. A cycle always leads through a bound variable: a term
-that contains
+The functions on terms are recursive. When Python's stack ends, they continue with the loops here, which keep a list of
+their own, so only memory limits the depth of a term. A cycle always leads through a bound variable: a term that contains
 itself is recognised by a variable that occurs inside its own value.
 
 Logs show an `excerpt` of a long term.
@@ -130,9 +128,7 @@ def _annotated(
 
 
 _HASHABLE = 10_000
-"""Maximum depth of a term (each element of a list is a level) that Python can hash without overflowing its
-stack.
-"""
+"""Maximum depth of a term (each element of a list is a level) that Python can hash without overflowing its stack."""
 
 
 def as_key(term: Term) -> Term:
@@ -184,13 +180,11 @@ REST = Var("...")
 def excerpt(term: Term, parts: int = MOST_PARTS) -> Term:
     """Return the term, with dots in place of what follows its first *parts* parts.
 
-    Variables are replaced by their values; arithmetic is unchanged. A term that contains itself has an
-    excerpt, too. Plans
-    and their bodies stay whole.
+    Variables are replaced by their values; arithmetic is unchanged. A term that contains itself has an excerpt, too.
+    Plans and their bodies stay whole.
 
-    The text of a small term with shared parts, as in ``f(T,T)`` with such a ``T``, can exceed any memory, and
-    a list of all
-    ranges of a laser is longer than a reader needs.
+    The text of a small term with shared parts, as in ``f(T,T)`` with such a ``T``, can exceed any memory, and a list of
+    all ranges of a laser is longer than a reader needs.
     """
     return _Excerpt(parts).of(term)
 

@@ -1,9 +1,7 @@
 r"""The operators of the language, one line for each in `OPERATORS`.
 
-Lexer, parser, printers, `jacaros fmt`, compiler and interpreter read this table. To add an arithmetic
-operator, or a
-relation that binds nothing, add a line here (and its function, if Python has none). A connective also needs a
-syntax
+Lexer, parser, printers, `jacaros fmt`, compiler and interpreter read this table. To add an arithmetic operator, or a
+relation that binds nothing, add a line here (and its function, if Python has none). A connective also needs a syntax
 node and a meaning as a condition.
 """
 

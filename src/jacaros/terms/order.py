@@ -136,11 +136,9 @@ def _compare_iteratively(left: Term, right: Term) -> int:
 
 
 def _decisions(left: Term, right: Term, rank: int) -> Iterator[Any]:
-    """Yield what decides between two terms of the same rank, in order: pairs of terms to compare, and
-    decisions.
+    """Yield what decides between two terms of the same rank, in order: pairs of terms to compare, and decisions.
 
-    Literals: by namespace, functor, positive before negated, arguments pairwise, arity, annotations. Sets,
-    maps and
+    Literals: by namespace, functor, positive before negated, arguments pairwise, arity, annotations. Sets, maps and
     queues: by kind and contents. Opaque objects: by their numbers.
     """
     if rank == _OTHER:
@@ -252,9 +250,7 @@ def _sorted_namesakes(items: list[Term]) -> list[Term]:
 
 
 def ordered_by_python(items: list[Term]) -> bool:
-    """Return whether Python's own, much faster comparison gives the standard order: only numbers, or only
-    strings.
-    """
+    """Return whether Python's own, much faster comparison gives the standard order: only numbers, or only strings."""
     kinds = set(map(type, items))
     return kinds == {String} or (kinds == {float} and not any(map(ne, items, items)))
 

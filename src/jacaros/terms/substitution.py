@@ -115,9 +115,7 @@ def _settle(term: List) -> None:
 
 
 def _depth(term: Term, level: int = 0) -> int | None:
-    """Return how deep a resolved term is nested; `NO_KEY` with annotations, None while something in it may
-    change.
-    """
+    """Return how deep a resolved term is nested; `NO_KEY` with annotations, None while something in it may change."""
     kind = term.__class__
     if kind is Var or level > _KEY_DEPTH:
         return None
@@ -212,8 +210,7 @@ def with_tail(annotations: tuple[Term, ...], tail: Term) -> tuple[tuple[Term, ..
 
 
 def is_flat(term: Term) -> bool:
-    """Return whether the term is an atom, or a structure of atoms, numbers and strings: nothing in it can be
-    bound or
+    """Return whether the term is an atom, or a structure of atoms, numbers and strings: nothing in it can be bound or
     evaluated.
 
     A quick test for the most frequent terms; False does not mean that there are variables.
@@ -264,9 +261,7 @@ def free_variables(term: Term, found: list[Var] | None = None) -> list[Var]:
 
 
 def rename(term: Term, names: dict[Var, Var] | None = None) -> Term:
-    """Return a copy with fresh variables in place of the unbound ones; ground terms are returned
-    unchanged.
-    """
+    """Return a copy with fresh variables in place of the unbound ones; ground terms are returned unchanged."""
     if is_flat(term):
         return term
     term = resolve(term)
@@ -321,9 +316,7 @@ def _renamed(term: Term, names: dict[Var, Var]) -> Term:
 
 
 def related(symbol: str, left: Term, right: Term) -> bool:
-    """Return whether a relation that binds nothing holds: numbers by value, other terms by order or
-    equality.
-    """
+    """Return whether a relation that binds nothing holds: numbers by value, other terms by order or equality."""
     relation = BINARY[symbol]
     assert relation.numbers is not None
     left, right = settle(left), settle(right)

@@ -80,8 +80,8 @@ def _shortest(value: float) -> str:
 
 
 def _scientific(value: float) -> tuple[str, int]:
-    """Return digits with one place before the point, and the power of ten, of a number that repr writes
-    without exponent.
+    """Return digits with one place before the point, and the power of ten, of a number that repr writes without
+    exponent.
     """
     whole, _, fraction = repr(abs(value)).partition(".")
     if whole != "0":
@@ -112,9 +112,7 @@ def text(term: Term) -> str:
 
 
 def display(term: Term) -> str:
-    """Return the text of a term as ``.print`` shows it: a string without quotes, an unbound variable
-    marked.
-    """
+    """Return the text of a term as ``.print`` shows it: a string without quotes, an unbound variable marked."""
     term = resolve(term)
     if term.__class__ is String:
         return str(term)
@@ -194,9 +192,7 @@ def _annotated(term: Annotated) -> _Pieces:
 
 
 def _flat(term: tuple[Term, ...]) -> str:
-    """Write a structure whose arguments are numbers, strings and atoms, as most are; return an empty string
-    for others.
-    """
+    """Write a structure whose arguments are numbers, strings and atoms, as most are; return an empty string for others."""
     symbol = term[0]
     if symbol.kind != PLAIN or symbol is CONS:
         return ""

@@ -1,9 +1,7 @@
 """Unification of terms.
 
-Variables are bound in place; a `Trail` records which, so that a search can undo bindings. The difference from
-textbook
-unification is the treatment of annotations (as in Jason): those of the left term must be a subset of those of
-the right
+Variables are bound in place; a `Trail` records which, so that a search can undo bindings. The difference from textbook
+unification is the treatment of annotations (as in Jason): those of the left term must be a subset of those of the right
 one.
 """
 
@@ -211,9 +209,7 @@ def _known_negation(term: Term) -> Term:
 
 
 def _bind_checked(variable: Var, value: Term, trail: Trail) -> bool:
-    """Bind a variable; a value that contains it gets a fresh variable in its place, so that every term is
-    finite.
-    """
+    """Bind a variable; a value that contains it gets a fresh variable in its place, so that every term is finite."""
     if value.__class__ in HOLDERS and _occurs(variable, value):
         value = replace_variable(value, variable, Var(variable.name))
     bind(variable, value, trail)
@@ -273,8 +269,7 @@ def each_annotation_match(
 ) -> Iterator[None]:
     """Find the annotations of *left* in *right* in every possible way, in the order of *right*.
 
-    With an unbound tail on the left there is at most one answer. The elements of bound tails are ordinary
-    annotations.
+    With an unbound tail on the left there is at most one answer. The elements of bound tails are ordinary annotations.
     """
     if left_tail is not None or right_tail is not None:
         left, left_tail = with_tail(left, left_tail)

@@ -13,11 +13,11 @@ set, map, queue     the mutable classes of `jacaros.terms.collections`
 anything else       `Reference`, opaque
 ==================  ==================================================================================
 
-A cons tuple may also end in a list: code builds ``[H|T]`` so, and `jacaros.terms.substitution.resolve` makes a `List`
-of it.  Terms that are stored or compared by ``==`` are resolved, and so each of them has one form.
+A cons tuple may also end in a list: code builds ``[H|T]`` so, and `jacaros.terms.substitution.resolve` makes a `List` of
+it.  Terms that are stored or compared by ``==`` are resolved, and so each of them has one form.
 
-Formulae, plans and triggers are terms too (a program may pass them around): structures whose functor has
-another `Functor.kind` than `PLAIN`.
+Formulae, plans and triggers are terms too (a program may pass them around): structures whose functor has another
+`Functor.kind` than `PLAIN`.
 """
 
 # What `x.__class__ is C` says of x is not known to
@@ -34,9 +34,7 @@ Term = Any
 """Any value of the table above."""
 
 PLAIN, ARITHMETIC, FUNCTION, RELATION, LOGIC, ACTION, PLAN, NEGATION = range(8)
-"""Kinds of functors: ordinary; ``+``; ``math.max``; ``<``; ``&``; ``.print``; pieces of plans; ``~X`` with X
-unknown.
-"""
+"""Kinds of functors: ordinary; ``+``; ``math.max``; ``<``; ``&``; ``.print``; pieces of plans; ``~X`` with X unknown."""
 
 
 class Functor:
@@ -102,9 +100,7 @@ def functor(
 
 
 def enter(table: dict[Any, Held], key: Any, made: Named) -> Named:
-    """Put a new object into a table of names; return the object with the key, as another thread may have been
-    faster.
-    """
+    """Put a new object into a table of names; return the object with the key, as another thread may have been faster."""
     new = Held(made, _release)
     new.key, new.table = key, table
     while True:
@@ -238,8 +234,7 @@ _CELLS = 16
 class List:
     """A closed list of at least one element.
 
-    Lists share their elements: a tail is a shorter view of the same stack, and an element put in front is
-    pushed on it.
+    Lists share their elements: a tail is a shorter view of the same stack, and an element put in front is pushed on it.
 
     Attributes:
         stack: the elements, the last one first; elements above *size* belong to other lists.
@@ -397,9 +392,7 @@ def deref(term: Term) -> Term:
 
 
 def list_items(term: Term) -> Iterator[Term]:
-    """Yield the elements of a list term; end at a tail that is not a list, or where the list would begin
-    again.
-    """
+    """Yield the elements of a list term; end at a tail that is not a list, or where the list would begin again."""
     term = deref(term)
     return iter(term.elements()) if term.__class__ is List else _items_of_cells(term)
 

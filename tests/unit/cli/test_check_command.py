@@ -46,7 +46,7 @@ def test_warnings_are_told_and_matter_only_when_strict(
     code, output, errors = outcome(capsys, "warned.asl")
     assert code == 0
     assert output.startswith(
-        "warned.asl:2:21: warning: there is no internal action .prnt [unknown-internal-action]\n"
+        "warned.asl:2:21: warning: unknown internal action `.prnt` [unknown-internal-action]\n"
         "  2 | +!go <- .print(hi); .prnt(X).\n"
         "    |                     ^^^^^^^^\n"
         "  = help: did you mean `.print`?\n"
@@ -127,7 +127,7 @@ def test_files_that_cannot_be_read_are_told(folder: Path, capsys: pytest.Capture
     ("arguments", "told"),
     [
         (["godo.asl"], "did you mean good.asl?"),
-        (["good.asl", "--ignore", "nonsense"], "unknown code `nonsense`"),
+        (["good.asl", "--ignore", "nonsense"], "unknown code nonsense"),
         (["notes.txt"], "unsupported file type: notes.txt (expected .asl, .mas2j, .jcm, .py, .yaml, .yml)"),
         ([], "FILE"),
     ],

@@ -101,9 +101,7 @@ def beliefs_of(program: nodes.Program, actions: Mapping[str, Declaration]) -> Be
 
 
 def _derive(program: nodes.Program, asked: set[int], found: Beliefs) -> None:
-    """Note the derived beliefs and events, whatever their arguments, and their streams and those with a
-    history.
-    """
+    """Note the derived beliefs and events, whatever their arguments, and their streams and those with a history."""
     for kept in program.histories:
         _ask(kept.belief, asked, found)
     for derived in program.derived:
@@ -243,10 +241,8 @@ def _name(literal: nodes.Literal) -> str:
 def is_misspelt(written: str, meant: str) -> bool:
     """Return whether *written* is clearly a misspelling of *meant*.
 
-    Names with digits (``room1``, ``room2``), plurals and other forms of a word (``close``, ``closed``), short
-    names,
-    names with different first letters, and those that differ in a short part (``pos_x``, ``pos_y``) are names
-    of their
+    Names with digits (``room1``, ``room2``), plurals and other forms of a word (``close``, ``closed``), short names,
+    names with different first letters, and those that differ in a short part (``pos_x``, ``pos_y``) are names of their
     own.
     """
     if len(meant) < _SHORTEST or written[0] != meant[0] or not is_slip_of(written, meant):

@@ -20,9 +20,7 @@ def clauses(program: nodes.Program) -> Iterator[Clause]:
 
 
 def conditions(node: nodes.Node) -> Iterator[nodes.Term]:
-    """Yield the conditions of *node* itself: contexts, tests, conditions of statements, rules, ``while`` of
-    labels.
-    """
+    """Yield the conditions of *node* itself: contexts, tests, conditions of statements, rules, ``while`` of labels."""
     if isinstance(node, nodes.Plan):
         if node.context is not None:
             yield node.context

@@ -20,9 +20,8 @@ def goals_without_plan(
 ) -> Iterator[Diagnostic]:
     """Warn of posted goals without a plan or ``-!`` handler.
 
-    Programs with a plan for any goal (``+!G``) and programs that add plans are skipped; those with tests need
-    no
-    plans for assertions.
+    Programs with a plan for any goal (``+!G``) and programs that add plans are skipped; those with tests need no plans
+    for assertions.
     """
     handled: set[_Signature] = set()
     everywhere: set[tuple[str, int]] = set()
@@ -113,7 +112,5 @@ def _meant_goal(wanted: _Signature, handled: Iterable[_Signature]) -> str:
 
 
 def _is_reachable(namespace: str | nodes.Variable | None, own: str | nodes.Variable | None) -> bool:
-    """Return whether a program can write the namespace: names of local ones have a '#', which cannot be
-    written.
-    """
+    """Return whether a program can write the namespace: names of local ones have a '#', which cannot be written."""
     return not isinstance(namespace, str) or "#" not in namespace or namespace == own

@@ -73,9 +73,7 @@ def _never_met(need: nodes.Literal) -> Iterator[Diagnostic]:
 
 
 def _read(argument: nodes.Node) -> tuple[str | None, int | None]:
-    """Return the name and capacity of a resource; None for a name that is invalid or a capacity that is not
-    given.
-    """
+    """Return the name and capacity of a resource; None for a name that is invalid or a capacity that is not given."""
     if isinstance(argument, nodes.String):
         return (argument.value if _NAME.fullmatch(argument.value) else None), None
     if not isinstance(argument, nodes.Literal) or argument.negated:

@@ -29,9 +29,8 @@ _CONSTANTS: Final = {
 def singletons(clause: Clause) -> Iterator[Diagnostic]:
     """Warn of variables that occur once in *clause*.
 
-    One in a trigger (or in the head of a rule) may only document the argument: it causes no warning, but may
-    be the
-    name that a misspelt variable was meant to have.
+    One in a trigger (or in the head of a rule) may only document the argument: it causes no warning, but may be the name
+    that a misspelt variable was meant to have.
     """
     occurrences: Counter[str] = Counter()
     first: dict[str, nodes.Variable] = {}
@@ -106,9 +105,7 @@ def _meant_variable(name: str, occurrences: Counter[str]) -> str:
 
 
 def vain_comparisons(clause: Clause) -> Iterator[Diagnostic]:
-    """Warn of comparisons that never hold (``X == 3`` with an unbound X, ``X = X + 1``) or ignore x (``x >
-    3``).
-    """
+    """Warn of comparisons that never hold (``X == 3`` with an unbound X, ``X = X + 1``) or ignore x (``x > 3``)."""
     met: set[str] = set()
     for node, asked in in_order(clause):
         if isinstance(node, nodes.Relation) and BINARY[node.operator].orders:

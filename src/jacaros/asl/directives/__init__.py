@@ -1,3 +1,1 @@
-"""Directives: how `{ name(...) }` and `{ begin name(...) } ... { end }` transform the clauses of a
-program.
-"""
+"""Directives: how `{ name(...) }` and `{ begin name(...) } ... { end }` transform the clauses of a program."""

@@ -12,10 +12,9 @@ from jacaros.asl.directives.pattern import TRUE, PatternCall, PatternError, achi
 def declarative(call: PatternCall, section: nodes.Section) -> nodes.Section:
     """``dg(g)``: the goal is achieved when, and only when, *g* is believed.
 
-    Adds ``+!g : g``, a test ``?g`` at the end of each plan for g (its ``-!g`` plans among them), and
-    ``+g <- .succeed_goal(g)``. Jason also treats a goal that is already intended as achieved, which ends the
-    retry
-    of ``bdg`` and ``bc`` immediately; ours does not.
+    Adds ``+!g : g``, a test ``?g`` at the end of each plan for g (its ``-!g`` plans among them), and ``+g <-
+    .succeed_goal(g)``. Jason also treats a goal that is already intended as achieved, which ends the retry of ``bdg``
+    and ``bc`` immediately; ours does not.
     """
     call.at_most(1)
     goal = call.literal(0, "the goal")
@@ -38,8 +37,8 @@ def backtracking(
 def exclusive(call: PatternCall, section: nodes.Section) -> nodes.Section:
     """``ebdg(g)``: a backtracking declarative goal that tries each plan at most once.
 
-    Plans that were tried are recorded in beliefs ``p__tried(Plan, g)``, which are removed when the goal ends.
-    When no plan is left, the goal fails (Jason retries it forever).
+    Plans that were tried are recorded in beliefs ``p__tried(Plan, g)``, which are removed when the goal ends. When no
+    plan is left, the goal fails (Jason retries it forever).
     """
     goal = call.literal(0, "the goal")
     plans: list[nodes.Plan] = []
@@ -89,9 +88,8 @@ def blind(call: PatternCall, section: nodes.Section) -> nodes.Section:
 def single_minded(call: PatternCall, section: nodes.Section) -> nodes.Section:
     """``smc(g, f)``: the goal is pursued until it or *f*, which says that it is impossible, is believed.
 
-    When f is believed, the goal fails, and its failure reaches the goal or plan that posted it; the retry of
-    the
-    blind commitment inside does not catch it (in Jason it does).
+    When f is believed, the goal fails, and its failure reaches the goal or plan that posted it; the retry of the blind
+    commitment inside does not catch it (in Jason it does).
     """
     call.at_most(2)
     return _committed(call, section, call.literal(1, "the belief that the goal is impossible"))
@@ -188,11 +186,9 @@ def _motivated(call: PatternCall, section: nodes.Section, motivation: nodes.Lite
 def sequenced(call: PatternCall, section: nodes.Section) -> nodes.Section:
     """``sga("trigger", "context", g)``: each such event adopts *g*, one goal at a time.
 
-    Waiting goals are kept in order in beliefs ``p__queue(N, g)``; a goal that is already waiting is not
-    queued
-    again. Each goal is an intention of its own, and a goal that fails also makes room for the next one.
-    (Jason
-    adopts a waiting goal only if its arguments equal those of the goal that ended.)
+    Waiting goals are kept in order in beliefs ``p__queue(N, g)``; a goal that is already waiting is not queued again.
+    Each goal is an intention of its own, and a goal that fails also makes room for the next one. (Jason adopts a waiting
+    goal only if its arguments equal those of the goal that ended.)
     """
     call.at_most(3)
     trigger, context = _trigger(call), _context(call)

@@ -1,7 +1,7 @@
 """Libraries of other systems that programs include.
 
-Their contents are built in here (joining and focusing, answers to messages), have a counterpart in our own
-library (questions about workspaces), or are not supported (organisations).
+Their contents are built in here (joining and focusing, answers to messages), have a counterpart in our own library
+(questions about workspaces), or are not supported (organisations).
 """
 
 from pathlib import Path
@@ -43,9 +43,7 @@ def is_of_organisations(path: str) -> bool:
 
 
 def is_library(path: str) -> bool:
-    """Return whether *path* names a file of one of these systems, as in
-    ``$jacamo/templates/common-cartago.asl``.
-    """
+    """Return whether *path* names a file of one of these systems, as in ``$jacamo/templates/common-cartago.asl``."""
     return path.partition("/")[0] in _ROOTS
 
 

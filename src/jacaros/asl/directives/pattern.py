@@ -1,8 +1,7 @@
 """Shared parts of goal patterns: their arguments, and the plans they are built of.
 
-A pattern is a function from the clauses of its block to the clauses that replace them. Where patterns are
-known
-to misbehave in Jason, ours follow the intent of the pattern; each such function says so.
+A pattern is a function from the clauses of its block to the clauses that replace them. Where patterns are known to
+misbehave in Jason, ours follow the intent of the pattern; each such function says so.
 """
 
 from collections.abc import Callable
@@ -26,11 +25,9 @@ class PatternError(Exception):
 class PatternCall:
     """One use of a pattern.
 
-    ``arguments`` belong to the namespace of the block. Their unnamed variables have names, so that one
-    argument
-    may be put into several places of one plan. ``number`` differs for each use in a program;
-    ``parse_trigger`` and ``parse_formula`` parse arguments given as text;
-    ``apply`` applies another pattern by name.
+    ``arguments`` belong to the namespace of the block. Their unnamed variables have names, so that one argument may be
+    put into several places of one plan. ``number`` differs for each use in a program; ``parse_trigger`` and
+    ``parse_formula`` parse arguments given as text; ``apply`` applies another pattern by name.
     """
 
     name: str

@@ -189,9 +189,7 @@ class DirectiveProcessor:
         return None
 
     def _warn_of_organisations(self, parser: ProgramParser, path: str, directive: nodes.Literal) -> None:
-        """Warn once per program that organisations are not supported: their libraries are included
-        together.
-        """
+        """Warn once per program that organisations are not supported: their libraries are included together."""
         if not self._warned_of_organisations:
             self._warned_of_organisations = True
             parser.warn(
@@ -361,9 +359,7 @@ def _warn_of_java_function(parser: ProgramParser, directive: nodes.Literal, name
 
 
 def _parse_text(parser: PlanParser, read: Callable[[], _Result], what: str) -> _Result:
-    """Parse the whole text of *parser* with *read*; an invalid text is an invalid argument of the
-    directive.
-    """
+    """Parse the whole text of *parser* with *read*; an invalid text is an invalid argument of the directive."""
     try:
         result = read()
     except SyntaxPanic:
@@ -375,9 +371,7 @@ def _parse_text(parser: PlanParser, read: Callable[[], _Result], what: str) -> _
 
 
 def _with_named_variables(term: nodes.Term) -> nodes.Term:
-    """Return *term* with its unnamed variables named, so that it means the same in several places of a
-    plan.
-    """
+    """Return *term* with its unnamed variables named, so that it means the same in several places of a plan."""
     if isinstance(term, nodes.Variable) and term.unnamed:
         return nodes.replace(term, unnamed=False)
     if isinstance(term, nodes.Literal):

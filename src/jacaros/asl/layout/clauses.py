@@ -161,9 +161,7 @@ class ProgramLayout(StepLayout):
         return following in _TRIGGERS or following in ("@", "}")
 
     def _is_last_of_plan(self, begin: int, opener: int) -> bool:
-        """Return whether the braces at *opener* are where the plan may end, and not where a term is
-        expected.
-        """
+        """Return whether the braces at *opener* are where the plan may end, and not where a term is expected."""
         before = self.pieces[opener - 1].kind
         if before == ")":
             return self.pieces[self.opener[opener - 1] - 1].kind not in ("if", "while", "for", "elif")

@@ -1,9 +1,7 @@
 """Texts with possible line breaks, and their layout for a given width.
 
-After Wadler's "prettier printer": a group is put on one line if it fits, and otherwise broken at its own
-breaks.
-Comments do not count for the width. A comment at the end of a line is held back until the line ends, and ends
-it at the
+After Wadler's "prettier printer": a group is put on one line if it fits, and otherwise broken at its own breaks.
+Comments do not count for the width. A comment at the end of a line is held back until the line ends, and ends it at the
 next possible break, so that it can never swallow code.
 """
 

@@ -225,9 +225,7 @@ class ExpressionLayout(ABC):
         return row(self.piece(opener), self._items(opener + 1, closer, kind), self.piece(closer))
 
     def _items(self, begin: int, end: int, kind: str) -> Document:
-        """Lay out bracketed contents, separated by ``,`` (and the ``|`` of a tail); as many per line as
-        fit.
-        """
+        """Lay out bracketed contents, separated by ``,`` (and the ``|`` of a tail); as many per line as fit."""
         places = self.split(begin, end, ",", "|") if kind == "[" else self.split(begin, end, ",")
         if not places:
             return Nest(None, self.formula(begin, end))

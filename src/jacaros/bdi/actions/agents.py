@@ -1,9 +1,7 @@
 """Internal actions on the agent system: messages, agents and their services, and random numbers.
 
-A service is a string; other terms are converted to text. Types of services are accepted and ignored, as in
-Jason's
-local infrastructure. The directory is an agent, ``df``, created on first use. Random numbers come from the
-agent's own
+A service is a string; other terms are converted to text. Types of services are accepted and ignored, as in Jason's local
+infrastructure. The directory is an agent, ``df``, created on first use. Random numbers come from the agent's own
 generator, so a run with a seed is reproducible.
 """
 
@@ -92,8 +90,7 @@ def _nobody(receiver: str) -> ActionError:
 
 
 def _direct(written: Written) -> Function | None:
-    """Return a specialised function for a ``.send`` with a constant performative (the usual case), and
-    perhaps a
+    """Return a specialised function for a ``.send`` with a constant performative (the usual case), and perhaps a
     constant receiver.
     """
     if len(written) != 3 or written[1] is None:
@@ -154,8 +151,7 @@ def _receivers(receiver: Term) -> list[str]:
 
 @internal_action(".send", arity=(3, 5), suspends=True, direct=_direct, body_only=True, performative=1)
 def send(ctx: Context, receiver: Term, performative: Term, content: Term, *rest: Term) -> Waiting | None:
-    """``.send(To, Performative, Content [, Answer [, Timeout]])`` sends a message; with *Answer*, it is a
-    synchronous
+    """``.send(To, Performative, Content [, Answer [, Timeout]])`` sends a message; with *Answer*, it is a synchronous
     question.
 
     *To* is a name or a list of names, which may be empty. *Timeout* is in milliseconds; when it expires, the
@@ -220,11 +216,9 @@ def all_names(ctx: Context, names: Term) -> bool:
 def create_agent(ctx: Context, name: Term, source: Term = None, options: Term = None) -> bool:
     """``.create_agent(Name[, File[, Options]])`` creates an agent that runs a program (default ``Name.asl``).
 
-    The name is made unique. If the name is a variable, it is bound to the final name, a string: the
-    variable's own name in
-    lower case, with a number if necessary. *Options* is a list of ``agentClass("my.Careful")``,
-    ``agentArchClass("my.Arch")`` and ``beliefBaseClass("my.LoudBB(3)")``, classes in the project's Python
-    code.
+    The name is made unique. If the name is a variable, it is bound to the final name, a string: the variable's own name
+    in lower case, with a number if necessary. *Options* is a list of ``agentClass("my.Careful")``,
+    ``agentArchClass("my.Arch")`` and ``beliefBaseClass("my.LoudBB(3)")``, classes in the project's Python code.
 
     Raises:
         ActionError: the agent could not be created, for example because its program has errors.
@@ -258,9 +252,8 @@ def _class_option(option: Term) -> tuple[str, str]:
 def clone(ctx: Context, name: Term) -> bool:
     """``.clone(Name)`` creates an agent with the same beliefs, rules, plans, events and intentions.
 
-    The calling intention and waiting intentions are not copied. The name is made unique; a variable is bound
-    to the final
-    name, as by ``.create_agent``.
+    The calling intention and waiting intentions are not copied. The name is made unique; a variable is bound to the
+    final name, as by ``.create_agent``.
 
     Raises:
         ActionError: the agent could not be created.
@@ -270,8 +263,7 @@ def clone(ctx: Context, name: Term) -> bool:
 
 @internal_action(".kill_agent", arity=(1, 2))
 def kill_agent(ctx: Context, name: Term, deadline: Term = 0.0) -> bool:
-    """``.kill_agent(Name[, Ms])`` ends an agent, immediately or after *Ms* milliseconds. Fails if it does not
-    exist.
+    """``.kill_agent(Name[, Ms])`` ends an agent, immediately or after *Ms* milliseconds. Fails if it does not exist.
 
     With a time, the agent first gets the event ``+jag_shutting_down(Ms)``, so that it can prepare.
     """
@@ -300,9 +292,7 @@ def version(ctx: Context, result: Term) -> bool:
 
 @internal_action(".df_register", arity=(1, 2))
 def register_service(ctx: Context, service: Term, _kind: Term = None) -> None:
-    """``.df_register(Service[, Type])`` registers a service that the agent provides; subscribers are
-    notified.
-    """
+    """``.df_register(Service[, Type])`` registers a service that the agent provides; subscribers are notified."""
     ctx.architecture.register_service(characters(service))
 
 
@@ -321,8 +311,7 @@ def find_providers(ctx: Context, service: Term, *rest: Term) -> bool:
 
 @internal_action(".df_subscribe", arity=(1, 2))
 def subscribe_to_service(ctx: Context, service: Term, _kind: Term = None) -> None:
-    """``.df_subscribe(Service[, Type])`` subscribes to a service: ``df`` sends a belief ``provider(Agent,
-    Service)`` for
+    """``.df_subscribe(Service[, Type])`` subscribes to a service: ``df`` sends a belief ``provider(Agent, Service)`` for
     each present and future provider.
     """
     ctx.architecture.subscribe_to_service(characters(service))

@@ -69,8 +69,7 @@ def list_rules(ctx: Context) -> None:
 
 @internal_action(".relevant_rules", arity=2)
 def relevant_rules(ctx: Context, pattern: Term, target: Term) -> bool:
-    """``.relevant_rules(P, Rs)``: Rs is the list of the rules that can prove a literal, in the order of the
-    belief base.
+    """``.relevant_rules(P, Rs)``: Rs is the list of the rules that can prove a literal, in the order of the belief base.
 
     With *P* unbound, it is the list of all rules.
     """
@@ -125,8 +124,7 @@ def count(found: list[Term]) -> Term:
 def greatest(ctx: Context, *arguments: Term) -> bool:
     """``.max(L, X)``: *X* is the greatest element of a list in the standard order. Fails for an empty list.
 
-    ``.max(T, F, X)``: *X* is the greatest instance of *T* among the answers of the formula *F*. Fails without
-    answers.
+    ``.max(T, F, X)``: *X* is the greatest instance of *T* among the answers of the formula *F*. Fails without answers.
     """
     return _extreme(ctx, arguments, 1, ".max")
 
@@ -135,8 +133,7 @@ def greatest(ctx: Context, *arguments: Term) -> bool:
 def least(ctx: Context, *arguments: Term) -> bool:
     """``.min(L, X)``: *X* is the smallest element of a list in the standard order. Fails for an empty list.
 
-    ``.min(T, F, X)``: *X* is the smallest instance of *T* among the answers of the formula *F*. Fails without
-    answers.
+    ``.min(T, F, X)``: *X* is the smallest instance of *T* among the answers of the formula *F*. Fails without answers.
     """
     return _extreme(ctx, arguments, -1, ".min")
 
@@ -172,9 +169,7 @@ def best(ctx: Context, template: Term, formula: Term, sign: int) -> Term | None:
 
 @internal_action(".perceive", arity=0)
 def perceive(ctx: Context) -> None:
-    """``.perceive`` perceives the environment; it has no effect here, as percepts are taken in before every
-    cycle.
-    """
+    """``.perceive`` perceives the environment; it has no effect here, as percepts are taken in before every cycle."""
     del ctx
 
 
@@ -213,8 +208,7 @@ def set_property(ctx: Context, namespace: Term, key: Term, value: Term) -> None:
 
 @internal_action(".namespace_get_prop", arity=(2, 4), backtracks=True)
 def get_property(ctx: Context, namespace: Term, key: Term, *rest: Term) -> Iterator[None]:
-    """``.namespace_get_prop(N, Key[, Value[, Default]])``: *Value* is a property of a namespace, or the
-    default.
+    """``.namespace_get_prop(N, Key[, Value[, Default]])``: *Value* is a property of a namespace, or the default.
 
     With *Key* unbound, there is an answer for each property.
     """

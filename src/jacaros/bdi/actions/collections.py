@@ -1,7 +1,7 @@
 """Internal actions on sets, maps and queues, which are changed in place and shared by reference.
 
-The first argument is the collection; an unbound variable becomes an empty one. All raise `WrongArguments`
-for any other term. Backtracking does not undo changes.
+The first argument is the collection; an unbound variable becomes an empty one. All raise `WrongArguments` for any other
+term. Backtracking does not undo changes.
 """
 
 from collections.abc import Iterable, Iterator
@@ -156,8 +156,7 @@ def clear_map(ctx: Context, collection: Term) -> None:
 def create_queue(ctx: Context, variable: Term, kind: Term = None) -> bool:
     """``.queue.create(Q[, priority])``: the unbound variable *Q* becomes an empty queue.
 
-    A queue with ``priority`` returns its smallest element first, any other queue the oldest. Fails if *Q* has
-    a value.
+    A queue with ``priority`` returns its smallest element first, any other queue the oldest. Fails if *Q* has a value.
     """
     priority = isinstance(kind, Functor) and kind.name == "priority"
     return variable.__class__ is Var and ctx.unify(variable, QueueValue(priority))

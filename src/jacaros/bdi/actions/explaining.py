@@ -29,9 +29,7 @@ def why(ctx: Context, question: Term, answer: Term) -> bool:
 
 
 def written_question(question: Term) -> str:
-    """Return the question that a term asks, such as ``stopped``, ``"+alarm(_)"``, ``{ +alarm(_) }`` or
-    ``plan(low)``.
-    """
+    """Return the question that a term asks, such as ``stopped``, ``"+alarm(_)"``, ``{ +alarm(_) }`` or ``plan(low)``."""
     if question.__class__ is String:
         return str(question)
     kind, arguments = functor_of(question), arguments_of(question)

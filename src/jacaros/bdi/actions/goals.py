@@ -117,8 +117,7 @@ def _stack(ctx: Context, intention: Intention) -> Term:
 
 
 def _means(ctx: Context, frame: Frame, called: Trigger | None) -> Term:
-    """Return ``im(Label, {Trigger}, {Body}, Bindings)`` of one frame; the body is the rest that is still to
-    run.
+    """Return ``im(Label, {Trigger}, {Body}, Bindings)`` of one frame; the body is the rest that is still to run.
 
     *called* is the trigger of the goal that the frame waits for, which is still part of the body; or None.
     """
@@ -189,9 +188,7 @@ def current_intention(ctx: Context, target: Term) -> bool:
 
 @internal_action(".drop_intention", arity=(0, 1), suspends=True)
 def drop_intention(ctx: Context, goal: Term = None) -> None:
-    """``.drop_intention [(G)]`` drops the calling intention, or all that have the goal, without a failure
-    event.
-    """
+    """``.drop_intention [(G)]`` drops the calling intention, or all that have the goal, without a failure event."""
     if goal is None:
         assert ctx.intention is not None
         goals.drop_intention(ctx.agent, ctx.intention)
@@ -271,8 +268,7 @@ def resume(ctx: Context, goal: Term) -> None:
 
 @internal_action(".suspended", arity=2, backtracks=True)
 def suspended(ctx: Context, goal: Term, reason: Term) -> Iterator[None]:
-    """``.suspended(G, R)``: an intention with the goal is suspended or waiting, and *R* is the reason
-    (``act`` for an
+    """``.suspended(G, R)``: an intention with the goal is suspended or waiting, and *R* is the reason (``act`` for an
     action).
     """
     for candidate in goals.intentions_for(ctx.agent, _goal(goal)):
@@ -346,8 +342,7 @@ def done(ctx: Context) -> object:
 def _own_goal(current: Intention) -> int:
     """Return the index of the frame that `.done` ends.
 
-    That is the plan that calls it, the goal around a reacting sub-plan, or the failed goal if a handler calls
-    it.
+    That is the plan that calls it, the goal around a reacting sub-plan, or the failed goal if a handler calls it.
     """
     top = next(
         i for i in reversed(range(len(current.frames))) if i == 0 or not is_body_frame(current.frames[i])

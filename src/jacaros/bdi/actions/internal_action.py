@@ -6,16 +6,12 @@
             if ctx.unify(item, candidate):
                 yield
 
-The decorator holds all that is known of an action; the parser, checker, compiler and mind read it there and
-know no
-names. The docstring of an action describes its arguments; other arguments raise `WrongArguments`.
-All bindings of arguments are applied (`jacaros.terms.substitution.resolve`); unbound variables are `Var`. A
-plain
-function succeeds unless it returns False. A generator (``backtracks``) yields once per answer; bindings made
-before a
-yield are undone before the next answer is searched. A function that suspends the intention (``suspends``)
-calls
-`Context.suspend` and returns its result.
+The decorator holds all that is known of an action; the parser, checker, compiler and mind read it there and know no
+names. The docstring of an action describes its arguments; other arguments raise `WrongArguments`. All bindings of
+arguments are applied (`jacaros.terms.substitution.resolve`); unbound variables are `Var`. A plain function succeeds
+unless it returns False. A generator (``backtracks``) yields once per answer; bindings made before a yield are undone
+before the next answer is searched. A function that suspends the intention (``suspends``) calls `Context.suspend` and
+returns its result.
 """
 
 from collections.abc import Callable, Iterable, Mapping

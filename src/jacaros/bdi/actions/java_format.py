@@ -13,9 +13,8 @@ _EXACT = Context(prec=2000, rounding=ROUND_HALF_UP)
 def java_format(template: str, arguments: Sequence[float | str | bool]) -> str:
     """Insert the arguments into *template*.
 
-    Supported conversions are ``%s %b %f %e %g``, their upper-case forms, ``%n`` and ``%%``, with flags,
-    width,
-    precision and argument number. Halves are rounded up, based on the shortest digits of the number.
+    Supported conversions are ``%s %b %f %e %g``, their upper-case forms, ``%n`` and ``%%``, with flags, width, precision
+    and argument number. Halves are rounded up, based on the shortest digits of the number.
 
     Raises:
         ValueError: another conversion, or an argument that is missing or does not fit.

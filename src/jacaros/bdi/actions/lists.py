@@ -120,8 +120,7 @@ def nth(ctx: Context, index: Term, collection: Term, item: Term) -> Iterator[Non
 def concat(ctx: Context, *arguments: Term) -> bool:
     """``.concat(A, ..., R)``: *R* is the concatenation of the other arguments, lists or strings.
 
-    The first argument decides which. For a string, other terms are converted to text, quoted atoms without
-    their quotes.
+    The first argument decides which. For a string, other terms are converted to text, quoted atoms without their quotes.
 
     Raises:
         ActionError: *R* is bound to something other than a list when a list is needed, or a list has an open tail.
@@ -226,8 +225,7 @@ def _delete_range(ctx: Context, start: int, end: int, collection: Term, result: 
 
 @internal_action(".reverse", arity=2, repeatable=True)
 def reverse(ctx: Context, collection: Term, result: Term) -> bool:
-    """``.reverse(C, R)``: *R* is the list or string *C* in reverse order; an open tail of a list stays at the
-    end.
+    """``.reverse(C, R)``: *R* is the list or string *C* in reverse order; an open tail of a list stays at the end.
 
     Terms that are not lists are converted to text.
     """
@@ -306,8 +304,7 @@ def intersection(ctx: Context, left: Term, right: Term, result: Term) -> bool:
 
 @internal_action(".difference", arity=3, repeatable=True)
 def difference(ctx: Context, left: Term, right: Term, result: Term) -> bool:
-    """``.difference(A, B, R)``: *R* is the sorted list of elements of the list *A* that are not in *B*,
-    without
+    """``.difference(A, B, R)``: *R* is the sorted list of elements of the list *A* that are not in *B*, without
     duplicates.
     """
     first, second = _two_lists(left, right, result, ".difference")
@@ -321,9 +318,7 @@ def _two_lists(left: Term, right: Term, result: Term, name: str) -> tuple[list[T
 
 
 def _parted(items: list[Term], others: list[Term]) -> tuple[list[Term], list[Term]]:
-    """Return the items that are also in *others* and those that are not, both sorted and without
-    duplicates.
-    """
+    """Return the items that are also in *others* and those that are not, both sorted and without duplicates."""
     if ordered_by_python(items) and ordered_by_python(others):
         among = set(others)
         ordered = sorted_set(items)
@@ -383,9 +378,7 @@ def _whole_of(part: Term, whole: Term, name: str, strings: bool = False) -> list
 
 
 def _parts(ctx: Context, part: Term, items: list[Term] | String, bounds: Iterator[Bounds]) -> Iterator[None]:
-    """Yield an answer for each part that unifies, the empty one last; only parts of the right length are
-    built.
-    """
+    """Yield an answer for each part that unifies, the empty one last; only parts of the right length are built."""
     length = _known_length(part)
     for start, end in bounds:
         if length in (None, end - start) and ctx.unify(part, _cut(items, start, end)):

@@ -27,8 +27,7 @@ _EXPRESSION = re.compile(r"#\{([^{}]+)\}")
 def print_(ctx: Context, *arguments: Term) -> None:
     """``.print(A, ...)`` and ``.println(A, ...)`` print their arguments joined without separators.
 
-    Strings are printed without quotes, strings inside other terms with quotes, unbound variables as
-    ``X<no-value>``.
+    Strings are printed without quotes, strings inside other terms with quotes, unbound variables as ``X<no-value>``.
     Line breaks in strings are kept.
     """
     ctx.architecture.print("".join(map(display, arguments)))
@@ -65,8 +64,7 @@ def _value(term: Term) -> float | str | bool:
 def puts(ctx: Context, template: Term, result: Term = None) -> bool:
     """``.puts(Text[, Result])`` prints a text in which every ``#{expression}`` is replaced by its value.
 
-    Expressions that do not parse as terms are left as they are. With an unbound *result*, nothing is printed:
-    the text
+    Expressions that do not parse as terms are left as they are. With an unbound *result*, nothing is printed: the text
     becomes its value. If *result* is a string, it is appended to the text.
     """
     filled = _fill(ctx, string(template, "the first argument of .puts"))
@@ -101,8 +99,7 @@ def log(ctx: Context, level: Term, *arguments: Term) -> None:
 
 @internal_action(".verbose", arity=1)
 def verbose(ctx: Context, level: Term) -> None:
-    """``.verbose(N)`` sets how much is logged about the agent from now on: 0 only problems, 1 the default, 2
-    details as
+    """``.verbose(N)`` sets how much is logged about the agent from now on: 0 only problems, 1 the default, 2 details as
     well.
     """
     wanted = whole(level, "the argument of .verbose")

@@ -60,8 +60,7 @@ def add_plan(ctx: Context, plan: Term, source: Term = None, where: Term = None) 
 
 @internal_action(".remove_plan", arity=(1, 2), changes_plans=True)
 def remove_plan(ctx: Context, wanted: Term, source: Term = None) -> None:
-    """``.remove_plan(Label [,Source])`` removes a plan by its label. *Label* may be a list of labels or a
-    plan term; the
+    """``.remove_plan(Label [,Source])`` removes a plan by its label. *Label* may be a list of labels or a plan term; the
     plan need not exist.
     """
     for item in list_items(wanted) if is_list(wanted) else (wanted,):
@@ -87,8 +86,8 @@ def _relevant(ctx: Context, event: Term) -> list[Plan]:
 
 @internal_action(".relevant_plans", arity=(2, 3))
 def relevant_plans(ctx: Context, event: Term, target: Term, labels: Term = None) -> bool:
-    """``.relevant_plans({T}, Ps [,Labels])``: *Ps* is the list of the plans whose triggers unify with an
-    event, in order.
+    """``.relevant_plans({T}, Ps [,Labels])``: *Ps* is the list of the plans whose triggers unify with an event, in
+    order.
     """
     plans = _relevant(ctx, event)
     if not ctx.unify(target, make_list([plan_terms.plan_term(ctx.agent, p) for p in plans])):
@@ -113,11 +112,9 @@ def list_plans(ctx: Context, event: Term = None) -> None:
 
 @internal_action(".list_files", arity=(2, 3), restricted=0)
 def list_files(ctx: Context, folder: Term, *rest: Term) -> bool:
-    """``.list_files(Folder[, Regex], L)``: *L* is the sorted list of the files in a folder and its
-    subfolders.
+    """``.list_files(Folder[, Regex], L)``: *L* is the sorted list of the files in a folder and its subfolders.
 
-    They are strings, paths that begin with *Folder*. With *Regex*, only paths that it matches as a whole are
-    included. A
+    They are strings, paths that begin with *Folder*. With *Regex*, only paths that it matches as a whole are included. A
     relative folder is relative to the project.
 
     Raises:
@@ -138,8 +135,7 @@ def list_files(ctx: Context, folder: Term, *rest: Term) -> bool:
 
 @internal_action(".save_agent", arity=(1, 2), restricted=0)
 def save_agent(ctx: Context, file: Term, goals: Term = None) -> None:
-    """``.save_agent(File[, Goals])`` writes the beliefs, rules, plans and directives of the agent as a
-    program.
+    """``.save_agent(File[, Goals])`` writes the beliefs, rules, plans and directives of the agent as a program.
 
     Derived beliefs are left out: the directives derive them again, from the beliefs that are written.
 
@@ -186,9 +182,7 @@ def _program_text(agent: Circumstance, goals: list[Term]) -> str:
 
 
 def _directives(agent: Circumstance) -> list[str]:
-    """Return the derived events and histories declared by the agent's program and the programs it has
-    included.
-    """
+    """Return the derived events and histories declared by the agent's program and the programs it has included."""
     if agent.observers.derived is None:
         return []
     from jacaros.asl.directives.derive import format_derivation  # imported here: most agents derive nothing

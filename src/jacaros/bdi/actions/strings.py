@@ -1,7 +1,6 @@
 """Internal actions on strings, and Java's regular expressions translated to Python's.
 
-The two languages of regular expressions agree on most of the syntax. Translated are named groups, quoting
-with
+The two languages of regular expressions agree on most of the syntax. Translated are named groups, quoting with
 ``\\Q…\\E``, the classes ``\\p{Alpha}`` and so on, ``\\z`` and ``\\Z``, and replacement texts with ``$1`` and
 ``${name}``. The classes ``\\d \\w \\s`` are ASCII, as in Java. Nested classes and ``&&`` are rejected.
 """
@@ -43,11 +42,9 @@ def substring(
 ) -> Iterator[None]:
     """``.substring(Part, S[, Start[, End]])`` finds or extracts a part of a text.
 
-    ``.substring("b", "abc")`` tests. ``.substring("a", "banana", I, J)`` has an answer for each occurrence,
-    with
-    the positions (from 0) of the first and of the last character. ``.substring(X, "hello", 1, 3)`` extracts
-    from a position up to, but not including, another one (default: the end). Terms that are not strings are
-    converted to text.
+    ``.substring("b", "abc")`` tests. ``.substring("a", "banana", I, J)`` has an answer for each occurrence, with the
+    positions (from 0) of the first and of the last character. ``.substring(X, "hello", 1, 3)`` extracts from a position
+    up to, but not including, another one (default: the end). Terms that are not strings are converted to text.
 
     Raises:
         ActionError: the positions of the part to extract are outside the text.
@@ -121,8 +118,8 @@ def lower_case(ctx: Context, source: Term, result: Term) -> bool:
 def term2string(ctx: Context, term: Term, written: Term) -> bool:
     """``.term2string(T, S)``: *S* is the text of the term *T*, strings in quotes.
 
-    With *T* unbound, *S* is parsed; its variables are those of the running plan. A text that is not a term
-    becomes an atom.
+    With *T* unbound, *S* is parsed; its variables are those of the running plan. A text that is not a term becomes an
+    atom.
 
     Raises:
         ActionError: *T* has a value, and *S* is neither unbound nor a string.

@@ -52,11 +52,9 @@ def add_annot(ctx: Context, term: Term, annotation: Term, result: Term) -> bool:
 
 @internal_action(".add_nested_source", arity=3)
 def add_nested_source(ctx: Context, term: Term, source: Term, result: Term) -> bool:
-    """``.add_nested_source(L, Ag, R)``: *R* is the literal *L* with the source *Ag*, its previous sources
-    nested inside.
+    """``.add_nested_source(L, Ag, R)``: *R* is the literal *L* with the source *Ag*, its previous sources nested inside.
 
-    ``p[source(bob)]`` from carl gives ``p[source(carl)[source(bob)]]``. Lists are handled as by
-    ``.add_annot``.
+    ``p[source(bob)]`` from carl gives ``p[source(carl)[source(bob)]]``. Lists are handled as by ``.add_annot``.
     """
     return ctx.unify(_in_lists(term, lambda literal: told_by(literal, source)), result)
 
@@ -100,8 +98,7 @@ def _without_source(term: Term) -> Term:
 
 @internal_action(".get_src_info", arity=2)
 def get_src_info(ctx: Context, term: Term, result: Term) -> bool:
-    """``.get_src_info(L, R)``: *R* is the literal *L* with ``code_line(N)`` and ``code_src("file:…")``: the
-    place of the
+    """``.get_src_info(L, R)``: *R* is the literal *L* with ``code_line(N)`` and ``code_src("file:…")``: the place of the
     step that asks. Fails if *L* is not a literal.
     """
     inner = _only_operand(term)
@@ -194,8 +191,8 @@ _TESTS: dict[str, Callable[[Context, Term], bool]] = {
 def type_(ctx: Context, term: Term, kind: Term) -> Iterator[None]:
     """``.type(X, T)``: *T* is a type of *X*; with *T* unbound, each of its types in turn.
 
-    Types are ``number atom literal string list set map structure rule plan queue ground free``, in this order
-    (``plan`` is a plan body; ``free`` an unbound variable).
+    Types are ``number atom literal string list set map structure rule plan queue ground free``, in this order (``plan``
+    is a plan body; ``free`` an unbound variable).
     """
     for name, test in _TESTS.items():
         if test(ctx, term) and ctx.unify(kind, atom(name)):

@@ -26,8 +26,7 @@ TIME, WAIT = functor("time", 1), functor("wait", 1)
 def wait(ctx: Context, what: Term, limit: Term = None, elapsed: Term = None) -> Any:
     """``.wait(Ms)``, ``.wait({+e} [,Ms [,Elapsed]])``, ``.wait(Condition [,Ms [,Elapsed]])``.
 
-    Waits for a time in milliseconds, for an event, or until a condition holds. After *Ms* milliseconds it
-    fails with
+    Waits for a time in milliseconds, for an event, or until a condition holds. After *Ms* milliseconds it fails with
     ``error(wait_timeout)``, unless *Elapsed* is given: then it succeeds, and *Elapsed* is the time waited, in
     milliseconds.
     """
@@ -98,9 +97,7 @@ def signal(ctx: Context, event: Term, kind: Term = None) -> None:
 
 @internal_action(".time", arity=(3, 4), repeatable=True)
 def time(ctx: Context, hour: Term, minute: Term, second: Term, *millisecond: Term) -> bool:
-    """``.time(H, M, S[, Ms])``: the time of day in UTC, as integers. Fails if the arguments are another
-    time.
-    """
+    """``.time(H, M, S[, Ms])``: the time of day in UTC, as integers. Fails if the arguments are another time."""
     now = _now(ctx)
     parts = (now.hour, now.minute, now.second, now.microsecond // 1000)
     asked = (hour, minute, second, *millisecond)
@@ -109,9 +106,7 @@ def time(ctx: Context, hour: Term, minute: Term, second: Term, *millisecond: Ter
 
 @internal_action(".date", arity=3, repeatable=True)
 def date(ctx: Context, year: Term, month: Term, day: Term) -> bool:
-    """``.date(Y, M, D)``: the date in UTC, month and day counted from 1. Fails if the arguments are another
-    date.
-    """
+    """``.date(Y, M, D)``: the date in UTC, month and day counted from 1. Fails if the arguments are another date."""
     now = _now(ctx)
     return ctx.unify(
         make_list((year, month, day)), make_list([float(now.year), float(now.month), float(now.day)])
@@ -120,9 +115,7 @@ def date(ctx: Context, year: Term, month: Term, day: Term) -> bool:
 
 @internal_action(".nano_time", arity=1)
 def nano_time(ctx: Context, nanoseconds: Term) -> bool:
-    """``.nano_time(T)``: *T* is the number of nanoseconds since the Unix epoch, with the precision of a
-    double.
-    """
+    """``.nano_time(T)``: *T* is the number of nanoseconds since the Unix epoch, with the precision of a double."""
     return ctx.unify(nanoseconds, float(round(ctx.architecture.now() * 1e9)))
 
 

@@ -1,11 +1,8 @@
 """Where the context of a plan fails: its first failing conjunct, with the values of its variables.
 
-Compiled contexts only return whether they hold. When a goal is lost, the contexts of its plans are searched
-again,
-conjunct by conjunct, and the deepest failing conjunct is reported. This search changes nothing and is
-bounded: rules are
-interpreted, only internal actions and functions without effects are called, nothing is logged, and it ends
-after
+Compiled contexts only return whether they hold. When a goal is lost, the contexts of its plans are searched again,
+conjunct by conjunct, and the deepest failing conjunct is reported. This search changes nothing and is bounded: rules are
+interpreted, only internal actions and functions without effects are called, nothing is logged, and it ends after
 `MOST_STEPS` steps.
 """
 
@@ -41,8 +38,7 @@ from jacaros.terms.unifier import Trail, undo, unify
 from jacaros.terms.values import Functor, Term, Var, deref, functor_of
 
 MOST_STEPS = 1_000
-"""Maximum number of steps of the search for one plan (about ten microseconds each): answers of conjuncts,
-rules and
+"""Maximum number of steps of the search for one plan (about ten microseconds each): answers of conjuncts, rules and
 internal actions.
 """
 FACTS_PER_STEP = 16
@@ -102,9 +98,7 @@ class FailingContexts:
             undo(trail, 0)
 
     def stop(self, plan: Plan) -> str:
-        """Describe where the context of a plan fails; empty if it has none, or nothing can be said about
-        it.
-        """
+        """Describe where the context of a plan fails; empty if it has none, or nothing can be said about it."""
         context = plan.node.context
         if context is None:
             return ""

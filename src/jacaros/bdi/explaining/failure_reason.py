@@ -62,9 +62,7 @@ class FailureReason:
         self._made: _Terms | None = None
 
     def for_goal(self, annotations: EventAnnotations, number: int | None = None) -> "FailureReason":
-        """Return the reason for the failure event of a goal: this object, unless it already belongs to
-        another goal.
-        """
+        """Return the reason for the failure event of a goal: this object, unless it already belongs to another goal."""
         if self.goal_annotations is None:
             self.goal_annotations = annotations
             self.goal_number = number
@@ -119,9 +117,7 @@ class FailureReason:
         return [t for t in self.terms if not (t.__class__ is tuple and t[0] in (ERROR, ERROR_MSG))]
 
     def step(self) -> str:
-        """Return the step that failed, with the values of its variables; empty if a goal without plan is the
-        reason.
-        """
+        """Return the step that failed, with the values of its variables; empty if a goal without plan is the reason."""
         return str(self._place.step())
 
     def inner_goals(self) -> tuple[Goal, ...]:
@@ -135,9 +131,7 @@ class FailureReason:
         return found
 
     def interrupted(self, frames: list[Frame]) -> "FailureReason":
-        """Return the reason for goals that were ended from outside: *frames* served them, the last one was
-        running.
-        """
+        """Return the reason for goals that were ended from outside: *frames* served them, the last one was running."""
         return FailureReason(self.terms, _Interrupted(self._place.told(), frames), self.goal_annotations)
 
     def where(self) -> str:
@@ -145,9 +139,7 @@ class FailureReason:
         return str(self._place.where())
 
     def span(self) -> Span | None:
-        """Return the place of the formula that failed, or of the call of the goal without plan, if there is
-        one.
-        """
+        """Return the place of the formula that failed, or of the call of the goal without plan, if there is one."""
         found: Span | None = self._place.span()
         return found
 
@@ -249,9 +241,7 @@ def _failed_formula(node: nodes.Node) -> nodes.Node:
 
 
 class _Interrupted(_Nowhere):
-    """The running plans of an intention when a goal of it was ended from outside; only for logs, not for
-    plans.
-    """
+    """The running plans of an intention when a goal of it was ended from outside; only for logs, not for plans."""
 
     def __init__(self, told: str, frames: list[Frame]) -> None:
         super().__init__(told)
@@ -308,12 +298,10 @@ class GoalPlace(_Nowhere):
 
 
 def place_of_call(caller: Frame, symbol: Functor | None) -> Span | None:
-    """Return where the plan of a frame called the goal that it waits for; *symbol* is the functor of the
-    goal.
+    """Return where the plan of a frame called the goal that it waits for; *symbol* is the functor of the goal.
 
-    Steps do not know the steps before them. Several may precede the present one, as at the ends of two
-    branches: those that
-    call a goal of that functor are preferred.
+    Steps do not know the steps before them. Several may precede the present one, as at the ends of two branches: those
+    that call a goal of that functor are preferred.
     """
     plan = caller[PLAN]
     following = caller[STEP].__name__ if caller[STEP] is not None else "None"
@@ -353,9 +341,7 @@ def goal_text(goal: Goal) -> str:
 
 
 def shown_goal(goal: Goal) -> str:
-    """Return the beginning of a goal or another event, with its signs: ``!go(home)``, ``-!go(home)``,
-    ``+low(9)``.
-    """
+    """Return the beginning of a goal or another event, with its signs: ``!go(home)``, ``-!go(home)``, ``+low(9)``."""
     trigger = goal[0]
     sign = "" if trigger.operator == "+" and trigger.kind else trigger.operator
     try:

@@ -107,8 +107,7 @@ def inapplicable(agent: Circumstance, event: Goal, annotations: EventAnnotations
 def lost_question(asker: str, goal: Goal, reason: FailureReason) -> Loss | None:
     """Describe a question from *asker* whose plan failed; its goals were recorded in the reason.
 
-    Return None if no plan was applicable: that is an answer, for example of a plan whose context checks the
-    asker.
+    Return None if no plan was applicable: that is an answer, for example of a plan whose context checks the asker.
     """
     unplanned = reason.unplanned()
     if unplanned is not None and unplanned[0] is goal:
@@ -120,8 +119,7 @@ def lost_question(asker: str, goal: Goal, reason: FailureReason) -> Loss | None:
 
 
 def why(reason: FailureReason) -> str:
-    """Describe a reason for records of a run, in lines: error, message and place; the step; plans that did
-    not fit, once
+    """Describe a reason for records of a run, in lines: error, message and place; the step; plans that did not fit, once
     recorded; the terms for plans.
     """
     step = _step(reason)
@@ -167,9 +165,7 @@ def _terms(reason: FailureReason) -> list[str]:
 
 
 def goals_below(intention: Intention) -> Iterator[Goal]:
-    """Yield the goals on the stack of an intention, the top one first; for a handler the failure event that
-    it handles.
-    """
+    """Yield the goals on the stack of an intention, the top one first; for a handler the failure event that it handles."""
     frames = intention.frames
     handlers = len(intention.handlers)
     index = len(frames) - 1
@@ -210,9 +206,7 @@ def _short(told: str, longest: int = LONGEST) -> str:
 
 
 def _candidates(agent: Circumstance, goal: Goal, annotations: EventAnnotations) -> tuple[str, ...]:
-    """Return the plans for a goal, those whose trigger fits first, each with the conjunct at which its
-    context stops.
-    """
+    """Return the plans for a goal, those whose trigger fits first, each with the conjunct at which its context stops."""
     plans = agent.library.relevant(goal[0])
     contexts = FailingContexts(agent, goal, annotations)
     shown = list(islice(filter(contexts.fits, plans), MOST_PLANS))
@@ -223,9 +217,7 @@ def _candidates(agent: Circumstance, goal: Goal, annotations: EventAnnotations) 
 
 
 def _candidate(plan: Plan, stop: str) -> str:
-    """Describe a plan that did not fit: trigger, place and the conjunct at which its context stops, or its
-    context.
-    """
+    """Describe a plan that did not fit: trigger, place and the conjunct at which its context stops, or its context."""
     node = plan.node
     trigger = node.trigger
     told = f"{trigger.operator}{trigger.kind}{format_term(trigger.literal)}"

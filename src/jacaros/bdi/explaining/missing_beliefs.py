@@ -13,8 +13,7 @@ LIKE = 0.75
 def missing_belief(tables: Mapping[Functor, Table], wanted: Functor) -> str:
     """Return ``no belief `ready```, with a similar name if there is one.
 
-    Return an empty string if facts or rules of that name exist, or if nothing can be added to a name without
-    arguments.
+    Return an empty string if facts or rules of that name exist, or if nothing can be added to a name without arguments.
 
     Args:
         tables: facts and rules of the agent by functor.

@@ -1,7 +1,6 @@
 """Changes of beliefs that are facts, and percepts that change such beliefs.
 
-Replaces `add_belief`, `replace_belief` and `delete_belief` of `jacaros.bdi.rules.belief_update`, and
-`take_in` of
+Replaces `add_belief`, `replace_belief` and `delete_belief` of `jacaros.bdi.rules.belief_update`, and `take_in` of
 `jacaros.bdi.rules.perceiving`. Rarer cases are left to these.
 """
 
@@ -181,8 +180,8 @@ def _keep(agent: Circumstance, percept: Percept) -> Kept:
 
 
 def belief_base(engine: Engine, agent: Any, limit: int) -> BeliefTables:
-    """Return a belief base that counts only if its limit is small; otherwise `watch` makes it count once it
-    is half full.
+    """Return a belief base that counts only if its limit is small; otherwise `watch` makes it count once it is half
+    full.
     """
     return BoundedBeliefs(agent, limit, engine) if limit <= SMALL else BeliefTables(engine)
 

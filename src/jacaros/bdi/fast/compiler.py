@@ -29,9 +29,7 @@ from jacaros.terms.unifier import Trail
 from jacaros.terms.values import Term, functor
 
 FEW = 4
-"""Up to this number of plans for one kind of event become one function, at the latest at their first
-event.
-"""
+"""Up to this number of plans for one kind of event become one function, at the latest at their first event."""
 TOO_LARGE = (SyntaxError, RecursionError, MemoryError)
 """What Python raises for code that exceeds its limits for one function."""
 
@@ -106,8 +104,8 @@ class Compiler(Interpreter):
         return step
 
     def begin(self, agent: Circumstance) -> None:
-        """Compile the urgent part before an agent starts, and warn of plans that are too large. Done for the
-        first agent.
+        """Compile the urgent part before an agent starts, and warn of plans that are too large. Done for the first
+        agent.
         """
         if self._begun:
             return

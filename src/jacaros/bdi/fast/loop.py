@@ -1,8 +1,8 @@
 """The reasoning cycle of an ordinary agent.
 
-Replaces `jacaros.bdi.rules.cycle` with all that it calls: `sel_ev`, `applicable_plans`, `add_im`, `exec_int`
-and `clr_int`. With empty queues, the next cycle would select the very event and intention of this one, so an
-intention continues as long as nothing else needs a cycle. Rarer features of agents are left to the rules.
+Replaces `jacaros.bdi.rules.cycle` with all that it calls: `sel_ev`, `applicable_plans`, `add_im`, `exec_int` and
+`clr_int`. With empty queues, the next cycle would select the very event and intention of this one, so an intention
+continues as long as nothing else needs a cycle. Rarer features of agents are left to the rules.
 """
 
 from typing import Any
@@ -138,8 +138,7 @@ def look_around(agent: Circumstance, cycle: int) -> None:
 def handle_event(agent: Circumstance) -> Intention | None:  # noqa: C901 - written out for speed
     """Rule SelEv and the rules after it: handle one event; external events without a plan are skipped.
 
-    If this begins an intention and there is no other, the intention need not queue: it is returned, and runs
-    now.
+    If this begins an intention and there is no other, the intention need not queue: it is returned, and runs now.
     """
     events = agent.events
     while events:
@@ -243,11 +242,9 @@ def execute_atomic(agent: Circumstance, intention: Intention, fuel: int) -> int:
 def execute_usual(agent: Circumstance, intention: Intention, fuel: int) -> int:  # noqa: C901 - see below
     """Run steps of one intention while nothing else needs a cycle; return the remaining fuel.
 
-    An agent spends its time here, so what happens in nearly every cycle is inlined: `pop_finished`,
-    `is_alone`,
-    `select_plan` and `add_frame`. If a step makes the agent an unusual one, the next cycle continues, with
-    the same effect
-    when the queues are empty.
+    An agent spends its time here, so what happens in nearly every cycle is inlined: `pop_finished`, `is_alone`,
+    `select_plan` and `add_frame`. If a step makes the agent an unusual one, the next cycle continues, with the same
+    effect when the queues are empty.
     """
     agent.current = intention
     frames, handlers, trail, selects = (

@@ -1,11 +1,8 @@
 """Many plans for one kind of event, each compiled separately.
 
-Replaces `jacaros.bdi.rules.applicable_plans.Selection`. Compiling fifty plans takes a tenth of a second, too
-long while a
-robot waits for the reaction to an event. The host compiles them ahead when it is idle (`compile_next`). A
-plan that is
-tried before that is interpreted the first few times; it is compiled immediately only if it applies, as its
-body may have
+Replaces `jacaros.bdi.rules.applicable_plans.Selection`. Compiling fifty plans takes a tenth of a second, too long while
+a robot waits for the reaction to an event. The host compiles them ahead when it is idle (`compile_next`). A plan that is
+tried before that is interpreted the first few times; it is compiled immediately only if it applies, as its body may have
 much to do.
 """
 
@@ -131,11 +128,10 @@ class _Waiting:
 
 
 def _grouped(plans: Sequence[Plan]) -> list[tuple[Term, list[Plan]]] | None:
-    """Group the plans, in order, with neighbours that have the same first argument; return None if that is
-    not worthwhile.
+    """Group the plans, in order, with neighbours that have the same first argument; return None if that is not
+    worthwhile.
 
-    The first argument is represented by a key: the atom, number or string itself, or the functor of a
-    structure or list.
+    The first argument is represented by a key: the atom, number or string itself, or the functor of a structure or list.
     None stands for plans that may be relevant for any argument.
     """
     groups: list[tuple[Term, list[Plan]]] = []

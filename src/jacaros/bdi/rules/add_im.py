@@ -1,4 +1,4 @@
-"""A plan for a goal or event of an intention becomes part of it: rule AddIM."""
+"""A plan for a goal or event becomes part of an intention: rule AddIM."""
 
 from jacaros.bdi.explaining import lost_goals
 from jacaros.bdi.rules import meta_events, needs, subplans
@@ -14,7 +14,7 @@ from jacaros.trace import Cause
 def select_plan(
     agent: Circumstance, goal: Goal, annotations: EventAnnotations, intention: Intention | None = None
 ) -> Frame | None:
-    """Rules RelPl, ApplPl and SelAppl: the frame of the plan that is taken, sub-plans of *intention* first."""
+    """Rules RelPl, ApplPl and SelAppl: return the frame of the selected plan; sub-plans of *intention* are tried first."""
     trail = agent.trail
     trail.serial += 1
     if agent.features.subplans and intention is not None:
@@ -34,7 +34,7 @@ def select_for_reasons(
     intention: Intention | None,
     cause: Cause | None,
 ) -> tuple[Frame | None, Cause | None]:
-    """Select a plan and let the observer know; the cause is that of what the plan does."""
+    """Select a plan and notify the observer; return also the cause of what the plan does."""
     observer = agent.observers.mind
     if observer is None:
         return select_plan(agent, goal, annotations, intention), cause
@@ -44,7 +44,7 @@ def select_for_reasons(
 
 
 def push(agent: Circumstance, intention: Intention, goal: Goal, annotations: EventAnnotations) -> bool:
-    """Rule AddIM: put a plan for the goal on the intention; False when the intention goes no further now."""
+    """Rule AddIM: put a plan for the goal on the intention; return False if the intention cannot continue now."""
     frame, _ = select_for_reasons(agent, goal, annotations, intention, None)
     if frame is None or not add_frame(agent, intention, frame):
         return go_without(agent, intention, goal, annotations, frame)
@@ -52,9 +52,9 @@ def push(agent: Circumstance, intention: Intention, goal: Goal, annotations: Eve
 
 
 def add_frame(agent: Circumstance, intention: Intention, frame: Frame) -> bool:
-    """Put the frame of a plan on the stack, in the place of its caller if that has nothing left to do (tail call).
+    """Put the frame of a plan on the stack; it replaces its caller if that has nothing left to do (tail call).
 
-    False when it is one too many; it is on the stack then nevertheless.
+    Return False if it exceeds the limit; it is on the stack then nevertheless.
     """
     frames = intention.frames
     plan, trigger = frame[PLAN], frame[GOAL][0]
@@ -84,9 +84,9 @@ def add_frame(agent: Circumstance, intention: Intention, frame: Frame) -> bool:
 def go_without(
     agent: Circumstance, intention: Intention, goal: Goal, annotations: EventAnnotations, frame: Frame | None
 ) -> bool:
-    """A goal or event has no plan, or (then *frame* is given, and on the stack) no room for it.
+    """Handle a goal or event without a plan, or (if *frame* is given, and on the stack) without room for it.
 
-    False when the intention goes no further now.
+    Return False if the intention cannot continue now.
     """
     if frame is None and goal[0].kind == "":
         if agent.options.verbose > 1 and agent.library.selects[goal[0]] is not None:
@@ -106,7 +106,7 @@ def go_without(
 
 
 def is_alone(agent: Circumstance) -> bool:
-    """Whether nothing else wants the next cycle."""
+    """Return whether nothing else needs the next cycle."""
     if agent.atomic is not None:
         return not agent.features.goal_conditions
     return not (
@@ -121,5 +121,5 @@ def is_alone(agent: Circumstance) -> bool:
 
 
 def log_inapplicable(agent: Circumstance, goal: Goal, annotations: EventAnnotations) -> None:
-    """Log why no plan was taken for an event, for an agent whose details are wanted."""
+    """Log why no plan was selected for an event, if the agent logs details."""
     agent.architecture.log("debug", lost_goals.inapplicable(agent, goal, annotations).text())

@@ -1,4 +1,4 @@
-"""Alarms: functions of modules that are called at a moment of the run's clock, so that a stored mind can hold them."""
+"""Alarms: module functions called at a moment of the run's clock, so that a stored mind can contain them."""
 
 from collections.abc import Callable
 from functools import partial
@@ -23,7 +23,7 @@ def start_alarm(agent: Circumstance, alarm: Alarm, delay: float) -> None:
 
 
 def cancel_alarm(agent: Circumstance, alarm: Alarm) -> None:
-    """Take an alarm back; nothing happens if it has rung."""
+    """Cancel an alarm; no effect if it has rung."""
     if agent.waits.alarms.pop(alarm.number, None) is not None:
         alarm.timer.cancel()
 

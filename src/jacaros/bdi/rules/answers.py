@@ -42,7 +42,7 @@ def answer_by_plan(
 
 
 def send_answer(agent: Circumstance, frame: Frame) -> None:
-    """The step of the bottom frame: a plan has answered the question."""
+    """The step of the bottom frame: send the answer of the plan."""
     message, found = frame[FIRST_SLOT:]
     answer(agent, message, without_sources(resolve(found)))
     frame[STEP] = None
@@ -51,7 +51,7 @@ def send_answer(agent: Circumstance, frame: Frame) -> None:
 def _answer_failure(
     agent: Circumstance, reason: FailureReason | None, message: SpeechAct, goal: tuple[Any, ...]
 ) -> None:
-    """No plan, which is an answer, or a plan that failed, which is logged."""
+    """Send the answer if there is no plan (which is an answer) or the plan failed (which is logged)."""
     loss = None if reason is None else lost_question(message.sender, goal, reason)
     if loss is not None:
         agent.architecture.log("warning", loss.text())

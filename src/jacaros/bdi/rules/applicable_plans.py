@@ -1,8 +1,8 @@
-"""Which plan is taken for an event: rules RelPl, ApplPl and SelAppl.
+"""Select a plan for an event: rules RelPl, ApplPl and SelAppl.
 
-A `Selection` tries the plans for one kind of event in their order.  A plan is relevant when its trigger unifies with the
-event, and applicable when its context has an answer then; the first applicable plan is taken.  The code that is generated
-for plans (`jacaros.bdi.fast`) does the same, and makes the same frames.
+A `Selection` tries the plans for one kind of event in order. A plan is relevant if its trigger unifies with the event,
+and applicable if its context then has an answer; the first applicable plan is selected. The code that is generated for
+plans (`jacaros.bdi.fast`) does the same, and makes the same frames.
 """
 
 from collections.abc import Iterator, Sequence
@@ -38,12 +38,13 @@ class Selection:
         self.plans, self.outer = plans, outer
 
     def __call__(self, agent: Circumstance, goal: Goal, annotations: EventAnnotations) -> Frame | None:
-        """The frame of the first applicable plan, or None."""
+        """Return the frame of the first applicable plan, or None."""
         return next(self.frames(agent, goal, annotations), None)
 
     def every(self, agent: Circumstance, goal: Goal, annotations: EventAnnotations) -> Iterator[Frame]:
-        """The frames of all applicable plans: of each the first, or, with ``all_unifs`` in its label, one for each answer
-        of its context."""
+        """Yield the frames of all applicable plans: of each plan the first, or, with ``all_unifs`` in its label, one for
+        each answer of its context.
+        """
         for plan in self.plans:
             for frame in self._frames_of(plan, agent, goal, annotations):
                 yield frame
@@ -52,7 +53,7 @@ class Selection:
             undo(agent.trail, 0)
 
     def frames(self, agent: Circumstance, goal: Goal, annotations: EventAnnotations) -> Iterator[Frame]:
-        """The first frame of each applicable plan, with the bindings that its context made."""
+        """Yield the first frame of each applicable plan, with the bindings of its context."""
         for plan in self.plans:
             found = next(self._frames_of(plan, agent, goal, annotations), None)
             if found is not None:
@@ -62,7 +63,7 @@ class Selection:
     def _frames_of(
         self, plan: Plan, agent: Circumstance, goal: Goal, annotations: EventAnnotations
     ) -> Iterator[Frame]:
-        """A frame for each answer of the context.  A plan whose context cannot be evaluated is not applicable."""
+        """Yield a frame for each answer of the context. A plan whose context cannot be evaluated is not applicable."""
         names = Names() if self.outer is None else _names_of(self.outer, agent.outer_frame, plan)
         try:
             if not is_relevant(plan, goal, annotations, names, agent.trail):
@@ -80,7 +81,7 @@ class Selection:
 
 
 def is_relevant(plan: Plan, goal: Goal, annotations: EventAnnotations, names: Names, trail: Trail) -> bool:
-    """Rule RelPl: whether the trigger of a plan unifies with an event; binds the variables of the plan."""
+    """Rule RelPl: return whether the trigger of a plan unifies with an event; bind the variables of the plan."""
     literal = plan.node.trigger.literal
     if not isinstance(literal, nodes.Variable) and isinstance(literal.namespace, nodes.Variable):
         symbol = goal[0].functor
@@ -105,7 +106,7 @@ def is_relevant(plan: Plan, goal: Goal, annotations: EventAnnotations, names: Na
 
 
 def _names_of(outer: Plan, frame: Frame, plan: Plan) -> Names:
-    """The variables that a sub-plan shares with its outer plan."""
+    """Return the variables that a sub-plan shares with its outer plan."""
     names = Names()
     for name in names_in(plan.node):
         slot = outer.slots.get(name)
@@ -115,7 +116,7 @@ def _names_of(outer: Plan, frame: Frame, plan: Plan) -> Names:
 
 
 def _frame(plan: Plan, goal: Goal, annotations: EventAnnotations, names: Names, serial: int) -> Frame:
-    """The frame of an applicable plan, at its first step."""
+    """Return the frame of an applicable plan, at its first step."""
     body = interpreted(plan)
     for name in body.known:
         names[name]  # made if it has not been asked for: it may be on another branch

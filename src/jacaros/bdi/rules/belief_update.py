@@ -91,9 +91,7 @@ def _tell_change(
 
 
 def _raise(agent: Circumstance, goal: Goal, annotations: Annotations, apart: bool) -> Raised:
-    """Pass the event to the step's intention, or queue it as external; None if no plan or observer needs
-    it.
-    """
+    """Pass the event to the step's intention, or queue it as external; None if no plan or observer needs it."""
     unplanned = agent.library.selects[goal[0]] is None and not _is_kept(agent, goal[0])
     if apart or agent.options.new_focus:
         if unplanned and not agent.waits.events:
@@ -152,9 +150,7 @@ def _insert_aside(
 def delete_belief(
     agent: Circumstance, symbol: Functor, arguments: Row, annotations: Annotations, apart: bool
 ) -> Raised:
-    """``-b`` and ``--b``: remove the given annotations (at least the agent's own source) of the first
-    match.
-    """
+    """``-b`` and ``--b``: remove the given annotations (at least the agent's own source) of the first match."""
     if _is_property(agent, symbol, arguments, annotations):
         return None
     removed = _remove_first(agent, symbol, arguments, annotations, bind=not apart)
@@ -188,9 +184,7 @@ def _is_property(agent: Circumstance, symbol: Functor, arguments: Row, annotatio
 def _remove_first(
     agent: Circumstance, symbol: Functor, arguments: Row, annotations: Annotations, bind: bool
 ) -> Row | None:
-    """Remove the first match; return the row of the pattern with variables bound, or None if nothing
-    matches.
-    """
+    """Remove the first match; return the row of the pattern with variables bound, or None if nothing matches."""
     table, trail = agent.beliefs[symbol], agent.trail
     for entry, held in table.candidates(arguments):
         mark = len(trail)
@@ -240,8 +234,8 @@ def operand_error(term: Term) -> str:
 
 
 def tell(agent: Circumstance, term: Term, cause: Cause | None = None) -> bool:
-    """Add a belief from outside (a message, the project file); the event is external. Return False if it is
-    not a literal.
+    """Add a belief from outside (a message, the project file); the event is external. Return False if it is not a
+    literal.
     """
     symbol, row, annotations = parts(term)
     if symbol is None:
@@ -287,9 +281,7 @@ def external_change(
     cause: Cause | None = None,
     believed: bool = True,
 ) -> None:
-    """Raise the external event of a belief change, or (not *believed*) of a signal, if a plan or observer
-    needs it.
-    """
+    """Raise the external event of a belief change, or (not *believed*) of a signal, if a plan or observer needs it."""
     if agent.observers.hear_beliefs:
         cause = cause or agent.cause_now()
         _tell_change(agent, operator, symbol, row, annotations, cause, believed)

@@ -1,13 +1,10 @@
 """What the steps of a plan body mean: one function for each kind of formula (rule ExecInt).
 
-``step(agent, frame)`` runs its formula and sets ``frame[0]`` to the next step. It returns None, or one goal
-(a tuple
-that begins with its trigger) to be handled for this intention, or `SUSPENDED`. If the formula does not hold,
-it returns
+``step(agent, frame)`` runs its formula and sets ``frame[0]`` to the next step. It returns None, or one goal (a tuple
+that begins with its trigger) to be handled for this intention, or `SUSPENDED`. If the formula does not hold, it returns
 `FAILED` or raises an exception before ``frame[0]`` changes, so the failed step is known.
 
-A variable that is bound on one branch only may be unbound afterwards. Variables that one round of a loop
-binds are
+A variable that is bound on one branch only may be unbound afterwards. Variables that one round of a loop binds are
 unbound in the next round.
 """
 
@@ -76,9 +73,7 @@ class Step:
         )
 
     def keep(self, frame: Frame, names: Names) -> None:
-        """Store the variables that the step has bound. Known variables keep their places: a loop around
-        unbinds them.
-        """
+        """Store the variables that the step has bound. Known variables keep their places: a loop around unbinds them."""
         slots = frame[PLAN].slots
         for name in self.names:
             if name in slots and name in names and frame[slots[name]] is None:

@@ -22,8 +22,7 @@ class Calling(Protocol):
 
 
 def answers_of(context: Calling, trail: Trail, action: InternalAction, *arguments: Term) -> Iterator[None]:
-    """Yield the answers of a backtracking internal action, on the given trail; its bindings are undone in
-    between.
+    """Yield the answers of a backtracking internal action, on the given trail; its bindings are undone in between.
 
     An error inside ends the answers and is reported: in a condition, a failing action does not hold.
     """
@@ -52,8 +51,7 @@ def answers_of(context: Calling, trail: Trail, action: InternalAction, *argument
 
 
 def values_of(context: Calling, action: InternalAction, *arguments: Term) -> Iterable[Term]:
-    """Yield the values of the first argument in all answers of a backtracking internal action, as
-    `answers_of`.
+    """Yield the values of the first argument in all answers of a backtracking internal action, as `answers_of`.
 
     *arguments* are the others; the first one is unbound.
     """

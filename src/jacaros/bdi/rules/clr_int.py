@@ -1,6 +1,4 @@
-"""Goals leave the stack: finished plans (rule ClrInt), those whose goal condition holds, and those cut from
-outside.
-"""
+"""Goals leave the stack: finished plans (rule ClrInt), those whose goal condition holds, and those cut from outside."""
 
 from jacaros.bdi.rules import failure, meta_events
 from jacaros.bdi.rules.forks import leave
@@ -59,9 +57,7 @@ def end_achieved_goals(agent: Circumstance) -> None:
 
 
 def _is_achieved(agent: Circumstance, frame: Frame) -> bool:
-    """Return whether the goal condition of a frame holds. If it cannot be evaluated, it does not; this is
-    logged once.
-    """
+    """Return whether the goal condition of a frame holds. If it cannot be evaluated, it does not; this is logged once."""
     achieved = frame[PLAN].goal_condition
     if achieved is None:
         return False

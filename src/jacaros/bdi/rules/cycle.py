@@ -1,6 +1,6 @@
 """The reasoning cycle: sense, deliberate, act.
 
-Each cycle takes in what has come, takes up one event, and lets one intention make one step.
+Each cycle takes in new input, handles one event, and lets one intention run one step.
 """
 
 from collections.abc import Iterator
@@ -28,7 +28,7 @@ from jacaros.terms.arithmetic import RUNNING
 def run(agent: Circumstance, fuel: int) -> bool:
     """Make at most *fuel* cycles; True when there is more to do."""
     if agent.options.search_limit and fuel > 1:
-        # Each cycle has the whole budget of searches.
+        # Each cycle gets the whole budget of searches.
         return all(run(agent, 1) for _ in range(fuel))
     with turn(agent):
         end = agent.counts.cycles + fuel
@@ -42,7 +42,7 @@ def run(agent: Circumstance, fuel: int) -> bool:
 
 @contextmanager
 def turn(agent: Circumstance) -> Iterator[None]:
-    """An agent has its turn: what comes in meanwhile need not wake it, and functions in terms are evaluated for it."""
+    """Mark that an agent has its turn: new input need not wake it, and functions in terms are evaluated for it."""
     begin_turn(agent)
     before = RUNNING.set(agent)  # pyright: ignore[reportArgumentType]
     agent.running = True
@@ -64,7 +64,7 @@ def look_at_names(agent: Circumstance) -> None:
 
 
 def begin_turn(agent: Circumstance) -> None:
-    """What is due at the beginning of a turn: budgets, and the crowd of intentions."""
+    """Do what is due at the beginning of a turn: renew budgets, and let in the crowd of intentions."""
     options = agent.options
     if options.search_limit and agent.beliefs.budget is not None:
         agent.beliefs.budget.renew()
@@ -73,14 +73,14 @@ def begin_turn(agent: Circumstance) -> None:
 
 
 def _cycle(agent: Circumstance) -> bool:
-    """One reasoning cycle; False when there is nothing to do."""
+    """Run one reasoning cycle; return False if there is nothing to do."""
     if (agent.incoming.called or agent.options.percept_interval != 1) and agent.held is None:
         look_around(agent, agent.counts.cycles)
     return deliberate(agent)
 
 
 def deliberate(agent: Circumstance) -> bool:
-    """A reasoning cycle after its look at what has come; False when nothing is left to do, or the agent is held."""
+    """Run a reasoning cycle after taking in new input; return False if nothing is left to do, or the agent is held."""
     if agent.held is not None:
         return _continue_held(agent)
     if agent.events:
@@ -141,7 +141,7 @@ def _take_up_event(agent: Circumstance) -> None:
 
 
 def _waits(agent: Circumstance) -> bool:
-    """No intention can make a step: whether there may be one in the next cycle."""
+    """No intention can run a step: return whether one may in the next cycle."""
     if (agent.events and agent.atomic is None) or agent.incoming.messages:
         agent.counts.cycles += 1
         return True
@@ -149,14 +149,14 @@ def _waits(agent: Circumstance) -> bool:
 
 
 def is_done(agent: Circumstance) -> bool:
-    """Whether the next cycle would find nothing to do."""
+    """Return whether the next cycle would find nothing to do."""
     return not (
         agent.events or agent.intentions or agent.crowd or agent.incoming.called or agent.features.edges
     )
 
 
 def has_work(agent: Circumstance) -> bool:
-    """Whether there is something to do."""
+    """Return whether there is something to do."""
     if agent.incoming:
         return True
     if agent.atomic is not None:
@@ -165,7 +165,7 @@ def has_work(agent: Circumstance) -> bool:
 
 
 def look_around(agent: Circumstance, cycle: int) -> None:
-    """Take in what has come since the last look: percepts, ends of waits, one message."""
+    """Take in new input: percepts, ends of waits, one message."""
     agent.counts.next_check -= 1  # what comes in may bring new names as any step does
     looks = agent.options.percept_interval == 1 or looks_now(agent, cycle)
     housekeeping(agent, looks)
@@ -181,7 +181,7 @@ def look_around(agent: Circumstance, cycle: int) -> None:
 
 
 def looks_now(agent: Circumstance, cycle: int) -> bool:
-    """Whether an agent that does not look at percepts and messages in every cycle (``nrcbp``) does in this one."""
+    """Return whether an agent that does not take in input in every cycle (``nrcbp``) does in this one."""
     if cycle < agent.counts.next_look and (agent.events or agent.intentions or agent.incoming.tasks):
         return False
     agent.counts.next_look = cycle + agent.options.percept_interval
@@ -189,7 +189,7 @@ def looks_now(agent: Circumstance, cycle: int) -> bool:
 
 
 def housekeeping(agent: Circumstance, looks: bool = True) -> None:
-    """What came in since the last cycle: percepts, ends of waits, conditions that now hold."""
+    """Take in input since the last cycle: percepts, ends of waits, conditions that now hold."""
     if agent.incoming.percepts and looks:
         take_percepts(agent)
     do_tasks(agent)
@@ -197,7 +197,7 @@ def housekeeping(agent: Circumstance, looks: bool = True) -> None:
 
 
 def do_tasks(agent: Circumstance) -> None:
-    """The housekeeping that is due."""
+    """Run the tasks that are due."""
     while agent.incoming.tasks:
         function, arguments = agent.incoming.tasks.popleft()
         try:
@@ -209,6 +209,6 @@ def do_tasks(agent: Circumstance) -> None:
 
 
 def check_conditions(agent: Circumstance) -> None:
-    """Resume the intentions whose awaited condition holds now."""
+    """Resume the intentions whose awaited condition now holds."""
     waits.check_conditions(agent)
     do_tasks(agent)

@@ -24,13 +24,13 @@ from jacaros.terms.values import String, Term, atom, structure
 def set_deadline(
     agent: Circumstance, supervision: Supervision, seconds: float, reason: tuple[Term, ...]
 ) -> None:
-    """Make the goal or plan fail with *reason* when it has not ended in time."""
+    """Make the goal or plan fail with *reason* if it does not end in time."""
     alarm = supervision.alarm = set_alarm(agent, max(0.0, seconds), _pass)
     alarm.arguments = (supervision, alarm.number, reason)
 
 
 def deadline_terms(seconds: float, hard: bool = False) -> tuple[Term, ...]:
-    """Why a goal or plan failed that did not end in time."""
+    """Return the reason terms of a missed deadline."""
     if hard:
         return (ERROR, atom("deadline_reached")), (ERROR_MSG, String("the goal was not achieved in time"))
     milliseconds = seconds * 1000

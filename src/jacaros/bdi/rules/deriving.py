@@ -1,7 +1,7 @@
-"""Derived beliefs: changes of beliefs go through patterns of `jacaros.streams`, and what follows is believed.
+"""Derived beliefs: changes of beliefs go through patterns of `jacaros.streams`, and the results are believed.
 
-Changes are kept until the next look around, and get the time of the run's clock then. A belief that is replaced within one
-look (a property with a new value) has not ended in between.
+Changes are collected until the next cycle, and then get the time of the run's clock. A belief that is replaced within
+one cycle (a property with a new value) has not ended in between.
 """
 
 import heapq
@@ -76,14 +76,14 @@ class Stream:
 
 
 class Derived:
-    """One declaration at work.
+    """One active declaration.
 
     Attributes:
-        declared: what the program says.
+        declared: the declaration in the program.
         text: the same as text, equal for equal declarations.
         pattern: its state.
         scheduled: when it is looked at next.
-        row: of the belief that is held, None for none.
+        row: of the belief that is held, or None.
     """
 
     __slots__ = ("declared", "owner", "pattern", "row", "scheduled", "text")
@@ -150,7 +150,7 @@ class DerivedBeliefs:
         return [each.declared for each in self._all.values()], list(self.histories.declared.values())
 
     def _soon(self) -> None:
-        """Settle before the next cycle, unless that is what the agent does."""
+        """Settle before the next cycle, unless the agent is already settling."""
         if not self._settling:
             self.agent.do_soon(settle)
 
@@ -159,7 +159,7 @@ class DerivedBeliefs:
         return self.histories.past(symbol, milliseconds, self._now())
 
     def declare(self, declared: Iterable[nodes.Derivation]) -> None:
-        """Begin with declarations that are not there yet."""
+        """Start declarations that are not active yet."""
         start = self._now()
         for each in declared:
             derived = Derived(self, each, start)
@@ -175,7 +175,7 @@ class DerivedBeliefs:
         self._wait()
 
     def replace(self, old: nodes.Program, new: nodes.Program) -> None:
-        """Have the declarations of *new* in place of those of *old*; what both declare keeps its past."""
+        """Replace the declarations of *old* by those of *new*; declarations in both keep their past."""
         for text in texts(old) - texts(new):
             if text in self._all:
                 self._end(self._all.pop(text))
@@ -195,7 +195,7 @@ class DerivedBeliefs:
         derived.forget()
 
     def stored(self, program: nodes.Program) -> dict[str, Any]:
-        """Return what the past has left, as data, and the declarations that are not those of a program."""
+        """Return the remains of the past as data, and the declarations that are not those of a program."""
         self.histories.note(self._now())
         own = texts(program)
         return {
@@ -213,7 +213,7 @@ class DerivedBeliefs:
         }
 
     def resume(self, held: dict[str, Any]) -> None:
-        """Continue from what was `stored` of an agent; what was not declared there begins."""
+        """Continue from what was `stored` of an agent; undeclared patterns start anew."""
         self._latest = held["latest"]
         for text, state, row in held["derived"]:
             if text in self._all:
@@ -256,7 +256,7 @@ class DerivedBeliefs:
                 pending.append((stream, stream.event(row) if operator == "+" else None, cause))
 
     def settle(self) -> None:
-        """Work on the changes that wait, and on what follows from them."""
+        """Process pending changes and their consequences."""
         now = self._now()
         self._settling = True
         try:
@@ -322,7 +322,7 @@ class DerivedBeliefs:
 
 
 def declare(agent: Circumstance, program: nodes.Program) -> None:
-    """Begin with the declarations of a program; an agent without any has no costs."""
+    """Start the declarations of a program; an agent without any has no costs."""
     if program.derived or program.histories:
         derived = _begun(agent)
         derived.histories.keep(program.histories)
@@ -335,7 +335,7 @@ def observe(agent: Circumstance, namespace: str | None, histories: Mapping[str, 
 
 
 def _begun(agent: Circumstance) -> DerivedBeliefs:
-    """The declarations of an agent; from the first one on it hears of all its beliefs."""
+    """Return the declarations of an agent; from the first one on it observes all its beliefs."""
     observers = agent.observers
     if observers.derived is None:
         observers.derived = DerivedBeliefs(agent)
@@ -378,7 +378,7 @@ def resume(agent: Circumstance, program: nodes.Program, held: dict[str, Any] | N
 
 
 def replace(agent: Circumstance, old: nodes.Program, new: nodes.Program) -> None:
-    """Have the declarations of a changed program in place of those of the old one; what both declare keeps its past."""
+    """Replace the declarations of the old program by those of a changed one; declarations in both keep their past."""
     if agent.observers.derived is not None:
         _derived(agent).replace(old, new)
     else:
@@ -386,13 +386,13 @@ def replace(agent: Circumstance, old: nodes.Program, new: nodes.Program) -> None
 
 
 def settle(agent: Circumstance) -> None:
-    """Work on the changes that wait."""
+    """Process pending changes."""
     if agent.observers.derived is not None:
         _derived(agent).settle()
 
 
 def ring(agent: Circumstance, due: float) -> None:
-    """A moment has come for which some pattern waits."""
+    """Handle the moment for which some pattern waits."""
     if agent.observers.derived is not None:
         _derived(agent).ring(due)
 

@@ -23,7 +23,7 @@ from jacaros.terms.values import BY_SELF
 
 
 def select_intention(agent: Circumstance) -> Intention | None:
-    """Rule SelInt: the atomic one, else the one that the agent selects of those that can make a step."""
+    """Rule SelInt: return the atomic intention, else one that the agent selects among those that can run."""
     if agent.atomic is not None:
         if not is_ready(agent, agent.atomic):
             return None
@@ -62,8 +62,8 @@ def execute(agent: Circumstance, intention: Intention) -> None:
 
 
 def _step(agent: Circumstance, intention: Intention, frame: Frame) -> Any:
-    """Run the next step of a plan; return its result, or the event for its failure. An unhandled failure ends
-    the intention.
+    """Run the next step of a plan; return its result, or the event for its failure. An unhandled failure ends the
+    intention.
     """
     goal: Any = None
     try:
@@ -79,7 +79,7 @@ def _step(agent: Circumstance, intention: Intention, frame: Frame) -> Any:
 
 
 def _pursue(agent: Circumstance, intention: Intention, posted: Any) -> None:
-    """A step has posted a goal or event: it is handled in one of the next cycles, that of an atomic intention now."""
+    """Handle the goal or event that a step has posted: in one of the next cycles; that of an atomic intention now."""
     goal, annotations = (posted.goal, posted.annotations) if posted.__class__ is Posted else (posted, BY_SELF)
     announce(agent, intention, goal, annotations)
     if agent.atomic is not intention:
@@ -93,9 +93,7 @@ def _pursue(agent: Circumstance, intention: Intention, posted: Any) -> None:
 
 
 def step_failed(agent: Circumstance, intention: Intention, fault: Exception | None = None) -> Posted | None:
-    """A step failed, or raised an exception: return the event for the nearest handler, or None without
-    one.
-    """
+    """A step failed, or raised an exception: return the event for the nearest handler, or None without one."""
     if agent.trail:
         undo(agent.trail, 0)
     if fault is not None and fault.__class__ is not Fail:

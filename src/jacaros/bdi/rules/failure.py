@@ -1,8 +1,6 @@
-"""Failure of formulae, and of goals without a plan. Only here exceptions of internal actions become failures
-of goals.
+"""Failure of formulae, and of goals without a plan. Only here exceptions of internal actions become failures of goals.
 
-An exception that no rule of the language foresees, such as a lack of memory, costs an agent one message,
-event or
+An exception that no rule of the language foresees, such as a lack of memory, costs an agent one message, event or
 intention; it is logged, and the agent continues.
 """
 
@@ -184,9 +182,8 @@ def release_bindings(goal: Goal, serial: int) -> None:
 def handler_event(agent: Circumstance, intention: Intention, reason: FailureReason) -> Posted | int | None:
     """Find the nearest goal down the stack that has a handler, or return None.
 
-    The failed frames stay on the stack under the handler until it ends. A failure inside a handler is passed
-    to the goals
-    below the one it handles. A goal with attempts left comes before its handler: the index of its frame is
+    The failed frames stay on the stack under the handler until it ends. A failure inside a handler is passed to the
+    goals below the one it handles. A goal with attempts left comes before its handler: the index of its frame is
     returned.
     """
     frames, selects = intention.frames, agent.library.selects
@@ -221,9 +218,7 @@ def handler_event(agent: Circumstance, intention: Intention, reason: FailureReas
 
 
 def has_handler(agent: Circumstance, intention: Intention, above: int) -> bool:
-    """Return whether a goal higher on the stack than the frame *above* has a handler that is not already
-    running.
-    """
+    """Return whether a goal higher on the stack than the frame *above* has a handler that is not already running."""
     handlers = len(intention.handlers)
     index = len(intention.frames) - 1
     while index > above:

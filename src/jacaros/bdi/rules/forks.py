@@ -1,7 +1,6 @@
 """Concurrency inside a plan: ``a |&| b`` (all branches) and ``a ||| b`` (the first one).
 
-Each branch is an intention of its own with a copy of the stack, so its bindings stay local. The branch that
-finishes
+Each branch is an intention of its own with a copy of the stack, so its bindings stay local. The branch that finishes
 last (``|&|``) or first (``|||``) continues with the rest of the plan.
 """
 
@@ -116,9 +115,7 @@ def join_branch(agent: Circumstance, frame: Frame) -> object:
 
 
 def branch_failed(agent: Circumstance, intention: Intention) -> bool:
-    """Handle a branch that failed without a handler; return True if that is a failure of the plan that
-    forked.
-    """
+    """Handle a branch that failed without a handler; return True if that is a failure of the plan that forked."""
     point, number = intention.forks[-1]
     point.open.discard(number)
     if not point.joins_all and point.open:

@@ -1,6 +1,4 @@
-"""Arithmetic functions that need an agent: its beliefs, clock, random numbers, and the functions of its
-program.
-"""
+"""Arithmetic functions that need an agent: its beliefs, clock, random numbers, and the functions of its program."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -47,9 +45,7 @@ def call_function(agent: Circumstance, term: Term) -> Term:
 
 
 def call_own(agent: Circumstance, term: Term) -> Term:
-    """Return the value of a function that needs the agent; None for other functions, or if it has no value
-    yet.
-    """
+    """Return the value of a function that needs the agent; None for other functions, or if it has no value yet."""
     name = term[0].name
     standard = OF_AGENT.get(name)
     if standard is not None:
@@ -94,9 +90,7 @@ OF_AGENT: Final = {
 
 
 def _call_registered(agent: Circumstance, function: RegisteredFunction, term: Term) -> Term:
-    """Return the first answer of the rule or internal action, which must be a number; None while arguments
-    are unknown.
-    """
+    """Return the first answer of the rule or internal action, which must be a number; None while arguments are unknown."""
     if free_variables(term):
         return None
     value = Var("Result")

@@ -22,7 +22,7 @@ _Unplanned = tuple[Goal, Any, int]
 def unplanned(
     agent: Circumstance, intention: Intention, goal: Goal, annotations: EventAnnotations
 ) -> Posted | None:
-    """A goal has no plan: its own handler, or one further down, or the end of the intention."""
+    """A goal has no plan: run its own handler, or one further down, or end the intention."""
     trigger = goal[0]
     if trigger.failing:
         _lost_in_handler(agent, intention, goal, annotations)
@@ -43,7 +43,7 @@ def has_room(agent: Circumstance, intention: Intention) -> bool:
 
 
 def too_deep(agent: Circumstance, intention: Intention) -> Posted | None:
-    """The plan just put on a full stack fails before its first step."""
+    """Fail the plan just put on a full stack before its first step."""
     frame = intention.frames.pop()
     goal, annotations = frame[GOAL], frame[ANNOTATIONS]
     failure.release_bindings(goal, frame[SERIAL])
@@ -64,7 +64,7 @@ def fail_goal(
     reason: FailureReason,
     number: int = -1,
 ) -> Posted | None:
-    """A goal that has no frame failed: post its handler, or look further down.
+    """A goal without a frame failed: post its handler, or look further down.
 
     *number* is that of the frame that it had, by which observers know it.
     """
@@ -91,9 +91,9 @@ def fail_intention(
     reason: FailureReason,
     unplanned: _Unplanned | None = None,
 ) -> Posted | None:
-    """The nearest handler down the stack takes over; without one the intention ends with a warning.
+    """Pass the failure to the nearest handler down the stack; without one the intention ends with a warning.
 
-    *unplanned* is the goal that failed, when it is not on the stack.
+    *unplanned* is the goal that failed, if it is not on the stack.
     """
     while intention.forks and not failure.has_handler(agent, intention, intention.forks[-1][0].depth):
         depth = intention.forks[-1][0].depth
@@ -135,7 +135,7 @@ def fail_intention(
 def _try_again(
     agent: Circumstance, intention: Intention, index: int, reason: FailureReason, unplanned: _Unplanned | None
 ) -> Posted | None:
-    """The goal of the frame at *index* is tried again; None when that is done later."""
+    """Try the goal of the frame at *index* again; return None if that happens later."""
     if agent.features.meta:
         _tell_unplanned(agent, intention, unplanned, reason, over=True)
         observe_failed(agent, intention, index, reason)

@@ -1,4 +1,4 @@
-"""Asking about and steering goals and intentions, wherever they are: running, in an event, waiting, suspended."""
+"""Query and control goals and intentions, wherever they are: running, in an event, waiting, suspended."""
 
 from collections.abc import Iterator
 
@@ -29,11 +29,11 @@ from jacaros.terms.values import Term, atom, functor
 
 _BY_SUSPEND, _BY_RESUME = atom("suspend_ia"), atom("resume_ia")
 PREEMPTED = functor("preempted", 1)
-"""Functor of the reason of intentions that have lost a resource; they are resumed when they have it again."""
+"""Functor of the reason of intentions that have lost a resource; they are resumed when they regain it."""
 
 
 def goal_literals(intention: Intention) -> list[Term]:
-    """The achievement goals on the stack, top first."""
+    """Return the achievement goals on the stack, top first."""
     return [
         literal_of(frame[GOAL], frame[ANNOTATIONS])
         for frame in reversed(intention.frames)
@@ -42,7 +42,7 @@ def goal_literals(intention: Intention) -> list[Term]:
 
 
 def frame_of(agent: Circumstance, intention: Intention, goal: Term, lowest: int = 0) -> int | None:
-    """Index of the lowest frame (from *lowest* on) that serves a goal matching *goal*; its variables are not bound."""
+    """Return the index of the lowest frame (from *lowest* on) that serves a matching goal, without binding variables."""
     for index, frame in enumerate(intention.frames):
         trigger = frame[GOAL][0]
         if (
@@ -64,7 +64,7 @@ def matches(agent: Circumstance, pattern: Term, literal: Term) -> bool:
 
 
 def intentions_for(agent: Circumstance, goal: Term) -> list[Intention]:
-    """The intentions that pursue the goal at any depth, or are about to."""
+    """Return the intentions that pursue the goal at any depth, or are about to."""
     found = []
     for intention in list(agent.alive.values()):
         if frame_of(agent, intention, goal) is not None:
@@ -77,7 +77,7 @@ def intentions_for(agent: Circumstance, goal: Term) -> list[Intention]:
 
 
 def goal_of(agent: Circumstance, intention: Intention, goal: Term) -> Term | None:
-    """The goal of an intention that matches: the lowest on its stack, or the one that is posted; None without any."""
+    """Return the matching goal of an intention: the lowest on its stack, or the posted one; None if no goal matches."""
     index = frame_of(agent, intention, goal)
     if index is not None:
         frame = intention.frames[index]
@@ -90,7 +90,7 @@ def goal_of(agent: Circumstance, intention: Intention, goal: Term) -> Term | Non
 
 
 def first_match(agent: Circumstance, goal: Term) -> Term | None:
-    """The first goal that matches, of intentions or of events; renamed, as what it is taken from may end."""
+    """Return the first matching goal, of intentions or events; renamed, as its intention may end."""
     for intention in list(agent.alive.values()):
         found = goal_of(agent, intention, goal)
         if found is not None:
@@ -105,7 +105,7 @@ def _is_goal(event: Event) -> bool:
 
 
 def goal_events(agent: Circumstance, goal: Term) -> list[Event]:
-    """Events of new goals (without intention) that match."""
+    """Return matching events of new goals (without intention)."""
     return [
         e
         for e in (*agent.events, *agent.waits.suspended_events)
@@ -114,7 +114,7 @@ def goal_events(agent: Circumstance, goal: Term) -> list[Event]:
 
 
 def desires(agent: Circumstance) -> Iterator[tuple[Term, int | None]]:
-    """All goals: of pending events and of intentions, with the id of the intention."""
+    """Yield all goals: of pending events and of intentions, with the id of the intention."""
     for event in (*agent.events, *agent.waits.suspended_events):
         if _is_goal(event):
             owner = event[EVENT_INTENTION]
@@ -123,7 +123,7 @@ def desires(agent: Circumstance) -> Iterator[tuple[Term, int | None]]:
 
 
 def intended(agent: Circumstance, include_suspended: bool = False) -> Iterator[tuple[Term, int | None]]:
-    """Goals on the stacks of intentions, with the id of the intention."""
+    """Yield goals on the stacks of intentions, with the id of the intention."""
     for intention in list(agent.alive.values()):
         if include_suspended or intention.suspended is None:
             for literal in goal_literals(intention):
@@ -146,7 +146,7 @@ def drop_intention(agent: Circumstance, intention: Intention) -> None:
 
 
 def drop_events(agent: Circumstance, goal: Term) -> None:
-    """Events of matching goals vanish, with the intentions that posted them."""
+    """Drop events of matching goals, with the intentions that posted them."""
     for event in goal_events(agent, goal):
         remove_event(agent, event)
         _event_state(agent, event, "dropped", "finished")
@@ -161,19 +161,19 @@ def drop_events(agent: Circumstance, goal: Term) -> None:
 
 
 def drop_goal(agent: Circumstance, goal: Term) -> None:
-    """``.drop_intention(G)``: whole intentions that have the goal vanish."""
+    """``.drop_intention(G)``: drop whole intentions that have the goal."""
     for intention in intentions_for(agent, goal):
         drop_intention(agent, intention)
 
 
 def drop_desire(agent: Circumstance, goal: Term) -> None:
-    """``.drop_desire(G)``: intentions and pending events."""
+    """``.drop_desire(G)``: drop intentions and pending events."""
     drop_events(agent, goal)
     drop_goal(agent, goal)
 
 
 def drop_all_intentions(agent: Circumstance) -> None:
-    """All but the running one; what ``.at`` is to post does not come either."""
+    """Drop all intentions except the running one, and cancel pending events of ``.at``."""
     for alarm in list(agent.waits.alarms.values()):
         if alarm.function is post_external:
             cancel_alarm(agent, alarm)
@@ -183,7 +183,7 @@ def drop_all_intentions(agent: Circumstance) -> None:
 
 
 def drop_all_goal_events(agent: Circumstance) -> None:
-    """All pending events of goals; intentions that posted them vanish."""
+    """Drop all pending events of goals, with the intentions that posted them."""
     for event in (*agent.events, *agent.waits.suspended_events):
         if _is_goal(event):
             remove_event(agent, event)
@@ -192,7 +192,7 @@ def drop_all_goal_events(agent: Circumstance) -> None:
 
 
 def drop_all_events(agent: Circumstance) -> None:
-    """All pending events; intentions that posted them vanish."""
+    """Drop all pending events, with the intentions that posted them."""
     for event in list(agent.events):
         if (intention := event[EVENT_INTENTION]) is not None:
             drop_intention(agent, intention)
@@ -202,7 +202,7 @@ def drop_all_events(agent: Circumstance) -> None:
 
 
 def _event_state(agent: Circumstance, event: Event, *states: str) -> None:
-    """Tell what becomes of a goal that has not begun: it is an event yet."""
+    """Report the state of a goal that is still an event."""
     if agent.features.meta:
         for state in states:
             meta_events.goal_state(agent, event[EVENT_GOAL], event[EVENT_ANNOTATIONS], state)
@@ -212,7 +212,7 @@ def _event_state(agent: Circumstance, event: Event, *states: str) -> None:
 
 
 def suspend_goal(agent: Circumstance, goal: Term, reason: Term) -> None:
-    """All intentions with the goal stop until it is resumed; a goal that has not begun yet does not begin."""
+    """Suspend all intentions with the goal until it is resumed; a goal that has not begun yet does not begin."""
     for event in goal_events(agent, goal):
         if event in agent.events:
             agent.events.remove(event)
@@ -225,7 +225,7 @@ def suspend_goal(agent: Circumstance, goal: Term, reason: Term) -> None:
 
 
 def is_preempted(intention: Intention) -> bool:
-    """Whether an intention is suspended because it has lost a resource."""
+    """Return whether an intention is suspended because it has lost a resource."""
     reason = intention.suspended
     return reason.__class__ is tuple and reason[0] is PREEMPTED
 
@@ -233,9 +233,9 @@ def is_preempted(intention: Intention) -> bool:
 def suspend_intention(
     agent: Circumstance, intention: Intention, reason: Term, by: Term = _BY_SUSPEND
 ) -> None:
-    """One intention stops; an external action that can pause is paused, and resources are given back.
+    """Suspend one intention: a pausable external action is paused, and resources are given back.
 
-    One that has lost a resource is suspended for the program's reason from now on: it waits for ``.resume``.
+    One that has lost a resource is from now on suspended for the program's reason: it waits for ``.resume``.
     """
     if intention.suspended is not None and not is_preempted(intention):
         return
@@ -256,12 +256,12 @@ def suspend_intention(
 
 
 def _lost(agent: Circumstance, waiting: Waiting) -> bool:
-    """Whether what is waited for is an action that has lost a resource: it is paused, and continues when it has it."""
+    """Return whether the wait is for an action that has lost a resource: it is paused until it regains it."""
     return isinstance(waiting, ActWait) and waiting.number in agent.waits.preempted
 
 
 def resume_goal(agent: Circumstance, goal: Term) -> None:
-    """The reverse of `suspend_goal`."""
+    """Resume all intentions with the goal, the reverse of `suspend_goal`."""
     for event in list(agent.waits.suspended_events):
         if event[EVENT_INTENTION] is None and matches(agent, goal, event_literal(event)):
             agent.waits.suspended_events.remove(event)
@@ -338,9 +338,9 @@ def goes_on(agent: Circumstance, intention: Intention) -> bool:
 
 
 def fail_goal(agent: Circumstance, goal: Term, reason: FailureReason | None = None) -> bool:
-    """End matching goals as failed: their own handlers run, or those below.  True when the caller itself is concerned.
+    """End matching goals as failed: their own handlers run, or those below. Return True if the caller is concerned.
 
-    A periodic goal is not pursued again.  Without *reason* the failure events carry no error annotation, as in Jason.
+    A periodic goal is not pursued again. Without *reason* the failure events have no error annotation, as in Jason.
     """
     reason = reason or nowhere()
     own = False
@@ -378,7 +378,7 @@ def fail_goal(agent: Circumstance, goal: Term, reason: FailureReason | None = No
 
 
 def _fail_pending(agent: Circumstance, intention: Intention, reason: FailureReason) -> None:
-    """A sub-goal that was posted and not taken up yet fails in its place."""
+    """Fail a sub-goal that was posted and not handled yet, in its place."""
     event = pending_event(agent, intention)
     if event is not None:
         remove_event(agent, event)
@@ -390,7 +390,7 @@ def _fail_pending(agent: Circumstance, intention: Intention, reason: FailureReas
 
 
 def post_external(agent: Circumstance, kind: Trigger, literal: Term) -> None:
-    """Post an external event, such as ``.at`` announced and ``.signal`` makes."""
+    """Post an external event, as ``.at`` and ``.signal`` do."""
     _, arguments, annotations = parts(rename(literal))
     agent.post(((kind, *arguments), None, own_annotations(annotations), None))
     agent.architecture.ready()

@@ -33,7 +33,7 @@ class Histories:
         self._waiting: list[tuple[History, Row]] = []
 
     def keep(self, declared: Iterable[nodes.History]) -> None:
-        """Begin with histories that are not kept yet; of two for the same beliefs the longer one."""
+        """Keep additional histories; for the same beliefs, the longer window counts."""
         self.declared |= {format_history(each): each for each in declared}
         self.arrange()
 
@@ -44,7 +44,7 @@ class Histories:
         self.arrange()
 
     def arrange(self) -> None:
-        """Have the histories that are declared or observed, and no others."""
+        """Keep the histories that are declared or observed, and no others."""
         windows = dict.fromkeys((*self._histories, *self._agent.beliefs), 0.0)
         for each in self.declared.values():
             symbol = functor_of(lower_value(each.belief))
@@ -60,7 +60,7 @@ class Histories:
         return self._observed.get((symbol.namespace, symbol.name), 0.0)
 
     def _history(self, symbol: Functor, window: float) -> History:
-        """The history of beliefs, which is made unless there is one."""
+        """Return the history of beliefs, creating it if necessary."""
         history = self._histories.get(symbol)
         if history is None:
             history = History(symbol, window)
@@ -79,7 +79,7 @@ class Histories:
         self._waiting.append((history, row))
 
     def heard(self, symbol: Functor, row: Row) -> None:
-        """Hear of a belief that may have come or gone."""
+        """Note a belief that may have been added or deleted."""
         history = self._histories.get(symbol)
         if history is not None:
             self._change(history, row)
@@ -87,7 +87,7 @@ class Histories:
             self._histories[symbol] = self._history(symbol, window)  # which looks at this belief, too
 
     def note(self, now: float) -> None:
-        """Write the changes that wait into the histories."""
+        """Write pending changes into the histories."""
         waiting, self._waiting = self._waiting, []
         for history, row in waiting:
             if is_kept(row):
@@ -104,7 +104,7 @@ class Histories:
         return history.at(now - milliseconds / 1000.0)
 
     def stored(self) -> dict[str, Any]:
-        """Return what the past has left, as data."""
+        """Return the remains of the past as data."""
         kept = [(symbol, history.state()) for symbol, history in self._histories.items()]
         return {"kept": kept, "observed": list(self._observed.items())}
 

@@ -7,7 +7,7 @@ from jacaros.bdi.state.intention import Intention
 
 
 def observe_steps(agent: Circumstance, observer: StepObserver | None) -> None:
-    """Have *observer* asked before each event and each step; None ends it, and lets a held agent continue."""
+    """Ask *observer* before each event and each step; None ends this, and lets a held agent continue."""
     observers, features = agent.observers, agent.features
     if observers.step is None:
         observers.usual_events = features.usual_events
@@ -21,7 +21,7 @@ def observe_steps(agent: Circumstance, observer: StepObserver | None) -> None:
 
 
 def is_held_before_event(agent: Circumstance, event: Event, ends_cycle: bool = False) -> bool:
-    """Whether the observer holds the agent before an event, which then is the first of the queue again."""
+    """Return whether the observer holds the agent before an event, which is then put back first in the queue."""
     observer = agent.observers.step
     if observer is None or not observer.holds_event(agent, event):
         return False
@@ -31,7 +31,7 @@ def is_held_before_event(agent: Circumstance, event: Event, ends_cycle: bool = F
 
 
 def is_held_before_step(agent: Circumstance, intention: Intention) -> bool:
-    """Whether the observer holds the agent before a step of an intention, which then is the next one again."""
+    """Return whether the observer holds the agent before a step of an intention, which is then put back as the next one."""
     observer = agent.observers.step
     if observer is None or not observer.holds_step(agent, intention):
         return False
@@ -41,7 +41,9 @@ def is_held_before_step(agent: Circumstance, intention: Intention) -> bool:
 
 
 def take_held_event(agent: Circumstance) -> Event | None:
-    """The event before which the agent was held, out of its queue; None when it was not, or the event is gone."""
+    """Take the event before which the agent was held out of its queue; return None if it was not held or the event is
+    gone.
+    """
     held = agent.held
     if not isinstance(held, HeldEvent):
         return None
@@ -54,7 +56,9 @@ def take_held_event(agent: Circumstance) -> Event | None:
 
 
 def take_held_intention(agent: Circumstance) -> Intention | None:
-    """The intention before whose step the agent was held, out of its queue; None when it was not, or cannot run now."""
+    """Take the intention before whose step the agent was held out of its queue; None if it was not held or cannot run
+    now.
+    """
     intention = agent.held
     if not isinstance(intention, Intention):
         return None

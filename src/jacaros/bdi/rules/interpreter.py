@@ -1,4 +1,4 @@
-"""Plans and rules as the language defines them, without any code made for speed."""
+"""Run plans and rules as the language defines them, without code made for speed."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -21,7 +21,7 @@ from jacaros.terms.values import Term
 
 
 class Interpreter:
-    """Carries out plans and rules, see `jacaros.bdi.state.engine.Engine`.
+    """Runs plans and rules, see `jacaros.bdi.state.engine.Engine`.
 
     Args:
         actions: the internal actions that plans may call.
@@ -33,11 +33,11 @@ class Interpreter:
     run = staticmethod(cycle.run)
 
     def belief_base(self, agent: Circumstance, limit: int) -> BeliefTables:
-        """A belief base that counts its beliefs."""
+        """Return a belief base that counts its beliefs."""
         return BoundedBeliefs(agent, limit, self)
 
     def begin(self, agent: Circumstance) -> None:
-        """An agent is about to begin: nothing is to be prepared."""
+        """Do nothing: nothing needs preparation."""
 
     def compile_ahead(self, program: Any) -> bool:
         """False: nothing is compiled."""
@@ -45,28 +45,28 @@ class Interpreter:
         return False
 
     def select(self, trigger: Trigger, plans: Sequence[Plan], outer: Plan | None = None) -> Select:
-        """What chooses among plans for one kind of event."""
+        """Return the selection among plans for one kind of event."""
         del trigger
         return Selection(plans, outer)
 
     def every(self, trigger: Trigger, plans: Sequence[Plan]) -> Every:
-        """The same for all applicable plans."""
+        """Return the same for all applicable plans."""
         del trigger
         return Selection(plans).every
 
     def give_steps(self, plan: Plan) -> None:
-        """Give a plan that stands for a body made at run time its steps."""
+        """Give steps to a plan made from a body at run time."""
         interpreted(plan)
 
     def step_at(self, plan: Plan, position: str) -> NextStep:
-        """The step at a position (`jacaros.bdi.state.plan.position_of`) of a plan; generated code has the same numbers."""
+        """Return the step at a position (`jacaros.bdi.state.plan.position_of`); generated code has the same numbers."""
         return interpreted(plan).by_name[f"step_{position[1:]}"]
 
     def answers(self, agent: Any, rule: Rule, arguments: tuple[Term, ...], trail: Trail) -> Answers:
-        """The answers of a rule."""
+        """Return the answers of a rule."""
         return interpret_rule(agent, rule.node, arguments, trail)
 
     def searches(self, predicate: Any) -> tuple[Any, Any] | None:
-        """None: rules are asked one by one."""
+        """None: rules are called one by one."""
         del predicate
         return None

@@ -1,4 +1,4 @@
-"""Plans that are stopped in the middle of a step because they must not go on: they clean up, and then they fail."""
+"""Stop plans in the middle of a step because they must not continue: they clean up, and then fail."""
 
 from jacaros.bdi.explaining.failure_reason import FailureReason
 from jacaros.bdi.rules import goal_failure
@@ -17,7 +17,7 @@ from jacaros.terms.values import functor_of
 
 
 def interrupt_plan(agent: Circumstance, intention: Intention, index: int, reason: FailureReason) -> None:
-    """Stop the plan whose guard is at *index*: its step and the goals that it waits for are over."""
+    """Stop the plan whose guard is at *index*: its step and the goals that it waits for end."""
     guard: PlanGuard = intention.frames[index][SUPERVISION]
     frame = intention.frames[index + 1]
     interrupted = reason.interrupted(intention.frames[index + 1 :])
@@ -29,7 +29,7 @@ def interrupt_plan(agent: Circumstance, intention: Intention, index: int, reason
 def give_up(
     agent: Circumstance, intention: Intention, guard: PlanGuard, frame: Frame, reason: FailureReason
 ) -> Posted | None:
-    """Post the clean-up goal of a plan, behind which the plan fails; without one it fails immediately."""
+    """Post the clean-up goal of a plan, after which the plan fails; without one it fails immediately."""
     end(agent, guard)
     symbol = functor_of(guard.cleanup)
     if symbol is None or symbol.kind:
@@ -40,7 +40,7 @@ def give_up(
 
 
 def fail_lost(agent: Circumstance, frame: Frame) -> object:
-    """The step behind the clean-up goal of a plan: the plan fails."""
+    """The step after the clean-up goal of a plan: the plan fails."""
     intention = agent.current
     assert intention is not None
     place = next(at for at, each in enumerate(intention.frames) if each is frame)
@@ -52,7 +52,7 @@ def fail_lost(agent: Circumstance, frame: Frame) -> object:
 
 
 def cut_in_queue(agent: Circumstance, intention: Intention, index: int) -> None:
-    """Cut the stack of an intention that may be waiting for its turn: it has none until it is queued again."""
+    """Cut the stack of an intention that may be queued; it does not run until it is queued again."""
     cut(agent, intention, index)
     for queue in (agent.intentions, agent.crowd):
         if intention in queue:

@@ -1,5 +1,6 @@
-"""Changes of goal states: events for plans that ask for them (``^!g[state(S)]``), and news for an observer; and events
-about the agent itself: it falls asleep, awakes, is to be shut down.
+"""State changes of goals: events for plans that react to them (``^!g[state(S)]``), and notifications of observers.
+
+Also events about the agent itself: it falls asleep, awakes, or is about to be shut down.
 """
 
 from collections.abc import Callable
@@ -19,7 +20,7 @@ _NO_REASON = String("")
 
 
 GoalObserver = Callable[[str, Goal, int, int, str], None]
-"""Takes a goal's state, the goal, its number, that of its intention, and of a failure the reason for people."""
+"""Called with a goal's state, the goal, its number, that of its intention, and for a failure the reason as text."""
 
 
 def goal_state(
@@ -30,7 +31,7 @@ def goal_state(
     reason: Term = _NO_REASON,
     *details: Term,
 ) -> None:
-    """Tell plans that a goal has got into another state: the event comes one cycle later, before ordinary ones."""
+    """Notify plans of a state change of a goal: the event comes one cycle later, before ordinary ones."""
     kind = goal[0]
     if not kind.kind or kind.operator == "^":
         return
@@ -45,13 +46,13 @@ def goal_state(
 def frame_state(
     agent: Circumstance, intention: Intention, frame: Frame, state: str, reason: Term = _NO_REASON
 ) -> None:
-    """Tell plans and the observer that the goal of a frame has got into another state."""
+    """Notify plans and the observer of a state change of a frame's goal."""
     observe(agent, intention, frame, state)
     goal_state(agent, frame[GOAL], frame[ANNOTATIONS], state, reason)
 
 
 def observe(agent: Circumstance, intention: Intention, frame: Frame, state: str, why: str = "") -> None:
-    """Tell the observer only."""
+    """Notify only the observer."""
     if agent.observers.goal is not None:
         number = _goal_number(frame)
         if number is not None:
@@ -61,14 +62,16 @@ def observe(agent: Circumstance, intention: Intention, frame: Frame, state: str,
 def observe_goal(
     agent: Circumstance, intention: Intention, goal: Goal, number: int, state: str, why: str = ""
 ) -> None:
-    """Tell the observer only, of a goal that may have no frame."""
+    """Notify only the observer, of a goal that may have no frame."""
     kind = goal[0]
     if agent.observers.goal is not None and kind.kind and kind.operator != "^":
         agent.observers.goal(state, goal, number, intention.id, why)
 
 
 def _goal_number(frame: Frame) -> int | None:
-    """The number of a frame's goal, the same in all branches of a fork; None when the goal has a frame below, or pauses."""
+    """Return the number of a frame's goal, equal in all branches of a fork; None if the goal has a frame below, or
+    pauses.
+    """
     if not frame[GOAL][0].failing:
         number: int = frame[SERIAL]
         return None if is_pause(frame) else number
@@ -76,18 +79,18 @@ def _goal_number(frame: Frame) -> int | None:
 
 
 def failed_number(annotations: EventAnnotations) -> int | None:
-    """Of a failure event, the number of the goal that failed without having got a frame."""
+    """Return the number of the goal of a failure event that failed without a frame."""
     return annotations.goal_number if isinstance(annotations, FailureReason) else None
 
 
 def observe_rest(agent: Circumstance, intention: Intention) -> None:
-    """Tell the observer that goals are over because their intention is."""
+    """Notify the observer that goals are over because their intention is."""
     for frame in reversed(intention.frames[shared(agent, intention) :]):
         observe(agent, intention, frame, "finished")
 
 
 def shared(agent: Circumstance, intention: Intention) -> int:
-    """The number of frames, from the bottom of the stack, whose goals other branches of a fork pursue, too."""
+    """Return the number of frames, from the bottom of the stack, whose goals other branches of a fork pursue, too."""
     for point, _ in reversed(intention.forks):
         for other in agent.alive.values():
             if other is not intention and any(each is point for each, _ in other.forks):
@@ -97,14 +100,14 @@ def shared(agent: Circumstance, intention: Intention) -> int:
 
 
 def post_new_goal(agent: Circumstance, event: Event) -> None:
-    """Queue the event of a new goal; it is pending from now on."""
+    """Queue the event of a new goal, which is pending from now on."""
     if agent.features.meta:
         goal_state(agent, event[EVENT_GOAL], event[EVENT_ANNOTATIONS], "pending")
     agent.post(event)
 
 
 def top_goal_state(agent: Circumstance, intention: Intention, state: str, reason: Term = _NO_REASON) -> None:
-    """The same for the topmost goal of an intention."""
+    """Notify plans and the observer of a state change of an intention's topmost goal."""
     for frame in reversed(intention.frames):
         if frame[GOAL][0].kind and not frame[GOAL][0].failing:
             frame_state(agent, intention, frame, state, reason)
@@ -112,7 +115,7 @@ def top_goal_state(agent: Circumstance, intention: Intention, state: str, reason
 
 
 def _insert(agent: Circumstance, event: Event) -> None:
-    """Put a meta event before the ordinary ones, behind those that came earlier."""
+    """Insert a meta event before the ordinary events, after earlier meta events."""
     place = 0
     for queued in agent.events:
         if queued[EVENT_GOAL][0].operator != "^":
@@ -124,10 +127,8 @@ def _insert(agent: Circumstance, event: Event) -> None:
 def observe_goals(agent: Circumstance, observer: GoalObserver) -> None:
     """Notify an observer of every state change of goals that have begun.
 
-    The states are ``executing``, ``waiting``, ``suspended``, ``resumed``, ``achieved``, ``failed``,
-    ``recovered``,
-    ``dropped``, ``replaced``, and last ``finished``. A goal keeps its number when its variables are bound,
-    and in all
+    The states are ``executing``, ``waiting``, ``suspended``, ``resumed``, ``achieved``, ``failed``, ``recovered``,
+    ``dropped``, ``replaced``, and last ``finished``. A goal keeps its number when its variables are bound, and in all
     branches of a fork.
     """
     agent.observers.goal = observer
@@ -152,7 +153,7 @@ SHUTTING_DOWN = trigger("+", "", functor("jag_shutting_down", 1))
 
 
 def fall_asleep(agent: Circumstance) -> bool:
-    """There is nothing to do: True when a plan for ``+jag_sleeping`` is to be tried before the agent sleeps."""
+    """Handle an idle agent; return True if a plan for ``+jag_sleeping`` has to be tried before it sleeps."""
     if agent.sleep != "awake" or not agent.is_idle():
         agent.sleep = "awake" if agent.sleep == "awake" else "asleep"
         return False
@@ -165,7 +166,7 @@ def fall_asleep(agent: Circumstance) -> bool:
 
 
 def awake(agent: Circumstance) -> None:
-    """Something has come up: ``+jag_awaking``."""
+    """Handle new work of a sleeping agent: ``+jag_awaking``."""
     if agent.sleep == "asleep" and not agent.is_idle():
         agent.sleep = "awake"
         if agent.may_handle(AWAKING):
@@ -173,7 +174,7 @@ def awake(agent: Circumstance) -> None:
 
 
 def shutting_down(agent: Circumstance, milliseconds: float) -> None:
-    """The agent will be ended after so many milliseconds: ``+jag_shutting_down(Ms)``."""
+    """Announce that the agent will end after that number of milliseconds: ``+jag_shutting_down(Ms)``."""
     if agent.may_handle(SHUTTING_DOWN):
         agent.post(((SHUTTING_DOWN, milliseconds), None, BY_SELF, None))
         agent.architecture.ready()

@@ -1,4 +1,4 @@
-"""Plans and goals that need resources: acquired before the first step, given back when their frame is gone."""
+"""Plans and goals that need resources: acquired before the first step, released when their frame is gone."""
 
 from jacaros.bdi.state.act import NEEDS, Act
 from jacaros.bdi.state.circumstance import Circumstance
@@ -10,13 +10,13 @@ from jacaros.terms.values import String, Term, atom, make_list, structure
 
 
 def note(agent: Circumstance, annotations: EventAnnotations) -> None:
-    """A goal is about to be posted: from the next cycle on its needs are looked at."""
+    """Note that a goal with needs is about to be posted: from the next cycle on, needs are checked."""
     if not agent.features.needs and isinstance(annotations, tuple) and wanted_in(annotations) is not None:
         agent.features.needs = agent.features.special = agent.incoming.called = True
 
 
 def acquire(agent: Circumstance, intention: Intention) -> bool:
-    """Ask for what the plan or goal on top of an intention needs; False when the intention waits for it."""
+    """Request what the plan or goal on top of an intention needs; return False if the intention waits for it."""
     frame = intention.frames[-1]
     wanted = _wanted(frame)
     if wanted is None or frame[STEP] is None:
@@ -37,7 +37,7 @@ def _wanted(frame: Frame) -> Wanted | None:
 
 
 def act_for(agent: Circumstance, number: int, intention: Intention, frame: Frame, wanted: Wanted) -> Act:
-    """The act by which an intention asks for resources; its end says that it has them."""
+    """Return the act by which an intention requests resources; it ends when they are granted."""
     trigger = frame[GOAL][0]
     arguments = (
         make_list([String(name) for name in wanted.names]),
@@ -50,7 +50,7 @@ def act_for(agent: Circumstance, number: int, intention: Intention, frame: Frame
 
 
 def claim(agent: Circumstance, intention: Intention, act: Act) -> None:
-    """Say in an act what counts among claims: how urgent it is, and what it is a part of."""
+    """Set in an act what claims depend on: its urgency, and the acts that contain it."""
     act.urgency = agent.selections.urgency_of(intention)
     if agent.atomic is intention:
         act.yields = False
@@ -59,7 +59,7 @@ def claim(agent: Circumstance, intention: Intention, act: Act) -> None:
 
 
 def wait(agent: Circumstance, intention: Intention, frame: Frame, number: int, wanted: Wanted) -> ActWait:
-    """Let an intention wait for what it has asked for."""
+    """Let an intention wait for what it has requested."""
     reason = structure("needs", *(atom(name) for name in wanted.names))
     waiting = ActWait(intention, reason, number)
     waiting.attach(frame, frame[STEP])
@@ -68,17 +68,17 @@ def wait(agent: Circumstance, intention: Intention, frame: Frame, number: int, w
 
 
 def of(agent: Circumstance, intention: Intention) -> list[Need]:
-    """What an intention needs, the lowest on its stack first."""
+    """Return what an intention needs, the lowest on its stack first."""
     return [need for need in agent.waits.needs.values() if need.is_on(intention)]
 
 
 def is_of(agent: Circumstance, intention: Intention, index: int) -> bool:
-    """Whether the frame at *index* holds resources."""
+    """Return whether the frame at *index* holds resources."""
     return any(need.index == index and need.is_on(intention) for need in agent.waits.needs.values())
 
 
 def sweep(agent: Circumstance) -> None:
-    """Give back what frames held that are gone, however they ended."""
+    """Release resources of frames that are gone, however they ended."""
     for need in list(agent.waits.needs.values()):
         if not need.intention.dropped and need.is_on(need.intention):
             continue
@@ -92,5 +92,5 @@ def sweep(agent: Circumstance) -> None:
 
 
 def reason_of(resource: str) -> Term:
-    """Why an intention is suspended that has lost a resource."""
+    """Return the reason of an intention that is suspended because it has lost a resource."""
     return structure("preempted", atom(resource))

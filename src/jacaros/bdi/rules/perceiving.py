@@ -1,7 +1,6 @@
 """Percepts become beliefs: changes noticed by the body are added or removed, and raise events, in order.
 
-A sensor that is faster than its agent checks whether the last percept has been handled before it sends
-another one.
+A sensor that is faster than its agent checks whether the last percept has been handled before it sends another one.
 """
 
 from collections.abc import Callable, Iterator
@@ -68,8 +67,7 @@ def take(agent: Circumstance, percept: Percept) -> None:
 
 
 def _believe(agent: Circumstance, symbol: Functor, row: Row, percept: Percept) -> Row | None:
-    """Add the belief of a percept that may already be held, by the agent or for other properties with the
-    same values.
+    """Add the belief of a percept that may already be held, by the agent or for other properties with the same values.
 
     Return None if the base has no room for it.
     """
@@ -160,8 +158,8 @@ def _identity(symbol: Functor, row: Row) -> tuple[object, ...]:
 
 
 def is_untaken(agent: Circumstance, name: str) -> bool:
-    """Return whether a change of a belief called *name* has still to be noticed or handled, or its plan has
-    still to run.
+    """Return whether a change of a belief called *name* has still to be noticed or handled, or its plan has still to
+    run.
 
     A plan that waits (for an action, a time, a condition) has had its turn.
     """

@@ -1,4 +1,4 @@
-"""Changes of the plan library and of rules at run time, and the loading of plans."""
+"""Change the plan library and rules at run time, and load plans."""
 
 from jacaros.asl import nodes
 from jacaros.asl.loader import parse_plans
@@ -35,14 +35,14 @@ ERROR = functor("error", 1)
 
 
 def same_plan(left: nodes.Plan, right: nodes.Plan) -> bool:
-    """Whether two plans are equal, labels aside."""
+    """Return whether two plans are equal, labels aside."""
     return left.trigger.operator == right.trigger.operator and shape(
         (left.trigger, left.context, left.body, left.goal_condition, left.subplans)
     ) == shape((right.trigger, right.context, right.body, right.goal_condition, right.subplans))
 
 
 def look_at_plans(agent: Circumstance) -> None:
-    """What the mind needs to know of its plans as a whole, those included that have been removed: they may still run."""
+    """Update what the mind needs to know of all its plans, including removed ones, which may still run."""
     agent.features.meta_plans = agent.library.has_meta_plans()
     agent.features.meta = agent.observers.goal is not None or agent.features.meta_plans
     agent.features.subplans = agent.features.subplans or agent.library.has_subplans()
@@ -61,7 +61,7 @@ def look_at_plans(agent: Circumstance) -> None:
         agent.library.selects[kind] is not None for kind in (SLEEPING, AWAKING)
     )
     if not agent.features.edges:
-        # Nobody would notice, and an agent that gets such a plan later is awake then.
+        # No plan would notice; an agent that gets such a plan later is awake then.
         agent.sleep = "awake"
     urgency.plans_changed(agent)
     if agent.observers.mind is not None:
@@ -126,7 +126,9 @@ def _add_node(agent: Circumstance, node: nodes.Plan, source: Term, first: bool) 
 
 
 def remove_plan(agent: Circumstance, wanted: Term, source: Term = SELF) -> None:
-    """Take a source off the plan of that label, or equal to that plan term, if there is one; without source it goes."""
+    """Remove a source of the plan with that label, or equal to that plan term, if any; without sources the plan is
+    removed.
+    """
     term = resolve(wanted)
     if term.__class__ is tuple and term[0] is PLAN:
         node = Reflection(shared=False).plan(term)
@@ -144,7 +146,7 @@ def remove_plan(agent: Circumstance, wanted: Term, source: Term = SELF) -> None:
 
 
 def change_plans(agent: Circumstance, operator: str, term: Term) -> bool:
-    """``+{plan}``, ``-{plan}``, ``+{rule}`` …; False when the operand is neither a plan nor a rule.
+    """``+{plan}``, ``-{plan}``, ``+{rule}`` …; return False if the operand is neither a plan nor a rule.
 
     Annotations of the operand, such as sources, are given to the rule, and their sources to the plan.
     """

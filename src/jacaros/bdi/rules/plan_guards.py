@@ -1,6 +1,6 @@
-"""Plans whose labels say what must hold while they run: ``@p[while(Condition), within(Ms), cleanup(Goal)]``.
+"""Plans with guards in their labels: ``@p[while(Condition), within(Ms), cleanup(Goal)]``.
 
-The condition is watched as that of a ``.wait``.  When it no longer holds, the plan stops in the middle of its step, its
+The condition is watched like that of a ``.wait``. When it no longer holds, the plan stops in the middle of its step, its
 clean-up goal is pursued, and then the plan fails.
 """
 
@@ -24,7 +24,7 @@ from jacaros.terms.values import String, Term, atom, structure
 
 
 def begin_guarded(agent: Circumstance, frame: Frame) -> object:
-    """The step before the first one of a plan with guards: from now on its condition and its deadline count."""
+    """The step before the first one of a plan with guards: start its condition and its deadline."""
     intention = agent.current
     assert intention is not None
     plan = frame[PLAN]
@@ -50,7 +50,7 @@ def begin_guarded(agent: Circumstance, frame: Frame) -> object:
 
 
 def _words(frame: Frame) -> dict[str, Term]:
-    """The guards of a plan, with the values that its variables have when it begins."""
+    """Return the guards of a plan, with the values of its variables when it begins."""
     slots = frame[PLAN].slots
     names = Names((name, frame[slot]) for name, slot in slots.items() if frame[slot] is not None)
     return {
@@ -60,7 +60,7 @@ def _words(frame: Frame) -> dict[str, Term]:
 
 
 def _holds(agent: Circumstance, condition: Term) -> bool:
-    """Whether a condition holds now; it leaves no bindings behind.  One that cannot be evaluated does not hold."""
+    """Return whether a condition holds now, without leaving bindings. One that cannot be evaluated does not hold."""
     try:
         return bool(agent.context.succeeds(condition))
     except InternalError:
@@ -84,7 +84,7 @@ def _lost(condition: Term) -> FailureReason:
 
 
 def check(agent: Circumstance, watch: ConditionWatch) -> None:
-    """A change of beliefs may have made the condition of a plan false."""
+    """Check the condition of a plan after a change of beliefs."""
     if watch.ended or _holds(agent, watch.condition):
         return
     reason = _lost(watch.condition)

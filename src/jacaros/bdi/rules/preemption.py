@@ -1,4 +1,4 @@
-"""Intentions that have lost a resource to a more urgent claim: suspended, and resumed when they have it again."""
+"""Intentions that have lost a resource to a more urgent claim: suspended, and resumed when they regain it."""
 
 from jacaros.bdi.rules import goals, needs
 from jacaros.bdi.state.circumstance import Circumstance
@@ -7,13 +7,13 @@ from jacaros.terms.values import Term
 
 
 def preempted(agent: Circumstance, number: int, resource: str) -> None:
-    """An act, or what a plan needs, has lost a resource; its intention is suspended in the next cycle."""
+    """Note that an act, or what a plan needs, has lost a resource; its intention is suspended in the next cycle."""
     agent.do_soon(_suspend, number, needs.reason_of(resource))
     agent.architecture.ready()
 
 
 def regained(agent: Circumstance, number: int) -> None:
-    """The act, or the plan, has it again, or no longer waits for it."""
+    """Note that the act, or the plan, has it again, or no longer waits for it."""
     agent.do_soon(_resume, number)
     agent.architecture.ready()
 
@@ -43,12 +43,12 @@ def _resume(agent: Circumstance, number: int) -> None:
 
 
 def _other_reason(agent: Circumstance, intention: Intention) -> Term:
-    """Another resource that an intention has lost."""
+    """Return the reason for another resource that an intention has lost."""
     return next((reason for reason, owners in agent.waits.preempted.values() if intention in owners), None)
 
 
 def _owners(agent: Circumstance, number: int) -> list[Intention]:
-    """The intentions whose act it is, or that have the frame that needs it."""
+    """Return the intentions with that act, or with the frame that needs it."""
     waiting = agent.waits.acts.get(number)
     if waiting is not None:
         return [waiting.intention]

@@ -74,9 +74,7 @@ def read_message(agent: Circumstance, message: SpeechAct) -> None:
 
 
 def _process(agent: Circumstance, message: SpeechAct) -> None:
-    """Process a message: an answer, refused, or handled by a plan for ``+!kqml_received``, which comes
-    first.
-    """
+    """Process a message: an answer, refused, or handled by a plan for ``+!kqml_received``, which comes first."""
     if message.in_reply_to is not None and _answers_question(agent, message):
         return
     if not agent.accepts(message):
@@ -93,9 +91,7 @@ def _process(agent: Circumstance, message: SpeechAct) -> None:
 
 
 def _answers_question(agent: Circumstance, message: SpeechAct) -> bool:
-    """Return whether the message answers a question of the agent: it is passed to the asker, or discarded if
-    none waits.
-    """
+    """Return whether the message answers a question of the agent: it is passed to the asker, or discarded if none waits."""
     question = message.in_reply_to
     if question in agent.waits.questions:
         take_answer(agent, agent.waits.questions[question], message)
@@ -177,8 +173,8 @@ def from_sender(content: Term, sender: str) -> Term:
 
 
 def literal_from(content: Term, sender: str) -> tuple[Functor | None, tuple[Term, ...], tuple[Term, ...]]:
-    """Return functor, arguments and annotations of the content with ``source(sender)``; no functor if it is
-    not a literal.
+    """Return functor, arguments and annotations of the content with ``source(sender)``; no functor if it is not a
+    literal.
     """
     if is_flat(content):
         return functor_of(content), arguments_of(content), _only_from(sender)

@@ -1,8 +1,9 @@
-"""The selection functions of a fair agent: the oldest message and event, the first applicable plan, intentions in a circle.
+"""The selection functions of a fair agent.
 
-A program chooses among the applicable plans itself with rules for ``select__option(Trigger, Intention, Plan, Bindings)``:
-the first plan for which they hold is taken.  Label annotation ``all_unifs``: every answer of the plan's context is an
-option, not the first one only.
+They select the oldest message and event, the first applicable plan, and intentions in a circle. A program can filter the
+applicable plans with rules for ``select__option(Trigger, Intention, Plan, Bindings)``: the first plan for which they
+hold is selected. With the label annotation ``all_unifs``, every answer of the plan's context is an option, not only the
+first.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -35,23 +36,23 @@ class Fair:
         self.urgencies: Mapping[Trigger, int] | None = None
 
     def urgency_of(self, intention: Intention) -> int:
-        """No intention is more urgent than others."""
+        """Return 0: no intention is more urgent than others."""
         del intention
         return 0
 
     def select_messages(self) -> Sequence[SpeechAct]:
-        """The oldest one."""
+        """Return the oldest message."""
         return (self.agent.incoming.messages.popleft(),)
 
     def select_event(self) -> Event | None:
-        """The oldest one."""
+        """Return the oldest event."""
         events = self.agent.events
         return events.popleft() if events else None
 
     def select_option(
         self, goal: Goal, annotations: EventAnnotations, intention: Intention | None
     ) -> Frame | None:
-        """The first applicable plan; if the program has rules that filter plans, the first one that they let pass."""
+        """Return the first applicable plan; with rules that filter plans, the first one that passes."""
         agent = self.agent
         if not self.option_filter.rows:
             select = agent.library.selects[goal[0]]
@@ -64,27 +65,27 @@ class Fair:
         return None
 
     def select_intention(self) -> Intention | None:
-        """The one whose last turn is the longest ago."""
+        """Return the intention whose last turn is the longest ago."""
         intentions = self.agent.intentions
         return intentions.popleft() if intentions else None
 
     def rank(self) -> None:
-        """What came first goes first."""
+        """Do nothing: first come, first served."""
 
     def note_intention(self, intention: Intention) -> None:
-        """It goes to the end."""
+        """Do nothing: the intention is queued last."""
 
     def note_message(self, message: SpeechAct) -> None:
-        """It is read last."""
+        """Do nothing: the message is read last."""
 
     def may_line_up(self, intention: Intention) -> bool:
-        """Every one may."""
+        """True: every intention may."""
         del intention
         return True
 
 
 def options(agent: Circumstance, goal: Goal, annotations: EventAnnotations) -> Iterator[Frame]:
-    """The frames of all applicable plans, in the order of the program; a frame holds until the next is asked for."""
+    """Yield the frames of all applicable plans, in program order; a frame is valid until the next one is requested."""
     agent.selections.refused = False
     every = agent.library.every_option(goal[0])
     return iter(()) if every is None else every(agent, goal, annotations)

@@ -1,4 +1,4 @@
-"""Plans inside plans: they are for what happens while their plan is pursued, and see its variables."""
+"""Plans inside plans: they handle events while their plan is pursued, and see its variables."""
 
 from jacaros.bdi.state.belief_base import MANY_NAMES
 from jacaros.bdi.state.circumstance import Circumstance
@@ -14,7 +14,7 @@ from jacaros.bdi.state.triggers import Goal, Trigger
 def select_in_scope(
     agent: Circumstance, intention: Intention, goal: Goal, annotations: EventAnnotations
 ) -> Frame | None:
-    """The frame of the first applicable sub-plan: of the plan on top, then of the plans around it, outward."""
+    """Return the frame of the first applicable sub-plan: of the plan on top, then of the plans around it."""
     top = len(intention.frames)
     if goal[0].failing and intention.handlers:
         # The failed plans are still on the stack; the handler belongs to the one that called them.
@@ -29,7 +29,7 @@ def select_in_scope(
 
 
 def _outer(intention: Intention, frame: Frame) -> Frame | None:
-    """The frame of the plan that a frame's plan is a sub-plan of."""
+    """Return the frame of the plan that a frame's plan is a sub-plan of."""
     if is_supervision(frame):  # it stands between a goal and the plan that posted it
         place = next(place for place, each in enumerate(intention.frames) if each is frame)
         return intention.frames[place - 1] if place else None
@@ -60,7 +60,7 @@ def _select_function(agent: Circumstance, plan: Plan, kind: Trigger) -> Select |
 
 
 def handles(agent: Circumstance, intention: Intention, index: int, kind: Trigger) -> bool:
-    """Whether there is a plan for an event kind, as seen from a frame of an intention."""
+    """Return whether there is a plan for an event kind, as seen from a frame of an intention."""
     if agent.library.selects[kind] is not None:
         return True
     if not agent.features.subplans:
@@ -76,9 +76,9 @@ def handles(agent: Circumstance, intention: Intention, index: int, kind: Trigger
 def react(
     agent: Circumstance, goal: Goal, annotations: EventAnnotations
 ) -> list[tuple[Intention, Frame, Frame]]:
-    """Sub-plans that react to an external event: for each intention the applicable one nearest to the top.
+    """Return sub-plans that react to an external event: for each intention the applicable one nearest to the top.
 
-    Gives the intention, the frame of the outer plan, and the new frame.
+    Each with the intention, the frame of the outer plan, and the new frame.
     """
     found = []
     for intention in list(agent.alive.values()):

@@ -1,7 +1,6 @@
 """Goals with annotations that supervise them: ``!g[within(Ms), retry(N, Ms), every(Ms)]``.
 
-One deadline applies to all attempts together. With ``every``, the goal is posted again in each period, and
-deadline and
+One deadline applies to all attempts together. With ``every``, the goal is posted again in each period, and deadline and
 attempts apply to each period.
 """
 
@@ -32,9 +31,7 @@ _EXACT = 1e-5
 
 
 def supervision_of(goal: Goal, annotations: tuple[Term, ...]) -> GoalSupervision | None:
-    """Return the supervision of a goal, or None if its annotations ask for none. Invalid annotations have no
-    effect.
-    """
+    """Return the supervision of a goal, or None if its annotations ask for none. Invalid annotations have no effect."""
     found: GoalSupervision | None = None
     for annotation in annotations:
         inner = bare(annotation)
@@ -108,9 +105,7 @@ def _begin(
 
 
 def _start(agent: Circumstance, supervision: GoalSupervision, goal: Goal) -> Goal:
-    """Start the supervision of the goal or of one period; return the goal to post, with new variables in each
-    period.
-    """
+    """Start the supervision of the goal or of one period; return the goal to post, with new variables in each period."""
     supervision.failed = 0
     if supervision.within is not None:
         set_deadline(

@@ -69,9 +69,7 @@ def end_periods(intention: Intention, index: int) -> None:
 
 
 def end_above(agent: Circumstance, intention: Intention, index: int) -> None:
-    """End the supervisions of the frames from *index* on, except those shared with other branches of a
-    fork.
-    """
+    """End the supervisions of the frames from *index* on, except those shared with other branches of a fork."""
     frames = intention.frames
     if any(is_supervision(frame) for frame in frames[index:]):
         for frame in frames[max(index, meta_events.shared(agent, intention)) :]:
@@ -147,8 +145,8 @@ def wait_for(
     behind: NextStep,
     reason: Term,
 ) -> None:
-    """Pause a goal for *delay* seconds, during which it stays a goal of the intention; *behind* is the step
-    that follows.
+    """Pause a goal for *delay* seconds, during which it stays a goal of the intention; *behind* is the step that
+    follows.
     """
     agent.trail.serial += 1
     frame: Frame = [behind, *posted, agent.trail.serial, _WAITING]

@@ -1,22 +1,22 @@
 """Urgency: which events and intentions of an agent go first, whatever waits before them.
 
-A plan says it in its label, ``@bump[urgency(10)]``, or the agent's option ``urgency`` says it of all plans for events of
-a name.  What is more urgent goes first, and among equals the order is Jason's.  The rules:
+A plan sets it in its label, ``@bump[urgency(10)]``, or the agent's option ``urgency`` sets it for all plans for events
+of a name. More urgent items go first; among equals the order is Jason's. The rules:
 
-* A plan without such a word has urgency 0.
+* A plan without an urgency has urgency 0.
 * An event is as urgent as the most urgent plan for events of its kind, applicable or not; one that an intention has
-  posted is as urgent as this intention at least.
+  posted is at least as urgent as this intention.
 * An intention is as urgent as the most urgent plan on its stack.
-* In each cycle the most urgent event is taken up, unless a more urgent intention is ready, and then the most urgent
-  intention makes a step.
-* Messages are read in their order, one in each cycle; but as soon as one about something urgent has come, all that came
-  before it are read in the same cycle, and it too.  Percepts are always worked in all together.
+* In each cycle the most urgent event is handled, unless a more urgent intention is ready, and then the most urgent
+  intention runs a step.
+* Messages are read in order, one in each cycle. When an urgent one arrives, it and all earlier messages are read in the
+  same cycle. Percepts are always taken in together.
 * Atomic intentions are not interrupted.
 
-The queues are plain as long as nothing in them is urgent, whatever plans there are.  What is urgent is noted before it is
-queued: all that waits has urgency 0 then, so the queues are in order already, however long they are, and are kept so until
-nothing urgent is left.  They are sorted only after a change of plans.  So an urgent plan costs unrelated events one look-up
-in a table each.
+The queues are plain as long as nothing in them is urgent, whatever plans there are. Urgent items are noted before they
+are queued: all waiting items have urgency 0 then, so the queues are already in order, however long they are, and are
+kept in order until nothing urgent is left. They are sorted only after a change of plans. So an urgent plan costs
+unrelated events one table lookup each.
 """
 
 from bisect import bisect_left, bisect_right
@@ -76,21 +76,21 @@ class Urgent(Fair):
         self._urgent_messages = 0
 
     def look_anew(self) -> None:
-        """Plans have come or gone, or the queues are filled anew."""
+        """Handle added or removed plans, or refilled queues."""
         self._of_kinds.clear()
         self._in_order = False
         self._urgent_messages = sum(self._of_message(message) > 0 for message in self.agent.incoming.messages)
         self.rank()
 
     def rank(self) -> None:
-        """Something urgent comes into the queues: from the next cycle on it goes first."""
+        """Note that something urgent is about to be queued: from the next cycle on it goes first."""
         if self._in_order and not self._ranked:
             self._queue_by(UrgentQueue)
         self._ranked, self.plain = True, False
         self.agent.incoming.called = True
 
     def _queue_by(self, kind: "type[CalmQueue[Any]]") -> None:
-        """Make the queues ones of another kind, which the code that runs meanwhile may have at hand."""
+        """Convert the queues to another kind; running code may still hold them."""
         for queue in (self.agent.events, self.agent.intentions):
             if isinstance(queue, CalmQueue):
                 queue.__class__ = kind
@@ -98,12 +98,12 @@ class Urgent(Fair):
     # --- what comes into the queues ------------------------------------------------------------------------
 
     def note_intention(self, intention: Intention) -> None:
-        """An intention that waited, was suspended or is new is about to be queued."""
+        """Note an intention that waited, was suspended or is new, and is about to be queued."""
         if not self._ranked and self.urgency_of(intention):
             self.rank()
 
     def note_message(self, message: SpeechAct) -> None:
-        """A message is about to be queued."""
+        """Note a message that is about to be queued."""
         if self._of_message(message):
             self._urgent_messages += 1
             self.rank()
@@ -111,7 +111,7 @@ class Urgent(Fair):
     # --- the selection functions ---------------------------------------------------------------------------
 
     def select_messages(self) -> Sequence[SpeechAct]:
-        """The oldest one; all up to the last about something urgent, when there is one."""
+        """Return the oldest message; if urgent ones wait, all up to the last urgent one."""
         inbox = self.agent.incoming.messages
         chosen = [inbox.popleft()]
         self._urgent_messages -= self._urgent_messages > 0 and self._of_message(chosen[0]) > 0
@@ -121,7 +121,7 @@ class Urgent(Fair):
         return chosen
 
     def select_event(self) -> Event | None:
-        """The most urgent one, unless an intention that is ready is more urgent."""
+        """Return the most urgent event, unless an intention that is ready is more urgent."""
         events, intentions = self._put_in_order()
         if (
             events
@@ -134,16 +134,16 @@ class Urgent(Fair):
         return super().select_event()
 
     def select_intention(self) -> Intention | None:
-        """The most urgent one."""
+        """Return the most urgent intention."""
         events, intentions = self._put_in_order()
         if self._ranked and not (self._urgent_messages or _holds_urgent(events) or _holds_urgent(intentions)):
             self._calm_down()
         return super().select_intention()
 
     def _put_in_order(self) -> "tuple[deque[Event], deque[Intention]]":
-        """The queues; in order of urgency as long as something urgent is in them.
+        """Return the queues; in order of urgency while they contain something urgent.
 
-        They are sorted after a change of plans only, and not within it: code that runs meanwhile has the old ones at hand.
+        They are sorted only after a change of plans, and not during it: running code still holds the old ones.
         """
         agent = self.agent
         if not self._in_order:
@@ -155,18 +155,18 @@ class Urgent(Fair):
         return agent.events, agent.intentions
 
     def _calm_down(self) -> None:
-        """Nothing urgent is left."""
+        """Switch back to plain queues: nothing urgent is left."""
         self._ranked, self.plain = False, True
         self._queue_by(CalmQueue)
 
     def may_line_up(self, intention: Intention) -> bool:
-        """Whether a new intention may have to wait until there are few."""
+        """Return whether a new intention may have to wait until there are few."""
         return not self.urgency_of(intention)
 
     # --- how urgent something is ---------------------------------------------------------------------------
 
     def of_plan(self, plan: Plan) -> int:
-        """The urgency of a plan: what the agent's option says of its event, else what its label says."""
+        """Return the urgency of a plan: from the agent's option for its event, else from its label."""
         symbol = plan.trigger_functor() if self._named else None
         if symbol is None:
             return plan.urgency
@@ -179,9 +179,9 @@ class Urgent(Fair):
         return urgency if intention is None else max(urgency, self.urgency_of(intention))
 
     def urgency_of(self, intention: Intention) -> int:
-        """The urgency of the most urgent plan on the stack of an intention.
+        """Return the urgency of the most urgent plan on the stack of an intention.
 
-        What was found is noted for each frame with those below it, so that a deep stack is gone through once.
+        The result is noted for each frame with those below it, so that a deep stack is walked only once.
         """
         frames = intention.frames
         try:
@@ -198,7 +198,7 @@ class Urgent(Fair):
         return urgency
 
     def _of_message(self, message: SpeechAct) -> int:
-        """The urgency of the events that a message may lead to."""
+        """Return the urgency of the events that a message may lead to."""
         urgency = self._of_kinds[RECEIVED]
         kind = _TRIGGERS.get(message.performative)
         if kind is not None:
@@ -211,7 +211,7 @@ class Urgent(Fair):
 
 
 class _OfKinds(dict[Trigger, int]):
-    """The urgency of event kinds, worked out when it is first asked for."""
+    """The urgency of event kinds, computed on first use."""
 
     def __init__(self, urgent: Urgent) -> None:
         super().__init__()
@@ -239,18 +239,18 @@ class CalmQueue(deque[Item], Generic[Item]):
 
 
 class UrgentQueue(CalmQueue[Item]):
-    """A queue in which the more urgent stands before the less urgent, and equals in the order in which they came."""
+    """A queue ordered by urgency, and by arrival among equals."""
 
     __slots__ = ()
 
     def first_urgency(self) -> int:
-        """The urgency of the first item, which is the greatest; 0 without any."""
+        """Return the urgency of the first item, which is the greatest; 0 without any."""
         return self._urgency(self[0]) if self else 0
 
     def append(self, item: Item) -> None:
-        """Put an item behind those that are as urgent, or more."""
+        """Put an item after those that are as urgent or more."""
         urgency = self._urgency(item)
-        # Nothing is below 0: what is not urgent needs no look at the others.
+        # Nothing is below 0, so items that are not urgent need no comparison.
         if urgency == 0 or not self or self._urgency(self[-1]) >= urgency:
             super().append(item)
         else:
@@ -275,12 +275,12 @@ def _with_inner(plans: Sequence[Plan]) -> Iterator[Plan]:
 
 
 def has_urgent_plans(agent: Circumstance) -> bool:
-    """Whether a plan, or the agent's option, says that something is urgent."""
+    """Return whether a plan, or the agent's option, makes something urgent."""
     return bool(agent.options.urgency) or any(plan.urgency for plan in _with_inner(agent.library.plans))
 
 
 def plans_changed(agent: Circumstance) -> None:
-    """See whether an agent has urgent plans; to be called whenever its plans have changed."""
+    """Check whether an agent has urgent plans; to be called whenever its plans have changed."""
     if not isinstance(agent.selections, Urgent):
         if not has_urgent_plans(agent):
             return

@@ -32,21 +32,21 @@ ERROR = functor("error", 1)
 
 
 def succeed(agent: Circumstance, waiting: Waiting) -> None:
-    """The step has succeeded: the intention goes on in the next cycle."""
+    """Let the step succeed: the intention continues in the next cycle."""
     if not waiting.ended:
         waiting.ended = True
         announce_end(agent, waiting)
 
 
 def fail(agent: Circumstance, waiting: Waiting, message: str, *annotations: Term) -> None:
-    """The step has failed; *annotations* may hold an ``error(..)``."""
+    """Let the step fail; *annotations* may contain an ``error(..)``."""
     if not waiting.ended:
         waiting.failure = (message, annotations)
         succeed(agent, waiting)
 
 
 def announce_end(agent: Circumstance, waiting: Waiting) -> None:
-    """Let the intention go on in the next cycle, if the step has been suspended already."""
+    """Let the intention continue in the next cycle, if the step has already been suspended."""
     if waiting.frame is not None:
         agent.do_soon(_take_up_end, waiting)
         agent.architecture.ready()
@@ -72,7 +72,7 @@ def _release(agent: Circumstance, waiting: HeldEnd) -> None:
 
 
 def _continue(agent: Circumstance, waiting: Waiting) -> None:
-    """The intention goes on behind the step, or with the failure of the step."""
+    """Continue the intention after the step, or with the failure of the step."""
     intention, frame = waiting.intention, waiting.frame
     assert frame is not None
     if waiting.failure is None:
@@ -96,14 +96,14 @@ def _continue(agent: Circumstance, waiting: Waiting) -> None:
 
 
 def drop(agent: Circumstance, waiting: Waiting) -> None:
-    """The intention is gone."""
+    """End the wait of an intention that is gone."""
     if not waiting.ended:
         waiting.ended = True
         forget(agent, waiting)
 
 
 def forget(agent: Circumstance, waiting: Waiting) -> None:
-    """Give up what the wait has under way."""
+    """Cancel what the wait has started."""
     if waiting.alarm is not None:
         cancel_alarm(agent, waiting.alarm)
     if isinstance(waiting, ActWait):
@@ -122,19 +122,19 @@ def forget(agent: Circumstance, waiting: Waiting) -> None:
 
 
 def suspend(agent: Circumstance, waiting: Waiting) -> None:
-    """The intention was suspended: an external action may pause, all others run on and their end is held."""
+    """Handle the suspension of the intention: an external action may pause; others continue, and their end is held back."""
     if isinstance(waiting, ActWait):
         agent.architecture.suspend_act(waiting.number)
 
 
 def resume(agent: Circumstance, waiting: Waiting) -> None:
-    """The intention was resumed."""
+    """Handle the resumption of the intention."""
     if isinstance(waiting, ActWait):
         agent.architecture.resume_act(waiting.number)
     elif isinstance(waiting, OwnSuspension):
         succeed(agent, waiting)
     elif isinstance(waiting, HeldEnd):
-        # The end of an external action is looked at in the next cycle, as any other; that of a wait has been.
+        # The end of an external action is handled in the next cycle, as usual; that of a wait has been handled.
         if is_action(waiting.reason):
             agent.do_soon(_release, waiting)
             agent.architecture.ready()
@@ -146,7 +146,7 @@ def resume(agent: Circumstance, waiting: Waiting) -> None:
 
 
 def come_true(agent: Circumstance, waiting: TimedWait) -> None:
-    """What was waited for has come."""
+    """End a wait successfully."""
     forget(agent, waiting)
     if waiting.elapsed is not None:
         # A clock may be set back meanwhile.
@@ -157,7 +157,7 @@ def come_true(agent: Circumstance, waiting: TimedWait) -> None:
 
 
 def time_out(agent: Circumstance, waiting: TimedWait) -> None:
-    """What was waited for did not come in time."""
+    """End a wait whose time is over."""
     if waiting.elapsed is not None:
         come_true(agent, waiting)
     else:
@@ -170,7 +170,7 @@ def notify_event_waits(agent: Circumstance, event: Event) -> None:
     for wait in agent.waits.events.candidates(event[EVENT_GOAL][0]):
         mark = len(agent.trail)
         if unify(wait.pattern, rename(event_literal(event)), agent.trail):
-            # What the wait was for is bound for good, whatever becomes of the search that the event leads to.
+            # The bindings of the wait are permanent, whatever the search for the event's plan undoes.
             del agent.trail[mark:]
             come_true(agent, wait)
         else:
@@ -178,7 +178,7 @@ def notify_event_waits(agent: Circumstance, event: Event) -> None:
 
 
 def check_conditions(agent: Circumstance) -> None:
-    """Resume the intentions whose awaited condition holds now."""
+    """Resume the intentions whose awaited condition now holds."""
     for wait in agent.waits.conditions.take_due():
         if wait.ended:
             agent.waits.conditions.remove(wait)
@@ -208,7 +208,7 @@ def check_conditions(agent: Circumstance) -> None:
 
 
 def _holds(agent: Circumstance, wait: ConditionWait) -> bool:
-    """Whether an awaited condition holds now; its variables are bound then."""
+    """Return whether an awaited condition holds now, binding its variables."""
     if not agent.context.succeeds(wait.formula):
         return False
     del agent.trail[:]

@@ -21,9 +21,8 @@ _WATCHED = trigger("+", "", functor("watched", 0, namespace="jacaros"))
 class WatchedGoal:
     """An achievement goal in an intention of its own, with a callback for its end.
 
-    The bottom frame of the stack is reached when the goal is achieved. It is copied with the stack when the
-    plan forks, so the
-    branch that continues reaches it.
+    The bottom frame of the stack is reached when the goal is achieved. It is copied with the stack when the plan forks,
+    so the branch that continues reaches it.
 
     Args:
         agent: the agent that adopts the goal.

@@ -1,10 +1,8 @@
-"""Budgets: how much of something an agent may hold at the same time (agent options ``belief_limit``,
-``event_limit``,
+"""Budgets: how much of something an agent may hold at the same time (agent options ``belief_limit``, ``event_limit``,
 ``intention_limit`` and ``mailbox_limit``), and how much it may search in one cycle (``search_limit``).
 
-A program that never stops growing loses some of its goals, with a reason, instead of exhausting the memory of
-the run. An
-endless search would block all other agents; agents without that option count nothing.
+A program that never stops growing loses some of its goals, with a reason, instead of exhausting the memory of the run.
+An endless search would block all other agents; agents without that option count nothing.
 """
 
 from collections.abc import Callable, Iterable, Iterator

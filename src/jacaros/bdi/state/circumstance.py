@@ -416,9 +416,7 @@ class Circumstance:
             self.drop_wait(waiting)
 
     def may_handle(self, kind: Trigger) -> bool:
-        """Return whether there may be a plan for an event kind (sub-plans are checked when the event is
-        handled).
-        """
+        """Return whether there may be a plan for an event kind (sub-plans are checked when the event is handled)."""
         return self.features.subplans or self.library.selects[kind] is not None
 
     def do_soon(self, function: Callable[..., None], *arguments: object) -> None:

@@ -21,9 +21,8 @@ Every = Callable[[Any, Goal, EventAnnotations], Iterator[Frame]]
 class CodeCache(Protocol):
     """The port to a store of generated code between runs; the mind itself reads and writes no files.
 
-    What it returns is executed. So it must return only what was put there under the same key, by the same
-    version of this
-    package and of Python.
+    What it returns is executed. So it must return only what was put there under the same key, by the same version of
+    this package and of Python.
     """
 
     def get(self, key: bytes) -> bytes | None:

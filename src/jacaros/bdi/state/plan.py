@@ -121,9 +121,7 @@ class Plan:
 
     @property
     def slots(self) -> dict[str, int]:
-        """Index in the frame by variable name. A variable that is mentioned once has none: its value is never
-        read.
-        """
+        """Index in the frame by variable name. A variable that is mentioned once has none: its value is never read."""
         if self._slots is None:
             node = self.node
             own = occurrences(node.trigger, node.context, node.body, node.goal_condition, self.guards)
@@ -173,9 +171,7 @@ def position_of(step: Any) -> str:
 
 
 def _urgency(annotations: tuple[Term, ...]) -> int:
-    """Return the greatest non-negative integer in an annotation ``urgency(N)``; the checker warns of invalid
-    ones.
-    """
+    """Return the greatest non-negative integer in an annotation ``urgency(N)``; the checker warns of invalid ones."""
     found = [
         a[1] for a in annotations if a.__class__ is tuple and a[0] is URGENCY and a[1].__class__ is float
     ]

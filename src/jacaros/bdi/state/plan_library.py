@@ -17,8 +17,7 @@ _BY_SELF = (SELF,)
 class ProgramPlans:
     """Plans in the order of the program, and the select functions made from them so far.
 
-    A plan does not change once it is made; what an agent adds or removes at run time is kept in its own
-    library.
+    A plan does not change once it is made; what an agent adds or removes at run time is kept in its own library.
 
     Args:
         plan_nodes: the syntax.

@@ -1,8 +1,6 @@
-"""The supervision of a goal or a plan while it is pursued, as data: deadlines, attempts, periods, and
-conditions.
+"""The supervision of a goal or a plan while it is pursued, as data: deadlines, attempts, periods, and conditions.
 
-A frame of its own holds it on the stack of the intention, right below the frame of the goal or plan that it
-supervises.
+A frame of its own holds it on the stack of the intention, right below the frame of the goal or plan that it supervises.
 That frame is reached when the goal or plan has ended.
 """
 
@@ -105,9 +103,7 @@ def is_supervision(frame: Frame) -> bool:
 
 
 def caller_of(intention: Intention) -> Frame | None:
-    """Return the frame of the plan that has posted a goal without a frame; None if it was posted from
-    outside.
-    """
+    """Return the frame of the plan that has posted a goal without a frame; None if it was posted from outside."""
     return next((frame for frame in reversed(intention.frames) if not is_supervision(frame)), None)
 
 

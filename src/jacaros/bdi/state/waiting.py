@@ -1,7 +1,6 @@
 """What an intention waits for, as data. `jacaros.bdi.rules.waits` has the rules for the end of a wait.
 
-Waits for events (``.wait({+e})``) are indexed by the kind of event, so an event is not compared with other
-waits; waits
+Waits for events (``.wait({+e})``) are indexed by the kind of event, so an event is not compared with other waits; waits
 for conditions are in `condition_waits`, with their index.
 """
 
@@ -148,9 +147,7 @@ class HeldEnd(Waiting):
 
 
 class CoroutineWait(Waiting):
-    """Waits for a coroutine of the project. It is a live object: a mind that waits for one cannot be
-    stored.
-    """
+    """Waits for a coroutine of the project. It is a live object: a mind that waits for one cannot be stored."""
 
     __slots__ = ("task",)
 

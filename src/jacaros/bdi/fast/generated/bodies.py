@@ -1,11 +1,8 @@
 """Code for plan bodies: one step function per formula.
 
-``step(agent, frame)`` reads the variables that it uses from the frame, runs its formula, stores its bindings
-and sets
-``frame[0]`` to the next step. It returns None, or one goal (a tuple that begins with its trigger) to be
-handled for this
-intention, or `SUSPENDED`. A failing formula returns `FAILED`, or raises `Fail` or another exception, before
-``frame[0]``
+``step(agent, frame)`` reads the variables that it uses from the frame, runs its formula, stores its bindings and sets
+``frame[0]`` to the next step. It returns None, or one goal (a tuple that begins with its trigger) to be handled for this
+intention, or `SUSPENDED`. A failing formula returns `FAILED`, or raises `Fail` or another exception, before ``frame[0]``
 changes, so the failed step is known.
 """
 

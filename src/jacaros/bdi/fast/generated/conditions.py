@@ -1,9 +1,7 @@
 """Code for conditions: contexts, tests, bodies of rules, and the questions inside internal actions.
 
-Continuation style: ``condition(fn, formula, then)`` writes a search whose innermost point is what *then*
-writes; a
-literal becomes a loop over rows, a comparison an ``if``. Bindings made on the way are undone when the search
-continues
+Continuation style: ``condition(fn, formula, then)`` writes a search whose innermost point is what *then* writes; a
+literal becomes a loop over rows, a comparison an ``if``. Bindings made on the way are undone when the search continues
 (`Trail`), and kept when *then* leaves the function.
 
 Predicates with rules are searched by generators. There are two ways of running them:

@@ -1,6 +1,4 @@
-"""The generated code of a program as readable text: each piece below the lines of the program that it comes
-from.
-"""
+"""The generated code of a program as readable text: each piece below the lines of the program that it comes from."""
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence

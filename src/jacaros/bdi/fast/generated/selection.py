@@ -1,7 +1,6 @@
 """Code that selects a plan: one function per event kind, containing all its plans in order.
 
-``select(agent, goal, annotations)`` tries the plans in turn: head, then context. It returns the new frame of
-the first
+``select(agent, goal, annotations)`` tries the plans in turn: head, then context. It returns the new frame of the first
 plan that applies, or None if no plan is applicable (rules RelPl, ApplPl and SelAppl in one).
 """
 
