@@ -21,7 +21,7 @@ class _Selector(selectors.DefaultSelector):
         events = super().select(0)
         if events or timeout == 0:
             return events
-        assert timeout is not None, "everybody waits, and no timer is left"
+        assert timeout is not None, "everything waits, and no timer is left"
         self.now += timeout
         return []
 

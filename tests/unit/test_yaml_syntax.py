@@ -1,4 +1,4 @@
-"""Files that are no YAML, or no text: where, what, and what to write, without words of the parser."""
+"""Files that are not YAML, or not text: place, message and help, without terms of the parser."""
 
 from pathlib import Path
 

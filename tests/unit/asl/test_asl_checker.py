@@ -301,7 +301,7 @@ def test_an_urgency_is_a_non_negative_integer():
 
 
 def test_clauses_with_errors_are_skipped():
-    text = "+!a <- b(; .prnt(x); c(Y).\n+!d <- .prnt(Z).\n!nobody."
+    text = "+!a <- b(; .prnt(x); c(Y).\n+!d <- .prnt(Z).\n!missing."
     file = SourceFile("main.asl", text)
     program, diagnostics = read_program(file)
     found = check(program, KNOWN, [each for each in diagnostics if each.severity == "error"])

@@ -1,4 +1,4 @@
-"""Lets the tests of the mind share a host: test folders are no packages."""
+"""A host shared by the tests of the mind: test folders are not packages."""
 
 import sys
 from pathlib import Path

@@ -150,7 +150,7 @@ class RecordingHost:
                 return
 
     def ring_next(self, end: float) -> bool:
-        """Ring the next timer that is due before *end*; False when there is none."""
+        """Ring the next timer that is due before *end*; return False without one."""
         while self._timers and self._timers[0][2].callback is None:
             heapq.heappop(self._timers)
         if not self._timers or self._timers[0][0] > end:

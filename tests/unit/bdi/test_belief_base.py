@@ -57,7 +57,7 @@ def test_a_table_answers_like_a_list_after_any_changes(
 
 
 class Entry:
-    """Stands for a rule: it is no row, and may answer whatever is asked."""
+    """Represents a rule: it is not a row, and may answer any question."""
 
     node = "rule"
 

@@ -1,4 +1,4 @@
-"""The agent option ``belief_limit``: a belief base that grows without end costs an agent some of its goals, and no more."""
+"""The agent option ``belief_limit``: an endlessly growing belief base costs an agent only some of its goals."""
 
 import pytest
 from recording_host import RecordingHost, believed, mind

@@ -60,7 +60,7 @@ class Model:
             self.add(change, last=change.operator == "+>")
 
     def add(self, change: Change, *, last: bool) -> None:
-        """What is new is merged; nothing new is no event."""
+        """New annotations are merged; without any there is no event."""
         assert change.value is not None
         wanted = change.with_source()
         for value, held in self.beliefs:

@@ -1,4 +1,4 @@
-"""Steps and goals that fail: what is told, who handles it, and what goes on."""
+"""Steps and goals that fail: logs, handlers, and what continues."""
 
 import sys
 from types import FrameType
@@ -153,17 +153,17 @@ def test_every_failure_of_a_step_has_a_message() -> None:
     lines = printed(
         """
         !s.
-        +!s <- for (.member(G, [nobody, empty, number, body])) { !!try(G) }.
+        +!s <- for (.member(G, [unknown, empty, number, body])) { !!try(G) }.
         +!try(G) <- !G.
         -!try(G)[error(E), error_msg(M)] <- .length(M, N); .print(G, " ", E, " ", N > 5).
-        +!nobody <- .send(ghost, tell, p).
+        +!unknown <- .send(ghost, tell, p).
         +!empty <- !X.
         +!number <- X = 5; +X.
         +!body <- X = { a; b }; +X.
         """
     )
     assert [line.split()[:2] for line in lines] == [
-        ["nobody", "receiver_not_found"],
+        ["unknown", "receiver_not_found"],
         ["empty", "body_var_without_value"],
         ["number", "body_var_not_literal"],
         ["body", "body_var_with_op"],

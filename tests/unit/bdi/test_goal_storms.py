@@ -73,7 +73,7 @@ class Storm:
         self.host.agent = self.agent = Mind("tester", TREE, self.host, plans=PLANS)
         self.completed: list[int] = []
         self.still: set[float] = set()
-        self.failed: set[float] = set()  # their failure events are no goals that could be dropped
+        self.failed: set[float] = set()  # their failure events cannot be dropped as goals
         self.tasks = 0
 
     def under_way(self) -> list[int]:
@@ -162,7 +162,7 @@ class Storm:
             assert len(told) == len(set(told))
 
     def calm_down(self) -> None:
-        """Let everything come to its end."""
+        """Let everything end."""
         for _ in range(500):
             self.still.clear()
             for name in ("task", "sub"):

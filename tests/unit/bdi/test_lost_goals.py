@@ -1,4 +1,4 @@
-"""What people are told of goals that failed and that no plan saved."""
+"""Descriptions of goals that failed and that no plan handled."""
 
 from recording_host import mind
 
@@ -63,12 +63,12 @@ def test_a_failing_action_is_reported_with_reason_step_and_goals() -> None:
 
 
 def test_a_goal_without_relevant_plan() -> None:
-    assert told("!g.\n+!g <- !nobody(4).") == lost("g", "no_relevant, no relevant plan for !nobody(4)", 2)
+    assert told("!g.\n+!g <- !missing(4).") == lost("g", "no_relevant, no relevant plan for !missing(4)", 2)
 
 
 def test_the_goals_below_one_without_plan_are_reported() -> None:
-    found = told("!g.\n+!g <- !h.\n+!h <- !i.\n+!i <- !nobody(4).")
-    assert found == lost("g", "no_relevant, no relevant plan for !nobody(4)", 4, "for: !i, !h, !g")
+    found = told("!g.\n+!g <- !h.\n+!h <- !i.\n+!i <- !missing(4).")
+    assert found == lost("g", "no_relevant, no relevant plan for !missing(4)", 4, "for: !i, !h, !g")
 
 
 def test_plans_that_do_not_fit_are_reported() -> None:

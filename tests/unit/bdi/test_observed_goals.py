@@ -1,4 +1,4 @@
-"""What observers are told of goals: each begins once and ends once."""
+"""Notifications of observers of goals: each goal begins once and ends once."""
 
 from collections import Counter
 from pathlib import Path

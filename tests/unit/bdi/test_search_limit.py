@@ -19,7 +19,7 @@ ENDLESS = {
 
 
 def ended(program: str, limit: int = 20_000) -> tuple[list[str], list[str]]:
-    """What an agent prints and is told."""
+    """Return the output and the log of an agent."""
     host = mind(program, options=Options(search_limit=limit))
     host.run()
     return host.printed, [text for _, text in host.logged]

@@ -23,7 +23,7 @@ class NewestEventFirst(Fair):
 
 
 class LongestFirst(Fair):
-    """Goes on with the intention that has its turn until it is over."""
+    """Continues the running intention until it is over."""
 
     def select_intention(self) -> Intention | None:
         intentions = self.agent.intentions

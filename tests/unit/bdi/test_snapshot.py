@@ -1,4 +1,4 @@
-"""A mind is a value: stored as JSON and restored at any cycle, it goes on as if nothing had happened."""
+"""A mind is a value: stored as JSON and restored at any cycle, it continues as if nothing had happened."""
 
 import json
 import sys

@@ -130,7 +130,7 @@ def test_a_question_without_answer_times_out() -> None:
 
 
 def test_an_unknown_receiver_fails_the_step() -> None:
-    host = mind("!g. +!g <- .send(nobody, tell, p). -!g[error(E)] <- .print(E).")
+    host = mind("!g. +!g <- .send(ghost, tell, p). -!g[error(E)] <- .print(E).")
     host.run()
     assert host.printed == ["receiver_not_found"]
 
@@ -190,10 +190,10 @@ def test_a_restricted_agent_does_not_add_requested_plans() -> None:
     assert asker.agent.library.plans == []
 
 
-@pytest.mark.parametrize("receivers", ["[]", "Nobody"])
+@pytest.mark.parametrize("receivers", ["[]", "None"])
 def test_a_message_to_an_empty_list_is_not_sent(receivers: str) -> None:
     host = mind(
-        f"!g. +!g <- Nobody = []; .send({receivers}, tell, p); .send({receivers}, askOne, p, A); .print(A)."
+        f"!g. +!g <- None = []; .send({receivers}, tell, p); .send({receivers}, askOne, p, A); .print(A)."
     )
     host.run()
     assert (host.sent, host.printed) == ([], ["[]"])

@@ -82,7 +82,7 @@ PROGRAM = """\
 
 
 def run_with(folder: Path, begin: Callable[[], None], end: Callable[[], None]) -> str:
-    """Run the program while somebody looks on; its file."""
+    """Run the program under an observer; return its file."""
     file = folder / "robot.asl"
     file.write_text(PROGRAM, encoding="utf-8")
     begin()

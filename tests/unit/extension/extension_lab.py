@@ -28,7 +28,7 @@ def run(folder: Path, program: str, python: str = "", seconds: float | None = No
 
 
 def said(folder: Path, program: str, python: str = "") -> list[str]:
-    """What the agent of a program prints; nothing may be told to people."""
+    """Return the output of a program's agent; nothing may be logged."""
     result = run(folder, program, python)
     assert result.errors == []
     return result.of("t")

@@ -24,7 +24,7 @@ def run(
 def said(
     folder: Path, program: str, python: str, agent: str = "agentClass my.Mine", **files: str
 ) -> list[str]:
-    """What ``bob`` prints; nothing may be told to people."""
+    """Return the output of ``bob``; nothing may be logged."""
     result = run(folder, program, python, agent, **files)
     assert result.errors == []
     return result.of("bob")
@@ -249,14 +249,14 @@ class Loud(BeliefBase):
     program = """
     !go.
     +!go <- .create_agent(sue, "sue_of_bob.asl", [agentClass("my.Mine(hi)"), beliefBaseClass(my.Loud)]);
-            .create_agent(joe, "sue_of_bob.asl", [agentClass("my.Nobody")]).
+            .create_agent(joe, "sue_of_bob.asl", [agentClass("my.Missing")]).
     -!go[error(E)] <- .print(E).
     """
     write(tmp_path)
     (tmp_path / "sue_of_bob.asl").write_text("!go. +!go : word(W) <- .print(W).")
     result = run(tmp_path, program, python, "")
     assert result.lines == ["[sue] add word", "[bob] internal_action", "[sue] hi"]
-    assert "unknown class Nobody" in result.errors[0]
+    assert "unknown class Missing" in result.errors[0]
 
 
 def test_python_code_can_look_at_beliefs_and_talk(tmp_path: Path) -> None:

@@ -27,7 +27,7 @@ def run(
 def said(
     folder: Path, program: str, python: str, declared: str = "agentArchClass my.Arch", **files: str
 ) -> list[str]:
-    """What the agent prints; nothing may be told to people."""
+    """Return the output of the agent; nothing may be logged."""
     result = run(folder, program, python, declared, **files)
     assert result.errors == []
     return result.of("bob")

@@ -41,7 +41,7 @@ def run(folder: Path, base: str, program: str, python: str = "") -> RunResult:
 
 
 def said(folder: Path, base: str, program: str, python: str = "") -> list[str]:
-    """What the agent prints; nothing may be told to people."""
+    """Return the output of the agent; nothing may be logged."""
     result = run(folder, base, program, python)
     assert result.errors == []
     return result.of("bob")

@@ -1,4 +1,4 @@
-"""The beginning of a term: what people are told has an end, whatever the term is."""
+"""Excerpts of terms: the shown text is limited, whatever the term is."""
 
 import pytest
 

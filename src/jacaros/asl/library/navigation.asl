@@ -49,7 +49,7 @@ battery_full :- percent_left(Percent) & not charged_at(_) & Percent >= 95.
 +!attempt(Step, _)
   <- !Step.
 
-// Somebody took the goal back, and trying again would be wrong.
+// The goal was cancelled from outside, so trying again would be wrong.
 -!attempt(_, _)[error(Error), error_msg(Text), env_failure_reason(canceled)]
   <- .fail(error(Error), error_msg(Text), env_failure_reason(canceled)).
 
@@ -121,7 +121,7 @@ battery_full :- percent_left(Percent) & not charged_at(_) & Percent >= 95.
   <- !go_to(Place);
      .abolish(unreachable(Place, _)).
 
-// Nobody knows the place: a mistake of who patrols.
+// Unknown place: an error in the goal to patrol.
 -!reach(_, _)[error(Error), error_msg(Text), env_failure_reason(unknown_place(Place))]
   <- .fail(error(Error), error_msg(Text), env_failure_reason(unknown_place(Place))).
 

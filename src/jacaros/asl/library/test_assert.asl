@@ -98,7 +98,7 @@
 
 /* The rest of the ROS graph, as the test plays it */
 
-// Somebody publishes a message; a moment later agents believe what it says.
+// Publish a message; a moment later agents believe its values.
 @test__fake_message
 +!fake_message(Topic, Fields)
   <- jacaros.fake_message(Topic, Fields);
@@ -109,12 +109,12 @@
   <- jacaros.fake_message(Topic, Type, Fields);
      .wait(20).
 
-// Somebody listens to a topic, of which the mapping does not say the type.
+// Subscribe to a topic whose type the mapping does not give.
 @test__fake_subscriber[atomic]
 +!fake_subscriber(Topic, Type)
   <- jacaros.fake_subscriber(Topic, Type).
 
-// Somebody offers a service, and always gives this response.
+// Serve a service that always returns this response.
 @test__fake_service[atomic]
 +!fake_service(Name, Type, Fields)
   <- jacaros.fake_service(Name, Type, Fields).

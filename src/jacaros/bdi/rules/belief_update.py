@@ -139,7 +139,7 @@ def _merge(table: Table, entry: Any, held: Annotations, annotations: Annotations
 def _insert_aside(
     table: Table, symbol: Functor, row: Row, annotations: Annotations, last: bool
 ) -> Annotations | None:
-    """A belief whose arguments are no keys (variables, annotations, very long lists): found by unification."""
+    """Add a belief whose arguments are not keys (variables, annotations, very long lists): found by unification."""
     known = table.aside(row)
     if known is not None:
         held = table.get(known)

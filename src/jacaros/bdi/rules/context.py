@@ -96,7 +96,7 @@ class Context:
         """The term that a text denotes; its variables are those of the plan where the names agree.
 
         Raises:
-            AslError: when the text is no term.
+            AslError: the text is not a term.
         """
         agent = self.agent
         key = text, len(agent.functions.own)

@@ -90,7 +90,7 @@ def trigger_of(term: Term) -> tuple[Trigger | None, Term, str] | None:
 
 
 def relevant_plans(agent: Circumstance, event: Term) -> list[Plan] | None:
-    """The plans whose triggers unify with an event, in the order in which they are tried; None when it is no trigger.
+    """Return the plans whose triggers unify with an event, in order; None if it is not a trigger.
 
     An event without a source stands for events from any source.
     """

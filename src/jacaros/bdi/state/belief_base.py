@@ -52,7 +52,7 @@ class Table:
     Attributes:
         added: the event kind of beliefs that come.
         deleted: that of beliefs that go.
-        rows: annotations by row; newest last.  Keys that are no tuples are rules and beliefs with variables.
+        rows: annotations by row; newest last.  Keys that are not tuples are rules and beliefs with variables.
         late: those added behind all others, in order.
         others: how many of `rows` are rules and beliefs with variables.
         unwritten: how many of `rows` and `late` are beliefs with variables that are not in the program.
@@ -139,7 +139,7 @@ class Table:
         return index
 
     def aside(self, row: Row) -> "OpenFact | None":
-        """The ground belief with these arguments among those that are no keys."""
+        """Return the ground belief with these arguments, which cannot be keys."""
         if self.plain or free_variables(row):
             return None
         wanted = literal(self.functor, row)
@@ -417,7 +417,7 @@ def literal(functor: Functor, row: Row, annotations: tuple[Term, ...] = ()) -> T
 
 
 def parts(term: Term) -> tuple[Functor | None, Row, tuple[Term, ...]]:
-    """Functor, arguments and annotations of a literal; the functor is None when it is no literal."""
+    """Return functor, arguments and annotations of a literal; the functor is None for other terms."""
     term = resolve(term)
     return functor_of(term), arguments_of(term), annotations_of(term)
 

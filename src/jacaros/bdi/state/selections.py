@@ -18,9 +18,9 @@ class Selections(Protocol):
     the class of a project what it likes.  Each takes what it chooses out of its queue.
 
     Attributes:
-        plain: at present the first of each queue goes first, and the first applicable plan is taken (but for the rules of
-            a program in `option_filter`): code that is written for speed may take them itself.  Whoever makes it False
-            sets `Incoming.called`.
+        plain: at present the first of each queue goes first, and the first applicable plan is selected (apart from the
+            rules in `option_filter`), so fast paths may select themselves. Code that makes it False must set
+            `Incoming.called`.
         option_filter: beliefs and rules of the program that filter applicable plans (``select__option/4``).
         urgencies: how urgent events of each kind are; None when they are all alike.
         refused: there were applicable plans for the last event, and none of them was let pass.

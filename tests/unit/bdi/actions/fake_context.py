@@ -94,7 +94,7 @@ class FakeContext:
 
     def parse_term(self, written: str) -> Term:
         if written not in self.readable:
-            raise JacarosError(f"{written} is no term")
+            raise JacarosError(f"not a term: {written}")
         return self.readable[written]
 
     def answers(self, formula: Term) -> Iterator[None]:

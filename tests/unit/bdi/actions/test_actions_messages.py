@@ -1,4 +1,4 @@
-"""Sending: what ``.send`` and ``.broadcast`` hand over, with names and contents known early or late."""
+"""Messages of ``.send`` and ``.broadcast``, with names and contents known early or late."""
 
 import pytest
 from recording_host import RecordingHost, mind
@@ -62,8 +62,8 @@ def test_bindings_are_applied_to_a_content_and_variables_are_new() -> None:
 @pytest.mark.parametrize(
     ("body", "error"),
     [
-        (".send(nobody, tell, p)", "receiver_not_found"),
-        ("N = nobody; .send(N, tell, p)", "receiver_not_found"),
+        (".send(ghost, tell, p)", "receiver_not_found"),
+        ("N = ghost; .send(N, tell, p)", "receiver_not_found"),
         (".send(_, tell, p)", "wrong_arguments"),
         (".send(1, tell, p)", "wrong_arguments"),
         (".send(friend, 1, p)", "wrong_arguments"),
@@ -75,13 +75,13 @@ def test_bindings_are_applied_to_a_content_and_variables_are_new() -> None:
 def test_a_message_that_cannot_be_sent_fails_the_step(body: str, error: str) -> None:
     host = sent(body)
     assert host.printed == [error]
-    assert [message.receiver for message in host.sent] == (["nobody"] if "nobody" in body else [])
+    assert [message.receiver for message in host.sent] == (["ghost"] if "ghost" in body else [])
 
 
 def test_a_failed_message_leaves_the_intention_at_its_step() -> None:
-    host = mind("!g. +!g <- .send(nobody, tell, p); .print(never). -!g[code(C)] <- .print(C).")
+    host = mind("!g. +!g <- .send(ghost, tell, p); .print(never). -!g[code(C)] <- .print(C).")
     host.run()
-    assert host.printed == [".send(nobody,tell,p)"]
+    assert host.printed == [".send(ghost,tell,p)"]
 
 
 def test_messages_are_numbered() -> None:

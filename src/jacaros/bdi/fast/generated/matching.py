@@ -26,7 +26,7 @@ def match(
     if isinstance(pattern, nodes.Variable) and _is_plain(pattern):
         _match_variable(fn, pattern, value, then)
     elif isinstance(pattern, nodes.Number):
-        number = build(fn, pattern)  # infinite ones are no Python literals
+        number = build(fn, pattern)  # infinite ones are not Python literals
         _test(fn, f"{value} == {number} if {value}.__class__ is float else {_open(number, value)}", then)
     elif isinstance(pattern, nodes.String):
         text = build(fn, pattern)

@@ -17,7 +17,7 @@ from jacaros.bdi.fast.generated.matching import Then, loop_binding, match, settl
 from jacaros.bdi.fast.generated.query_arguments import QueryArguments
 
 TRUTHS = ("true", "false")
-"""Literals that are no predicates."""
+"""Literals that are not predicates."""
 
 
 def literal(fn: FunctionBuilder, node: nodes.Literal, then: Then) -> None:
