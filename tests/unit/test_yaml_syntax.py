@@ -28,7 +28,7 @@ def problems(text: str) -> list[Problem]:
         ("a: 'x\nb: c\n", (1, 4), "this quote is never closed", "close"),
         ("a: [b[0]]\n", (1, 6), "a bracket within a text", 'quotes: "ranges[0]"'),
         ("a: {b: c d: e}\n", (1, 11), "within the bracket of line 1, column 4", "commas"),
-        ("a: {b: c}}\n", (1, 10), "nothing is open", "remove it"),
+        ("a: {b: c}}\n", (1, 10), "unmatched bracket", "remove it"),
         ("a: b: c\n", (1, 5), "a second ':'", "quotes"),
         ("a: *x\n", (1, 4), "unknown anchor &x", "mark the value with &x"),
         ("a: 1\n---\nb: 2\n", (2, 1), "a second document", "remove ---"),

@@ -30,7 +30,7 @@ class Keeper(Protocol):
     def keep(self, belief: Literal) -> bool:
         """Store a belief, or update its annotations."""
 
-    def give_up(self, belief: Literal) -> bool:
+    def discard(self, belief: Literal) -> bool:
         """Remove a belief; return False if it is not stored."""
 
     def literals(self) -> Iterator[Term]:
@@ -72,7 +72,7 @@ class BeliefBase:
         Returns:
             Whether it was removed: if not, there is no event.
         """
-        return self._tables.give_up(belief)
+        return self._tables.discard(belief)
 
     def candidates(self, pattern: Literal) -> Iterable[Literal]:
         """Return beliefs that are not stored here but looked up on demand, such as rows of a database.
@@ -172,7 +172,7 @@ class Tables(belief_base.BeliefTables):
         table.put(row, annotations, last)
         return True
 
-    def give_up(self, belief: Literal) -> bool:
+    def discard(self, belief: Literal) -> bool:
         change = self._change
         if change is not None and belief is change[0]:
             _, table, row, _, _ = change

@@ -229,7 +229,7 @@ class ChainBB(BeliefBase):
         return self._first.keep(belief)
 
     def remove(self, belief: Literal) -> bool:
-        return self._first.give_up(belief)
+        return self._first.discard(belief)
 
     def candidates(self, pattern: Literal) -> list[Literal]:
         return [belief for link, _ in self._beginnings for belief in link.candidates(pattern)]
@@ -248,7 +248,7 @@ class _Following:
     def keep(self, belief: Literal) -> bool:
         return self._link.add(belief)
 
-    def give_up(self, belief: Literal) -> bool:
+    def discard(self, belief: Literal) -> bool:
         return self._link.remove(belief)
 
     def literals(self) -> Iterator[Term]:

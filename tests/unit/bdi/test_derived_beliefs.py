@@ -325,8 +325,8 @@ def test_an_agent_without_declarations_listens_to_nothing(tmp_path: Path) -> Non
         ),
         (
             "mean(e(_), within(1))",
-            "`mean` needs 1 named variable in its belief",
-            "make one argument a variable, and the others _",
+            "`mean` expects 1 named variable in its belief",
+            "make one argument a variable, and the others `_`",
         ),
         ("held(e, lastin(1))", "`held` has no option `lastin`", "options: lasting, above, below"),
         (

@@ -224,7 +224,7 @@ def test_check_reports_a_history_that_is_not_kept(tmp_path: Path) -> None:
     assert told == [
         (
             f"no history of `{each}` is kept: `ago` finds nothing",
-            f"declare {{ history({each}, within(2000)) }}, or `history: 2` in the mapping file of a property",
+            f"declare `{{ history({each}, within(2000)) }}`, or `history: 2` in the mapping file of a property",
         )
         for each in ("b(_, _)", "c")
     ]

@@ -133,14 +133,14 @@ def test_images_with_comments_few_shades_and_in_text_are_read(tmp_path: Path) ->
         (YAML, b"P5\n4 4\n", [(1, "header without largest value")]),
         (YAML, b"P5\n4 0\n255\n", [(1, "header without height")]),
         (YAML, b"P5\n1 1\n65535\n\x00\x00", [(1, "the image has 16 bits a pixel")]),
-        (YAML, b"P2\n1 1\n255\nx", [(1, "a pixel that is not a number")]),
+        (YAML, b"P2\n1 1\n255\nx", [(1, "a pixel is not a non-negative integer")]),
         (
             YAML,
             b"P6\n1 1\n255\nxyz",
             [(1, "expected a PGM or PNG image, found something else")],
         ),
         (YAML, b"GIF89a", [(1, "expected a PGM or PNG image, found a GIF image")]),
-        (YAML, b"", [(1, "it is not an image")]),
+        (YAML, b"", [(1, "found something else")]),
     ],
 )
 def test_all_that_is_wrong_with_a_map_is_reported_with_its_line(

@@ -51,12 +51,12 @@ def exclusive(call: PatternCall, section: nodes.Section) -> nodes.Section:
     message = nodes.Literal(
         "error_msg", (nodes.String("all plans for the goal have been tried"),), span=call.span
     )
-    give_up = call.plan(on("-!", exhausted), forget, call.internal(".fail", no_plan, message))
+    failing = call.plan(on("-!", exhausted), forget, call.internal(".fail", no_plan, message))
     retry = call.plan(on("-!", goal), call.achieve(goal))
     *others, succeed = inner.plans
     assert isinstance(succeed.body, nodes.Body)
     succeed = nodes.replace(succeed, body=nodes.replace(succeed.body, steps=(forget, *succeed.body.steps)))
-    return with_plans(inner, others, [succeed], [give_up, retry])
+    return with_plans(inner, others, [succeed], [failing, retry])
 
 
 def maintenance(call: PatternCall, section: nodes.Section) -> nodes.Section:
@@ -163,9 +163,9 @@ def _committed(
     message = nodes.Literal(
         "error_msg", (nodes.String("the goal is believed to be impossible"),), span=call.span
     )
-    give_up = call.plan(on("-!", goal), call.internal(".fail", reason, message))
+    failing = call.plan(on("-!", goal), call.internal(".fail", reason, message))
     fail = call.plan(on("+", impossible), call.internal(".fail_goal", goal))
-    return with_plans(inner, [], inner.plans, [give_up, fail])
+    return with_plans(inner, [], inner.plans, [failing, fail])
 
 
 def _with_last_plan(

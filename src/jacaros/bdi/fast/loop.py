@@ -17,7 +17,7 @@ from jacaros.bdi.rules.exec_int import announce, execute, select_intention, step
 from jacaros.bdi.rules.goal_failure import fail_intention, has_room
 from jacaros.bdi.rules.perceiving import take_percepts
 from jacaros.bdi.rules.proc_msg import read_message
-from jacaros.bdi.rules.sel_ev import begin_with, handle_atomic_event, pass_over
+from jacaros.bdi.rules.sel_ev import begin_with, handle_atomic_event, skip_event
 from jacaros.bdi.state.circumstance import CROWD, Circumstance
 from jacaros.bdi.state.intention import Frame, Intention
 from jacaros.bdi.state.literals import EventAnnotations
@@ -84,7 +84,7 @@ def run(agent: Circumstance, fuel: int) -> bool:  # noqa: C901 - written out for
                     raise
                 except Exception as fault:
                     fuel -= 1
-                    failure.give_up(agent, agent.current or intention, fault)
+                    failure.drop_after_error(agent, agent.current or intention, fault)
                 if agent.waits.requeued:
                     events.extendleft(reversed(agent.waits.requeued))
                     agent.waits.requeued.clear()
@@ -185,7 +185,7 @@ def handle_event(agent: Circumstance) -> Intention | None:  # noqa: C901 - writt
         except InternalError:
             raise
         except Exception as fault:
-            pass_over(agent, event, fault)
+            skip_event(agent, event, fault)
     return None
 
 

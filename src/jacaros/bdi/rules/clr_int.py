@@ -69,7 +69,7 @@ def _is_achieved(agent: Circumstance, frame: Frame) -> bool:
         undo(agent.trail, 0)
         if frame[PLAN] not in agent.library.blamed:
             agent.library.blamed.add(frame[PLAN])
-            failure.passed_over(agent, f"goal condition of plan {text(frame[PLAN].label)}", fault)
+            failure.report_skipped(agent, f"goal condition of plan {text(frame[PLAN].label)}", fault)
         return False
 
 

@@ -125,7 +125,7 @@ def _execute(agent: Circumstance, intention: Intention) -> bool:
     except InternalError:
         raise
     except Exception as fault:
-        failure.give_up(agent, agent.current or intention, fault)
+        failure.drop_after_error(agent, agent.current or intention, fault)
     agent.counts.cycles += 1
     if agent.waits.requeued:
         agent.events.extendleft(reversed(agent.waits.requeued))
@@ -205,7 +205,7 @@ def do_tasks(agent: Circumstance) -> None:
         except InternalError:
             raise
         except Exception as fault:
-            failure.passed_over(agent, "a delayed change of an intention", fault)
+            failure.report_skipped(agent, "delayed change of an intention", fault)
 
 
 def check_conditions(agent: Circumstance) -> None:

@@ -247,14 +247,14 @@ def note_lack_of_memory(agent: Circumstance, fault: BaseException) -> None:
         agent.architecture.out_of_memory()
 
 
-def passed_over(agent: Circumstance, what: str, fault: Exception) -> None:
+def report_skipped(agent: Circumstance, what: str, fault: Exception) -> None:
     """Report that something was skipped because of an exception."""
     note_lack_of_memory(agent, fault)
     undo(agent.trail, 0)
     agent.architecture.log("error", f"{what} skipped: {told(fault)}")
 
 
-def give_up(agent: Circumstance, intention: Intention, fault: Exception) -> None:
+def drop_after_error(agent: Circumstance, intention: Intention, fault: Exception) -> None:
     """End an intention that cannot continue, without failure events."""
     note_lack_of_memory(agent, fault)
     undo(agent.trail, 0)

@@ -23,10 +23,10 @@ def interrupt_plan(agent: Circumstance, intention: Intention, index: int, reason
     interrupted = reason.interrupted(intention.frames[index + 1 :])
     goal_failure.observe_failed(agent, intention, index + 2, interrupted)
     cut_in_queue(agent, intention, index + 2)
-    post(agent, intention, give_up(agent, intention, guard, frame, interrupted))
+    post(agent, intention, begin_clean_up(agent, intention, guard, frame, interrupted))
 
 
-def give_up(
+def begin_clean_up(
     agent: Circumstance, intention: Intention, guard: PlanGuard, frame: Frame, reason: FailureReason
 ) -> Posted | None:
     """Post the clean-up goal of a plan, after which the plan fails; without one it fails immediately."""

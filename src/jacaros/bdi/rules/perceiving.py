@@ -40,7 +40,7 @@ def take_percepts(agent: Circumstance, way: Callable[[Circumstance, list[Percept
         except InternalError:
             raise
         except Exception as fault:
-            failure.passed_over(agent, "what was perceived", fault)
+            failure.report_skipped(agent, "percepts", fault)
 
 
 def take(agent: Circumstance, percept: Percept) -> None:

@@ -9,7 +9,7 @@ from jacaros.bdi.explaining.failure_reason import ERROR, ERROR_MSG, FailureReaso
 from jacaros.bdi.rules import failure
 from jacaros.bdi.rules.body_steps import interpreted
 from jacaros.bdi.rules.deadlines import deadline_terms, set_deadline
-from jacaros.bdi.rules.interrupted_plans import give_up, interrupt_plan
+from jacaros.bdi.rules.interrupted_plans import begin_clean_up, interrupt_plan
 from jacaros.bdi.rules.supervision import plan_ended, supervising
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.condition_waits import ConditionWatch, asked_by
@@ -42,7 +42,7 @@ def begin_guarded(agent: Circumstance, frame: Frame) -> object:
     if condition is None:
         return None
     if not _holds(agent, condition):
-        return give_up(agent, intention, guard, frame, _lost(condition)) or SUSPENDED
+        return begin_clean_up(agent, intention, guard, frame, _lost(condition)) or SUSPENDED
     guard.watch = ConditionWatch(condition, asked_by(condition, agent.beliefs, agent.engine.actions))
     agent.waits.conditions.add(guard.watch)
     agent.incoming.called = True

@@ -66,7 +66,7 @@ def read_message(agent: Circumstance, message: SpeechAct) -> None:
     except InternalError:
         raise
     except Exception as fault:
-        failure.passed_over(agent, f"a message ({message.performative}) from {message.sender}", fault)
+        failure.report_skipped(agent, f"message ({message.performative}) from {message.sender}", fault)
         if message.performative.startswith("ask"):
             answer(agent, message, None)
     if observer is not None:

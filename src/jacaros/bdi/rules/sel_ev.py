@@ -35,7 +35,7 @@ def _is_handled(agent: Circumstance, event: Event) -> bool:
     except InternalError:
         raise
     except Exception as fault:
-        pass_over(agent, event, fault)
+        skip_event(agent, event, fault)
         return False
 
 
@@ -69,7 +69,7 @@ def _push_atomic(agent: Circumstance, intention: Intention, event: Event) -> Non
     except InternalError:
         raise
     except Exception as fault:
-        pass_over(agent, event, fault)
+        skip_event(agent, event, fault)
 
 
 def is_ready(agent: Circumstance, intention: Intention) -> bool:
@@ -85,13 +85,13 @@ def event_of(agent: Circumstance, intention: Intention) -> Event | None:
     return next((event for event in agent.events if event[EVENT_INTENTION] is intention), None)
 
 
-def pass_over(agent: Circumstance, event: Event, fault: Exception) -> None:
+def skip_event(agent: Circumstance, event: Event, fault: Exception) -> None:
     """Report an exception that escapes while an event is handled; the agent continues with the next event."""
     agent.current = None
-    failure.passed_over(agent, "an event", fault)
+    failure.report_skipped(agent, "event", fault)
     intention = event[EVENT_INTENTION]
     if intention is not None:
-        failure.give_up(agent, intention, fault)
+        failure.drop_after_error(agent, intention, fault)
 
 
 def begin_intention(agent: Circumstance, event: Event) -> bool:
