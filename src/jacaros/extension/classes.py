@@ -149,7 +149,7 @@ class TextPersistentBB(BeliefBase):
         try:
             # A temporary file is the user's alone; what takes its place is for those who could read it before.
             Path(name).chmod(_mode(self._file))
-            with os.fdopen(handle, "w", encoding="utf-8") as file:
+            with os.fdopen(handle, "w", encoding="utf-8", newline="\n") as file:
                 file.write(text)
                 file.flush()
                 os.fsync(file.fileno())

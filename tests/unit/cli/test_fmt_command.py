@@ -46,9 +46,9 @@ def test_check_and_diff_show_the_difference_and_change_nothing(
 def test_the_standard_input_goes_to_the_standard_output(
     folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("sys.stdin", io.StringIO(UGLY))
+    monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(UGLY.encode())))
     assert outcome(capsys, "-") == (0, NICE, "")
-    monkeypatch.setattr("sys.stdin", io.StringIO("p("))
+    monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(b"p(")))
     code, output, errors = outcome(capsys, "-")
     assert (code, output) == (1, "")
     assert errors.startswith("<stdin>:1:")
