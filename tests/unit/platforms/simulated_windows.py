@@ -22,6 +22,7 @@ import signal
 import socket
 import stat
 import sys
+import sysconfig
 import threading
 import time
 import warnings
@@ -35,7 +36,7 @@ LIBRARIES = (
     "click._compat",
     "click.testing",
     "concurrent.futures.thread",
-    "multiprocessing",
+    "multiprocessing.connection",
     "numpy",
     "platform",
     "rich.console",
@@ -213,6 +214,7 @@ def slow_clock() -> None:
 def become_windows() -> None:
     for library in LIBRARIES:
         importlib.import_module(library)
+    sysconfig.get_config_vars()
     receive_signals_elsewhere()
     take_posix_away()
     change_loops()
