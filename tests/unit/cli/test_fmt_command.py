@@ -1,6 +1,7 @@
 """``jacaros fmt``: what it reads and writes, its exit codes."""
 
 import io
+import sys
 from pathlib import Path
 
 import pytest
@@ -109,6 +110,7 @@ def test_a_folder_without_programs_is_wrong_usage(
     assert capsys.readouterr().err == f"jacaros: no agent programs in {tmp_path}\n"
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="files of Windows have no such modes")
 def test_the_mode_of_a_file_stays_and_nothing_lies_beside_it(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
