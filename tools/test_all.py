@@ -106,7 +106,7 @@ def parts() -> list[Part]:
             budget=145,
         ),
         Part("layers", (f"{BIN}/lint-imports", "--no-logo")),
-        Part("unit", (*PYTEST, "tests/unit", "-m", "not browser"), budget=210),
+        Part("unit", (*PYTEST, "tests/unit", "-m", "not browser"), budget=245),
         Part("wheel", ("tools/test_wheel.sh",)),
         # The checker prints at its end.
         Part("conformance", (PYTHON, "tools/check_conformance.py", "language"), budget=120, quiet_minutes=30),

@@ -30,7 +30,7 @@ class Alarm:
         self._armed = False
         self._before: Any = None
         self._rest = 0.0
-        """Seconds that a timer of somebody else has left."""
+        """Seconds that were left of another timer."""
         self._turn = 0
 
     def set(self, seconds: float, again: float = 0.0) -> None:
@@ -52,7 +52,7 @@ class Alarm:
             signal.setitimer(signal.ITIMER_REAL, seconds, again)
 
     def cancel(self) -> None:
-        """Ring no more, and give the signal back."""
+        """Stop ringing, and restore the handler of the signal."""
         if not self._armed:
             return
         self._turn += 1

@@ -93,7 +93,7 @@ def program(tmp_path: Path) -> Callable[[str], str]:
 
 @contextmanager
 def running(*arguments: str, folder: Path) -> Iterator[tuple["subprocess.Popen[str]", SimpleQueue[str]]]:
-    """A command that goes on, and its lines on both outputs."""
+    """A command that continues, and its lines on both outputs."""
     lines: SimpleQueue[str] = SimpleQueue()
     with started(*arguments, folder=folder) as process:
 
@@ -227,7 +227,7 @@ def test_a_run_that_waits_serves_its_page_and_ends_at_a_signal(
         with urllib.request.urlopen(address, timeout=PATIENCE) as page:
             assert page.read().startswith(b"<!doctype html>")
         with pytest.raises(urllib.error.HTTPError):
-            urllib.request.urlopen(address.replace("that-tests-know", "of-nobody-here"), timeout=PATIENCE)
+            urllib.request.urlopen(address.replace("that-tests-know", "of-no-user-here"), timeout=PATIENCE)
         process.send_signal(signal.SIGINT)
         assert process.wait(PATIENCE) == 130
 
