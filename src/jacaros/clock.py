@@ -12,6 +12,8 @@ page that shows the run.
 import asyncio
 import contextvars
 import selectors
+import signal
+import sys
 import threading
 import time
 from collections import deque
@@ -486,6 +488,17 @@ class VirtualEventLoop(_DaemonThreads, asyncio.SelectorEventLoop):
         self.virtual_selector = _VirtualSelector(clock)
         super().__init__(self.virtual_selector)
         self.virtual_selector.ready = self._ready  # type: ignore[attr-defined]
+        self._wakes = sys.platform == "win32" and threading.current_thread() is threading.main_thread()
+        if self._wakes:
+            # There a signal does not interrupt `select`, and asyncio wakes its Proactor loop only.
+            signal.set_wakeup_fd(self._csock.fileno())  # type: ignore[attr-defined]
+
+    def close(self) -> None:
+        """Close the loop."""
+        if self._wakes:
+            self._wakes = False
+            signal.set_wakeup_fd(-1)
+        super().close()
 
     def when_stuck(self, watcher: Callable[[], bool]) -> Callable[[], None]:
         """Call *watcher* when everything waits and no timer is left: only an external event could continue the run.

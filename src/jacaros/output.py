@@ -5,6 +5,7 @@ writes directly as long as its sink accepts everything. The rest waits in a boun
 If the queue stays full, or the sink raises an exception, lines are lost: they are counted and reported.
 """
 
+import codecs
 import contextlib
 import errno
 import io
@@ -29,6 +30,29 @@ _RETRY = 1.0
 _PIECE = 1 << 16
 _ATOMIC = 4096
 """Bytes that a pipe takes in one piece as soon as it is writable (PIPE_BUF of Linux)."""
+
+
+PLAIN = "jacaros.plain"
+"""Name of what becomes of characters that an encoding lacks: one that looks similar, or an escape; see `codecs`."""
+_SIMILAR = str.maketrans(
+    dict(zip("→↗↑↖←↙↓↘▒◎☻█░·×–—‘’“”²", ">/^\\</v\\#O@#.-x--''\"\"2", strict=True))
+    | dict.fromkeys("─━═", "-")
+    | dict.fromkeys("│┃║", "|")
+    | dict.fromkeys("┌┐└┘├┤┬┴┼╭╮╯╰┏┓┗┛┡┩╇", "+")
+    | dict.fromkeys(map(chr, range(0x2801, 0x2900)), ":")  # dots of the map
+    | {"\u2800": " ", "…": "...", "°": ""}
+)
+
+
+def _similar(error: UnicodeError) -> tuple[str | bytes, int]:
+    if not isinstance(error, UnicodeEncodeError):
+        raise error
+    wanted = error.object[error.start : error.end]
+    plain = wanted.translate(_SIMILAR)
+    return plain.encode("ascii", "backslashreplace").decode("ascii"), error.end
+
+
+codecs.register_error(PLAIN, _similar)
 
 
 class Stream(Protocol):
@@ -70,7 +94,7 @@ class Output:
         # Reentrant: a signal handler may log in the middle of a write.
         self._changed = threading.Condition(threading.RLock())
         self._stream: Stream | None = None
-        self._descriptor: _Descriptor | None = None
+        self._descriptor: _Sink | None = None
         self._queue: deque[bytes] = deque()
         self._waiting = 0
         self._progress = 0.0
@@ -367,6 +391,27 @@ class Printed(io.TextIOBase):
         return getattr(self._stream, name)
 
 
+class _Sink(Protocol):
+    """What an `Output` writes to."""
+
+    def encode(self, text: str) -> bytes:
+        """The bytes of *text*."""
+
+    def write(self, data: bytes) -> int:
+        """Write what is taken now; the number of bytes.
+
+        Raises:
+            BlockingIOError: nothing is taken now.
+            OSError: the sink is full, gone or broken.
+        """
+
+    def wait(self) -> None:
+        """Wait until something can be written; in the thread of the `Output` only."""
+
+    def close(self) -> None:
+        """Let go of the sink; closing twice does no harm."""
+
+
 class _Descriptor:
     """A file descriptor that is written without waiting for a reader.
 
@@ -377,8 +422,8 @@ class _Descriptor:
         self._encoding, self._errors = encoding, errors
         self._number, self._own, self._piece = number, False, _PIECE
         mode = os.fstat(number).st_mode
-        self._poll: select.poll | None = None
-        if stat.S_ISREG(mode):
+        self._poll: Any = None
+        if sys.platform == "win32" or stat.S_ISREG(mode):
             return
         with contextlib.suppress(OSError):
             if sys.platform == "linux" and (stat.S_ISFIFO(mode) or os.isatty(number)):
@@ -391,10 +436,7 @@ class _Descriptor:
 
     def encode(self, text: str) -> bytes:
         """Encode *text*; characters that the encoding lacks are escaped."""
-        try:
-            return text.encode(self._encoding, self._errors)
-        except UnicodeError:
-            return text.encode(self._encoding, "backslashreplace")
+        return _encoded(text, self._encoding, self._errors)
 
     def write(self, data: bytes) -> int:
         """Write what is accepted now; return the number of bytes.
@@ -419,12 +461,57 @@ class _Descriptor:
             os.close(self._number)
 
 
-def _descriptor_of(stream: Stream | None) -> _Descriptor | None:
-    """Return the descriptor of a stream of the process; None for a stream made by other code, such as a test."""
-    if os.name == "posix" and type(stream) is io.FileIO:
-        return _Descriptor(stream.fileno(), "utf-8", "backslashreplace")
-    if os.name != "posix" or type(stream) is not io.TextIOWrapper:
+class _Buffer:
+    """The buffer of a standard stream of Windows, where nothing tells whether a write would wait.
+
+    Only the thread of an `Output` writes: a console whose text is being marked takes nothing.
+    """
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
+        self._writer: int | None = None
+
+    def encode(self, text: str) -> bytes:
+        """The bytes of *text*, with the line ends of the system."""
+        text = text if os.linesep == "\n" else text.replace("\n", os.linesep)
+        return _encoded(text, self._stream.encoding, self._stream.errors or "strict")
+
+    def write(self, data: bytes) -> int:
+        """Write everything; the number of bytes.
+
+        Raises:
+            BlockingIOError: this is not the thread that waits.
+            OSError: the sink is full, gone or broken.
+        """
+        if threading.get_ident() != self._writer:
+            raise BlockingIOError
+        self._stream.buffer.write(data)
+        self._stream.buffer.flush()
+        return len(data)
+
+    def wait(self) -> None:
+        """Let this thread write."""
+        self._writer = threading.get_ident()
+
+    def close(self) -> None:
+        """The stream is the process's."""
+
+
+def _encoded(text: str, encoding: str, errors: str) -> bytes:
+    try:
+        return text.encode(encoding, errors)
+    except UnicodeError:
+        return text.encode(encoding, PLAIN)
+
+
+def _descriptor_of(stream: Stream | None) -> _Sink | None:
+    """Return the sink of a stream of the process; None for a stream made by other code, such as a test."""
+    if type(stream) is io.FileIO:
+        return _Descriptor(stream.fileno(), "utf-8", PLAIN)
+    if type(stream) is not io.TextIOWrapper:
         return None
+    if sys.platform == "win32":
+        return _Buffer(stream)
     buffer = stream.buffer
     if not isinstance(getattr(buffer, "raw", buffer), io.FileIO):  # python -u has no buffer
         return None

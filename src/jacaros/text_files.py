@@ -2,11 +2,13 @@
 
 import os
 import stat
-from pathlib import Path
+from itertools import takewhile
+from pathlib import Path, PurePath, PurePosixPath
 from typing import Final
 
 LARGEST: Final = 64 * 2**20
 """Maximum number of bytes of a program, project, mapping, world or parameter file."""
+_FOLDER: Final = "it is a directory"
 
 
 class UnusableFile(OSError):
@@ -38,6 +40,8 @@ def file_bytes(path: Path | str, largest: int = LARGEST) -> bytes:
     except FileNotFoundError:
         raise
     except (OSError, ValueError) as fault:
+        if isinstance(fault, PermissionError) and os.path.isdir(path):  # Windows does not open folders
+            raise UnusableFile(_FOLDER) from fault
         raise UnusableFile(getattr(fault, "strerror", None) or str(fault)) from fault
     try:
         return _content(file, largest)
@@ -48,7 +52,7 @@ def file_bytes(path: Path | str, largest: int = LARGEST) -> bytes:
 def _content(file: int, largest: int) -> bytes:
     status = os.fstat(file)
     if stat.S_ISDIR(status.st_mode):
-        raise UnusableFile("it is a directory")
+        raise UnusableFile(_FOLDER)
     if not stat.S_ISREG(status.st_mode):
         raise UnusableFile("it is not a regular file")
     pieces: list[bytes] = []
@@ -98,6 +102,23 @@ def text_of(data: bytes) -> str:
 
 def _line(data: bytes, at: int) -> int:
     return data.count(b"\n", 0, at) + 1
+
+
+def shown_from(folder: Path, file: Path) -> str:
+    """Return how a file in *folder* names another file: the path from there with forward slashes, on every system.
+
+    On Windows no relative path leads to another drive; then it is the whole path.
+    """
+    return path_between(folder.resolve(), file.resolve())
+
+
+def path_between(folder: PurePath, file: PurePath) -> str:
+    """Return what `shown_from` returns, for absolute paths without symbolic links."""
+    pairs = zip(folder.parts, file.parts, strict=False)
+    common = sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], pairs))
+    if not common:
+        return file.as_posix()
+    return PurePosixPath(*[".."] * (len(folder.parts) - common), *file.parts[common:]).as_posix()
 
 
 def kept_files() -> Path | None:

@@ -1,5 +1,6 @@
 """Every program of the documentation runs, and prints what the page says."""
 
+import sys
 from pathlib import Path
 
 import pytest
@@ -12,6 +13,7 @@ LANGUAGES = {"agentspeak", "console", "diff", "jcm", "mas2j", "python", "sh", "t
 RUN = [page for page in PAGES if any(block.language == "console" for block in blocks(page))]
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="the commands of pages are for a POSIX shell")
 @pytest.mark.parametrize("page", RUN, ids=name_of)
 def test_the_commands_of_a_page_print_what_it_says(page: Path, tmp_path: Path) -> None:
     (tmp_path / "examples").symlink_to(ROOT / "examples")

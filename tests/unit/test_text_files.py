@@ -1,6 +1,7 @@
 """Files as editors leave them, and files that are not for reading."""
 
 import os
+import sys
 from pathlib import Path
 
 import pytest
@@ -34,12 +35,14 @@ def test_reading_stops_at_a_nul_byte(tmp_path: Path) -> None:
         file_text(file)
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no named pipes in folders")
 def test_a_pipe_without_a_writer_is_refused_without_waiting(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe.asl")
     with pytest.raises(UnusableFile, match=r"^it is not a regular file$"):
         file_text(tmp_path / "pipe.asl")
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no /dev")
 def test_an_endless_device_is_refused() -> None:
     with pytest.raises(UnusableFile, match=r"^it is not a regular file$"):
         file_text("/dev/zero")

@@ -9,7 +9,8 @@ from tempfile import NamedTemporaryFile
 
 import click
 
-from jacaros.asl.diagnostics import AslError
+from jacaros import text_files
+from jacaros.asl.diagnostics import AslError, Diagnostic
 from jacaros.asl.formatting import format_program
 from jacaros.bdi.actions.internal_action import STANDARD
 from jacaros.cli.files import existing, no_programs
@@ -45,8 +46,10 @@ def command(files: tuple[Path, ...], only_check: bool, only_show: bool) -> int:
         raise no_programs(files)
     for path in programs:
         try:
-            before = sys.stdin.read() if path == _STANDARD_INPUT else text_of(path)
-            after = format_program("<stdin>" if path == _STANDARD_INPUT else str(path), before, STANDARD)
+            before = _standard_input() if path == _STANDARD_INPUT else text_of(path)
+            after = format_program(
+                "<stdin>" if path == _STANDARD_INPUT else path.as_posix(), before, STANDARD
+            )
         except AslError as wrong:
             click.echo(wrong, err=True)
             code = 1
@@ -59,7 +62,7 @@ def command(files: tuple[Path, ...], only_check: bool, only_show: bool) -> int:
         if only_check or only_show:
             click.echo("".join(_difference(path, before, after)), nl=False)
         elif path == _STANDARD_INPUT:
-            click.echo(after, nl=False)
+            click.echo(after.encode(), nl=False)
         elif before != after:
             try:
                 _replace(path, after)
@@ -71,6 +74,15 @@ def command(files: tuple[Path, ...], only_check: bool, only_show: bool) -> int:
     return 1 if only_check and changed else code
 
 
+def _standard_input() -> str:
+    """The standard input, as the text of a file: UTF-8 on every system."""
+    try:
+        return text_files.text_of(sys.stdin.buffer.read())
+    except UnicodeError as fault:
+        wrong = Diagnostic("error", f"cannot read <stdin>: {fault}", code="unreadable-file")
+        raise AslError([wrong]) from fault
+
+
 def _replace(path: Path, text: str) -> None:
     """Write a program anew; whatever happens meanwhile, the old or the new one is there whole."""
     path = path.resolve()
@@ -78,11 +90,13 @@ def _replace(path: Path, text: str) -> None:
         beside = Path(file.name)
         try:
             file.write(text)
+            file.close()  # Windows neither removes nor replaces an open file
             shutil.copymode(path, beside)
+            beside.replace(path)
         except BaseException:
+            file.close()
             beside.unlink()
             raise
-    beside.replace(path)
 
 
 def _programs(files: Sequence[Path]) -> Iterator[Path]:
@@ -97,7 +111,7 @@ def _programs(files: Sequence[Path]) -> Iterator[Path]:
 
 def _difference(path: Path, before: str, after: str) -> Iterator[str]:
     lines = difflib.unified_diff(
-        before.splitlines(keepends=True), after.splitlines(keepends=True), str(path), str(path)
+        before.splitlines(keepends=True), after.splitlines(keepends=True), path.as_posix(), path.as_posix()
     )
     for line in lines:
         yield line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n"

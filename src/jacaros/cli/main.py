@@ -4,6 +4,7 @@ Exit codes: 0 after a clean end, 1 after an error in a program or project, 2 for
 own code after ``.stopMAS``; 130 and 143 when a signal (Ctrl-C, SIGTERM) ended the run.
 """
 
+import io
 import os
 import sys
 import threading
@@ -15,9 +16,10 @@ import click
 from jacaros.cli.outputs import OUTPUT_GONE
 from jacaros.errors import JacarosError, UsageError
 from jacaros.excerpts import help_line, printable
+from jacaros.output import PLAIN
 
-ENDED_BY_SIGNAL = (130, 143)
-"""Exit codes of a run that Ctrl-C or SIGTERM ended."""
+ENDED_BY_SIGNAL = (129, 130, 143, 149)
+"""Exit codes of a run that SIGHUP, Ctrl-C, SIGTERM or Ctrl-Break (Windows) ended."""
 
 COMMANDS = {
     "run": ("jacaros.cli.run", "Run an agent program or a project."),
@@ -100,6 +102,10 @@ def jacaros() -> None:
 
 def main(arguments: list[str] | None = None) -> None:
     """The entry point of the ``jacaros`` command; ends the process."""
+    for stream in (sys.stdout, sys.stderr):
+        # A console that lacks a character, as those of cp1252 lack arrows, must not end a command.
+        if isinstance(stream, io.TextIOWrapper) and stream.errors in ("strict", "backslashreplace"):
+            stream.reconfigure(errors=PLAIN)
     code = call(arguments)
     if code in ENDED_BY_SIGNAL and _threads_go_on():
         # Python would wait for them; Ctrl-C is not to be waited for.

@@ -95,6 +95,6 @@ def _titled(table: Table) -> str:
 def _write(path: Path, svg: str) -> None:
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(svg, encoding="utf-8")
+        path.write_text(svg, encoding="utf-8", newline="\n")
     except OSError as error:
         raise wrong_output(f"cannot write `{path}`: {error.strerror}", "name another folder") from error

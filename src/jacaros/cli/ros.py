@@ -1,6 +1,5 @@
 """``jacaros ros list|show|map|check``: looking at a live ROS graph."""
 
-import os
 import sys
 from collections.abc import Awaitable, Callable
 from pathlib import Path
@@ -12,6 +11,7 @@ from jacaros.cli.graph_options import address_options, ros_option
 from jacaros.errors import UsageError
 from jacaros.mas.options import RunOptions
 from jacaros.ros.middleware import MIDDLEWARES
+from jacaros.text_files import shown_from
 
 F = TypeVar("F", bound=Callable[..., Any])
 T = TypeVar("T")
@@ -146,7 +146,7 @@ def map_command(
     if output is not None and output.exists() and not force:
         raise UsageError(f"file exists: {output}; overwrite it with --force")
     file = output if output is not None else Path("robot.yaml")
-    folders = [os.path.relpath(folder, file.parent) for folder in interfaces]
+    folders = [shown_from(file.parent, folder) for folder in interfaces]
 
     async def look(joined: Joined) -> str:
         if names:
@@ -168,7 +168,7 @@ def map_command(
     if output is None:
         click.echo(text, nl=False)
         return
-    output.write_text(text, encoding="utf-8")
+    output.write_text(text, encoding="utf-8", newline="\n")
     click.echo(f"wrote {output}; see `jacaros describe {output}`")
 
 

@@ -150,7 +150,7 @@ class TextPersistentBB(BeliefBase):
             # A temporary file is private to the user; the file that it replaces may have been readable by
             # others.
             Path(name).chmod(_mode(self._file))
-            with os.fdopen(handle, "w", encoding="utf-8") as file:
+            with os.fdopen(handle, "w", encoding="utf-8", newline="\n") as file:
                 file.write(text)
                 file.flush()
                 os.fsync(file.fileno())

@@ -34,7 +34,7 @@ def write_replay(recording: Recording, path: str | Path, title: str | None = Non
     Raises:
         OSError: the file cannot be written.
     """
-    Path(path).write_text(replay_html(recording, title), encoding="utf-8")
+    Path(path).write_text(replay_html(recording, title), encoding="utf-8", newline="\n")
 
 
 def replay_html(recording: Recording, title: str | None = None) -> str:

@@ -41,7 +41,7 @@ def write_picture(recording: Recording, path: str | Path, width: int = 640) -> N
     Raises:
         OSError: the file cannot be written.
     """
-    Path(path).write_text(picture_svg(recording, width), encoding="utf-8")
+    Path(path).write_text(picture_svg(recording, width), encoding="utf-8", newline="\n")
 
 
 def picture_svg(recording: Recording, width: int = 640) -> str:

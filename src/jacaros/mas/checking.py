@@ -406,7 +406,7 @@ def _check_program(
         return found, text
 
     try:
-        sources.append(SourceFile(str(path), text_of(path)))
+        sources.append(SourceFile(path.as_posix(), text_of(path)))
     except AslError as error:
         findings.diagnostics += error.diagnostics
         return None
@@ -453,7 +453,7 @@ def _concerns_author(diagnostic: Diagnostic, path: Path) -> bool:
     if diagnostic.span is None:
         return True
     file = diagnostic.span.file.name
-    return not file.startswith("$") and (diagnostic.code != NEVER_SELECTED or file == str(path))
+    return not file.startswith("$") and (diagnostic.code != NEVER_SELECTED or file == path.as_posix())
 
 
 def _declaration(agent: AgentSpec) -> str:

@@ -31,9 +31,9 @@ _DIGEST = 32
 def code_folder() -> "CodeFolder | None":
     """Return the user's folder, ``plans`` in `kept_files`; None if nothing is to be kept, or nothing is compiled.
 
-    A system whose files have no owners keeps nothing: nothing there can be trusted.
+    Windows keeps nothing: its files have no owners in Python, so nothing there can be trusted.
     """
-    root = None if is_plain() or not hasattr(os, "geteuid") else kept_files()
+    root = None if is_plain() or sys.platform == "win32" else kept_files()
     return None if root is None else CodeFolder(root / "plans")
 
 
@@ -135,11 +135,13 @@ def _is_own(path: Path) -> bool:
 
 
 def _trusted(status: os.stat_result) -> bool:
-    return status.st_uid == os.geteuid() and not status.st_mode & _OF_OTHERS
+    return sys.platform != "win32" and status.st_uid == os.geteuid() and not status.st_mode & _OF_OTHERS
 
 
 def _read(path: Path) -> dict[bytes, bytes]:
     """The entries in a file; none if it is not there, not whole, or not to be trusted."""
+    if sys.platform == "win32":
+        return {}
     try:
         with open(os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK), "rb") as file:
             status = os.fstat(file.fileno())
@@ -162,6 +164,8 @@ def _replace(path: Path, entries: dict[bytes, bytes]) -> None:
     Raises:
         OSError: it cannot be written.
     """
+    if sys.platform == "win32":
+        return
     body = marshal.dumps(entries)
     # No other process has this number, and no other thread of this one the other.
     aside = path.with_suffix(f".{os.getpid()}-{threading.get_ident()}.part")

@@ -1,13 +1,12 @@
 """Launching a project in a process: clock, loop, signals, garbage collector.
 
-Ctrl+C, SIGTERM and SIGHUP end a run, whatever it is doing.  `jacaros.ros.lifetime` handles the signals: it stops the
-robots, then asks here.  The loop serves a signal between two callbacks.  A step that never ends leaves it no turn; then the
-signal is raised in the middle of the step.
+Ctrl+C, SIGTERM, SIGHUP and, on Windows, SIGBREAK (Ctrl+Break) end a run, whatever it is doing.  `jacaros.ros.lifetime`
+handles the signals: it stops the robots, then asks here.  The loop serves a signal between two callbacks.  A step that
+never ends leaves it no turn; then the signal is raised in the middle of the step.
 """
 
 import asyncio
 import gc
-import signal
 import sys
 import warnings
 from collections.abc import Callable, Coroutine, Iterator
@@ -17,6 +16,7 @@ from pathlib import Path
 from types import FrameType
 from typing import Any, NoReturn
 
+from jacaros.alarm import Alarm
 from jacaros.clock import Clock, VirtualClock, WallClock, new_event_loop
 from jacaros.mas.console import Console
 from jacaros.mas.deployment import Deployment
@@ -150,7 +150,7 @@ class Interruption:
         self._told = False
         self._ending = self._over = False
         self._end: Callable[[], object] | None = None
-        self._alarm_before: Any = None
+        self._alarm = Alarm(self._interrupt)
 
     def run(self, make_loop: Callable[[], asyncio.AbstractEventLoop], main: Coroutine[Any, Any, int]) -> int:
         """Run *main*, which says by `of` what signals end, on a new loop; the exit code."""
@@ -160,13 +160,13 @@ class Interruption:
                     return runner.run(main)
                 except Interrupted:
                     # What is open on the loop is closed next, when the runner is.
-                    self._arm(THREADS if self._ending else CLOSING)
+                    self._alarm.set(THREADS if self._ending else CLOSING, AGAIN)
                     return self.exit_code
         except Interrupted:
             return self.exit_code
         finally:
             self._over = True
-            self._disarm()
+            self._alarm.cancel()
 
     def signals(self) -> AbstractContextManager[None]:
         """Have signals end the run; entered on the main thread, around `run`."""
@@ -179,7 +179,7 @@ class Interruption:
 
         def serve() -> None:
             self._ending = True
-            self._arm(CLOSING)
+            self._alarm.set(CLOSING, AGAIN)
             end(self.exit_code)
 
         self._end = partial(loop.call_soon_threadsafe, serve)
@@ -187,7 +187,7 @@ class Interruption:
             yield
         finally:
             if self.exit_code:
-                self._arm(THREADS)
+                self._alarm.set(THREADS, AGAIN)
 
     def _notice(self, number: int, frame: FrameType | None) -> None:
         """Take a signal, in its handler."""
@@ -197,20 +197,7 @@ class Interruption:
         if again or self._end is None:
             self._interrupt(number, frame)
         self._end()
-        self._arm(PATIENCE)
-
-    def _arm(self, patience: float) -> None:
-        if not hasattr(signal, "setitimer"):
-            return
-        if self._alarm_before is None:
-            before = signal.signal(signal.SIGALRM, self._interrupt)
-            self._alarm_before = signal.SIG_DFL if before is None else before
-        signal.setitimer(signal.ITIMER_REAL, patience, AGAIN)
-
-    def _disarm(self) -> None:
-        if self._alarm_before is not None:
-            signal.setitimer(signal.ITIMER_REAL, 0)
-            signal.signal(signal.SIGALRM, self._alarm_before)
+        self._alarm.set(PATIENCE, AGAIN)
 
     def _interrupt(self, number: int, frame: FrameType | None) -> NoReturn:
         del number

@@ -150,7 +150,7 @@ class Programs:
         """The program in a text; the project's modules that it names are imported, too."""
         try:
             program, warnings = load_program(
-                str(path), written, self.include, self._code.functions, self._code.actions
+                path.as_posix(), written, self.include, self._code.functions, self._code.actions
             )
         except AslError as wrong:
             raise AslError([*wrong.diagnostics, *self._code.take_errors()]) from wrong
@@ -182,7 +182,7 @@ class Programs:
         if not root.is_dir():
             raise NotADirectoryError(ENOTDIR, "not a folder", str(root))
         return sorted(
-            f"{Path(folder) / path.relative_to(root)}" for path in root.rglob("*") if path.is_file()
+            (Path(folder) / path.relative_to(root)).as_posix() for path in root.rglob("*") if path.is_file()
         )
 
     def include(self, path: str, including: str) -> tuple[str, str]:
@@ -207,7 +207,7 @@ class Programs:
         text = file_text(file)
         if name in TEST_LIBRARY and _OF_JASON.search(text):
             return _of_library(name)
-        return str(file), text
+        return file.as_posix(), text
 
 
 def _concerns_author(warning: Diagnostic, path: Path) -> bool:
@@ -219,7 +219,7 @@ def _concerns_author(warning: Diagnostic, path: Path) -> bool:
     if warning.span is None:
         return True
     file = warning.span.file.name
-    return not file.startswith("$") and (warning.code != NEVER_SELECTED or file == str(path))
+    return not file.startswith("$") and (warning.code != NEVER_SELECTED or file == path.as_posix())
 
 
 def library_file(name: str) -> Path:

@@ -512,7 +512,7 @@ class System:
         Raises:
             OSError: when it cannot be written.
         """
-        (self.deployment.base_path / path).write_text(text, encoding="utf-8")
+        (self.deployment.base_path / path).write_text(text, encoding="utf-8", newline="\n")
 
     def read_program(self, path: str) -> tuple[str, str]:
         """Name and text of a program file.

@@ -77,7 +77,7 @@ def read_agent(path: Path, folders: Sequence[Path], sources: Sources) -> AgentPr
         included.add(found)
         return found, content
 
-    tree, problems = read_program(SourceFile(str(path), text), include, code.functions, code.actions)
+    tree, problems = read_program(SourceFile(path.as_posix(), text), include, code.functions, code.actions)
     # Our files that stand for those of other systems are read without being asked for.
     included.update(
         span.file.name

@@ -135,7 +135,7 @@ class ProgramFiles:
             return
         deployment = reading.deployment
         names = frozenset(_names(deployment))
-        tokens = ProjectCursor(SourceFile(str(path), text), []).tokens
+        tokens = ProjectCursor(SourceFile(path.as_posix(), text), []).tokens
         comments = list(between(text, ((each.start, each.stop) for each in tokens)))
         self._add(Group.PROJECTS, counted(path, text, comments, names, names))
         for agent in deployment.agents:

@@ -55,7 +55,7 @@ class Sources:
         if text is None:
             return None
         try:
-            tree = python_source.parse(SourceFile(str(path), text))
+            tree = python_source.parse(SourceFile(path.as_posix(), text))
         except AslError as error:
             self.report(*error.diagnostics)
             return None
@@ -65,7 +65,9 @@ class Sources:
     def agentspeak(self, path: Path, identifiers: frozenset[str], names: frozenset[str]) -> CountedFile:
         """The file of a program that has been parsed."""
         text = text_of(path)
-        return counted(path, text, agentspeak.comments_of(SourceFile(str(path), text)), identifiers, names)
+        return counted(
+            path, text, agentspeak.comments_of(SourceFile(path.as_posix(), text)), identifiers, names
+        )
 
 
 def counted(

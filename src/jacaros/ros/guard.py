@@ -10,6 +10,7 @@ import json
 import math
 import signal
 import socket
+import sys
 import uuid
 from collections.abc import Callable, Coroutine
 from contextlib import suppress
@@ -21,7 +22,7 @@ from jacaros.ros.backend import Backend, Client, Publisher
 from jacaros.ros.errors import RosError, ServiceError
 from jacaros.ros.guarded import Named
 from jacaros.ros.guarding import Watch
-from jacaros.ros.heartbeat import line
+from jacaros.ros.heartbeat import NO_GUARD, line
 
 PERIOD = 0.05
 """Seconds between two zero velocities while the robot is being stopped."""
@@ -164,8 +165,10 @@ class Guard:
         """Guard until SIGINT or SIGTERM, or with *once* until the agents have ended.
 
         Raises:
-            UsageError: another guard listens at the same place.
+            UsageError: another guard listens at the same place, or the system has no Unix sockets.
         """
+        if sys.platform == "win32":
+            raise UsageError(NO_GUARD)
         loop = asyncio.get_running_loop()
         listening = _listening(self._path)
         try:
@@ -287,6 +290,8 @@ def _pairs(written: list[list[str]]) -> list[Named]:
 
 def _listening(path: Path) -> socket.socket:
     """Listen at *path*, in place of a guard that has died."""
+    if sys.platform == "win32":
+        raise UsageError(NO_GUARD)
     made = socket.socket(socket.AF_UNIX)
     try:
         made.connect(str(path))

@@ -18,6 +18,7 @@ import hashlib
 import json
 import os
 import stat
+import sys
 import tempfile
 from collections.abc import Callable
 from contextlib import suppress
@@ -29,6 +30,10 @@ from jacaros.ros.guarded import Guarded
 
 PERIOD = 0.05
 """Seconds between two heartbeats."""
+NO_GUARD = (
+    "error: a guard needs Unix sockets, which Python does not have on Windows\n"
+    "  = help: run the agents in WSL 2, on Linux or on macOS, or start them without --guard"
+)
 UNREAD = 65536
 """Bytes that a guard may leave unread before it counts as gone."""
 
@@ -41,8 +46,10 @@ def socket_path(kind: str, graph: str, node: str) -> Path:
         node: absolute name of the agents' node.
 
     Raises:
-        UsageError: the folder belongs to another user, or others may write to it.
+        UsageError: the folder belongs to another user, others may write to it, or the system has no Unix sockets.
     """
+    if sys.platform == "win32":
+        raise UsageError(NO_GUARD)
     folder = Path(tempfile.gettempdir()) / f"jacaros-{os.getuid()}"
     folder.mkdir(mode=0o700, exist_ok=True)
     found = folder.lstat()
@@ -85,7 +92,10 @@ class Heartbeat:
 
         Raises:
             OSError: no guard listens there.
+            UsageError: the system has no Unix sockets.
         """
+        if sys.platform == "win32":
+            raise UsageError(NO_GUARD)
         self._ready = asyncio.get_running_loop().create_future()
         reader, self._writer = await asyncio.open_unix_connection(path)
         self._guarded.on_change = self._note_change

@@ -1,9 +1,9 @@
 """The one owner of how a node joins its graph and how the process leaves it: zero velocity is the last message.
 
 The exit hooks of a node stop its robots: each publishes zero or sends requests to cancel, nothing else.  They run when the
-backend is closed, at SIGINT, SIGTERM and SIGHUP, and when the loop's thread or the interpreter ends (which an uncaught
-exception leads to).  No hook runs in a process that is killed (SIGKILL, power): a robot's base must stop by itself when
-commands cease.
+backend is closed, at one of `SIGNALS`, and when the loop's thread or the interpreter ends (which an uncaught exception
+leads to).  No hook runs in a process that is killed (SIGKILL, power): a robot's base must stop by itself when commands
+cease.
 
 Hooks run on the loop, between two callbacks.  Only when the loop does not get there within `PATIENCE` do they run in a
 thread.  From the first hook on, only hooks may publish; a message that was already on its way to the client library is
@@ -25,8 +25,10 @@ from typing import Any, TypeVar
 
 from jacaros.ros.handoff import in_thread, post
 
-SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
-"""Signals that end a process; Windows has no SIGHUP."""
+SIGNALS = tuple(
+    getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP", "SIGBREAK") if hasattr(signal, name)
+)
+"""Signals that end a process; Windows has no SIGHUP, and only Windows has SIGBREAK (Ctrl+Break, a closed console)."""
 PATIENCE = 0.2
 """Seconds that the loop has to run the hooks after a signal."""
 LOOKING = 0.2
@@ -260,12 +262,12 @@ class _Process:
     @contextmanager
     def serving(self, serve: Serve) -> Iterator[None]:
         """Have *serve* called with each signal, after the robots were told to stop; on the main thread only."""
-        self._serve = serve
+        outer, self._serve = self._serve, serve
         self._take_signals()
         try:
             yield
         finally:
-            self._serve = None
+            self._serve = outer
             self._give_signals_back()
 
     def _take_signals(self) -> None:

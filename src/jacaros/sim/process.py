@@ -5,14 +5,15 @@ Its time goes out on ``/clock``, for nodes that live in simulated time (ROS's ``
 
 import asyncio
 import json
-import signal
 import sys
 from collections.abc import Callable
+from io import FileIO
 from pathlib import Path
-from types import TracebackType
+from types import FrameType, TracebackType
 
 from jacaros.clock import Clock, Timer
 from jacaros.output import Output
+from jacaros.ros import lifetime
 from jacaros.ros.backend import Backend
 from jacaros.ros.message import stamp
 from jacaros.sim.ground_truth import Record, event_record, header
@@ -21,7 +22,6 @@ from jacaros.sim.world import World
 
 _FLUSH = 0.2
 """Seconds until a record is in the file."""
-_SIGNALS = (signal.SIGTERM, signal.SIGINT)
 
 
 class GroundTruthFile:
@@ -43,7 +43,7 @@ class GroundTruthFile:
         self, path: str | Path, world: World, epoch: float, warn: Callable[[str], None] | None = None
     ) -> None:
         self._world = world
-        self._file = Path(path).open("w", encoding="utf-8")  # noqa: SIM115 - closed in __exit__
+        self._file = FileIO(path, "w")
         self._output = Output(self._file, str(path), warn or _to_stderr, delay=_FLUSH)
         truth = world.ground_truth
         self._write(header(truth.world, world.description.seed, epoch))
@@ -86,7 +86,7 @@ async def serve(
     publish_clock: bool = False,
     when_open: Callable[[], None] | None = None,
 ) -> None:
-    """Run *world* as a node of its own until SIGTERM or SIGINT, or for *duration* seconds of the clock.
+    """Run *world* as a node of its own until a signal ends it, or for *duration* seconds of the clock.
 
     Args:
         world: the world.
@@ -103,8 +103,25 @@ async def serve(
     """
     stop = asyncio.Event()
     loop = asyncio.get_running_loop()
-    for number in _SIGNALS:
-        loop.add_signal_handler(number, stop.set)
+
+    def end(number: int, frame: FrameType | None) -> None:
+        loop.call_soon_threadsafe(stop.set)
+
+    # Not `loop.add_signal_handler`, which Windows does not have.
+    with lifetime.serving(end):
+        await _serve(stop, world, backend, clock, duration, ground_truth_path, publish_clock, when_open)
+
+
+async def _serve(
+    stop: asyncio.Event,
+    world: World,
+    backend: Backend,
+    clock: Clock,
+    duration: float | None,
+    ground_truth_path: str | Path | None,
+    publish_clock: bool,
+    when_open: Callable[[], None] | None,
+) -> None:
     timer = clock.call_later(duration, stop.set) if duration is not None else None
     node = SimNode(world, backend, clock)
     time: ClockPublisher | None = None
@@ -127,8 +144,6 @@ async def serve(
             time.close()
         node.close()
         await backend.close()
-        for number in _SIGNALS:
-            loop.remove_signal_handler(number)
 
 
 PERIOD = 0.01

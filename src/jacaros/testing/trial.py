@@ -1,7 +1,6 @@
 """Running tests: each in a system of its own, or those of a file one after the other in one system."""
 
 import asyncio
-import signal
 import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -11,6 +10,7 @@ from functools import partial
 from types import FrameType
 from typing import TYPE_CHECKING, Any, NoReturn
 
+from jacaros.alarm import Alarm
 from jacaros.asl import nodes
 from jacaros.asl.lowering import lower_value
 from jacaros.asl.source import Span
@@ -405,21 +405,16 @@ class _MeteredWallClock(WallClock):
 @contextmanager
 def _patience(seconds: float) -> Iterator[None]:
     """Raise `TookTooLong` in the middle of whatever is done when it takes too long."""
-    if (
-        seconds <= 0
-        or not hasattr(signal, "setitimer")
-        or threading.current_thread() is not threading.main_thread()
-    ):
+    if seconds <= 0 or threading.current_thread() is not threading.main_thread():
         yield
         return
 
     def ring(number: int, frame: FrameType | None) -> NoReturn:
         raise TookTooLong
 
-    before = signal.signal(signal.SIGALRM, ring)
-    rest, _ = signal.setitimer(signal.ITIMER_REAL, seconds)
+    alarm = Alarm(ring)
+    alarm.set(seconds)
     try:
         yield
     finally:
-        signal.setitimer(signal.ITIMER_REAL, rest)
-        signal.signal(signal.SIGALRM, before)
+        alarm.cancel()

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from jacaros import alarm
 from jacaros.cli.main import call
 from jacaros.sim import GroundTruth
 
@@ -34,9 +35,9 @@ def test_a_program_prints_its_lines_and_gives_its_code(
 
 
 def test_after_a_run_signals_are_as_before(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    before = [signal.getsignal(each) for each in (signal.SIGINT, signal.SIGTERM, signal.SIGALRM)]
+    before = [signal.getsignal(each) for each in (signal.SIGINT, signal.SIGTERM, alarm.SIGNAL)]
     outcome(capsys, "run", "hello.asl", "--clock", "fast")
-    assert [signal.getsignal(each) for each in (signal.SIGINT, signal.SIGTERM, signal.SIGALRM)] == before
+    assert [signal.getsignal(each) for each in (signal.SIGINT, signal.SIGTERM, alarm.SIGNAL)] == before
 
 
 def test_the_word_run_may_be_left_out(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -1,6 +1,7 @@
 """``jacaros fmt``: what it reads and writes, its exit codes."""
 
 import io
+import sys
 from pathlib import Path
 
 import pytest
@@ -46,9 +47,9 @@ def test_check_and_diff_show_the_difference_and_change_nothing(
 def test_the_standard_input_goes_to_the_standard_output(
     folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("sys.stdin", io.StringIO(UGLY))
+    monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(UGLY.encode())))
     assert outcome(capsys, "-") == (0, NICE, "")
-    monkeypatch.setattr("sys.stdin", io.StringIO("p("))
+    monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(b"p(")))
     code, output, errors = outcome(capsys, "-")
     assert (code, output) == (1, "")
     assert errors.startswith("<stdin>:1:")
@@ -109,6 +110,7 @@ def test_a_folder_without_programs_is_wrong_usage(
     assert capsys.readouterr().err == f"jacaros: no agent programs in {tmp_path}\n"
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="files of Windows have no such modes")
 def test_the_mode_of_a_file_stays_and_nothing_lies_beside_it(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

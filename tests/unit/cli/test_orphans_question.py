@@ -39,7 +39,7 @@ class Terminal:
 
 @pytest.fixture
 def terminal() -> Iterator[Terminal]:
-    import pty
+    pty = pytest.importorskip("pty", reason="needs a pseudo-terminal")
 
     person, program = pty.openpty()
 

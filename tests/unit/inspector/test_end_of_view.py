@@ -51,6 +51,7 @@ def test_a_page_receives_the_end_of_the_run(program: Path) -> None:
         process.communicate()
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="sends a signal of POSIX")
 @pytest.mark.slow
 def test_pages_that_take_nothing_do_not_hold_up_the_end(program: Path) -> None:
     process, address = started(program)

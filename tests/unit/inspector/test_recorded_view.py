@@ -80,6 +80,7 @@ def test_a_server_that_is_closed_waits_for_a_browser_that_was_opened(recorded: P
     asyncio.run(main())
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="sends a signal of POSIX")
 @pytest.mark.slow
 def test_the_command_prints_the_address_serves_and_ends_with_ctrl_c(recorded: Path) -> None:
     process = subprocess.Popen(

@@ -2,7 +2,6 @@
 
 import json
 import math
-import os
 import signal
 import threading
 from collections.abc import Awaitable, Callable
@@ -295,7 +294,7 @@ def test_a_served_world_stops_cleanly_on_a_signal(tmp_path: Path, number: signal
     clock, path = WallClock(), tmp_path / "truth.jsonl"
 
     async def main() -> None:
-        clock.call_later(0.0, lambda: os.kill(os.getpid(), number))
+        clock.call_later(0.0, lambda: signal.raise_signal(number))
         await serve(World.load("empty"), open_backend("memory", clock, "world"), clock, None, path)
 
     run(main, clock)

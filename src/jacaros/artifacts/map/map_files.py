@@ -66,7 +66,7 @@ def save(file: Path, size: float, labels: Mapping[Cell, str], places: Mapping[st
         )
     file.parent.mkdir(parents=True, exist_ok=True)
     file.with_suffix(".pgm").write_bytes(pgm_bytes(GreyImage(width, height, bytes(pixels))))
-    file.write_text(text, encoding="utf-8")
+    file.write_text(text, encoding="utf-8", newline="\n")
 
 
 def _quoted(name: str) -> str:

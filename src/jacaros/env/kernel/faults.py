@@ -16,7 +16,8 @@ from jacaros.env.operation import INTERNAL, LINK, OPERATION, OperationOutcome, O
 from jacaros.env.values import Atom, Structure
 from jacaros.errors import InternalError
 
-_SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP", "SIGALRM")
+_SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP", "SIGBREAK", "SIGALRM", "SIGILL")
+"""Those that `jacaros.ros.lifetime` and `jacaros.alarm` handle, on any system."""
 
 
 def is_interruption(error: BaseException) -> bool:

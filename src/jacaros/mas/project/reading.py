@@ -77,7 +77,7 @@ class _Files:
             ProjectError: the file cannot be read at all.
         """
         self._read.add(path.resolve())
-        cursor = ProjectCursor(SourceFile(str(path), _text(path)), self.diagnostics)
+        cursor = ProjectCursor(SourceFile(path.as_posix(), _text(path)), self.diagnostics)
         part = _read_part(path.suffix, cursor)
         _complete(path, part)
         self._map(path, part)

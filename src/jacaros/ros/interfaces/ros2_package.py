@@ -115,12 +115,16 @@ def write_package(folder: Path, package: str = PACKAGE, root: Path = BUILT_IN) -
         depends |= {match["package"] for match in _REFERENCE.finditer(text)} - ours
         file = target / relative
         file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(_without_repeated_constants(_with_own_references(text, ours)), encoding="utf-8")
+        _write(file, _without_repeated_constants(_with_own_references(text, ours)))
     if any(found.kind == "action" for found in chosen.values()):
         depends.add("action_msgs")
-    (target / "CMakeLists.txt").write_text(_cmake(package, sorted(chosen), sorted(depends)), encoding="utf-8")
-    (target / "package.xml").write_text(_manifest(package, sorted(depends)), encoding="utf-8")
+    _write(target / "CMakeLists.txt", _cmake(package, sorted(chosen), sorted(depends)))
+    _write(target / "package.xml", _manifest(package, sorted(depends)))
     return target
+
+
+def _write(file: Path, text: str) -> None:
+    file.write_text(text, encoding="utf-8", newline="\n")
 
 
 def _meaning(definition: Definition) -> list[str]:

@@ -1,10 +1,10 @@
 """Templates of world files, with comments for their author."""
 
-import os
 from pathlib import Path
 
 from jacaros.sim.description import WorldError
 from jacaros.sim.files.map import free_place, read_map
+from jacaros.text_files import shown_from
 
 _NEW = """\
 # A world of two rooms. Lengths are metres, angles degrees counter-clockwise from the x axis.
@@ -69,7 +69,7 @@ def world_of_map(path: Path, map_file: Path) -> str:
         width=round(right - left, 3),
         height=round(top - bottom, 3),
         name=_quoted(path.stem),
-        map=_quoted(_relative(map_file, path)),
+        map=_quoted(shown_from(path.parent, map_file)),
         x=x,
         y=y,
         x_room=round(x + 1.0, 3),
@@ -79,12 +79,9 @@ def world_of_map(path: Path, map_file: Path) -> str:
 
 def described_map(image: Path, path: Path, resolution: float) -> str:
     """Return a map file for *path* and an image; the origin is its lower left corner."""
-    return f"image: {_quoted(_relative(image, path))}\nresolution: {resolution:g}\norigin: [0, 0, 0]\n"
-
-
-def _relative(file: Path, path: Path) -> str:
-    """How *path* names another file."""
-    return Path(os.path.relpath(file.resolve(), path.resolve().parent)).as_posix()
+    return (
+        f"image: {_quoted(shown_from(path.parent, image))}\nresolution: {resolution:g}\norigin: [0, 0, 0]\n"
+    )
 
 
 def _quoted(text: str) -> str:

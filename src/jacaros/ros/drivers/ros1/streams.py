@@ -5,7 +5,7 @@ connection, and before a command left, a third one; each of that takes a tenth o
 """
 
 import asyncio
-import select
+import selectors
 import socket
 import threading
 from collections import deque
@@ -174,10 +174,13 @@ class Outbox:
         return b""
 
     def _send_rest(self) -> None:
-        poll = select.poll()
-        poll.register(self._socket, select.POLLOUT)
+        with selectors.DefaultSelector() as writable:
+            writable.register(self._socket, selectors.EVENT_WRITE)
+            self._send_when(writable)
+
+    def _send_when(self, writable: selectors.BaseSelector) -> None:
         while True:
-            poll.poll()
+            writable.select()
             with self._lock:
                 if not self._closed:
                     self._begun = self._rest_of(self._begun)
