@@ -20,6 +20,7 @@ ENDED_BY_SIGNAL = (130, 143)
 """Exit codes of a run that Ctrl-C or SIGTERM ended."""
 
 COMMANDS = {
+    "demo": ("jacaros.cli.demo", "Show a robot on patrol."),
     "run": ("jacaros.cli.run", "Run an agent program or a project."),
     "check": ("jacaros.cli.check", "Report problems in programs, projects and mappings."),
     "fmt": ("jacaros.cli.fmt", "Format programs in one style."),
