@@ -5,7 +5,10 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
-from pages import PAGES, ROOT, links, name_of
+from pages import PAGES, ROOT, blocks, links, name_of
+
+from jacaros.asl.formatting import format_program
+from jacaros.cli.demo import PROGRAM
 
 
 def anchors(page: Path) -> set[str]:
@@ -46,13 +49,19 @@ def test_pictures_are_drawings_that_need_nothing_else() -> None:
         assert len(text) < 200_000
 
 
-def test_the_first_screen_of_the_readme_has_the_picture_and_both_commands() -> None:
+def test_the_first_screen_of_the_readme_has_the_picture_and_the_first_commands() -> None:
     first_screen = "\n".join((ROOT / "README.md").read_text(encoding="utf-8").splitlines()[:40])
-    assert "docs/images/patrol.svg" in first_screen
-    commands = re.findall(r"^make \w+", first_screen, flags=re.MULTILINE)
-    assert commands == ["make demo", "make test"]
+    assert "docs/images/page.png" in first_screen
+    commands = re.findall(r"^(?:make|jacaros|pip install) \w+", first_screen, flags=re.MULTILINE)
+    assert commands == ["pip install jacaros", "jacaros demo", "make demo", "make test"]
     for needed in ("git", "make", "3.11", "venv"):
         assert needed in first_screen
+
+
+def test_the_program_of_the_readme_is_the_one_of_the_demo() -> None:
+    (shown,) = [block.text for block in blocks(ROOT / "README.md") if block.purpose == "patrol.asl"]
+    assert format_program("patrol.asl", shown) == PROGRAM.read_text(encoding="utf-8")
+    assert len([line for line in shown.splitlines() if line.strip()]) <= 15
 
 
 def test_every_example_has_a_short_readme() -> None:

@@ -51,7 +51,7 @@ def test_a_good_run_passes(folder: str, tmp_path: Path) -> None:
 @pytest.mark.slow
 def test_the_commands_of_the_readme_work(tmp_path: Path) -> None:
     readme = (EXAMPLES / "02_square" / "README.md").read_text(encoding="utf-8")
-    (command,) = re.findall(r"^To judge it: `(.*)`", readme, re.MULTILINE)
+    (command,) = re.findall(r"^To judge a run: `(.*)`", readme, re.MULTILINE)
     shutil.copytree(EXAMPLES / "02_square", tmp_path / "square")
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
     done = subprocess.run(

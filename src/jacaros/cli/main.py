@@ -22,6 +22,7 @@ ENDED_BY_SIGNAL = (129, 130, 143, 149)
 """Exit codes of a run that SIGHUP, Ctrl-C, SIGTERM or Ctrl-Break (Windows) ended."""
 
 COMMANDS = {
+    "demo": ("jacaros.cli.demo", "Show a robot on patrol."),
     "run": ("jacaros.cli.run", "Run an agent program or a project."),
     "check": ("jacaros.cli.check", "Report problems in programs, projects and mappings."),
     "fmt": ("jacaros.cli.fmt", "Format programs in one style."),
