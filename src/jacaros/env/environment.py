@@ -15,7 +15,7 @@ from jacaros.env.operation import OPERATION, OperationRequest
 from jacaros.env.ports import UnderWay
 from jacaros.env.resources.arbiter import Arbiter
 from jacaros.env.resources.resource import Use
-from jacaros.env.standard_artifacts import furnish
+from jacaros.env.standard_artifacts import add_standard_artifacts
 from jacaros.env.tree import WorkspaceTree
 from jacaros.env.values import Structure
 from jacaros.env.workspace import Workspace
@@ -143,7 +143,7 @@ class Environment:
             message = f"workspace {above.path} is served from elsewhere: {path} is to be made there"
             raise OperationFailed(message, Structure("not_supported", ("createWorkspace",)))
         workspace = Workspace(path, self._registry, self._setting, self._find_type)
-        furnish(workspace, self._tree)
+        add_standard_artifacts(workspace, self._tree)
         self._own.append(workspace)
         return workspace
 

@@ -10,7 +10,7 @@ from jacaros.env.ids import ArtifactId, resolve_path
 from jacaros.env.ports import Environment, Workspace
 
 
-class Offering:
+class OperationIndex:
     """The artifacts of a workspace that offer one operation with one number of arguments."""
 
     __slots__ = ("_every", "_exact", "_providers")
@@ -44,7 +44,7 @@ class Offering:
         """All of them, the oldest first."""
         if self._providers is None:
             self._providers = Providers(self._every.artifacts)
-            self._providers.offering = self
+            self._providers.operation_index = self
         return self._providers
 
     def is_preferred(self, artifact: ArtifactId) -> bool:
@@ -68,10 +68,10 @@ class Providers(tuple[ArtifactId, ...]):
     """Artifacts that offer an operation, the oldest first.
 
     Attributes:
-        offering: where they are from.
+        operation_index: the index that they come from.
     """
 
-    offering: Offering
+    operation_index: OperationIndex
 
 
 class _ByAge:
@@ -146,17 +146,17 @@ def _preferred(
     focused: Sequence[ArtifactId],
 ) -> ArtifactId:
     if isinstance(candidates, Providers):
-        offering = candidates.offering
+        index = candidates.operation_index
     else:
         # The workspace is served from elsewhere.
-        offering = Offering()
+        index = OperationIndex()
         exact = f"{operation}/{arity}"
         for candidate in candidates:
-            offering.add(candidate, exact in workspace.offers(candidate))
-    of_own = offering.oldest_of(own)
+            index.add(candidate, exact in workspace.offers(candidate))
+    of_own = index.oldest_of(own)
     if of_own is not None:
         return of_own
-    return next((artifact for artifact in focused if offering.is_preferred(artifact)), offering.oldest())
+    return next((artifact for artifact in focused if index.is_preferred(artifact)), index.oldest())
 
 
 def in_order(joined: Mapping[str, Workspace], current: Workspace, home: Workspace) -> Iterator[Workspace]:

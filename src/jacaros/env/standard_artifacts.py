@@ -191,7 +191,7 @@ DEFAULT_TYPES = frozenset(
 """Names of the types of the artifacts that every workspace has."""
 
 
-def furnish(workspace: Workspace, tree: WorkspaceTree) -> None:
+def add_standard_artifacts(workspace: Workspace, tree: WorkspaceTree) -> None:
     """Give a workspace the artifacts that each one has; none of them is made before somebody needs it."""
     workspace.offer("blackboard", Blackboard)
     workspace.offer("console", Console)

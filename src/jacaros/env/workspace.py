@@ -15,7 +15,7 @@ from jacaros.env.kernel.interface import Interface
 from jacaros.env.kernel.registry import Registry
 from jacaros.env.kernel.setting import Setting
 from jacaros.env.kernel.steps import Steps
-from jacaros.env.lookup import Offering
+from jacaros.env.lookup import OperationIndex
 from jacaros.env.manual import Manual, describe
 from jacaros.env.observation import Observer
 from jacaros.env.operation import (
@@ -53,7 +53,7 @@ class Workspace(ports.Workspace):
         self._artifacts: dict[str, ArtifactId] = {}
         self._personal: dict[str, ArtifactId] = {}
         self._making: dict[str, Steps] = {}
-        self._offerings: dict[tuple[str, int], Offering] = {}
+        self._indexes: dict[tuple[str, int], OperationIndex] = {}
         self._offers: dict[ArtifactId, dict[str, None]] = {}
         self._watchers: dict[object, Watcher] = {}
         self._watchers_of_all: dict[object, Watcher] = {}
@@ -245,18 +245,18 @@ class Workspace(ports.Workspace):
 
     def providers(self, operation: str, arity: int) -> tuple[ArtifactId, ...]:
         """The artifacts that offer *operation* with *arity* arguments to agents, the oldest first."""
-        offering = self._offerings.get((operation, arity))
-        if offering is None:
-            offering = self._offerings[operation, arity] = Offering()
+        index = self._indexes.get((operation, arity))
+        if index is None:
+            index = self._indexes[operation, arity] = OperationIndex()
             for artifact_id in self._artifacts.values():
-                self._offer_of(artifact_id, operation, arity, offering)
-        return offering.providers()
+                self._offer_of(artifact_id, operation, arity, index)
+        return index.providers()
 
-    def _offer_of(self, artifact_id: ArtifactId, operation: str, arity: int, offering: Offering) -> None:
-        """Take an artifact into the offering of an operation, if it offers it."""
+    def _offer_of(self, artifact_id: ArtifactId, operation: str, arity: int, index: OperationIndex) -> None:
+        """Take an artifact into the index of an operation, if it offers it."""
         declared = self.interface(artifact_id).operations.find(operation, arity)
         if declared is not None:
-            offering.add(artifact_id, not declared.common and declared.signature.rest is None)
+            index.add(artifact_id, not declared.common and declared.signature.rest is None)
 
     def offers(self, artifact_id: ArtifactId) -> Collection[str]:
         """The operations of an artifact for agents, such as ``inc/1`` and ``sum/any``.
@@ -290,7 +290,7 @@ class Workspace(ports.Workspace):
         """Be told that an artifact has other operations from now on."""
         self._offers.pop(artifact_id, None)
         if self._artifacts.get(artifact_id.name) is artifact_id:
-            self._offerings.clear()
+            self._indexes.clear()
 
     def interface(self, artifact_id: ArtifactId) -> Interface:
         """The operations of an artifact.
@@ -422,11 +422,11 @@ class Workspace(ports.Workspace):
         return steps
 
     def _changed(self, artifact_id: ArtifactId, present: bool) -> None:
-        for (operation, arity), offering in self._offerings.items():
+        for (operation, arity), index in self._indexes.items():
             if present:
-                self._offer_of(artifact_id, operation, arity, offering)
+                self._offer_of(artifact_id, operation, arity, index)
             else:
-                offering.remove(artifact_id)
+                index.remove(artifact_id)
         self._offers.pop(artifact_id, None)
         if self._setting.listener is not None:
             self._setting.listener.artifact(artifact_id, present)

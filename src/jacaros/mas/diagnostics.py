@@ -49,7 +49,7 @@ class Status:
     values: dict[str, str] = field(default_factory=dict)
 
 
-class AgentVitals:
+class AgentHealth:
     """Follows how one agent does.
 
     Args:
@@ -106,7 +106,7 @@ class Diagnostics:
         self._clock = clock
         self._hosts = hosts
         self._error = error
-        self._vitals: dict[AgentHost, AgentVitals] = {}
+        self._health: dict[AgentHost, AgentHealth] = {}
         self._publisher: Publisher | None = None
         self._timer: Timer | None = None
         self._lost = 0
@@ -131,9 +131,9 @@ class Diagnostics:
     def look(self) -> list[Status]:
         """The state of everything, `PERIOD` after the last look."""
         hosts = list(self._hosts())
-        for gone in set(self._vitals) - set(hosts):
-            del self._vitals[gone]
-        agents = [self._vitals.setdefault(host, AgentVitals(host)).look(PERIOD) for host in hosts]
+        for gone in set(self._health) - set(hosts):
+            del self._health[gone]
+        agents = [self._health.setdefault(host, AgentHealth(host)).look(PERIOD) for host in hosts]
         return [self._connection(), *self._defect(), *agents]
 
     def _connection(self) -> Status:

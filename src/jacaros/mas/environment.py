@@ -182,13 +182,13 @@ class RunEnvironment:
 
         stop = self.environment.workspace(path).watch(look)
 
-    async def furnish(self, deployment: Deployment) -> None:
+    async def set_up(self, deployment: Deployment) -> None:
         """Make the workspaces and artifacts that the project declares.
 
         Raises:
             ProjectError: one cannot be made.
         """
-        await furnish(self.environment, deployment.workspaces, self.types)
+        await set_up_workspaces(self.environment, deployment.workspaces, self.types)
 
 
 if TYPE_CHECKING:
@@ -196,7 +196,7 @@ if TYPE_CHECKING:
     from jacaros.env.ids import ArtifactId
 
 
-async def furnish(
+async def set_up_workspaces(
     environment: Environment,
     workspaces: Sequence[WorkspaceSpec],
     find_type: "Callable[[str], type[Artifact]]",

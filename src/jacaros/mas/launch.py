@@ -215,11 +215,11 @@ class Interruption:
     def _interrupt(self, number: int, frame: FrameType | None) -> NoReturn:
         del number
         if not self._told:
-            from jacaros.mas.watchdog import at_work, task_of  # here: most runs end without it
+            from jacaros.mas.watchdog import current_step, task_of  # here: most runs end without it
 
             self._told = True
             if task_of(frame) is not None:
-                self._tell(f"interrupted in the middle of a step: {at_work(frame)}")
+                self._tell(f"interrupted in the middle of a step: {current_step(frame)}")
             elif (
                 self._ending
             ):  # else what was interrupted is an import, as at the start: nothing is left behind

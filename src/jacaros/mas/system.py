@@ -14,6 +14,7 @@ from jacaros.bdi.mind import Mind
 from jacaros.clock import Clock, of_run
 from jacaros.mas.agent_classes import AgentClasses
 from jacaros.mas.agent_host import AgentHost
+from jacaros.mas.agent_lifecycle import AgentLifecycle, begin
 from jacaros.mas.code_folder import code_folder
 from jacaros.mas.console import Console, HeardConsole
 from jacaros.mas.deployment import AgentSpec, Deployment, has_own_artifacts
@@ -21,7 +22,6 @@ from jacaros.mas.directory import NAME as DIRECTORY_NAME
 from jacaros.mas.directory import Directory, Mailboxes, ServiceDirectory, Services
 from jacaros.mas.idleness import Activity, AgentTimer, Idleness
 from jacaros.mas.options import RunOptions
-from jacaros.mas.population import Population, begin
 from jacaros.mas.programs import Programs, asks_why
 from jacaros.mas.python_code import PythonCode
 from jacaros.mas.ros_graph import RosGraph
@@ -62,7 +62,7 @@ class System:
         scheduler: gives the agents their turns.
         activity: what the agents wait for.
         idleness: tells when nobody has anything to do.
-        population: makes and ends agents.
+        lifecycle: makes and ends agents.
         mailboxes: the messages between agents.
         deliver: brings a message to its receiver; False when there is none.
         lost_goals: how many goals have failed with no plan to take over, and agents in Python ended by an exception.
@@ -107,7 +107,7 @@ class System:
         self._has_environment = deployment.artifact_environment or bool(deployment.workspaces)
         self._seed = self.options.seed if self.options.seed is not None else Random().getrandbits(64)
         self._code_folder = code_folder()
-        self.population = self._found(prepare, when_made)
+        self.lifecycle = self._found(prepare, when_made)
         self._reserve: mmap.mmap | None = mmap.mmap(-1, RESERVE)
         self._ended: asyncio.Future[int] | None = None
         self._ending = False
@@ -116,7 +116,7 @@ class System:
         self._error: BaseException | None = None
 
     def _compile_ahead(self) -> bool:
-        return self.population.compile_ahead()
+        return self.lifecycle.compile_ahead()
 
     def _find_graph(self) -> RosGraph:
         deployment, options = self.deployment, self.options
@@ -139,14 +139,14 @@ class System:
         self,
         prepare: Callable[[Program, PythonCode], Program] | None,
         when_made: Callable[[AgentHost], None] | None,
-    ) -> Population:
+    ) -> AgentLifecycle:
         def warn(text: str) -> None:
             self.console.log(text, "warning")
 
         deployment, code = self.deployment, PythonCode(self._modules, self.options.restricted)
         programs = Programs(deployment.source_paths, warn, code, prepare)
         classes = AgentClasses(self._modules, deployment.base_path, lambda warning: warn(warning.render()))
-        return Population(
+        return AgentLifecycle(
             self,
             self.directory,
             programs,
@@ -270,17 +270,17 @@ class System:
         self._ended = asyncio.get_running_loop().create_future()
         for diagnostic in self.deployment.ignored:
             self.console.log(diagnostic.render(), "warning")
-        population = self.population
-        programs = population.programs.load_all(self.deployment.agents)
-        population.check(self.deployment.agents)
+        lifecycle = self.lifecycle
+        programs = lifecycle.programs.load_all(self.deployment.agents)
+        lifecycle.check(self.deployment.agents)
         await self.ros.start()
         if self.options.wants_diagnostics:
             self._publish_diagnostics()
-        if self._has_environment and self._is_furnished():
-            await self.run_environment().furnish(self.deployment)
+        if self._has_environment and self._has_workspace_setup():
+            await self.run_environment().set_up(self.deployment)
         await self.ros.guard()
         agents = list(zip(self.deployment.agents, programs, strict=True))
-        hosts = [population.add(spec, program) for spec, program in agents]
+        hosts = [lifecycle.add(spec, program) for spec, program in agents]
         if self.options.explain or any(map(asks_why, programs)):
             self.keep_history()
         for host, (spec, program) in zip(hosts, agents, strict=True):
@@ -302,7 +302,7 @@ class System:
         else:
             self._diagnostics = diagnostics
 
-    def _is_furnished(self) -> bool:
+    def _has_workspace_setup(self) -> bool:
         """Whether the environment is made at the start, also to tell mistakes in the project's own artifacts."""
         declared = self.deployment.environment or self.deployment.workspaces
         situated = any(agent.join or agent.focus for agent in self.deployment.agents)
@@ -479,24 +479,24 @@ class System:
 
     def create_agent(self, name: str, source: str | None, classes: Mapping[str, str]) -> str | None:
         """Make and start an agent; its final name, or None with the reason logged."""
-        return self.population.create(name, source, classes)
+        return self.lifecycle.create(name, source, classes)
 
     def clone_agent(self, original: str, name: str) -> str | None:
         """Make an agent with a copy of the mind of *original*; its final name, or None with the reason logged."""
-        return self.population.clone(original, name)
+        return self.lifecycle.clone(original, name)
 
     def kill_agent(self, name: str, delay: float, killer: str) -> bool:
         """End an agent after *delay* seconds, of which it is told, on behalf of another one.
 
         False when there is none of that name, or it does not accept its end.
         """
-        return self.population.kill(name, delay, killer)
+        return self.lifecycle.kill(name, delay, killer)
 
     def end_agent(self, name: str) -> None:
         """End an agent at once, without asking it; nothing when there is none of that name."""
         host = self.directory.find(name)
         if host is not None:
-            self.population.end(host)
+            self.lifecycle.end(host)
 
     def list_files(self, folder: str) -> Sequence[str]:
         """The files in a folder and in the folders in it, as paths that begin with *folder*, sorted.
@@ -504,7 +504,7 @@ class System:
         Raises:
             OSError: when it cannot be read.
         """
-        return self.population.programs.list_files(folder, self.deployment.base_path)
+        return self.lifecycle.programs.list_files(folder, self.deployment.base_path)
 
     def write_file(self, path: str, text: str) -> None:
         """Write a text file; a path that is not absolute is one of the project's folder.
@@ -520,4 +520,4 @@ class System:
         Raises:
             FileNotFoundError: there is none.
         """
-        return self.population.programs.include(path, str(self.deployment.base_path / "."))
+        return self.lifecycle.programs.include(path, str(self.deployment.base_path / "."))

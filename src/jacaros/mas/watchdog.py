@@ -54,7 +54,7 @@ class Watchdog:
         while not self._end.wait(self._interval):
             frame = sys._current_frames().get(self._watched)
             if self._is_too_long(task_of(frame)):
-                self._complain(at_work(frame))
+                self._complain(current_step(frame))
 
     def _is_too_long(self, task: FrameType | None) -> bool:
         """Whether what is done now was done at the last looks too; *task* is its frame, which no other call can have."""
@@ -96,7 +96,7 @@ def task_of(frame: FrameType | None) -> FrameType | None:
     return task
 
 
-def at_work(frame: FrameType | None) -> str:
+def current_step(frame: FrameType | None) -> str:
     """What is being done, for people: ``agent bob, plan +!find(X) (bob.asl:7)``."""
     frames = list(_outwards(frame))
     host = next((found for found in map(_host, frames) if found is not None), None)

@@ -239,7 +239,7 @@ def test_plans_that_no_event_has_asked_for_are_kept_once_they_are_compiled(
     program.write_text("!go. +!go <- .print(going). +!other <- .print(other).")
 
     def compile_all(mas: System) -> None:
-        while mas.population.compile_ahead():
+        while mas.lifecycle.compile_ahead():
             pass
 
     run_project(program, until_idle=True, when_started=compile_all)

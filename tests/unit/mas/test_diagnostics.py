@@ -7,7 +7,7 @@ from typing import Any
 from jacaros.bdi.mind import Mind
 from jacaros.clock import VirtualClock, run
 from jacaros.mas.console import Console
-from jacaros.mas.diagnostics import OK, TOPIC, TYPE, WARN, AgentVitals
+from jacaros.mas.diagnostics import OK, TOPIC, TYPE, WARN, AgentHealth
 from jacaros.mas.loading import load_deployment
 from jacaros.mas.options import RunOptions
 from jacaros.mas.system import System
@@ -76,7 +76,7 @@ def test_a_queue_that_grows_for_some_seconds_is_a_warning(tmp_path: Path) -> Non
         host = system.directory.find("bob")
         assert host is not None
         assert isinstance(host.mind, Mind)
-        vitals = AgentVitals(host)
+        vitals = AgentHealth(host)
         levels = []
         for more in (60, 60, 60, 60, 0):
             # Nobody has a turn meanwhile: the agent is busier than it can be.

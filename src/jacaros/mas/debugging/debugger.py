@@ -14,6 +14,7 @@ from jacaros.bdi.state.triggers import Goal
 from jacaros.clock import Clock, WallClock, outside_run
 from jacaros.errors import UsageError
 from jacaros.mas.agent_host import AgentHost
+from jacaros.mas.agent_lifecycle import AgentLifecycle
 from jacaros.mas.debugging.breakpoints import (
     Breakpoint,
     ConditionBreakpoint,
@@ -27,7 +28,6 @@ from jacaros.mas.debugging.reload import reload_programs
 from jacaros.mas.debugging.unpaused import command_standstill, not_paused
 from jacaros.mas.directory import Directory
 from jacaros.mas.options import RunOptions
-from jacaros.mas.population import Population
 from jacaros.mas.ros_graph import RosGraph
 from jacaros.mas.scheduler import Runnable, Scheduler
 
@@ -77,7 +77,7 @@ class DebuggedSystem(Protocol):
     options: RunOptions
     scheduler: Scheduler
     directory: Directory[AgentHost]
-    population: Population
+    lifecycle: AgentLifecycle
     ros: RosGraph
 
 
@@ -280,7 +280,7 @@ class Debugger:
         Raises:
             AslError: a program is wrong; nothing has been replaced.
         """
-        lines = reload_programs(self._system.directory, self._system.population)
+        lines = reload_programs(self._system.directory, self._system.lifecycle)
         self._change(self._state)
         return lines
 

@@ -9,13 +9,13 @@ from jacaros.bdi.mind import Mind
 from jacaros.bdi.rules import deriving
 from jacaros.bdi.rules.reloading import outdated_plans, replace_plans, replace_rules
 from jacaros.mas.agent_host import AgentHost
+from jacaros.mas.agent_lifecycle import AgentLifecycle
 from jacaros.mas.directory import Directory
-from jacaros.mas.population import Population
 
 NOTHING = "no program has changed"
 
 
-def reload_programs(directory: Directory[AgentHost], population: Population) -> list[str]:
+def reload_programs(directory: Directory[AgentHost], lifecycle: AgentLifecycle) -> list[str]:
     """Read the programs of all agents again, and replace plans and rules where a program has changed.
 
     Returns:
@@ -28,16 +28,16 @@ def reload_programs(directory: Directory[AgentHost], population: Population) -> 
         (host.mind, spec)
         for host in directory
         if isinstance(host.mind, Mind)
-        and (spec := population.spec(host.name)) is not None
+        and (spec := lifecycle.spec(host.name)) is not None
         and spec.source_path.suffix == ".asl"
         and not spec.is_python
     ]
-    programs = population.programs.read_again([spec for _, spec in agents])
+    programs = lifecycle.programs.read_again([spec for _, spec in agents])
     lines: list[str] = []
     for (mind, _), program in zip(agents, programs, strict=True):
         if _texts(program) != _texts(mind.program):
             lines += _report(mind, program)
-            _replace_soon(mind, program, population)
+            _replace_soon(mind, program, lifecycle)
     return lines or [NOTHING]
 
 
@@ -47,21 +47,21 @@ def _texts(program: nodes.Program) -> set[tuple[str, str]]:
     return {(clause.span.file.name, clause.span.file.text) for clause in clauses if clause.span is not None}
 
 
-def _replace_soon(mind: Mind, program: nodes.Program, population: Population) -> None:
+def _replace_soon(mind: Mind, program: nodes.Program, lifecycle: AgentLifecycle) -> None:
     """Replace the program, before the next step of an agent that has its turn now."""
     if mind.running:
-        mind.do_soon(lambda _: _replace(mind, program, population))
+        mind.do_soon(lambda _: _replace(mind, program, lifecycle))
     else:
-        _replace(mind, program, population)
+        _replace(mind, program, lifecycle)
     mind.architecture.ready()
 
 
-def _replace(mind: Mind, program: nodes.Program, population: Population) -> None:
+def _replace(mind: Mind, program: nodes.Program, lifecycle: AgentLifecycle) -> None:
     mind.register_functions(program.functions)
     replace_rules(mind, mind.program.beliefs, program.beliefs)
     deriving.replace(mind, mind.program, program)
     mind.program = program
-    replace_plans(mind, population.plans_of(program))
+    replace_plans(mind, lifecycle.plans_of(program))
 
 
 def _report(mind: Mind, new: nodes.Program) -> list[str]:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from jacaros.bdi.snapshot import restore
 from jacaros.errors import UsageError
+from jacaros.mas.agent_lifecycle import begin
 from jacaros.mas.deployment import AgentSpec, Deployment, FocusSpec
 from jacaros.mas.embedding.errors import UnknownAgent
 from jacaros.mas.embedding.run import EmbeddedRun
@@ -14,7 +15,6 @@ from jacaros.mas.embedding.running_agent import RunningAgent
 from jacaros.mas.embedding.stream import OnLog, OnPrint, PrintedLine, Stream
 from jacaros.mas.loading import load_deployment, mapped
 from jacaros.mas.options import RunOptions
-from jacaros.mas.population import begin
 
 if TYPE_CHECKING:
     from jacaros.env.artifact import Artifact
@@ -152,8 +152,8 @@ class Mas(EmbeddedRun):
             raise UsageError(f"duplicate agent name {spec.name}")
         if spec.join or spec.focus:
             spec = _placed(spec, self._run_environment.environment)
-        tree = system.population.programs.load(spec, written)
-        host = system.population.add(spec, tree)
+        tree = system.lifecycle.programs.load(spec, written)
+        host = system.lifecycle.add(spec, tree)
         agent = self.agent(spec.name)
         if stored is None:
             begin(host, spec, tree)
@@ -170,9 +170,9 @@ class Mas(EmbeddedRun):
             return Path(f"<{name}>")  # as diagnostics show it
         wanted = str(program) if program is not None else f"{name}.asl"
         try:
-            return self._open.population.programs.find(wanted)
+            return self._open.lifecycle.programs.find(wanted)
         except FileNotFoundError:
-            folders = ", ".join(map(str, self._open.population.programs.folders))
+            folders = ", ".join(map(str, self._open.lifecycle.programs.folders))
             raise UsageError(f"program not found: {wanted} in {folders}") from None
 
     def agent(self, name: str) -> RunningAgent:
@@ -187,7 +187,7 @@ class Mas(EmbeddedRun):
             raise UnknownAgent(name, [each.name for each in system.directory])
         known = self._agents.get(name)
         if known is None or known.ended:
-            known = self._agents[name] = RunningAgent(host, waits, system.population.end)
+            known = self._agents[name] = RunningAgent(host, waits, system.lifecycle.end)
         return known
 
     @property

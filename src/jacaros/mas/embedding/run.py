@@ -64,7 +64,7 @@ class EmbeddedRun:
         system = System(self._deployment, clock, self._console, options)
         waits = Waits(clock)
         self._begun = system, waits
-        system.population.when_ended = waits.agent_ended
+        system.lifecycle.when_ended = waits.agent_ended
         try:
             await system.start()
         except BaseException:

@@ -9,7 +9,7 @@ from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.deployment import Deployment
 from jacaros.mas.directory import Directory
 from jacaros.mas.history.agents import AgentRecords, PopulatedSystem
-from jacaros.mas.history.surroundings import SurroundedSystem, Surroundings
+from jacaros.mas.history.run_environment import RunEnvironmentRecords, SituatedSystem
 from jacaros.mas.options import RunOptions
 from jacaros.mas.ros_graph import RosGraph
 from jacaros.version import VERSION
@@ -49,7 +49,7 @@ _LASTING: Mapping[str, tuple[str, ...]] = {
 """Records that describe what is there: the newest of each is kept while it is there, by these fields of it."""
 
 
-class ObservedSystem(SurroundedSystem, PopulatedSystem, Protocol):
+class ObservedSystem(SituatedSystem, PopulatedSystem, Protocol):
     """A running system as its history sees it (`jacaros.mas.system.System`)."""
 
     clock: Clock
@@ -126,10 +126,10 @@ class History:
         if self._starts > 1:
             return
         self.record("run", run_data(self._system))
-        self.surroundings = Surroundings(self._system, self.beginning, self.record)
-        self.surroundings.causes.with_effect = self._hear_message
-        self._agents = AgentRecords(self._system, self.surroundings.causes, self.t, self.record)
-        self._ends += [self.surroundings.start(), self._agents.start(), self._observe_world()]
+        self.environment_records = RunEnvironmentRecords(self._system, self.beginning, self.record)
+        self.environment_records.causes.with_effect = self._hear_message
+        self._agents = AgentRecords(self._system, self.environment_records.causes, self.t, self.record)
+        self._ends += [self.environment_records.start(), self._agents.start(), self._observe_world()]
 
     def stop(self) -> None:
         """End the observation, unless somebody else has started it, too; what was recorded is kept."""

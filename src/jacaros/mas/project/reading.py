@@ -169,7 +169,7 @@ def _import(part: ProjectPart, used: ProjectPart) -> None:
 
 
 def _deployment(path: Path, part: ProjectPart, remarks: Remarks) -> Deployment:
-    _furnish(part)
+    _add_mapped_artifacts(part)
     places = ProjectPlaces(part, remarks)
     agents = ProjectAgents(part, places, remarks)
     instances: list[AgentSpec] = [each for agent in part.agents for each in agents.instances(agent)]
@@ -189,7 +189,7 @@ def _deployment(path: Path, part: ProjectPart, remarks: Remarks) -> Deployment:
     )
 
 
-def _furnish(part: ProjectPart) -> None:
+def _add_mapped_artifacts(part: ProjectPart) -> None:
     """Put the mapped artifacts into the workspace main."""
     if not part.mapped:
         return

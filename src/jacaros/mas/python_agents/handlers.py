@@ -9,8 +9,8 @@ from typing import Any
 from jacaros.env.session.session import Session
 from jacaros.extension.python_agent import PythonAgent, overridden
 from jacaros.extension.views import ReceivedMessage
-from jacaros.mas.python_agents.attendance import Attendance
-from jacaros.mas.python_agents.correspondence import Correspondence
+from jacaros.mas.python_agents.messaging import Messaging
+from jacaros.mas.python_agents.task_activity import TaskActivity
 
 
 class Handlers:
@@ -19,18 +19,18 @@ class Handlers:
     Args:
         agent: whose handlers.
         mail: its messages.
-        attendance: told what is waited for.
+        task_activity: told what is waited for.
         start: runs a coroutine of the agent.
     """
 
     def __init__(
         self,
         agent: PythonAgent,
-        mail: Correspondence,
-        attendance: Attendance,
+        mail: Messaging,
+        task_activity: TaskActivity,
         start: Callable[[Coroutine[Any, Any, Any]], object],
     ) -> None:
-        self._mail, self._attendance, self._start = mail, attendance, start
+        self._mail, self._task_activity, self._start = mail, task_activity, start
         self._on_message = overridden(agent, "on_message")
         self._on_signal = overridden(agent, "on_signal")
         self._on_property = overridden(agent, "on_property")
@@ -46,7 +46,7 @@ class Handlers:
         if self._on_message is not None:
             self._start(self._read())
         while True:
-            with self._attendance.waiting():
+            with self._task_activity.waiting():
                 handle = await self._waiting.get()
             done = handle()
             if isawaitable(done):

@@ -18,10 +18,10 @@ from jacaros.extension.literal import Literal
 from jacaros.extension.python_agent import PythonAgent
 from jacaros.mas.agent_host import AgentHost, Run
 from jacaros.mas.coroutines import without_exit
-from jacaros.mas.python_agents.attendance import Attendance
-from jacaros.mas.python_agents.correspondence import Correspondence
 from jacaros.mas.python_agents.faults import fault_lines, place_of_fault, said
 from jacaros.mas.python_agents.handlers import Handlers
+from jacaros.mas.python_agents.messaging import Messaging
+from jacaros.mas.python_agents.task_activity import TaskActivity
 from jacaros.terms.values import Term
 
 _PATIENCE = 5.0
@@ -54,13 +54,11 @@ class PythonAgentHost(AgentHost):
         super().__init__(name, run, seed)
         self.options, self.beliefs = options, beliefs
         self.open_session: Callable[[], Session] | None = None
-        self.attendance = Attendance(run.activity, self._settled)
-        self.mail = Correspondence(
-            name, self.send, self.agent_names, run.clock, run.activity, self.attendance
-        )
+        self.task_activity = TaskActivity(run.activity, self._settled)
+        self.mail = Messaging(name, self.send, self.agent_names, run.clock, run.activity, self.task_activity)
         self.mind = _Task(self, mind_options)
         self._agent = agent
-        self._handlers = Handlers(agent, self.mail, self.attendance, self.start)
+        self._handlers = Handlers(agent, self.mail, self.task_activity, self.start)
         self._session: Session | None = None
         self._observer: Observer | None = None
         self._tasks: dict[asyncio.Task[Any], None] = {}
@@ -114,7 +112,7 @@ class PythonAgentHost(AgentHost):
     async def _when_all_is_over(self) -> None:
         """Refuse messages as soon as nothing of the agent is left to read them."""
         own = asyncio.current_task()
-        with self.attendance.waiting():
+        with self.task_activity.waiting():
             while others := [task for task in self._tasks if task is not own]:
                 await asyncio.wait(others)
         self.mail.close()
@@ -126,7 +124,7 @@ class PythonAgentHost(AgentHost):
             raise JacarosError(f"agent {self.name} is shutting down and cannot start tasks")
         task = asyncio.get_running_loop().create_task(without_exit(work), name=f"agent {self.name}")
         self._tasks[task] = None
-        self.attendance.add(task)
+        self.task_activity.add(task)
         # A task that is cancelled before its first step never came to await the coroutine.
         task.add_done_callback(lambda _: work.close())
         task.add_done_callback(self._done)
@@ -212,7 +210,7 @@ class PythonAgentHost(AgentHost):
     async def sleep(self, seconds: float) -> None:
         """Wait on the run's clock."""
         self._check()
-        with self.attendance.under_way():
+        with self.task_activity.under_way():
             await self._run.clock.sleep(seconds)
         self._run.clock.busy(1)
 
@@ -220,7 +218,7 @@ class PythonAgentHost(AgentHost):
         """Let others have their turn; it counts as a reasoning cycle, so that a virtual clock moves on."""
         self._check()
         self._run.clock.busy(1)
-        with self.attendance.under_way():
+        with self.task_activity.under_way():
             await asyncio.sleep(0)
 
     # ---- the environment

@@ -15,7 +15,7 @@ def situate(host: AgentHost, spec: AgentSpec, environment: Environment) -> None:
     An artifact that is not there is focused when somebody makes it; what else is wrong is told in the log.
     """
     assert isinstance(host, PythonAgentHost)
-    host.open_session = lambda: Session(environment, host.name, account=host.attendance)
+    host.open_session = lambda: Session(environment, host.name, account=host.task_activity)
     try:
         for workspace in spec.join:
             host.session.join(path_of(environment, workspace))

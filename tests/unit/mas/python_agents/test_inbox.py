@@ -8,8 +8,8 @@ import jacaros
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.clock import clock_of
 from jacaros.mas.idleness import Activity
-from jacaros.mas.python_agents.attendance import Attendance
-from jacaros.mas.python_agents.correspondence import Correspondence
+from jacaros.mas.python_agents.messaging import Messaging
+from jacaros.mas.python_agents.task_activity import TaskActivity
 from jacaros.terms.values import atom
 
 
@@ -23,13 +23,13 @@ class Desk:
     def __init__(self) -> None:
         self.sent: list[SpeechAct] = []
         activity = Activity()
-        self.mail = Correspondence(
+        self.mail = Messaging(
             "ann",
             self._send,
             lambda: ("ann", "bob"),
             clock_of(asyncio.get_running_loop()),
             activity,
-            Attendance(activity, lambda: None),
+            TaskActivity(activity, lambda: None),
         )
 
     def _send(self, said: SpeechAct) -> bool:

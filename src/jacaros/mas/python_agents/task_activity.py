@@ -8,7 +8,7 @@ from typing import Any
 from jacaros.mas.idleness import Activity
 
 
-class Attendance:
+class TaskActivity:
     """Keeps account of the tasks of one agent: the agent counts as busy unless all of them wait for others.
 
     A task waits for others while it is in `waiting`: for a message, a signal, a condition.  A task that waits for

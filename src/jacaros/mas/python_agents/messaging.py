@@ -10,11 +10,11 @@ from jacaros.clock import Clock
 from jacaros.extension.views import ReceivedMessage
 from jacaros.mas.embedding.errors import UnknownAgent
 from jacaros.mas.idleness import Activity, AgentTimer
-from jacaros.mas.python_agents.attendance import Attendance
+from jacaros.mas.python_agents.task_activity import TaskActivity
 from jacaros.terms.values import Term
 
 
-class Correspondence:
+class Messaging:
     """The messages of one agent.
 
     Args:
@@ -23,7 +23,7 @@ class Correspondence:
         names: of all agents.
         clock: time-outs are counted on it.
         activity: that of the run.
-        attendance: told what is waited for.
+        task_activity: told what is waited for.
 
     Attributes:
         inbox: where messages for the agent go.
@@ -36,11 +36,11 @@ class Correspondence:
         names: Callable[[], Sequence[str]],
         clock: Clock,
         activity: Activity,
-        attendance: Attendance,
+        task_activity: TaskActivity,
     ) -> None:
         self.inbox = Inbox()
         self._name, self._send, self._names = name, send, names
-        self._clock, self._activity, self._attendance = clock, activity, attendance
+        self._clock, self._activity, self._task_activity = clock, activity, task_activity
         self._count = 0
 
     def say(self, receiver: str, performative: str, content: Term) -> None:
@@ -99,7 +99,7 @@ class Correspondence:
             late = TimeoutError(f"{what} within {timeout:g} s")
             timer = AgentTimer(self._clock, self._activity, timeout, lambda: _fail(future, late))
         try:
-            with self._attendance.waiting():
+            with self._task_activity.waiting():
                 await future
         finally:
             if timer is not None:

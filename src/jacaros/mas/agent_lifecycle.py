@@ -30,7 +30,7 @@ class Situate(Protocol):
         """Give it a body, or what makes one."""
 
 
-class Population:
+class AgentLifecycle:
     """Makes and ends the agents of a run.
 
     Args:

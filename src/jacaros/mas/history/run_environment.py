@@ -23,7 +23,7 @@ ONLY_ROBOT = {"": "robot"}
 Tell = Callable[[str, Mapping[str, Any]], None]
 
 
-class SurroundedSystem(Protocol):
+class SituatedSystem(Protocol):
     """A running system as far as this needs it (`jacaros.mas.system.System`)."""
 
     clock: Clock
@@ -39,7 +39,7 @@ class SurroundedSystem(Protocol):
         """Call *told* with text and level of each line that is logged; gives what ends that."""
 
 
-class Surroundings:
+class RunEnvironmentRecords:
     """Observes what surrounds the agents of a system, from `start` until what that gives is called.
 
     Args:
@@ -51,7 +51,7 @@ class Surroundings:
         causes: numbers the causes of the run.
     """
 
-    def __init__(self, system: SurroundedSystem, beginning: float, tell: Tell) -> None:
+    def __init__(self, system: SituatedSystem, beginning: float, tell: Tell) -> None:
         self._system, self._tell = system, tell
         self._clock = system.clock
         self.causes = CauseRecords(system.clock, beginning, tell, self._listener_of)
