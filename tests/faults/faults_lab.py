@@ -1,7 +1,7 @@
-"""A whole system under faults: agents in a graph that is disturbed, and a robot that is watched.
+"""A whole system under faults: agents in a disturbed graph, and an observed robot.
 
-The robot lives in the same process, as a node of its own on a clock of its own: it can be killed and started anew, and its
-time can be set back, while the agents go on.  What truly happens is noted ten times a second.
+The robot is a separate node in the same process, with its own clock: it can be killed and restarted, and its time can be
+set back, while the agents continue. The ground truth is recorded ten times a second.
 """
 
 import asyncio
@@ -79,7 +79,7 @@ class SimulatorClock:
 
 
 class RobotElsewhere(RosGraph):
-    """The graph of a run whose robot is somebody else's affair."""
+    """The graph of a run whose robot runs elsewhere."""
 
     agents_node: Backend
 
@@ -99,7 +99,7 @@ class Lab:
 
     Attributes:
         told: what agents printed, with the seconds since the beginning.
-        errors: what people were told besides.
+        errors: the other lines of the log.
         moments: what the robot truly did.
     """
 
@@ -256,7 +256,7 @@ def in_lab(
         world: where the robot is; its odometry has no noise.
         seconds: longest time; a run that should have ended before tells so by its exit code, which is None.
         simulated: time of the robot's own clock at the beginning; without it there is one clock for all.
-        followed: that clock is told on ``/clock``, as a simulator does, and the agents follow it.
+        followed: whether that clock is published on ``/clock``, as by a simulator, and the agents follow it.
     """
     clock = VirtualClock()
     robot_clock = clock if simulated is None else SimulatorClock(clock, simulated)

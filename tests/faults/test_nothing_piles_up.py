@@ -1,4 +1,4 @@
-"""An agent that is at it for long: whatever it does again and again leaves nothing behind."""
+"""A long run: repeated work leaves nothing behind."""
 
 import asyncio
 import gc
@@ -24,7 +24,7 @@ def kinds() -> Counter[str]:
     return found
 
 
-def test_goals_calls_motions_and_artifacts_that_are_over_are_forgotten() -> None:
+def test_finished_goals_calls_motions_and_artifacts_use_no_memory() -> None:
     looks: list[Counter[str]] = []
     registries: list[dict[str, int]] = []
 

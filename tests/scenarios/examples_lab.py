@@ -1,4 +1,4 @@
-"""The examples as tests see them: run in this process, judged by their own checkers, and falsified."""
+"""The examples in tests: run in this process, judged by their own checkers, and falsified."""
 
 import importlib.util
 import shutil

@@ -1,4 +1,4 @@
-"""The five examples of the thesis on real graphs: the world in one process, the agents in another, judged as ever."""
+"""The five examples of the thesis on real graphs, with the world and the agents in separate processes."""
 
 import shutil
 from collections.abc import Callable, Mapping
@@ -69,7 +69,7 @@ def test_the_robot_drives_the_square(run_world: RunWorld, run_agents: RunAgents)
 
 
 @not_on_kilted
-def test_the_agent_tells_every_state_of_the_robot_s_battery(
+def test_the_agent_prints_every_state_of_the_robots_battery(
     run_world: RunWorld, run_agents: RunAgents
 ) -> None:
     # This robot only stands, so its world can be much faster.
@@ -84,7 +84,7 @@ def test_the_agent_tells_every_state_of_the_robot_s_battery(
 
 
 @not_on_kilted
-def test_the_patrol_goes_on_after_a_recharge(
+def test_the_patrol_continues_after_a_recharge(
     run_world: RunWorld, run_agents: RunAgents, tmp_path: Path
 ) -> None:
     example = checker("04_patrol")

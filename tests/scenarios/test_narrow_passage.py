@@ -1,4 +1,4 @@
-"""Three robots share a passage for one, in which the most urgent goes first."""
+"""Three robots share a passage that fits only one. The most urgent goes first."""
 
 from pathlib import Path
 

@@ -289,7 +289,7 @@ def test_an_argument_of_another_kind_is_wrong(tmp_path: Path) -> None:
     python = HEAD + "@internal_action\ndef half(x: float) -> float:\n    return x / 2\n"
     program = '!go. +!go <- my.half(a, X). -!go[error(E), error_msg(M)] <- .print(E, " ", M).'
     assert said(tmp_path, program, python) == [
-        "wrong_arguments my.half: parameter x (number 1) wants a number, got a"
+        "wrong_arguments my.half: argument 1 (x): expected a number, found a"
     ]
 
 
@@ -421,7 +421,7 @@ def test_a_declaration_that_cannot_be_is_told_with_its_line(
     [
         ("my.nrom(1, X)", "did you mean my.norm?"),
         ("my.plain(1, X)", "the function my.plain exists: put @internal_action before it"),
-        ("my.zzz(1, X)", "my.py has no such function with @internal_action"),
+        ("my.zzz(1, X)", "add a function `zzz` with @internal_action to my.py"),
         ("your.norm(1, X)", "a function norm with @internal_action in your.py beside the project"),
     ],
 )

@@ -151,7 +151,7 @@ class Model:
                     self.serve(thing)
 
     def serve(self, thing):
-        """The first who may go on does, and then everybody is asked again."""
+        """The first waiting operation that may continue does so, and then all are checked again."""
         while True:
             ready = (each for each in thing.queue if each.guard is None or thing.first(each.guard))
             doing = next(ready, None)

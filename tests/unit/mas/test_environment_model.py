@@ -286,6 +286,6 @@ def outcome_of(handle):
 
 
 @pytest.mark.parametrize("seed", range(8))
-def test_what_is_noticed_is_what_the_model_says(seed):
+def test_percepts_agree_with_the_model(seed):
     for each in range(3):
         jacaros.run(Program(100 * seed + each).run(40), clock="fast")

@@ -1,4 +1,4 @@
-"""Changed programs are read again, and replace those that agents run."""
+"""Reload changed programs, and replace those that agents run."""
 
 from collections.abc import Iterator
 
@@ -16,13 +16,13 @@ NOTHING = "no program has changed"
 
 
 def reload_programs(directory: Directory[AgentHost], lifecycle: AgentLifecycle) -> list[str]:
-    """Read the programs of all agents again, and replace plans and rules where a program has changed.
+    """Read the programs of all agents again, and replace plans and rules of changed programs.
 
     Returns:
-        what was replaced, and what could not be, one line each.
+        What was replaced, and what could not be, one line each.
 
     Raises:
-        AslError: a program is wrong; nothing has been replaced.
+        AslError: a program has errors; nothing has been replaced.
     """
     agents = [
         (host.mind, spec)
@@ -42,13 +42,13 @@ def reload_programs(directory: Directory[AgentHost], lifecycle: AgentLifecycle) 
 
 
 def _texts(program: nodes.Program) -> set[tuple[str, str]]:
-    """Names and texts of the files of a program; what the project declares is not in a file."""
+    """Return names and texts of the files of a program. The project's declarations are not in a file."""
     clauses = (*program.plans, *program.beliefs, *program.goals, *program.derived, *program.histories)
     return {(clause.span.file.name, clause.span.file.text) for clause in clauses if clause.span is not None}
 
 
 def _replace_soon(mind: Mind, program: nodes.Program, lifecycle: AgentLifecycle) -> None:
-    """Replace the program, before the next step of an agent that has its turn now."""
+    """Replace the program; before the next step of an agent that has its turn now."""
     if mind.running:
         mind.do_soon(lambda _: _replace(mind, program, lifecycle))
     else:
@@ -69,7 +69,10 @@ def _report(mind: Mind, new: nodes.Program) -> list[str]:
     before, after = {shape(plan) for plan in old.plans}, {shape(plan) for plan in new.plans}
     gone = len(before - after)
     return [
-        f"{agent}: {gone} plan{'s' if gone != 1 else ''} gone, {len(after - before)} new, {len(before & after)} unchanged",
+        (
+            f"{agent}: {gone} plan{'s' if gone != 1 else ''} removed, {len(after - before)} new, "
+            f"{len(before & after)} unchanged"
+        ),
         *_declarations(agent, deriving.texts(old), deriving.texts(new)),
         *(
             f"{agent}: intention {number} continues with its old plan {_place(plan.node)}"
@@ -80,14 +83,14 @@ def _report(mind: Mind, new: nodes.Program) -> list[str]:
 
 
 def _declarations(agent: str, before: set[str], after: set[str]) -> Iterator[str]:
-    """What becomes of derived events and histories, if the program declares others than before."""
+    """Report changes of derived events and histories."""
     if before != after:
-        counts = f"{len(before - after)} gone, {len(after - before)} new, {len(before & after)} unchanged"
+        counts = f"{len(before - after)} removed, {len(after - before)} new, {len(before & after)} unchanged"
         yield f"{agent}: derived events and histories: {counts}"
 
 
 def _new_facts(old: nodes.Program, new: nodes.Program) -> Iterator[str]:
-    """The initial beliefs and goals that only the new program has; rules are replaced."""
+    """Return the initial beliefs and goals that only the new program has. Rules are replaced."""
     for what, before, after in (("belief", old.beliefs, new.beliefs), ("goal", old.goals, new.goals)):
         known = {shape(node) for node in before}
         for node in after:

@@ -1,4 +1,4 @@
-"""The handlers of an agent written in Python: ``on_message``, ``on_signal``, ``on_property``."""
+"""The handlers of a Python agent: ``on_message``, ``on_signal``, ``on_property``."""
 
 import asyncio
 from collections.abc import Callable, Coroutine
@@ -14,12 +14,12 @@ from jacaros.mas.python_agents.task_activity import TaskActivity
 
 
 class Handlers:
-    """Calls the handlers that an agent has, one after the other, in the order of what happened.
+    """Calls the handlers of an agent in turn, in the order of events.
 
     Args:
-        agent: whose handlers.
+        agent: the agent.
         mail: its messages.
-        task_activity: told what is waited for.
+        task_activity: counts waits.
         start: runs a coroutine of the agent.
     """
 
@@ -53,7 +53,7 @@ class Handlers:
                 await done
 
     def listen(self, session: Session) -> None:
-        """Note what the session of the agent perceives, from its beginning on."""
+        """Record what the session of the agent perceives, from its beginning."""
         if self._on_signal is not None:
             on_signal = self._on_signal
             session.on_signal(lambda signal: self._waiting.put_nowait(partial(on_signal, signal)))

@@ -1,4 +1,4 @@
-"""Schedules of claims that hypothesis makes, checked after each step against what the rules promise."""
+"""Random schedules of claims, checked after each step against the rules."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -44,7 +44,7 @@ class Choices:
 
 @dataclass
 class Party:
-    """A claimant that gives way at once, later or never, and now and then dies of being told something."""
+    """A claimant that yields immediately, later or never, and sometimes ends in a callback."""
 
     arbiter: Arbiter
     choices: Choices
@@ -119,7 +119,7 @@ class Schedule:
                 self.arbiter.leave(each)
 
     def check(self) -> None:
-        """Nobody has what another one has, and nothing is free that somebody may have."""
+        """No unit is held twice, and no claim waits for a free resource."""
         holders = [c for c in self.claims if c.holds]
         for name in NAMES:
             mine = [c for c in holders if any(u.name == name for u in c.uses)]
@@ -165,7 +165,7 @@ class Schedule:
         return self._go_together(use.name, [*mine, claim])
 
 
-def test_no_schedule_breaks_a_promise() -> None:
+def test_no_schedule_breaks_an_invariant() -> None:
     tried = 0
 
     @settings(max_examples=SCHEDULES, derandomize=True, database=None, deadline=None)

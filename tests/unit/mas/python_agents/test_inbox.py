@@ -1,4 +1,4 @@
-"""Messages for agents written in Python: readers, answers, refusals."""
+"""Messages for Python agents: readers, answers, refusals."""
 
 import asyncio
 
@@ -56,7 +56,7 @@ def test_readers_are_served_in_turn_and_a_cancelled_one_keeps_nothing() -> None:
     jacaros.run(main(), clock="fast")
 
 
-def test_an_answer_goes_to_who_asked_and_a_late_one_to_nobody() -> None:
+def test_an_answer_goes_to_the_waiting_task_and_a_late_one_is_discarded() -> None:
     async def main() -> None:
         desk = Desk()
         asking = asyncio.ensure_future(desk.mail.ask("bob", "askOne", atom("q"), None))
@@ -73,7 +73,7 @@ def test_an_answer_goes_to_who_asked_and_a_late_one_to_nobody() -> None:
     jacaros.run(main(), clock="fast")
 
 
-def test_questions_that_nobody_reads_any_more_have_no_answer() -> None:
+def test_unread_questions_get_a_negative_answer_at_the_end() -> None:
     async def main() -> None:
         desk = Desk()
         desk.mail.inbox.put(message(1, performative="askAll"))

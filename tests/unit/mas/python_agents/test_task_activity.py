@@ -1,4 +1,4 @@
-"""When an agent written in Python counts as busy."""
+"""When a Python agent counts as busy."""
 
 import asyncio
 from collections.abc import Coroutine
@@ -55,7 +55,7 @@ def test_a_task_is_busy_unless_it_waits_for_others() -> None:
     jacaros.run(main(), clock="fast")
 
 
-def test_what_is_under_way_counts_beside_the_tasks() -> None:
+def test_running_operations_count_beside_the_tasks() -> None:
     stage = Stage()
     with stage.task_activity.under_way():
         assert stage.busy
