@@ -30,7 +30,7 @@ from jacaros.sim.world import World
 PROGRAMS = Path(__file__).parent / "programs"
 
 GLANCE = 0.1
-"""Seconds between two looks at the robot."""
+"""Seconds between two checks of the robot."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,7 +84,7 @@ class RobotElsewhere(RosGraph):
     agents_node: Backend
 
     async def start(self) -> None:
-        """All is made by the laboratory."""
+        """The laboratory creates everything."""
 
     def backend(self) -> Backend:
         return self.agents_node
@@ -116,7 +116,7 @@ class Lab:
     # Faults
 
     def at(self, seconds: float, fault: Callable[[], object]) -> None:
-        """Have a fault happen so many seconds after the beginning."""
+        """Inject a fault this number of seconds after the beginning."""
         self.clock.call_later(seconds - self.clock.elapsed, fault)  # type: ignore[arg-type]  # what it gives is dropped
 
     def node(self, name: str = "", clock: Clock | None = None) -> Backend:
@@ -132,7 +132,7 @@ class Lab:
         return made
 
     def start_robot(self) -> None:
-        """Let the robot join the graph; it stands where it is."""
+        """Let the robot join the graph at its current pose."""
         self.robot_node = self.node("world", self.robot_clock)
         self.sim = SimNode(self.world, self.robot_node, self.robot_clock)
         self.sim.start()
@@ -152,7 +152,7 @@ class Lab:
         step()
 
     def change(self, topic: str, type_name: str, change: Callable[[Any], None]) -> Callable[[], None]:
-        """Change all messages of a topic on their way, as a driver that goes wrong would; gives what ends it."""
+        """Change all messages of a topic in transit, like a faulty driver. Return a function that ends this."""
         publisher = self.node().publisher(topic, type_name)
         forged: dict[int, Any] = {}
         seen: dict[int, Any] = {}
@@ -210,7 +210,7 @@ class Lab:
 
     @property
     def safe(self) -> bool:
-        """Whether the robot stands at the end and never touched anything."""
+        """Return whether the robot stops at the end and never touched anything."""
         return self.moments[-1].still and not self.truth.events_of("bump", "collision", "bad_command")
 
     @property
@@ -247,7 +247,7 @@ def in_lab(
     simulated: float | None = None,
     followed: bool = True,
 ) -> Lab:
-    """Run a program of the folder `programs` under faults, to its end or for so many seconds.
+    """Run a program of the folder `programs` under faults, to its end or for a number of seconds.
 
     Args:
         program: its name.

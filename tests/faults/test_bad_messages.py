@@ -87,7 +87,7 @@ def test_a_pose_in_another_frame_is_not_used_for_driving() -> None:
 
 
 def test_a_motion_does_not_outlive_a_change_of_frames() -> None:
-    """Who gives poses in another frame for good was started anew; what was a goal before is another place there."""
+    """A localisation that publishes poses in another frame has been restarted, so earlier goals are other places there."""
     lab = in_lab("driving.asl", odometry_is(elsewhere, 2, 60), seconds=7.5)
     assert lab.lines[-1] == "action_failed no_odometry(4.6)"
     assert 7.0 <= lab.when("action_failed") <= 7.1

@@ -8,7 +8,7 @@ from typing import Any
 from faults_lab import Lab, in_lab
 
 NOTES = {"Sample", "Moment"}
-"""What the laboratory and the world keep of all that happened, for those who look at it later."""
+"""Records of the laboratory and the world, which are kept for later analysis."""
 
 
 def kinds() -> Counter[str]:

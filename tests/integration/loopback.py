@@ -358,7 +358,9 @@ class RemoteWorkspace(ports.Workspace):
     def stop_focus(self, artifact_id: ArtifactId, observer: Observer) -> None:
         self._cable.send("to server", self._served, "stop_focus", self._ids.number(artifact_id), id(observer))
 
-    def link(self, from_id: ArtifactId, port: str, to_id: ArtifactId, on_done: OnOutcome = ignore_outcome) -> None:
+    def link(
+        self, from_id: ArtifactId, port: str, to_id: ArtifactId, on_done: OnOutcome = ignore_outcome
+    ) -> None:
         self._ask(on_done, "link", self._ids.number(from_id), port, self._ids.number(to_id))
 
     # ---- what the other side tells

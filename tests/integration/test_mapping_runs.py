@@ -89,7 +89,7 @@ def test_a_check_knows_what_is_mapped(folder: Path, capsys: pytest.CaptureFixtur
         "drive.asl:4:6: warning: unknown operation `driv/2`: no artifact of the project has it [unknown-operation]",
         "  = help: did you mean `drive`?",
         "drive.asl:5:6: warning: unknown operation `drive/1`: no artifact of the project has it [unknown-operation]",
-        "  = help: there is drive/2",
+        "  = help: did you mean `drive/2`?",
     ]
 
 

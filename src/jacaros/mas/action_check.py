@@ -226,7 +226,7 @@ class _Offered:
         same = [each for each in dict.fromkeys(known) if each.partition("/")[0] == name]
         close = close_matches(name, [each.partition("/")[0] for each in known], 0.75)
         if same:
-            return f"known: {', '.join(f'`{each}`' for each in same)}"
+            return f"did you mean {' or '.join(f'`{each}`' for each in same)}?"
         return f"did you mean `{close[0]}`?" if close else None
 
 

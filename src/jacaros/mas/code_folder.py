@@ -183,7 +183,7 @@ def _seal(path: Path, body: bytes) -> bytes:
 
 
 def _remove_oldest(folder: Path) -> None:
-    """Remove files until the folder is no larger than `LARGEST`."""
+    """Remove files until the folder is within `LARGEST` bytes."""
     files = []
     for entry in os.scandir(folder):
         with suppress(OSError):  # another process has removed it

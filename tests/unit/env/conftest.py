@@ -9,7 +9,7 @@ from jacaros.env import Environment, OperationRequest, UnknownArtifactType
 
 
 class Watcher:
-    """An observer that notes what it sees as short texts: ``~signal +added -removed``."""
+    """An observer that records observations as short texts: ``~signal +added -removed``."""
 
     def __init__(self, stage, agent):
         self.stage, self.agent, self.observations = stage, agent, []

@@ -184,7 +184,7 @@ def test_a_disposed_artifact_has_no_sessions(play):
         await stage.clock.sleep(1)
         waiting = asyncio.ensure_future(task())
         thread = in_a_thread(work)
-        while len(stage.main.pending(sensor)) < 3:  # noqa: ASYNC110 - the thread comes when it comes
+        while len(stage.main.pending(sensor)) < 3:  # noqa: ASYNC110 - the thread arrives at any time
             await asyncio.sleep(0)
         stage.main.dispose_artifact(sensor)
         for failing in (waiting, thread):

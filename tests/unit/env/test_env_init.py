@@ -142,7 +142,7 @@ def test_of_several_inits_the_one_with_that_number_of_arguments_runs(play):
         ]:
             it = await stage.make(kind, *args)
             assert stage.property(it, "made") == values
-            assert "unknown" in str(stage.call(it, "init", *args).reason), "an init is no operation"
+            assert "unknown" in str(stage.call(it, "init", *args).reason), "an init is not an operation"
             stage.main.dispose_artifact(it)
 
     play(scene)

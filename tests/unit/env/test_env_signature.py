@@ -1,4 +1,4 @@
-"""Signatures: which arguments an operation takes and what it receives."""
+"""Signatures: accepted arguments and their conversion."""
 
 from typing import Any, Literal, NewType, Optional, Protocol
 

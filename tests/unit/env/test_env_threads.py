@@ -1,4 +1,4 @@
-"""Operations that block run in a worker thread; what they change is published when they end."""
+"""Blocking operations run in a worker thread. Their changes are published when they end."""
 
 import asyncio
 import threading
@@ -51,7 +51,7 @@ def blocking_of(stage):
 
 
 async def until_inside(stage):
-    """Let the worker thread come to its gate; virtual time stands still meanwhile."""
+    """Wait until the worker thread reaches its gate. Virtual time does not advance meanwhile."""
     await asyncio.get_running_loop().run_in_executor(None, stage.it.inside.wait, 60.0)
 
 

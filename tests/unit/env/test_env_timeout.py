@@ -116,7 +116,7 @@ def test_a_thread_continues_after_its_time_limit_but_its_caller_does_not_wait(pl
         call = stage.call(it, "block", timeout=0.0)
         stage.main._registry.find(it)._time_is_up(
             call.execution
-        )  # virtual time stands still while threads work
+        )  # virtual time does not advance while threads run
         assert call.reason == Structure("operation_timeout", ("block/0", 0))
         assert not call.execution.ended
         stage.main._registry.find(it)._artifact.gate.set()

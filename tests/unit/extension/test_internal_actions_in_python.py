@@ -399,7 +399,7 @@ def test_a_module_that_does_not_import_is_told_with_its_line(tmp_path: Path) -> 
     ("python", "message"),
     [
         ("@internal_action('your.one')\ndef one(): pass\n", "my.py:3: no program can find your.one"),
-        ("@internal_action\ndef one(*, x): pass\n", "my.py:3: my.one: one: agents cannot give the keyword"),
+        ("@internal_action\ndef one(*, x): pass\n", "my.py:3: my.one: one: agents cannot pass the keyword"),
         ("@internal_action\nasync def one():\n    yield 1\n", "cannot be an internal action"),
         ("@internal_action('one')\ndef one(): pass\n", "has the module in front, as in 'my.norm'"),
         (
@@ -422,7 +422,7 @@ def test_a_declaration_that_cannot_be_is_told_with_its_line(
         ("my.nrom(1, X)", "did you mean my.norm?"),
         ("my.plain(1, X)", "the function my.plain exists: put @internal_action before it"),
         ("my.zzz(1, X)", "add a function `zzz` with @internal_action to my.py"),
-        ("your.norm(1, X)", "a function norm with @internal_action in your.py beside the project"),
+        ("your.norm(1, X)", "write a function `norm` with @internal_action in your.py beside the project"),
     ],
 )
 def test_a_name_that_leads_nowhere_gets_a_hint_and_is_an_action(tmp_path: Path, call: str, help: str) -> None:

@@ -56,7 +56,7 @@ def test_unknown_operations_are_reported(folder: Path) -> None:
         (
             "unknown-operation",
             "unknown operation `inc/2`: no artifact of the project has it",
-            "known: `inc/0`, `inc/1`",
+            "did you mean `inc/0` or `inc/1`?",
         ),
         (
             "unknown-operation",
@@ -199,7 +199,7 @@ def test_operations_are_checked_in_a_lone_program(folder: Path, make: str) -> No
         encoding="utf-8",
     )
     assert [(each.message, each.help) for each in check_files([lone]).diagnostics] == [
-        ("unknown operation `inc/2`: no artifact of the project has it", "known: `inc/0`, `inc/1`"),
+        ("unknown operation `inc/2`: no artifact of the project has it", "did you mean `inc/0` or `inc/1`?"),
         ("unknown operation `incc/0`: no artifact of the project has it", "did you mean `inc`?"),
     ]
 

@@ -41,7 +41,7 @@ def folder(tmp_path: Path) -> Path:
 
 
 def told(folder: Path, program: str, project: str = "", mappings: tuple[str, ...] = ()) -> list[str]:
-    """The misspelt names of a program, or of a project that it belongs to, with what is meant."""
+    """Return the misspelt names of a program, or of its project, with the suggested names."""
     return [
         f"{each.message.split()[1].strip('`')} {(each.help or '').split()[-1].replace('`', '')}"
         for each in warnings(folder, program, project, mappings)
@@ -50,7 +50,7 @@ def told(folder: Path, program: str, project: str = "", mappings: tuple[str, ...
 
 
 def never(folder: Path, program: str, project: str = "", mappings: tuple[str, ...] = ()) -> list[str]:
-    """What is said of events that never happen, the help behind a semicolon."""
+    """Return the warnings about events that never happen, with the help after a semicolon."""
     return [
         f"{each.message.removeprefix('event ')}; {each.help}"
         for each in warnings(folder, program, project, mappings)

@@ -79,7 +79,7 @@ def test_a_queue_that_grows_for_some_seconds_is_a_warning(tmp_path: Path) -> Non
         vitals = AgentHealth(host)
         levels = []
         for more in (60, 60, 60, 60, 0):
-            # Nobody has a turn meanwhile: the agent is busier than it can be.
+            # No agent has a turn meanwhile, so the queue only grows.
             host.mind.incoming.percepts.extend([[]] * more)
             levels.append(vitals.look(1.0).level)
         assert levels == [OK, OK, WARN, WARN, OK]

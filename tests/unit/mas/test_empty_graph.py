@@ -69,7 +69,7 @@ class LateClock:
         return SimpleNamespace(cancel=lambda: None)
 
     async def ring(self, late: float) -> None:
-        """Ring the timer so many seconds late."""
+        """Fire the timer this number of seconds late."""
         if self._timer is not None:
             (when, callback), self._timer = self._timer, None
             self.elapsed = when + late

@@ -13,7 +13,7 @@ from jacaros.ros.errors import ParameterUnknown, ServiceUnavailable
 
 
 class Graph:
-    """A graph of ROS 1 whose master may keep ``use_sim_time``, and comes late."""
+    """A ROS 1 graph whose master may set ``use_sim_time``, and appears late."""
 
     ros_version = 1
     capabilities = frozenset({PARAMETERS})

@@ -16,7 +16,7 @@ Project = Callable[..., Path]
 
 @pytest.fixture
 def project(tmp_path: Path) -> Project:
-    """Writes files into a folder and gives the path of the first."""
+    """Write files into a folder. Return the path of the first one."""
 
     def write(**files: str) -> Path:
         paths = []

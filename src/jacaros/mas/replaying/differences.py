@@ -152,7 +152,7 @@ class _Identity:
         self._then, self._now = dict(_names(then, ordered)), dict(_names(now, ordered))
 
     def is_same(self, then: Any, now: Any) -> bool:
-        """Return whether a plan of the first program is one of the second; None is no plan."""
+        """Return whether a plan of the first program is one of the second; None equals only None."""
         return self._then.get(then) == self._now.get(now)
 
 

@@ -33,7 +33,7 @@ class Party:
 
 
 class Table:
-    """An arbiter, and claims that are made in one line."""
+    """An arbiter, with short methods for claims."""
 
     def __init__(self) -> None:
         self.clock = VirtualClock()

@@ -33,7 +33,7 @@ class Choices:
         return alternatives[self._left.pop() % len(alternatives) if self._left else 0]
 
     def rarely(self, often: int) -> bool:
-        """Whether something happens that does so once in *often* times."""
+        """Return True with probability 1 / *often*."""
         return self.one_of(range(often)) == often - 1
 
     def some_of(self, alternatives: Sequence[Item], count: int) -> list[Item]:
@@ -156,7 +156,7 @@ class Schedule:
         )
 
     def _is_blocked(self, claim: Claim) -> bool:
-        """Whether an atomic plan of its agent has asked for something, or has it."""
+        """Return whether an atomic plan of its agent has or waits for a claim."""
         atomic = any(c.blocks for c in self.claims if c.state is not State.OUT)
         return atomic and bool(claim.plan_of) and not claim.blocks
 

@@ -1,4 +1,4 @@
-"""Sessions: plain asyncio code makes artifacts and acts on them."""
+"""Sessions: plain asyncio code creates artifacts and acts on them."""
 
 import asyncio
 

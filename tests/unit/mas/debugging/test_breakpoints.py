@@ -1,4 +1,4 @@
-"""Breakpoints stop a run before what they name."""
+"""Breakpoints stop a run before their step, event or condition."""
 
 import asyncio
 from collections.abc import Mapping
@@ -215,7 +215,7 @@ def test_an_atomic_plan_is_held_too() -> None:
         await mas.until_idle()
 
     assert debugged(test, program) == ["a", "b", "c"]
-    # The first one says which breakpoints there are.
+    # The first record lists the breakpoints.
     assert [each.state for each in states] == ["running", "paused", "running"]
 
 

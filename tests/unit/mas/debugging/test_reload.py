@@ -34,7 +34,7 @@ def reloaded(
     old: str = OLD,
     **files: str,
 ) -> list[str]:
-    """Run *test* with agents bob and ann that run the file robot.asl; what they printed."""
+    """Run *test* with agents bob and ann that run the file robot.asl. Return their output."""
     lines: list[str] = []
     file = tmp_path / "robot.asl"
     write(file, old)

@@ -1,4 +1,4 @@
-"""A system in a Python program and its ROS graph: what is given to `Mas` as on the command line."""
+"""A system in a Python program and its ROS graph: options of `Mas`, as on the command line."""
 
 from pathlib import Path
 from typing import Any

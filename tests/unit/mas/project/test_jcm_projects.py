@@ -1,4 +1,4 @@
-"""What is seen in `.jcm` and `.mas2j` files of real projects, in files of our own."""
+"""Features of real `.jcm` and `.mas2j` projects, in files of our own."""
 
 from pathlib import Path
 from textwrap import dedent
@@ -123,7 +123,7 @@ def test_a_used_project_is_checked_with_the_one_that_uses_it(folder: Path) -> No
     ]
 
 
-# what stands in values
+# values
 
 
 def test_values_are_separated_by_line_ends_or_commas(folder: Path) -> None:

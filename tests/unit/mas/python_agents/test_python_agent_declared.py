@@ -1,4 +1,4 @@
-"""Python agents in project files: which class it is, and what it is given."""
+"""Python agents in project files: their classes, options and beliefs."""
 
 from pathlib import Path
 
