@@ -1,7 +1,7 @@
-"""A whole system under faults: agents in a graph that is disturbed, and a robot that is watched.
+"""A whole system under faults: agents in a disturbed graph, and an observed robot.
 
-The robot lives in the same process, as a node of its own on a clock of its own: it can be killed and started anew, and its
-time can be set back, while the agents go on.  What truly happens is noted ten times a second.
+The robot is a separate node in the same process, with its own clock: it can be killed and restarted, and its time can be
+set back, while the agents continue. The ground truth is recorded ten times a second.
 """
 
 import asyncio
@@ -30,7 +30,7 @@ from jacaros.sim.world import World
 PROGRAMS = Path(__file__).parent / "programs"
 
 GLANCE = 0.1
-"""Seconds between two looks at the robot."""
+"""Seconds between two checks of the robot."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,12 +79,12 @@ class SimulatorClock:
 
 
 class RobotElsewhere(RosGraph):
-    """The graph of a run whose robot is somebody else's affair."""
+    """The graph of a run whose robot runs elsewhere."""
 
     agents_node: Backend
 
     async def start(self) -> None:
-        """All is made by the laboratory."""
+        """The laboratory creates everything."""
 
     def backend(self) -> Backend:
         return self.agents_node
@@ -99,7 +99,7 @@ class Lab:
 
     Attributes:
         told: what agents printed, with the seconds since the beginning.
-        errors: what people were told besides.
+        errors: the other lines of the log.
         moments: what the robot truly did.
     """
 
@@ -116,7 +116,7 @@ class Lab:
     # Faults
 
     def at(self, seconds: float, fault: Callable[[], object]) -> None:
-        """Have a fault happen so many seconds after the beginning."""
+        """Inject a fault this number of seconds after the beginning."""
         self.clock.call_later(seconds - self.clock.elapsed, fault)  # type: ignore[arg-type]  # what it gives is dropped
 
     def node(self, name: str = "", clock: Clock | None = None) -> Backend:
@@ -132,7 +132,7 @@ class Lab:
         return made
 
     def start_robot(self) -> None:
-        """Let the robot join the graph; it stands where it is."""
+        """Let the robot join the graph at its current pose."""
         self.robot_node = self.node("world", self.robot_clock)
         self.sim = SimNode(self.world, self.robot_node, self.robot_clock)
         self.sim.start()
@@ -152,7 +152,7 @@ class Lab:
         step()
 
     def change(self, topic: str, type_name: str, change: Callable[[Any], None]) -> Callable[[], None]:
-        """Change all messages of a topic on their way, as a driver that goes wrong would; gives what ends it."""
+        """Change all messages of a topic in transit, like a faulty driver. Return a function that ends this."""
         publisher = self.node().publisher(topic, type_name)
         forged: dict[int, Any] = {}
         seen: dict[int, Any] = {}
@@ -210,7 +210,7 @@ class Lab:
 
     @property
     def safe(self) -> bool:
-        """Whether the robot stands at the end and never touched anything."""
+        """Return whether the robot stops at the end and never touched anything."""
         return self.moments[-1].still and not self.truth.events_of("bump", "collision", "bad_command")
 
     @property
@@ -247,7 +247,7 @@ def in_lab(
     simulated: float | None = None,
     followed: bool = True,
 ) -> Lab:
-    """Run a program of the folder `programs` under faults, to its end or for so many seconds.
+    """Run a program of the folder `programs` under faults, to its end or for a number of seconds.
 
     Args:
         program: its name.
@@ -256,7 +256,7 @@ def in_lab(
         world: where the robot is; its odometry has no noise.
         seconds: longest time; a run that should have ended before tells so by its exit code, which is None.
         simulated: time of the robot's own clock at the beginning; without it there is one clock for all.
-        followed: that clock is told on ``/clock``, as a simulator does, and the agents follow it.
+        followed: whether that clock is published on ``/clock``, as by a simulator, and the agents follow it.
     """
     clock = VirtualClock()
     robot_clock = clock if simulated is None else SimulatorClock(clock, simulated)

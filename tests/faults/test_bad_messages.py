@@ -1,4 +1,4 @@
-"""Messages with numbers that are none, and in wrong frames, while the robot drives."""
+"""Messages with NaN or infinity, or in wrong frames, while the robot drives."""
 
 import math
 from collections.abc import Callable
@@ -45,7 +45,7 @@ def elsewhere(message: Any) -> None:
     ],
     ids=["nan", "infinite", "no heading"],
 )
-def test_a_robot_stands_while_it_does_not_know_where_it_is(change: Callable[[Any], None], what: str) -> None:
+def test_a_robot_stops_while_its_pose_is_unknown(change: Callable[[Any], None], what: str) -> None:
     lab = in_lab("driving.asl", odometry_is(change, 2, 9))
     bad = f'bad /odom not_finite("{what}")'
     assert lab.lines == [
@@ -59,10 +59,10 @@ def test_a_robot_stands_while_it_does_not_know_where_it_is(change: Callable[[Any
     assert lab.drives(1.9, 2.1)
     assert lab.stands(3.2, 9.0)
     assert (lab.exit_code, lab.place, lab.safe) == (0, (0, 0), True)
-    assert len(lab.errors) == 3, "140 messages, of which the first, the tenth and the hundredth are told"
+    assert len(lab.errors) == 3, "140 messages, of which the first, the 10th and the 100th are logged"
 
 
-def test_a_few_bad_numbers_are_told_once_and_the_robot_arrives() -> None:
+def test_a_few_bad_numbers_are_logged_once_and_the_robot_arrives() -> None:
     lab = in_lab("driving.asl", odometry_is(without_position(math.nan), 2, 2.2))
     assert lab.lines == [
         "connected /odom",
@@ -74,7 +74,7 @@ def test_a_few_bad_numbers_are_told_once_and_the_robot_arrives() -> None:
     assert (lab.exit_code, lab.place, lab.safe) == (0, (0, 0), True)
 
 
-def test_a_place_in_another_frame_is_no_place_to_drive_by() -> None:
+def test_a_pose_in_another_frame_is_not_used_for_driving() -> None:
     lab = in_lab("driving.asl", odometry_is(elsewhere, 2, 5))
     assert lab.lines == [
         "connected /odom",
@@ -87,7 +87,7 @@ def test_a_place_in_another_frame_is_no_place_to_drive_by() -> None:
 
 
 def test_a_motion_does_not_outlive_a_change_of_frames() -> None:
-    """Who gives poses in another frame for good was started anew; what was a goal before is another place there."""
+    """A localisation that publishes poses in another frame has been restarted, so earlier goals are other places there."""
     lab = in_lab("driving.asl", odometry_is(elsewhere, 2, 60), seconds=7.5)
     assert lab.lines[-1] == "action_failed no_odometry(4.6)"
     assert 7.0 <= lab.when("action_failed") <= 7.1
@@ -95,7 +95,7 @@ def test_a_motion_does_not_outlive_a_change_of_frames() -> None:
     assert lab.safe
 
 
-def test_a_mapped_property_is_of_its_frame_alone() -> None:
+def test_a_mapped_property_ignores_other_frames() -> None:
     lab = in_lab("blind.asl", odometry_is(elsewhere, 1, 3), mapping="framed.yaml")
     bad = 'bad /odom wrong_frame("map")'
     assert [line for line in lab.lines if not line.startswith("odom 1")] == [
@@ -115,7 +115,7 @@ def test_a_mapped_property_is_of_its_frame_alone() -> None:
     assert "odom is not shown: the frame is map, not odom" in told
 
 
-def test_a_mapped_property_goes_and_comes_back_and_a_drive_by_time_ends() -> None:
+def test_a_mapped_property_expires_and_returns_and_a_timed_motion_ends() -> None:
     lab = in_lab("blind.asl", odometry_is(without_position(math.nan), 1, 3), mapping="robot.yaml")
     bad = 'bad /odom not_finite("pose.pose.position.x")'
     assert [line for line in lab.lines if not line.startswith("odom 1")] == [

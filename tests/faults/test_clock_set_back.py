@@ -27,7 +27,7 @@ def simulator_is_reset(to: float) -> Callable[[Lab], None]:
     return faults
 
 
-def test_all_waits_go_on_for_the_rest_of_their_time_and_the_robot_arrives() -> None:
+def test_all_waits_resume_with_their_remaining_time_and_the_robot_arrives() -> None:
     lab = in_lab("waiting.asl", simulator_is_reset(0), mapping="robot.yaml", simulated=1000, seconds=14)
     assert [line for line in lab.lines if not line.startswith("bad")] == [
         "connected /odom",
@@ -67,7 +67,7 @@ def test_a_clock_that_is_set_back_a_little_changes_nothing() -> None:
     assert (lab.place, lab.safe) == ((2, 0), True)
 
 
-def test_a_robot_whose_clock_is_set_back_is_driven_on() -> None:
+def test_a_robot_whose_clock_is_set_back_continues_to_drive() -> None:
     """The clock of the robot alone, as when it finds a time server after the start."""
 
     def faults(lab: Lab) -> None:

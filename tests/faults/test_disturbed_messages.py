@@ -1,4 +1,4 @@
-"""Messages that come late, twice, overtake each other, or not at all: odometry, and commands."""
+"""Odometry and commands that arrive late, twice, out of order, or not at all."""
 
 from collections.abc import Callable
 
@@ -20,14 +20,14 @@ from jacaros.ros.drivers.memory.graph import Disturbance, both, delayed, dropped
     ],
     ids=["late", "overtaking", "repeated", "lost", "all of it"],
 )
-def test_a_robot_arrives_over_a_bad_line(topic: str, disturbance: Disturbance) -> None:
+def test_a_robot_arrives_despite_a_bad_connection(topic: str, disturbance: Disturbance) -> None:
     lab = in_lab("driving.asl", lambda lab: lab.at(1, lambda: lab.graph.disturb(topic, disturbance)))
     assert [line for line in lab.lines if not line.startswith("bad /odom out_of_order")] == [
         "connected /odom",
         "at 2 0",
         "at 0 0",
     ]
-    assert len(lab.errors) <= 3, "the first, the tenth and the hundredth are told"
+    assert len(lab.errors) <= 3, "the first, the 10th and the 100th are logged"
     assert lab.exit_code == 0
     assert lab.safe
     assert abs(lab.place[0]) <= 0.05
@@ -40,7 +40,7 @@ def late(seconds: float, begin: float, end: float) -> Callable[[Lab], None]:
     return faults
 
 
-def test_a_robot_does_not_drive_by_odometry_that_has_become_late() -> None:
+def test_a_robot_stops_when_odometry_becomes_late() -> None:
     lab = in_lab("driving.asl", late(1.0, 1, 12))
     told = [line.split("(")[0] for line in lab.lines if not line.startswith("bad /odom out_of_order")]
     assert told == [
@@ -72,7 +72,7 @@ def lost(topic: str, begin: float, end: float) -> Callable[[Lab], None]:
     return faults
 
 
-def test_without_odometry_the_robot_stands_and_the_motion_fails() -> None:
+def test_without_odometry_the_robot_stops_and_the_motion_fails() -> None:
     lab = in_lab("driving.asl", lost("/odom", 2, 10))
     assert lab.lines == [
         "connected /odom",
@@ -94,7 +94,7 @@ def test_odometry_that_pauses_makes_the_robot_pause() -> None:
     assert (lab.exit_code, lab.place, lab.safe) == (0, (0, 0), True)
 
 
-def test_a_robot_that_gets_no_commands_stands_and_the_motion_is_blocked() -> None:
+def test_a_robot_without_commands_stops_and_the_motion_is_blocked() -> None:
     lab = in_lab("driving.asl", lost("/cmd_vel", 2, 8))
     first, *others = [line for line in lab.lines if line.startswith("action_failed")]
     assert first.startswith("action_failed blocked(")

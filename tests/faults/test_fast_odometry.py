@@ -1,4 +1,4 @@
-"""Odometry that comes a thousand times a second: the agent reacts to what is now."""
+"""Odometry at 1 kHz: the agent reacts to the current value."""
 
 from typing import Any
 
@@ -27,7 +27,7 @@ def flood(lab: Lab) -> None:
     tick()
 
 
-def test_a_busy_agent_stops_its_robot_where_it_should() -> None:
+def test_a_busy_agent_stops_its_robot_at_the_right_place() -> None:
     lab = in_lab("meeting.asl", flood, seconds=5)
     place, _, thoughts = lab.lines[0].removeprefix("seen at ").removesuffix(" thoughts").partition(" after ")
     seen = float(place)

@@ -1,11 +1,11 @@
-"""An action server, a robot or the whole graph that is gone in the middle of a motion, and comes back."""
+"""An action server, a robot or the whole graph that disappears during a motion, and returns."""
 
 from faults_lab import Lab, in_lab
 
 LOST = [
     "connected /odom",
     "lost /odom",
-    "nobody knows where I am",
+    "my pose is unknown",
     "action_failed server_lost",
     "connected /odom",
     "at 2 0",
@@ -38,7 +38,7 @@ def assert_arrived(lab: Lab) -> None:
     assert abs(lab.place[0]) <= 0.05
 
 
-def test_an_action_server_that_dies_leaves_the_robot_standing_and_the_plan_with_a_reason() -> None:
+def test_when_an_action_server_dies_the_robot_stops_and_the_plan_gets_a_reason() -> None:
     def faults(lab: Lab) -> None:
         lab.at(3, lambda: lab.graph.vanish("/navigate_to_pose"))
         lab.at(10, lambda: (lab.sim.close(), lab.sim.start()))
@@ -55,7 +55,7 @@ def test_an_action_server_that_dies_leaves_the_robot_standing_and_the_plan_with_
     assert_arrived(lab)
 
 
-def test_a_robot_that_is_started_anew_is_navigated_again() -> None:
+def test_navigation_continues_after_a_restart_of_the_robot() -> None:
     lab = in_lab("navigating.asl", robot_dies, mapping="robot.yaml")
     assert lab.lines == LOST
     assert lab.stands(3.5, 10.0)
@@ -64,7 +64,7 @@ def test_a_robot_that_is_started_anew_is_navigated_again() -> None:
     assert_arrived(lab)
 
 
-def test_a_robot_that_is_started_anew_is_driven_again() -> None:
+def test_driving_continues_after_a_restart_of_the_robot() -> None:
     lab = in_lab("driving.asl", robot_dies)
     assert lab.lines == [
         "connected /odom",
@@ -82,7 +82,7 @@ def test_a_robot_that_is_started_anew_is_driven_again() -> None:
     assert_arrived(lab)
 
 
-def test_a_graph_that_is_cut_and_whole_again_needs_no_restart() -> None:
+def test_a_reconnected_graph_needs_no_restart() -> None:
     for program, mapping in (("navigating.asl", "robot.yaml"), ("driving.asl", None)):
         lab = in_lab(program, graph_goes, mapping=mapping)
         expected = LOST if mapping else [*LOST[:2], "action_failed no_odometry(5)", *LOST[4:]]
@@ -94,7 +94,7 @@ def test_a_graph_that_is_cut_and_whole_again_needs_no_restart() -> None:
         assert_arrived(lab)
 
 
-def test_a_graph_that_is_cut_often_is_found_again_each_time() -> None:
+def test_a_graph_that_disconnects_often_is_rejoined_each_time() -> None:
     def faults(lab: Lab) -> None:
         for number in range(6):
             lab.at(1 + 2 * number, lab.graph.interrupt)
@@ -107,7 +107,7 @@ def test_a_graph_that_is_cut_often_is_found_again_each_time() -> None:
     assert_arrived(lab)
 
 
-def test_the_plan_library_gets_over_a_robot_that_is_started_anew() -> None:
+def test_the_plan_library_recovers_from_a_restart_of_the_robot() -> None:
     lab = in_lab("going.asl", robot_dies, mapping="nav2.yaml")
     assert lab.lines == ["far", "home"]
     assert lab.stands(3.5, 10.0)

@@ -1,4 +1,4 @@
-"""An agent that is at it for long: whatever it does again and again leaves nothing behind."""
+"""A long run: repeated work leaves nothing behind."""
 
 import asyncio
 import gc
@@ -8,7 +8,7 @@ from typing import Any
 from faults_lab import Lab, in_lab
 
 NOTES = {"Sample", "Moment"}
-"""What the laboratory and the world keep of all that happened, for those who look at it later."""
+"""Records of the laboratory and the world, which are kept for later analysis."""
 
 
 def kinds() -> Counter[str]:
@@ -24,7 +24,7 @@ def kinds() -> Counter[str]:
     return found
 
 
-def test_goals_calls_motions_and_artifacts_that_are_over_are_forgotten() -> None:
+def test_finished_goals_calls_motions_and_artifacts_use_no_memory() -> None:
     looks: list[Counter[str]] = []
     registries: list[dict[str, int]] = []
 

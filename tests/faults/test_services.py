@@ -1,4 +1,4 @@
-"""A service that refuses, fails, never answers or is not there, while the robot drives."""
+"""A service that refuses, fails, never answers or does not exist, while the robot drives."""
 
 import asyncio
 from typing import Any
@@ -35,7 +35,7 @@ def succeed(request: Any) -> Any:
     ],
     ids=["refuses", "fails", "never answers", "is not there"],
 )
-def test_a_bad_service_holds_nothing_up_and_is_used_again_when_it_is_good(
+def test_a_failing_service_blocks_nothing_and_is_used_again_when_it_works(
     handler: Any, reason: str, times: int
 ) -> None:
     def faults(lab: Lab) -> None:

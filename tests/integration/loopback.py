@@ -18,7 +18,7 @@ from jacaros.env.errors import UnknownArtifact
 from jacaros.env.ids import ArtifactId
 from jacaros.env.observation import Observation, Observer, Signal
 from jacaros.env.operation import OperationOutcome, OperationRequest, ignore_outcome
-from jacaros.env.ports import Made, Told, UnderWay, nobody_waits
+from jacaros.env.ports import OnMade, OnOutcome, UnderWay, ignore_made
 from jacaros.env.property import ObservableProperty
 from jacaros.env.values import Atom, Out, Structure
 from jacaros.mas.directory import Services
@@ -281,7 +281,7 @@ class RemoteWorkspace(ports.Workspace):
             if artifact.name == name:
                 return artifact
         reason = Structure("artifact_not_available", (name,))
-        raise UnknownArtifact(f"workspace {self.path} has no artifact {name}", reason)
+        raise UnknownArtifact(f"unknown artifact `{name}` in workspace {self.path}", reason)
 
     def watch(
         self, watcher: Callable[[ArtifactId, bool], None], personal: bool = False
@@ -322,7 +322,7 @@ class RemoteWorkspace(ports.Workspace):
         type_name: str | type[Artifact],
         args: Sequence[object] = (),
         creator: str | None = None,
-        on_done: Made = nobody_waits,
+        on_done: OnMade = ignore_made,
         cause: Cause | None = None,
     ) -> UnderWay:
         def made(outcome: OperationOutcome, artifact: Any = None) -> None:
@@ -331,7 +331,7 @@ class RemoteWorkspace(ports.Workspace):
         type_name = type_name if isinstance(type_name, str) else type_name.__name__
         return self._ask(made, "create", name, type_name, self._ids.encode(list(args)), creator)
 
-    def dispose_artifact(self, artifact_id: ArtifactId, on_done: Told = ignore_outcome) -> None:
+    def dispose_artifact(self, artifact_id: ArtifactId, on_done: OnOutcome = ignore_outcome) -> None:
         self._check(artifact_id)
         self._ask(on_done, "dispose", self._ids.number(artifact_id))
 
@@ -350,7 +350,7 @@ class RemoteWorkspace(ports.Workspace):
             done, "execute", number, request.operation, arguments, request.agent, request.timeout
         )
 
-    def focus(self, artifact_id: ArtifactId, observer: Observer, on_done: Told = ignore_outcome) -> None:
+    def focus(self, artifact_id: ArtifactId, observer: Observer, on_done: OnOutcome = ignore_outcome) -> None:
         self._check(artifact_id)
         self._observers[id(observer)] = observer
         self._ask(on_done, "focus", self._ids.number(artifact_id), id(observer), observer.agent)
@@ -358,7 +358,9 @@ class RemoteWorkspace(ports.Workspace):
     def stop_focus(self, artifact_id: ArtifactId, observer: Observer) -> None:
         self._cable.send("to server", self._served, "stop_focus", self._ids.number(artifact_id), id(observer))
 
-    def link(self, from_id: ArtifactId, port: str, to_id: ArtifactId, on_done: Told = ignore_outcome) -> None:
+    def link(
+        self, from_id: ArtifactId, port: str, to_id: ArtifactId, on_done: OnOutcome = ignore_outcome
+    ) -> None:
         self._ask(on_done, "link", self._ids.number(from_id), port, self._ids.number(to_id))
 
     # ---- what the other side tells

@@ -154,11 +154,11 @@ def test_an_auction_in_jacamos_layout_runs(project: Path) -> None:
 
 def test_what_has_no_effect_is_told_once_for_each_kind(project: Path) -> None:
     result = run_project(project, seconds=60)
-    roles = "the role 'bidder' in 'house.room', the role 'seller' of 'auctioneer' in 'room'"
+    roles = "the role `bidder` in `house.room`, the role `seller` of `auctioneer` in `room`"
     assert [text.splitlines()[0].partition("warning: ")[2] for text in result.errors] == [
-        f"{roles} and the role 'bidder' of 'rich' in 'room' have no effect: {NO_ROLES} (lines 21, 26, 27)",
-        "the organisation 'house' has no effect: organisations are not supported",
-        "the platform jacamo.rest.JCMRest has no effect: a run is one process, and agents reach each other in it",
+        f"{roles} and the role `bidder` of `rich` in `room` have no effect: {NO_ROLES} (lines 21, 26, 27)",
+        "the organisation `house` has no effect: organisations are not supported",
+        "the platform `jacamo.rest.JCMRest` has no effect: all agents run in one process",
     ]
 
 
@@ -171,5 +171,5 @@ def test_a_misspelt_operation_is_found(project: Path) -> None:
     program = project.parent / "src" / "agt" / "auctioneer.asl"
     program.write_text(program.read_text().replace("announce(Name)", "anounce(Name)"), encoding="utf-8")
     (found,) = [each for each in check_files([project]).diagnostics if each.code != "no-effect"]
-    assert found.message == "no artifact of the project offers anounce/1"
-    assert found.help == "did you mean announce?"
+    assert found.message == "unknown operation `anounce/1`: no artifact of the project has it"
+    assert found.help == "did you mean `announce`?"

@@ -119,7 +119,7 @@ def test_agents_that_come_and_go_are_known() -> None:
     async def test(here: Mas, there: Mas, first: Side, second: Side) -> None:
         bob = there.add_agent("bob", "")
         await settled(here, there)
-        with pytest.raises(jacaros.JacarosError, match="duplicate agent name bob"):
+        with pytest.raises(jacaros.JacarosError, match="duplicate agent name `bob`"):
             here.add_agent("bob", "")
         assert here.system.directory.free_name("bob") == "bob_1"
         bob.kill()

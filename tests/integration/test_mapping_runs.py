@@ -86,10 +86,10 @@ def test_a_check_knows_what_is_mapped(folder: Path, capsys: pytest.CaptureFixtur
     code, lines, _ = output(capsys, "check", "--strict", "p.jcm")
     assert code == 1
     assert [line for line in lines if ": warning:" in line or line.startswith("  = help")] == [
-        "drive.asl:4:6: warning: no artifact of the project offers driv/2 [unknown-operation]",
-        "  = help: did you mean drive?",
-        "drive.asl:5:6: warning: no artifact of the project offers drive/1 [unknown-operation]",
-        "  = help: there is drive/2",
+        "drive.asl:4:6: warning: unknown operation `driv/2`: no artifact of the project has it [unknown-operation]",
+        "  = help: did you mean `drive`?",
+        "drive.asl:5:6: warning: unknown operation `drive/1`: no artifact of the project has it [unknown-operation]",
+        "  = help: did you mean `drive/2`?",
     ]
 
 
@@ -117,7 +117,7 @@ def test_a_check_of_a_project_covers_its_mapping_once(
 def test_a_mapping_that_is_not_there(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     code, lines, errors = output(capsys, "run", "drive.asl", "--mapping", "robto.yaml", "--clock", "fast")
     assert (code, lines) == (1, [])
-    assert errors == "error: mapping file not found: robto.yaml\n  = help: did you mean robot.yaml?\n"
+    assert errors == "error: mapping file not found: robto.yaml\n  = help: did you mean `robot.yaml`?\n"
 
 
 def test_a_wrong_mapping_is_told_before_anything_runs(
@@ -141,7 +141,7 @@ def test_two_artifacts_of_one_name(folder: Path, capsys: pytest.CaptureFixture[s
     files = ("--mapping", "robot.yaml", "--mapping", "robot.yaml")
     code, _, errors = output(capsys, "run", "drive.asl", *files, "--clock", "fast")
     assert code == 1
-    assert "two artifacts have the name 'robot'" in errors
+    assert "duplicate artifact `robot`" in errors
 
 
 def test_an_agent_makes_the_artifact_of_a_file(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -116,10 +116,10 @@ def test_a_syntax_error_in_a_jcm_file(project: Project) -> None:
     assert project.run_file("house.jcm") == told(
         1,
         """\
-        house.jcm:4:24: error: ':' is expected, not 'Clock'
+        house.jcm:4:24: error: expected `:`, found `Clock`
           4 |         artifact clock Clock(1)
             |                        ^^^^^
-          = help: artifact name : Class(arguments)
+          = help: write `artifact name : Class(arguments)`
         """,
     )
 
@@ -130,10 +130,10 @@ def test_a_syntax_error_in_a_mas2j_file(project: Project) -> None:
     assert project.run_file("house.mas2j") == told(
         1,
         """\
-        house.mas2j:3:1: error: a ';' is expected behind the agent 'robot'
+        house.mas2j:3:1: error: expected `;` after agent `robot`, found `}`
           3 | }
             | ^
-          = help: each agent of the list ends with ';'
+          = help: end each agent with `;`
         """,
     )
 
@@ -143,8 +143,8 @@ def test_an_unknown_artifact_class_in_a_program(project: Project) -> None:
     assert project.run_file("robot.asl") == told(
         0,
         "[robot] warning: the goal !start failed and has no plan for its failure: action_failed, "
-        "no artifact type is called ArtOdometri; "
-        "did you mean ArtOdometry or ArtOdometryOnDemand or ArtCmdVelAndOdometry? (robot.asl:3)\n"
+        "unknown artifact type `ArtOdometri`; "
+        "did you mean `ArtOdometry` or `ArtOdometryOnDemand` or `ArtCmdVelAndOdometry`? (robot.asl:3)\n"
         '  step: makeArtifact("odom","ArtOdometri")\n'
         '  reason: env_failure_reason(makeArtifactFailure("unknown_artifact_template","ArtOdometri"))\n',
     )
@@ -167,7 +167,7 @@ def test_an_unknown_artifact_class_in_a_jcm_file(project: Project) -> None:
     assert project.run_file("house.jcm") == told(
         1,
         """\
-        house.jcm:4:29: error: no artifact type is called Countr; did you mean Counter?
+        house.jcm:4:29: error: unknown artifact type `Countr`; did you mean `Counter`?
           4 |         artifact visitors : Countr(1)
             |                             ^^^^^^
         """,
@@ -202,7 +202,7 @@ def test_an_argument_of_the_wrong_type(project: Project) -> None:
     assert project.run_file("robot.asl") == told(
         0,
         "[robot] warning: the goal !start failed and has no plan for its failure: action_failed, "
-        'operation check/1 of artifact c: parameter limit (number 1) wants an integer, got "many" '
+        'operation check/1 of artifact c: argument 1 (limit): expected an integer, found "many" '
         "(robot.asl:4)\n"
         '  step: check("many")\n  reason: env_failure_reason(wrong_op_arguments(cobj_3,"check/1"))\n',
     )
@@ -225,8 +225,8 @@ def test_an_argument_of_the_wrong_type_for_a_declared_artifact(project: Project)
     assert project.run_file("house.jcm") == told(
         1,
         """\
-        house.jcm:4:18: error: artifact visitors (Counter) cannot be made: operation init/1 of artifact visitors: \
-parameter start (number 1) wants an integer, got "none"
+        house.jcm:4:18: error: cannot create artifact visitors (Counter): operation init/1 of artifact visitors: \
+argument 1 (start): expected an integer, found "none"
           4 |         artifact visitors : Counter("none")
             |                  ^^^^^^^^
         """,
@@ -240,7 +240,7 @@ def test_an_unknown_option_of_an_artifact(project: Project) -> None:
     assert project.run_file("robot.asl") == told(
         0,
         "[robot] warning: the goal !start failed and has no plan for its failure: action_failed, "
-        "artifact battery (ArtSimBattery) cannot be made: ArtSimBattery has no option 'drian'; "
+        "cannot create artifact battery (ArtSimBattery): ArtSimBattery has no option 'drian'; "
         "it knows dock_timeout, drain, expire, level, namespace, source, topic, watch_connection (robot.asl:3)\n"
         '  step: makeArtifact("battery","ArtSimBattery",[drian(2)],_)\n'
         '  reason: env_failure_reason(makeArtifactFailure("init_failed","battery"))\n',
@@ -295,8 +295,8 @@ def test_the_fast_clock_with_a_real_graph(project: Project) -> None:
     project.write("robot.asl", "!start. +!start <- .print(done).")
     assert project.run("run", "robot.asl", "--ros", "ros1", "--clock", "fast") == told(
         2,
-        "jacaros: the virtual clock (--clock fast) cannot run with a real ROS graph (--ros ros1): its nodes "
-        "live in real time; use --clock real\n",
+        "jacaros: --clock fast excludes a real ROS graph (--ros ros1), whose nodes run in real time; "
+        "use --clock real\n",
     )
 
 

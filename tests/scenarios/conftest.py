@@ -1,4 +1,4 @@
-"""What the runs of examples on real graphs need."""
+"""Fixtures for runs of examples on real graphs."""
 
 import sys
 from pathlib import Path
@@ -19,7 +19,7 @@ from presence import is_wanted
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
-    """Leave the runs on real graphs out where there is none: the contract suite says so once, and loudly."""
+    """Skip the runs on real graphs where ROS is missing. The contract suite reports that once."""
     if not collection_path.name.endswith("_on_graphs.py"):
         return None
     return None if any(is_wanted(kind, config) for kind in KINDS) else True

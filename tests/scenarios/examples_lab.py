@@ -1,4 +1,4 @@
-"""The examples as tests see them: run in this process, judged by their own checkers, and falsified."""
+"""The examples in tests: run in this process, judged by their own checkers, and falsified."""
 
 import importlib.util
 import shutil
@@ -50,7 +50,7 @@ def checker(folder: str) -> ModuleType:
 
 @cache
 def run_of(project: str) -> RunResult:
-    """The run of an example, made once; it must end by itself and complain about nothing."""
+    """The run of an example, made once. It must end without warnings."""
     return run(project)
 
 
@@ -77,7 +77,7 @@ def example(project: str, beliefs: str) -> Deployment:
 
 
 def spoilt(folder: Path, project: str, old: str, new: str, program: str = "robot.asl") -> Path:
-    """A copy of an example with one place of its program changed; gives the copied project file."""
+    """Copy an example with one change in its program. Return the copied project file."""
     original = EXAMPLES / project
     copy = folder / "example"
     shutil.copytree(original.parent, copy)

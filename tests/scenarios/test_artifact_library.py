@@ -48,7 +48,7 @@ def test_two_agents_use_one_artifact(tmp_path: Path) -> None:
     assert (sorted(result.lines), result.errors) == (["[one] 100", "[two] 100"], [])
 
 
-def test_an_artifact_that_comes_later_is_waited_for(tmp_path: Path) -> None:
+def test_an_agent_waits_for_an_artifact_that_is_created_later(tmp_path: Path) -> None:
     result = run(
         tmp_path,
         early="""
@@ -64,7 +64,7 @@ def test_an_artifact_that_comes_later_is_waited_for(tmp_path: Path) -> None:
     assert 3.0 <= result.seconds <= 3.2
 
 
-def test_an_artifact_that_does_not_come_is_told_after_five_seconds(tmp_path: Path) -> None:
+def test_a_missing_artifact_is_logged_after_five_seconds(tmp_path: Path) -> None:
     result = run(
         tmp_path,
         robot="""
@@ -79,7 +79,7 @@ def test_an_artifact_that_does_not_come_is_told_after_five_seconds(tmp_path: Pat
     assert result.seconds == pytest.approx(5.0, abs=0.3)
 
 
-def test_an_artifact_that_cannot_be_made_is_told_with_its_reason(tmp_path: Path) -> None:
+def test_a_failed_creation_is_logged_with_its_reason(tmp_path: Path) -> None:
     result = run(
         tmp_path,
         robot="""

@@ -56,7 +56,7 @@ def test_the_robot_drives_out_and_back(run_world: RunWorld, run_baseline: RunBas
     world = run_world("empty")
     baseline = run_baseline("out_and_back")
     assert baseline.end() == 0
-    # As for the agent, which drives by time, too: a late command makes a way 65 mm longer.
+    # As for the agent, which also drives by time: a late command makes the path 65 mm longer.
     judge(checker("01_out_and_back").check(world.close(), near=0.15), baseline)
     assert baseline.lines == ["[out_and_back] driving out", "[out_and_back] driving back"]
 
@@ -72,7 +72,7 @@ def test_the_robot_drives_the_square(run_world: RunWorld, run_baseline: RunBasel
 def test_the_node_reports_every_state_of_the_robot_s_battery(
     run_world: RunWorld, run_baseline: RunBaseline
 ) -> None:
-    # This robot only stands, so its world can be much faster.
+    # This robot does not move, so its world can be much faster.
     world = run_world(EXAMPLES / "03_fake_battery/weak_battery.yaml", "--speed", "5")
     baseline = run_baseline("fake_battery", "-p", "source:=robot")
     assert baseline.end() == 0
@@ -93,7 +93,7 @@ def test_the_patrol_continues_after_a_recharge(
         charged = [stay.begin for stay in stays(truth) if stay.charged]
         return bool(charged) and example.visits(truth.path())[-1].begin > charged[0]
 
-    # Only motion drains the battery, so that a slow machine makes the robot no hungrier.
+    # Only motion drains the battery, so a slow machine does not drain it faster.
     battery = {
         "level: 100": "level: 27",
         "drain_per_second: 0.75": "drain_per_second: 0",

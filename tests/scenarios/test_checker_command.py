@@ -89,7 +89,7 @@ def test_the_output_of_the_battery_is_judged(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_wrong_usage_is_told(tmp_path: Path) -> None:
+def test_wrong_usage_is_reported(tmp_path: Path) -> None:
     assert judged("02_square").returncode == 2
     assert judged("03_fake_battery").returncode == 2
     missing = judged("02_square", str(tmp_path / "missing"))

@@ -1,4 +1,4 @@
-"""The agent tests of the examples pass, and notice when a program is spoilt."""
+"""The agent tests of the examples pass, and fail for a broken program."""
 
 import shutil
 from pathlib import Path

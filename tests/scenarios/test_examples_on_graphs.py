@@ -1,4 +1,4 @@
-"""The five examples of the thesis on real graphs: the world in one process, the agents in another, judged as ever."""
+"""The five examples of the thesis on real graphs, with the world and the agents in separate processes."""
 
 import shutil
 from collections.abc import Callable, Mapping
@@ -53,7 +53,7 @@ def test_the_robot_drives_out_and_back(run_world: RunWorld, run_agents: RunAgent
     world = run_world("empty")
     agents = run_agents(EXAMPLES / "01_out_and_back/out_and_back.jcm")
     assert agents.end() == 0
-    # The robot drives by time alone: a pause of one process for one period of its commands makes a way 65 mm longer.
+    # The robot drives by time alone: a pause of one process for one command period makes the path 65 mm longer.
     judge(checker("01_out_and_back").check(world.close(), near=0.15), agents)
     assert agents.lines[:2] == ["[robot] driving out", "[robot] driving back"]
     assert world.errors == []
@@ -69,10 +69,10 @@ def test_the_robot_drives_the_square(run_world: RunWorld, run_agents: RunAgents)
 
 
 @not_on_kilted
-def test_the_agent_tells_every_state_of_the_robot_s_battery(
+def test_the_agent_prints_every_state_of_the_robots_battery(
     run_world: RunWorld, run_agents: RunAgents
 ) -> None:
-    # This robot only stands, so its world can be much faster.
+    # This robot does not move, so its world can be much faster.
     world = run_world(EXAMPLES / "03_fake_battery/weak_battery.yaml", "--speed", "5")
     agents = run_agents(EXAMPLES / "03_fake_battery/robot_battery.jcm", "--clock", "ros")
     assert agents.end() == 0
@@ -84,7 +84,7 @@ def test_the_agent_tells_every_state_of_the_robot_s_battery(
 
 
 @not_on_kilted
-def test_the_patrol_goes_on_after_a_recharge(
+def test_the_patrol_continues_after_a_recharge(
     run_world: RunWorld, run_agents: RunAgents, tmp_path: Path
 ) -> None:
     example = checker("04_patrol")
@@ -93,7 +93,7 @@ def test_the_patrol_goes_on_after_a_recharge(
         charged = [stay.begin for stay in stays(truth) if stay.charged]
         return bool(charged) and example.visits(truth.path())[-1].begin > charged[0]
 
-    # Only motion drains the battery, so that a slow machine makes the robot no hungrier.
+    # Only motion drains the battery, so a slow machine does not drain it faster.
     battery = {
         "level: 100": "level: 27",
         "drain_per_second: 0.75": "drain_per_second: 0",

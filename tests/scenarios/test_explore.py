@@ -43,7 +43,7 @@ def test_the_map_agrees_with_the_world_and_leads_to_the_goal_and_home(seed: int,
     assert load(saved).places == {"home": (0.0, 0.0), "goal": (5.6, 4.1)}
 
 
-def test_what_the_agent_tells() -> None:
+def test_the_output_of_the_agent() -> None:
     lines = run_of(PROJECT).lines
     assert lines[0].startswith("[robot] explored, on a way of ")
     assert lines[1:] == ["[robot] at the place called goal", "[robot] at the place called home"]
@@ -55,7 +55,7 @@ def test_without_matching_scans_the_map_is_wrong(tmp_path: Path) -> None:
     assert not judged(truth, saved).passed
 
 
-def test_a_run_that_went_wrong_is_noticed(tmp_path: Path) -> None:
+def test_a_failed_run_is_noticed(tmp_path: Path) -> None:
     truth, saved = explored(tmp_path, 0)
     middle = truth.path()[len(truth.path()) // 2].time
     half = falsified(truth, sample=lambda sample: sample if sample.time < middle else None)

@@ -8,7 +8,7 @@ ROBOT = "03_fake_battery/robot_battery.jcm"
 check = checker("03_fake_battery").check
 
 
-def test_the_agent_tells_every_state_of_the_timer_battery_in_order() -> None:
+def test_the_agent_prints_every_state_of_the_timer_battery_in_order() -> None:
     result = run_of(TIMER)
     assert result.lines == [
         "[robot] 100 %: Full Battery",
@@ -23,7 +23,7 @@ def test_the_timer_takes_one_percent_a_second() -> None:
     assert run_of(TIMER).seconds == pytest.approx(100.0, abs=0.1)
 
 
-def test_the_agent_tells_every_state_of_the_robot_s_battery() -> None:
+def test_the_agent_prints_every_state_of_the_robots_battery() -> None:
     result = run_of(ROBOT)
     assert check(result.lines, result.ground_truth).complaints == []
 

@@ -25,7 +25,7 @@ def test_every_task_is_done_in_its_room_and_in_order() -> None:
     assert verdict.complaints == []
 
 
-def test_the_agent_tells_the_tasks() -> None:
+def test_the_agent_prints_the_tasks() -> None:
     lines = run_of(PROJECT).lines
     assert lines[:5] == [
         "[robot] living Room: vacuum the Carpet",
@@ -177,7 +177,7 @@ def test_the_checker_sees_a_task_left_out() -> None:
     )
 
 
-def test_the_checker_sees_a_task_that_nobody_asked_for() -> None:
+def test_the_checker_sees_an_unwanted_task() -> None:
     more = Event(199.0, "turtlebot", "task", 0, 0, 0, {"task": "mop floor hallway", "room": "hallway"})
     assert not check(falsified(truth_of_example(), more=[more])).passed
 
@@ -198,6 +198,6 @@ def test_the_checker_sees_a_hallway_left_out() -> None:
     assert not check(false).passed
 
 
-def test_the_checker_sees_that_nobody_recharged() -> None:
+def test_the_checker_sees_that_no_robot_recharged() -> None:
     false = falsified(truth_of_example(), event=lambda e: e if e.kind != "charging" else None)
     assert check(false).complaints == ["0 recharges, not 1"]

@@ -1,4 +1,4 @@
-"""Three robots share a passage for one, in which the most urgent goes first."""
+"""Three robots share a passage that fits only one. The most urgent goes first."""
 
 from pathlib import Path
 
@@ -19,7 +19,7 @@ def truth_of_example() -> GroundTruth:
 
 
 def complaints_of_spoilt(folder: Path, old: str, new: str) -> list[str]:
-    """What the checker says of a run of a changed program."""
+    """Return the verdict of the checker on a run of a changed program."""
     result = run_project(spoilt(folder, PROJECT, old, new), seed=0, seconds=LONGEST)
     complaints: list[str] = check(result.ground_truth).complaints
     return complaints

@@ -1,4 +1,4 @@
-"""The examples hold up where wheels slip as those of a real TurtleBot do: their worlds have its noise."""
+"""The examples work with the odometry noise of a real TurtleBot."""
 
 from pathlib import Path
 

@@ -16,7 +16,7 @@ def test_the_robot_comes_back_to_where_and_how_it_stood() -> None:
     assert verdict.complaints == []
 
 
-def test_the_agent_tells_what_it_does() -> None:
+def test_the_agent_prints_what_it_does() -> None:
     assert run_of(PROJECT).lines[:2] == ["[robot] driving out", "[robot] driving back"]
 
 

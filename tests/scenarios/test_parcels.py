@@ -1,4 +1,4 @@
-"""Parcels: an agent in Python finds the ways, agents in AgentSpeak go them."""
+"""Parcels: a Python agent plans the routes, AgentSpeak agents drive them."""
 
 from itertools import pairwise, permutations
 from math import dist
@@ -25,7 +25,7 @@ def test_all_parcels_arrive_on_short_ways() -> None:
     assert verdict.complaints == []
 
 
-def test_what_the_agents_tell() -> None:
+def test_the_output_of_the_agents() -> None:
     result = run_of(PROJECT)
     assert result.of("dispatcher")[0] == "8.0 m: hallway, bathroom, kitchen, living_room, hallway"
     assert result.of("robot")[0] == "parcel 3 goes to the kitchen"
@@ -65,7 +65,7 @@ def test_the_checker_sees_a_parcel_in_the_wrong_room_and_one_left_behind() -> No
     assert check(gone).complaints == ["parcel 3 was unloaded in [], not in the kitchen"]
 
 
-def test_the_checker_sees_that_nobody_recharged() -> None:
+def test_the_checker_sees_that_no_robot_recharged() -> None:
     false = falsified(truth_of_example(), event=lambda e: e if e.kind != "charging" else None)
     assert "0 recharges, not 1" in check(false).complaints
 

@@ -122,7 +122,7 @@ def test_the_checker_sees_a_corner_left_out() -> None:
     ]
 
 
-def test_the_checker_sees_a_patrol_that_goes_on_to_the_wrong_corner() -> None:
+def test_the_checker_sees_a_patrol_that_continues_at_the_wrong_corner() -> None:
     truth = truth_of_example()
     stay = module.judge_recharging(module.Verdict(), truth)[0]
 

@@ -1,4 +1,4 @@
-"""Two runs of an example with the same seed are the same run."""
+"""Two runs of an example with the same seed are identical."""
 
 import os
 import subprocess

@@ -59,7 +59,7 @@ def test_one_command_runs_it_and_one_judges_it(tmp_path: Path) -> None:
     assert judged.returncode == 0
 
 
-def test_the_lines_tell_who_has_the_robot_and_why() -> None:
+def test_the_output_says_who_has_the_robot_and_why() -> None:
     lines = [line for line in run_of(PROJECT).lines if not line.startswith("[visitor]")]
     handover = [
         "[supervisor] I want the robot: 20 % left, that is for the way to the dock",
@@ -84,7 +84,7 @@ def test_the_robot_may_be_wanted_anywhere(level: float, tmp_path: Path) -> None:
     assert check(result.ground_truth).complaints == []
 
 
-def test_only_who_has_the_robot_can_hand_it_over() -> None:
+def test_only_the_holder_of_the_robot_can_release_it() -> None:
     failures = []
 
     def started(mas: System) -> None:

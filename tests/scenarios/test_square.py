@@ -17,7 +17,7 @@ def test_the_robot_drives_the_square_and_comes_back() -> None:
     assert verdict.complaints == []
 
 
-def test_the_agent_tells_the_corners() -> None:
+def test_the_agent_prints_the_corners() -> None:
     told = [re.fullmatch(LINE, line) for line in run_of(PROJECT).lines]
     sides = [[int(number) for number in match.groups()] for match in told if match is not None]
     assert [side for side, _, _ in sides] == [1, 2, 3, 4]
@@ -57,7 +57,7 @@ def test_the_checker_sees_a_side_that_is_left_out() -> None:
     assert not check(falsified(truth, lambda s: s if s.time < 0.8 * truth.latest().time else None)).passed
 
 
-def test_the_checker_sees_a_side_that_is_no_straight_line() -> None:
+def test_the_checker_sees_a_side_that_is_not_straight() -> None:
     false = falsified(
         run_of(PROJECT).ground_truth,
         lambda s: s._replace(y=s.y - 0.08) if 0.4 < s.x < 0.6 and s.y < 0.5 else s,

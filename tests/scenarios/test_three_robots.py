@@ -1,4 +1,4 @@
-"""Three robots of one program, which watch for each other while they charge."""
+"""Three robots with one program, which take over for each other while they charge."""
 
 from pathlib import Path
 
@@ -24,7 +24,7 @@ def test_all_places_are_watched_while_each_robot_charges() -> None:
     assert verdict.complaints == []
 
 
-def test_what_the_robots_tell() -> None:
+def test_the_output_of_the_robots() -> None:
     result = run_of(PROJECT)
     assert result.lines.count("[robot_3] battery low, robot_1 has my places") >= 1
     assert any(line.endswith(" for robot_3") for line in result.of("robot_1"))

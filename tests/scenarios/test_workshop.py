@@ -1,4 +1,4 @@
-"""The four settings of the workshop's problems: agents solve them, and their checker sees what is not right."""
+"""The four settings of the workshop's problems: agents solve them, and the checker finds errors."""
 
 import importlib.util
 import shutil

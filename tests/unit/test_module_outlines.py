@@ -128,7 +128,7 @@ class Base(Artifact):
     write(p__jcm="mas p { agent a : a.asl }")
     found = [each.message for each in check_files([Path("p.jcm")]).diagnostics]
     assert [each for each in found if "X" not in each and "variable" not in each] == [
-        "no artifact of the project offers onn/1",
+        "unknown operation `onn/1`: no artifact of the project has it",
         "internal action `my.act` expects 1 argument, found none",
     ]
 

@@ -22,7 +22,7 @@ from jacaros.body.values import References, to_value
 from jacaros.env.errors import OperationFailed, UnknownArtifact
 from jacaros.env.ids import ArtifactId, resolve_path
 from jacaros.env.operation import OperationOutcome
-from jacaros.env.ports import Environment, Told, UnderWay, Workspace
+from jacaros.env.ports import Environment, OnOutcome, UnderWay, Workspace
 from jacaros.env.values import Structure
 from jacaros.terms.text import text
 from jacaros.terms.values import NIL, Reference, Term, Var, bare, is_list
@@ -162,7 +162,7 @@ def _workspace_of(situation: Situation, artifact: ArtifactId) -> Workspace:
     return situation.environment.workspace(artifact.workspace)
 
 
-def _told(situation: Situation, finish: Finish) -> Told:
+def _told(situation: Situation, finish: Finish) -> OnOutcome:
     """Let an action end as what was asked of a workspace ended."""
     return lambda outcome: finish(of_operation(outcome, [], situation.references))
 

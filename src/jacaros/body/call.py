@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from jacaros.bdi.state.act import Act
 from jacaros.body.values import symbol_name, unquoted
-from jacaros.env.errors import OperationFailed, spelling_hint
+from jacaros.env.errors import OperationFailed, suggestion
 from jacaros.env.ids import ArtifactId
 from jacaros.env.ports import Workspace
 from jacaros.env.values import Atom, Structure
@@ -91,7 +91,7 @@ def _direction(act: Act) -> Direction:
             continue
         if len(annotation) != 2 or (name not in _BY_ARTIFACT and name not in _BY_WORKSPACE):
             message = f"the annotation {text(annotation)} of {act.functor!r} says nothing to the environment"
-            help = spelling_hint(name, _DIRECTIONS)
+            help = suggestion(name, _DIRECTIONS)
             raise unknown_annotation(
                 act, annotation, f"{message}{help or f'; an action can be directed by {_DIRECTING}'}"
             )

@@ -9,7 +9,7 @@ from jacaros.body.values import References, atom_of
 from jacaros.env.ids import ArtifactId
 from jacaros.env.observation import Observation, Observer
 from jacaros.env.operation import SUCCEEDED, OperationOutcome, ignore_outcome
-from jacaros.env.ports import Told, Workspace
+from jacaros.env.ports import OnOutcome, Workspace
 from jacaros.terms.values import String, Term
 
 Watcher = Callable[[ArtifactId, bool], None]
@@ -128,7 +128,7 @@ class FocusedArtifacts:
         workspace: Workspace,
         artifact: ArtifactId,
         namespace: str | None,
-        on_done: Told = ignore_outcome,
+        on_done: OnOutcome = ignore_outcome,
         only: Filter | None = None,
     ) -> None:
         """Focus an artifact, and tell *on_done*; without effect when it is focused in that namespace already.

@@ -1,8 +1,7 @@
-"""The environment: workspaces and artifacts in the manner of CArtAgO, usable without agents.
+"""Workspaces and artifacts as in CArtAgO, usable without agents.
 
-Authors of artifacts need `Artifact`, the decorators and the plain values; a host needs `Environment`; who
-uses artifacts from Python needs a `Session`, which is loaded when it is first asked for.
-Nothing here knows of agents, ROS or the language.
+To write artifacts, use `Artifact`, the decorators and the plain values. A host uses `Environment`. To use artifacts from
+Python, use a `Session`, which is imported on first use. This package does not depend on agents, ROS or the language.
 """
 
 from importlib import import_module

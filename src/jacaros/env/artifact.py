@@ -1,4 +1,4 @@
-"""Artifacts: what authors of environments write."""
+"""Artifacts: the class that authors of environments derive from."""
 
 from collections.abc import Awaitable, Callable, Mapping, Sequence
 from typing import Any, ClassVar, NoReturn, Protocol, TypeVar, overload
@@ -52,43 +52,41 @@ class Host(Protocol):
         args: Sequence[object] = (),
         creator: str | None = None,
     ) -> ArtifactId:
-        """Make an artifact."""
+        """Create an artifact."""
 
-    def lookup(self, name: str) -> ArtifactId:
-        """Find an artifact by its name."""
+    def lookup(self, name: str) -> ArtifactId: ...
 
-    def dispose_artifact(self, artifact_id: ArtifactId) -> None:
-        """Dispose an artifact."""
+    def dispose_artifact(self, artifact_id: ArtifactId) -> None: ...
 
     def link(self, from_id: ArtifactId, port: str | None, to_id: ArtifactId) -> None:
-        """Link the out port of an artifact to another artifact; None for its first port."""
+        """Link the out port of an artifact to another artifact. None means its first port."""
 
     def linked(self, from_id: ArtifactId, port: str) -> tuple[ArtifactId, ...]:
-        """The artifacts behind an out port."""
+        """Return the artifacts that are linked to an out port."""
 
     def execute_linked(self, request: OperationRequest) -> OperationExecution:
         """Run a linked operation."""
 
     def operations_changed(self, artifact_id: ArtifactId) -> None:
-        """Be told that an artifact has other operations from now on."""
+        """Update the operations that an artifact offers."""
 
 
 class Artifact:
-    """One thing of the environment: observable properties, signals and operations.
+    """An object of the environment with observable properties, signals and operations.
 
-    Authors derive from it and mark methods with `operation`, `internal_operation` and `link`.  A class has
-    no constructor; a method ``init`` (``def`` or ``async def``) prepares the artifact and has the
-    parameters given to ``makeArtifact`` (without arguments, an ``init`` that wants some does not run).
-    All that changes properties or sends signals happens within operations, ``init`` included; a callback
-    from elsewhere uses `start`.
+    Derive a class from it, and mark methods with `operation`, `internal_operation` and `link`. The class has no
+    constructor: a method ``init`` (``def`` or ``async def``) initialises the artifact with the arguments of
+    ``makeArtifact``. Without arguments, an ``init`` that requires some is not called.
+
+    Properties change, and signals are sent, only within operations, including ``init``. From a callback, call `start`.
 
     Attributes:
         ports: names of the out ports, through which it calls linked operations of other artifacts.
         name: name of the artifact in its workspace.
         id: identity of the artifact.
-        workspace: where it lives.
-        clock: where it takes time from.
-        resources: what the host lends to artifacts, by name.
+        workspace: the workspace that it is in.
+        clock: the clock of the run.
+        resources: services of the host for artifacts, by name.
     """
 
     ports: ClassVar[tuple[str, ...]] = ()
@@ -105,12 +103,12 @@ class Artifact:
         for attribute in vars(cls):
             if attribute in _RESERVED:
                 raise InvalidArtifact(
-                    f"{cls.__qualname__}.{attribute} would replace a part of Artifact; call it otherwise, "
+                    f"{cls.__qualname__}.{attribute} would replace a part of Artifact; choose another name, "
                     f'such as @operation(name="{attribute}") def {attribute}_it(self)'
                 )
         if isinstance(cls.ports, str) or not all(isinstance(port, str) for port in cls.ports):
             raise InvalidArtifact(
-                f'{cls.__qualname__}.ports is {cls.ports!r}: write a tuple of names, such as ports = ("out",)'
+                f'expected a tuple of names as {cls.__qualname__}.ports, found {cls.ports!r}; write ports = ("out",)'
             )
         cls.interface = interface_of(cls)
         watch_operations(cls)
@@ -118,12 +116,12 @@ class Artifact:
     def __setattr__(self, name: str, value: object) -> None:
         if name in _RESERVED:
             raise InvalidArtifact(
-                f"self.{name} = ... would replace a part of Artifact: call the attribute otherwise, such as self.its_{name}"
+                f"self.{name} = ... would replace a part of Artifact; choose another name, such as self.its_{name}"
             )
         object.__setattr__(self, name, value)
 
     def _join(self, steps: Steps, host: Host) -> None:
-        """Be joined with the kernel; called once, before ``init``."""
+        """Connect the artifact with the kernel. Called once, before ``init``."""
         self.__dict__.update(
             name=steps.id.name,
             id=steps.id,
@@ -135,13 +133,13 @@ class Artifact:
         steps.ending.hook = self.dispose
 
     def dispose(self) -> None:
-        """Give back what the artifact holds; called when all its operations have ended.
+        """Release what the artifact holds. Called when all its operations have ended.
 
-        Not called when ``init`` failed: see `on_dispose`.
+        Not called if ``init`` failed: see `on_dispose`.
         """
 
     def on_dispose(self, callback: Callable[[], object]) -> None:
-        """Call *callback* when the artifact ends, also when its ``init`` fails; the last one first."""
+        """Call *callback* when the artifact ends, also if its ``init`` fails. The last callback runs first."""
         self._steps.ending.cleanups.append(callback)
 
     # ---- observable properties
@@ -149,14 +147,17 @@ class Artifact:
     def define_property(
         self, name: str, *values: object, annotations: tuple[object, ...] | None = None
     ) -> None:
-        """Add an observable property; a focusing agent believes ``name(values)``.
+        """Add an observable property. Agents that focus the artifact believe ``name(values)``.
 
-        Several properties may have one name.
+        Several properties may have the same name.
 
         Args:
             name: begins with a lower-case letter.
-            values: made plain values (see `plain`).
-            annotations: further annotations of the belief, atoms and structures.
+            values: converted to plain values (see `plain`).
+            annotations: further annotations of the belief: atoms and structures.
+
+        Raises:
+            InvalidArtifact: the name is invalid, or the caller is not within an operation.
         """
         self._steps.current("defining property", name)
         self._steps.publication.properties.define(name, values, annotations)
@@ -169,17 +170,17 @@ class Artifact:
         if_new: bool = False,
         where: tuple[object, ...] = (),
     ) -> None:
-        """Give the first (oldest) property called *name* new values; equal values are a change too, as in CArtAgO.
+        """Update the first (oldest) property called *name*. Equal values count as a change, too, as in CArtAgO.
 
         Args:
             name: name of the property.
-            values: all its values.
-            annotations: None keeps those it has.
-            if_new: do nothing when it has these values (and annotations) already: observers hear nothing then.
-            where: values that the property has now, None for any value: the first that has them is updated.
+            values: all its new values.
+            annotations: new annotations. None keeps the current ones.
+            if_new: do nothing if values and annotations are unchanged. Observers then receive nothing.
+            where: current values of the property, None for any value. The first property that matches is updated.
 
         Raises:
-            UnknownProperty: there is none.
+            UnknownProperty: no property matches.
         """
         steps = self._steps
         holder = steps.turns.holder
@@ -188,16 +189,16 @@ class Artifact:
         steps.publication.properties.update(name, values, annotations, if_new, where)
 
     def update_value(self, name: str, index: int, value: object, where: tuple[object, ...] = ()) -> None:
-        """Give the first property called *name* another value at *index* (from 0); the others stay.
+        """Update one value of the first property called *name*. The other values do not change.
 
         Args:
             name: name of the property.
-            index: which of its values.
-            value: the new one.
+            index: index of the value, from 0.
+            value: the new value.
             where: as for `update_property`.
 
         Raises:
-            UnknownProperty: there is none.
+            UnknownProperty: no property matches.
             IndexError: it has fewer values.
         """
         self._steps.current("updating property", name)
@@ -205,20 +206,22 @@ class Artifact:
         values = list(store.first(name, where).values)
         if not -len(values) <= index < len(values):
             has = f"{len(values)} value{'' if len(values) == 1 else 's'}"
-            raise IndexError(f"property {name} has {has}, and none at index {index}: the first is at 0")
+            raise IndexError(
+                f"property {name} has {has}, so index {index} is out of range (the first index is 0)"
+            )
         values[index] = value
         store.update(name, tuple(values), None, False, where)
 
     def annotate_property(self, name: str, *annotations: object, where: tuple[object, ...] = ()) -> None:
-        """Add annotations to the first property called *name*; its values and the annotations that it has stay.
+        """Add annotations to the first property called *name*. It keeps its values and its other annotations.
 
         Args:
             name: name of the property.
-            annotations: atoms and structures; those that it has already are not added again.
+            annotations: atoms and structures. Present ones are not added again.
             where: as for `update_property`.
 
         Raises:
-            UnknownProperty: there is none.
+            UnknownProperty: no property matches.
         """
         self._steps.current("annotating property", name)
         store = self._steps.publication.properties
@@ -228,20 +231,20 @@ class Artifact:
         store.update(name, found.values, (*kept, *new), False, where)
 
     def remove_property(self, name: str, *values: object) -> None:
-        """Remove the first property called *name*, with *values* the first that has these values.
+        """Remove the first property called *name*; with *values*, the first one that has these values.
 
         Args:
             name: name of the property.
             values: as many as the property has, None for any value.
 
         Raises:
-            UnknownProperty: there is none.
+            UnknownProperty: no property matches.
         """
         self._steps.current("removing property", name)
         self._steps.publication.properties.remove(name, values)
 
     def has_property(self, name: str, *values: object) -> bool:
-        """True when there is a property called *name*, with *values* one that has these values."""
+        """Return whether a property called *name* exists; with *values*, whether one has these values."""
         return self._steps.publication.properties.has(name, values)
 
     @overload
@@ -251,40 +254,42 @@ class Artifact:
     def value(self, name: str, index: int = 0, *, kind: type[T]) -> T: ...
 
     def value(self, name: str, index: int = 0, *, kind: type | None = None) -> Any:
-        """A value of the first property called *name*; of a list or dictionary a copy.
+        """Return a value of the first property called *name*. Lists and dictionaries are copied.
 
         Args:
             name: name of the property.
-            index: which of its values.
-            kind: the class that it has, for type checkers as well: ``self.value("free", kind=int) > 0`` is a `bool`.
+            index: index of the value, from 0.
+            kind: expected class, also for type checkers: ``self.value("free", kind=int) > 0`` is a `bool`.
 
         Raises:
-            UnknownProperty: there is none.
+            UnknownProperty: no property has this name.
             IndexError: it has fewer values.
-            TypeError: the value is not of that class.
+            TypeError: the value is not of the expected class.
         """
         value = plain(self._steps.publication.properties.first(name).values[index])
         if kind is not None and not isinstance(value, kind):
             raise TypeError(
-                f"property {name} has {value!r} at index {index}, which is no {kind.__qualname__}"
+                f"expected {kind.__qualname__} at index {index} of property {name}, found {value!r}"
             )
         return value
 
     def values(self, name: str) -> tuple[Any, ...]:
-        """All values of the first property called *name*.
+        """Return all values of the first property called *name*.
 
         Raises:
-            UnknownProperty: there is none.
+            UnknownProperty: no property has this name.
         """
         return tuple(map(plain, self._steps.publication.properties.first(name).values))
 
     def find_properties(self, name: str, *values: object) -> tuple[ObservableProperty, ...]:
-        """The properties called *name*, with *values* those that have these values (None for any); oldest first."""
+        """Return the properties called *name*, the oldest first; with *values* (None for any), those that have these
+        values.
+        """
         return self._steps.publication.properties.all(name, values)
 
     @common_operation("observeProperty")
     def observe_property(self, name: str, snapshot: Out) -> None:
-        """Give a property as it is now, as an object, to an agent that does not focus the artifact.
+        """Return a property as it is now, as an object, to an agent that need not focus the artifact.
 
         Fails with ``unknown_property(Name)``.
         """
@@ -294,38 +299,38 @@ class Artifact:
         snapshot.set(PropertySnapshot(found[0]))
 
     def has_untaken(self, name: str) -> bool:
-        """Whether an observer has still to take up what it was told about properties called *name*.
+        """Return whether an observer has not yet processed an earlier change of properties called *name* (backpressure).
 
-        A sensor that changes faster than its observers think asks this first; see `jacaros.artifacts.kit.reading`.
+        For sensors that change faster than agents reason: see `jacaros.artifacts.kit.reading`.
         """
         return self._steps.publication.has_untaken(name)
 
     # ---- signals, failure, log
 
     def signal(self, name: str, *arguments: object) -> None:
-        """Signal to all observers that something happened; changes made so far in the step go with it."""
+        """Send a signal to all observers. Changes made so far in the step are published with it."""
         self._steps.signal(name, arguments, None)
 
     def signal_to(self, agent: str | None, name: str, *arguments: object) -> None:
-        """Signal to one observer; changes made so far in the step go to all.
+        """Send a signal to one observer. Changes made so far in the step are published to all.
 
         Raises:
             InvalidArtifact: *agent* is None, as `caller` is in an internal operation.
         """
         if agent is None:
             raise InvalidArtifact(
-                f"signal_to: no agent is given for {name}; self.caller is None in internal operations, so hand the "
-                "agent on: self.start(self.go, self.caller)"
+                f"signal_to({name!r}): expected an agent, found None; self.caller is None in internal operations, so pass "
+                "the agent as an argument: self.start(self.go, self.caller)"
             )
         self._steps.signal(name, arguments, agent)
 
     def fail(self, message: str, functor: str | None = None, *arguments: object) -> NoReturn:
-        """End the operation as failed; its step is undone.
+        """Fail the operation. Its step is rolled back.
 
         Args:
-            message: text for people.
-            functor: functor of the reason term, None for no reason.
-            arguments: arguments of the reason term; without any it is an atom.
+            message: text for users.
+            functor: functor of the reason term. None for no reason.
+            arguments: arguments of the reason term. Without arguments, it is an atom.
 
         Raises:
             OperationFailed: always.
@@ -335,33 +340,33 @@ class Artifact:
             raise OperationFailed(message)
         if not isinstance(functor, str) or not functor:
             raise InvalidArtifact(
-                f"fail({message!r}, {functor!r}): the reason begins with a name, such as too_many"
+                f"fail({message!r}, {functor!r}): expected a functor as reason, such as too_many"
             )
         raise OperationFailed(
             message, Structure(functor, tuple(map(plain, arguments))) if arguments else Atom(functor)
         )
 
     def log(self, text: str) -> None:
-        """Write a line for people."""
+        """Log a line."""
         self._steps.setting.log(f"[{self.name}] {text}")
 
     # ---- the operation in progress
 
     @property
     def current(self) -> OperationExecution:
-        """The operation in progress: its request, its pauses.
+        """The operation in progress, with its request and its pauses.
 
         Raises:
-            InvalidArtifact: there is none.
+            InvalidArtifact: no operation is in progress.
         """
         return self._steps.current("asking for the current operation", changes=False)
 
     @property
     def caller(self) -> Atom | None:
-        """The agent on whose behalf the operation in progress runs, an atom as agents know their names.
+        """The agent that called the operation in progress, as an atom.
 
-        Through links it is the agent at the beginning of the chain, in ``init`` the creator, in internal
-        operations None.
+        Through links it is the agent at the beginning of the chain, in ``init`` the creator, and None in internal
+        operations.
         """
         holder = self._steps.turns.holder
         if holder is None or holder.request.agent is None or not self._steps.inside():
@@ -369,39 +374,39 @@ class Artifact:
         return Atom(holder.request.agent)
 
     def commit(self) -> None:
-        """Publish what the step has changed so far; from here on it cannot be undone."""
+        """Publish the changes of the step so far. They can no longer be rolled back."""
         holder = self._steps.current("a commit")
         if holder.declared is None or not holder.declared.threaded:
             self._steps.commit()
 
     @step_boundary
     async def sleep(self, delay: float) -> None:
-        """Wait for *delay* seconds; a step boundary, others may use the artifact meanwhile."""
+        """Wait for *delay* seconds. This is a step boundary: other operations may run meanwhile."""
         await self._steps.leave(self.clock.sleep(delay), "sleeping")
 
     @step_boundary
     async def until(self, guard: Callable[[], bool]) -> None:
-        """Wait until *guard* is true; a step boundary, *guard* is evaluated whenever a step has ended."""
+        """Wait until *guard* is true. This is a step boundary. The guard is evaluated after every step."""
         await self._steps.until(guard)
 
     @step_boundary
     async def step(self, awaitable: Awaitable[T]) -> T:
-        """Wait for anything else, such as a service call; a step boundary.
+        """Await anything else, such as a service call. This is a step boundary.
 
-        Awaiting without `step` keeps the artifact for oneself.
+        Without `step`, an ``await`` blocks all other operations of the artifact.
         """
         return await self._steps.leave(awaitable, "waiting for something")
 
     @step_boundary
     async def pause_point(self, on_pause: Callable[[], None] | None = None) -> float:
-        """Wait here while the operation is paused; a step boundary only if it is.
+        """Wait here while the operation is paused. This is a step boundary only if it is paused.
 
         Args:
-            on_pause: called before the waiting, within the operation.  To stop at the very moment of the
-                pause, register a callback with ``self.current.on_pause`` too.
+            on_pause: called before waiting, within the operation. To stop at the moment of the pause, also register a
+                callback with ``self.current.on_pause``.
 
         Returns:
-            Seconds that the operation has been paused since the last pause point, 0.0 mostly.
+            Seconds that the operation has been paused since the last pause point, usually 0.0.
         """
         return await self._steps.pause_point(on_pause)
 
@@ -410,18 +415,18 @@ class Artifact:
     def start(
         self, operation: str | Callable[..., object], *arguments: object, cause: Cause | None = None
     ) -> None:
-        """Run an internal operation as a process of its own; its failure is logged and harms nobody.
+        """Run an internal operation as a process of its own. Its failure is logged and has no other effect.
 
-        Within an operation it begins when the step has ended well; from a callback at once if the artifact
-        is free.  This is the way to change properties from a callback.
+        From within an operation, it begins after the step has succeeded; from a callback, as soon as the artifact is
+        free. Use it to change properties from a callback.
 
         Args:
             operation: a method marked `internal_operation` (or `operation`), or its name.
-            arguments: given as they are.
-            cause: what led to it, such as the sample of a sensor; None for that of the operation in progress.
+            arguments: passed unchanged.
+            cause: what led to it, such as a sensor sample. None for the cause of the operation in progress.
 
         Raises:
-            InvalidArtifact: there is no such operation.
+            InvalidArtifact: the artifact has no such operation.
         """
         declared = self._steps.interface.own(operation, len(arguments))
         if declared is None:
@@ -432,21 +437,21 @@ class Artifact:
         wanted = operation if isinstance(operation, str) else str(getattr(operation, "__name__", operation))
         method = getattr(type(self), wanted, None)
         if method is not None and not marks_of(method):
-            return f"{wanted} is no operation of artifact {self.name}: put @internal_operation above def {wanted}"
-        return f"artifact {self.name} has no internal operation {wanted} with {count} arguments"
+            return f"{wanted} is not an operation of artifact {self.name}: add @internal_operation above def {wanted}"
+        return f"unknown internal operation `{wanted}/{count}` of artifact {self.name}"
 
     @step_boundary
     async def call_linked(self, port: str | ArtifactId | None, operation: str, *arguments: object) -> None:
-        """Call a linked operation of all artifacts behind *port*, and wait for all; a step boundary.
+        """Call a linked operation of all artifacts that are linked to *port*, and wait for all of them. This is a step
+        boundary.
 
         Args:
-            port: one of `ports`, None for the first of them; or one artifact, which need not be linked.
+            port: one of `ports`; None for the first one; or an artifact, which need not be linked.
             operation: name of the linked operation.
-            arguments: inputs, and `Out` objects for its outputs.
+            arguments: inputs, and `Out` objects for outputs.
 
         Raises:
-            OperationFailed: the class has no such port, nothing is linked to it, or a linked operation failed (with
-                its reason).
+            OperationFailed: the port is unknown or not linked, or a linked operation failed (with its reason).
         """
         targets = (port,) if isinstance(port, ArtifactId) else self._behind(port)
         call = call_all(self.workspace.execute_linked, targets, operation, arguments, self.current)
@@ -454,31 +459,31 @@ class Artifact:
 
     def _behind(self, port: str | None) -> tuple[ArtifactId, ...]:
         if not self.ports or (port is not None and port not in self.ports):
-            offered = f"its ports are {', '.join(self.ports)}" if self.ports else "it has none"
-            self._fail_call(f"{type(self).__qualname__} has no out port {port!r}; {offered}")
+            known = f"its ports are {', '.join(self.ports)}" if self.ports else "it has none"
+            self._fail_call(f"unknown out port `{port}` of {type(self).__qualname__}; {known}")
         port = port if port is not None else self.ports[0]
         targets = self.workspace.linked(self.id, port)
         if not targets:
-            self._fail_call(f"nothing is linked to port {port} of artifact {self.name}")
+            self._fail_call(f"port {port} of artifact {self.name} is not linked")
         return targets
 
     def _fail_call(self, message: str) -> NoReturn:
-        # The reason of CArtAgO, in which every call that comes to nothing is an error of the operation.
+        # CArtAgO's reason: there, every failed call is an error of the operation.
         request = self.current.request
         self.fail(message, "operation_error", f"{request.operation}/{len(request.arguments)}")
 
     def external_session(self, cause: Cause | None = None) -> ExternalSession:
-        """Have the artifact for oneself from elsewhere: ``with`` in another thread, ``async with`` in another task.
+        """Get exclusive access to the artifact from elsewhere: ``with`` in another thread, ``async with`` in another task.
 
-        It waits for its turn, as an operation does.  At its end the changes are published together; if it ends with
-        an exception they are undone.  A callback of the loop, which cannot wait, uses `start`.
+        It waits for its turn, as an operation does. At its end, the changes are published together; if it ends with an
+        exception, they are rolled back. A callback of the event loop, which cannot wait, calls `start`.
 
         Args:
-            cause: what led to it, such as the sample of a sensor.
+            cause: what led to it, such as a sensor sample.
 
         Raises:
-            InvalidArtifact: (on entering) ``with`` was used in the thread of the loop, or within an operation.
-            OperationFailed: (on entering) the artifact is disposed; reason ``artifact_not_available(Name)`` or
+            InvalidArtifact: (on entering) ``with`` was used in the thread of the event loop, or within an operation.
+            OperationFailed: (on entering) the artifact has been disposed; reason ``artifact_not_available(Name)`` or
                 ``artifact_disposed(Name)``.
         """
         return ExternalSession(self._steps, cause)
@@ -492,12 +497,12 @@ class Artifact:
         pausable: bool = False,
         threaded: bool = False,
     ) -> None:
-        """Add an operation to this one artifact, such as one read from a file.
+        """Add an operation to this artifact at run time, such as one read from a file.
 
         Args:
-            name: what agents call it.
-            function: gets the arguments (not the artifact); its signature counts as that of a method.
-            guard: gets the same, or nothing; the operation waits until it is true.
+            name: name of the operation for agents.
+            function: gets the arguments without the artifact. Its signature counts as that of a method.
+            guard: gets the same arguments, or none. The operation waits until it is true.
             pausable: see `operation`.
             threaded: see `operation`.
         """
@@ -505,7 +510,7 @@ class Artifact:
         self._own_interface().operations.add(declare_function(mark, name, function, guard))
 
     def remove_operation(self, name: str) -> None:
-        """Take away all operations called *name* from this one artifact."""
+        """Remove all operations called *name* from this artifact."""
         self._own_interface().operations.remove(name)
 
     def _own_interface(self) -> Interface:

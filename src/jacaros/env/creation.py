@@ -1,4 +1,4 @@
-"""Making artifacts: finding the type, joining object and kernel, and the reasons why it can fail."""
+"""Create artifacts: find the type, connect object and kernel, and report why creation failed."""
 
 from collections.abc import Callable
 
@@ -7,7 +7,7 @@ from jacaros.env.errors import InvalidArtifact, OperationFailed, UnknownArtifact
 from jacaros.env.ids import ArtifactId
 from jacaros.env.kernel.changed_copies import changed_copies
 from jacaros.env.kernel.declaration import DeclaredOperation, declare_method
-from jacaros.env.kernel.faults import is_interruption, told
+from jacaros.env.kernel.faults import error_text, is_interruption
 from jacaros.env.kernel.interface import interface_of
 from jacaros.env.kernel.setting import Setting
 from jacaros.env.kernel.steps import Steps
@@ -16,27 +16,27 @@ from jacaros.env.values import Structure
 from jacaros.errors import InternalError
 
 FindType = Callable[[str], type[Artifact]]
-"""Finds the class for a type name; raises `UnknownArtifactType`."""
+"""Finds the class for a type name. Raises `UnknownArtifactType`."""
 
 
 def refused(why: str, what: str, message: str) -> OperationFailed:
-    """The failure with reason ``makeArtifactFailure(why, what)``."""
+    """Return the failure with reason ``makeArtifactFailure(why, what)``."""
     return OperationFailed(message, Structure("makeArtifactFailure", (why, what)))
 
 
 def init_failed(artifact_id: ArtifactId, message: str) -> OperationFailed:
-    """The failure of an artifact whose ``init`` failed with *message*."""
-    made = f"artifact {artifact_id.name} ({artifact_id.type_name}) cannot be made"
-    return refused("init_failed", artifact_id.name, f"{made}: {message}")
+    """Return the failure of an artifact whose ``init`` failed with *message*."""
+    what = f"cannot create artifact {artifact_id.name} ({artifact_id.type_name})"
+    return refused("init_failed", artifact_id.name, f"{what}: {message}")
 
 
 def artifact_type_of(
     type_name: str | type[Artifact], find_type: FindType, setting: Setting
 ) -> type[Artifact]:
-    """The class for *type_name*.
+    """Return the class for *type_name*.
 
     Raises:
-        OperationFailed: there is none, or it cannot be loaded.
+        OperationFailed: the type is unknown, or its module raises an error.
     """
     if not isinstance(type_name, str):
         return type_name
@@ -51,18 +51,18 @@ def artifact_type_of(
         if is_interruption(error):
             raise
         if isinstance(error, InvalidArtifact):
-            setting.log(f"[{name}] the artifact type cannot be loaded: {error}")
+            setting.log(f"[{name}] cannot load the artifact type: {error}")
         else:
-            setting.log_error(name, "the artifact type cannot be loaded:", error)
-        message = f"artifact type {name} cannot be loaded: {told(error)}"
+            setting.log_error(name, "cannot load the artifact type:", error)
+        message = f"cannot load artifact type {name}: {error_text(error)}"
         raise refused("unknown_artifact_template", name, message) from error
     if not (isinstance(found, type) and issubclass(found, Artifact)):
-        raise refused("unknown_artifact_template", name, f"{name} is not a class derived from Artifact")
+        raise refused("unknown_artifact_template", name, f"{name} is not a subclass of Artifact")
     return found
 
 
 def attach(artifact_type: type[Artifact], artifact_id: ArtifactId, host: Host, setting: Setting) -> Steps:
-    """Make the object of an artifact and join it with what runs its operations.
+    """Create the object of an artifact and connect it with the kernel, which runs its operations.
 
     Raises:
         OperationFailed: its constructor failed.
@@ -73,40 +73,40 @@ def attach(artifact_type: type[Artifact], artifact_id: ArtifactId, host: Host, s
         if is_interruption(error):
             raise
         setting.log_error(artifact_id.name, f"the constructor of {artifact_type.__qualname__} failed:", error)
-        raise init_failed(artifact_id, told(error)) from error
+        raise init_failed(artifact_id, error_text(error)) from error
     if artifact_type not in setting.told:
         setting.told.add(artifact_type)
-        _tell_author(artifact_type, setting)
+        _log_mistakes(artifact_type, setting)
     steps = Steps(artifact_id, artifact, artifact_type.interface, tuple(artifact_type.ports), setting)
     artifact._join(steps, host)
     return steps
 
 
-def _tell_author(artifact_type: type[Artifact], setting: Setting) -> None:
-    """Tell of mistakes that can be seen in a class, when the first artifact of it is made: all its module is there then."""
+def _log_mistakes(artifact_type: type[Artifact], setting: Setting) -> None:
+    """Log mistakes that show in a class when its first artifact is created: its module is complete then."""
     for call in changed_copies(artifact_type):
         setting.log(
-            f"[{artifact_type.__name__}] in {call} changes a copy of the value, and nothing else: keep it in a variable, "
-            "change that, and give it to self.update_property"
+            f"[{artifact_type.__name__}] in {call} changes only a copy of the value: keep it in a variable, change the "
+            "variable, and pass it to self.update_property"
         )
     if not any(artifact_type.interface.unknown_annotations()):
         return
     artifact_type.interface = interface_of(artifact_type)
     for operation, parameter, written in artifact_type.interface.unknown_annotations():
         setting.log(
-            f"[{artifact_type.__name__}] parameter {parameter} of {operation} accepts anything: its annotation "
-            f"{written!r} is not known; correct it, or import it outside of `if TYPE_CHECKING`"
+            f"[{artifact_type.__name__}] parameter {parameter} of {operation} accepts any value: unknown annotation "
+            f"{written!r}; correct it, or import it outside of `if TYPE_CHECKING`"
         )
 
 
 def init_of(artifact_type: type[Artifact], request: OperationRequest) -> DeclaredOperation:
-    """The ``init`` of *artifact_type* for the arguments of *request*.
+    """Return the ``init`` of *artifact_type* for the arguments of *request*.
 
-    Without arguments, a type that has no ``init`` for that is made all the same, and nothing is done
-    (case ``creation/make_failures``, as in CArtAgO).
+    Without arguments, a type whose ``init`` requires some is created without calling it, as in CArtAgO (conformance case
+    ``creation/make_failures``).
 
     Raises:
-        OperationFailed: none takes that number of arguments.
+        OperationFailed: no ``init`` takes this number of arguments.
     """
     count = len(request.arguments)
     inits = artifact_type.interface.inits
@@ -116,11 +116,11 @@ def init_of(artifact_type: type[Artifact], request: OperationRequest) -> Declare
     if not count:
         return NO_INIT
     taken = " or ".join(f"({each.signature})" for each in inits) or "()"
-    raise init_failed(request.artifact, f"its init takes {taken}, not {count} arguments")
+    raise init_failed(request.artifact, f"expected {taken} as arguments of init, found {count} arguments")
 
 
 def _nothing(_: Artifact) -> None:
-    """Stand for the ``init`` of an artifact that is made without."""
+    """Replace the ``init`` of an artifact that is created without one."""
 
 
 NO_INIT = declare_method(Mark(INIT), "init", _nothing, Artifact, 0)

@@ -1,4 +1,4 @@
-"""The environment of a process: a tree of workspaces with their artifacts."""
+"""The environment of a process: a tree of workspaces with artifacts."""
 
 from collections.abc import Callable, Mapping
 
@@ -15,7 +15,7 @@ from jacaros.env.operation import OPERATION, OperationRequest
 from jacaros.env.ports import UnderWay
 from jacaros.env.resources.arbiter import Arbiter
 from jacaros.env.resources.resource import Use
-from jacaros.env.standard_artifacts import furnish
+from jacaros.env.standard_artifacts import add_standard_artifacts
 from jacaros.env.tree import WorkspaceTree
 from jacaros.env.values import Structure
 from jacaros.env.workspace import Workspace
@@ -23,7 +23,7 @@ from jacaros.trace import Tracer
 
 
 def knows_no_type(type_name: str) -> type[Artifact]:
-    """Know no artifact type: artifacts are made from their classes.
+    """Reject all type names: artifacts are created from their classes.
 
     Raises:
         UnknownArtifactType: always.
@@ -32,14 +32,14 @@ def knows_no_type(type_name: str) -> type[Artifact]:
 
 
 class Environment:
-    """All workspaces of a process; ``/main`` is there from the beginning.
+    """All workspaces of a process. ``/main`` always exists.
 
     Args:
-        clock: where artifacts take time from.
-        resources: what the host lends to artifacts, by name.
-        find_type: finds the artifact class for a type name; raises `UnknownArtifactType`.
-        log: takes a line for people.
-        on_internal_error: told of defects of JaCaROS itself; without it they are raised where they arise.
+        clock: clock of the run.
+        resources: services of the host for artifacts, by name.
+        find_type: finds the artifact class for a type name. Raises `UnknownArtifactType`.
+        log: takes a line of the log.
+        on_internal_error: called with defects of JaCaROS itself. Without it they are raised where they arise.
     """
 
     def __init__(
@@ -59,27 +59,30 @@ class Environment:
 
     @property
     def clock(self) -> Clock:
-        """Where artifacts take time from."""
+        """Clock of the run."""
         return self._setting.clock
 
     @property
     def resources(self) -> Mapping[str, object]:
-        """What the host lends to artifacts, by name."""
+        """Services of the host for artifacts, by name."""
         return self._setting.resources
 
     @property
     def arbiter(self) -> Arbiter:
-        """Decides who has what operations and plans use."""
+        """Assigns resources to operations and plans."""
         return self._setting.arbiter
 
     def used_by(self, artifact_id: ArtifactId) -> tuple[Use, ...]:
-        """What the operations of an artifact use, with the name of its robot; nothing if it is gone or lives elsewhere."""
+        """Return the resources that the operations of an artifact use, with the name of its robot.
+
+        Empty if it is gone or remote.
+        """
         steps = self._registry.made(artifact_id)
         return () if steps is None else steps.used()
 
     @property
     def tracer(self) -> Tracer | None:
-        """Told of every cause that arises, None while nobody watches."""
+        """Receives every cause. None if no tracer is set."""
         return self._setting.tracer
 
     @tracer.setter
@@ -88,7 +91,7 @@ class Environment:
 
     @property
     def listener(self) -> EnvironmentListener | None:
-        """Receives what happens in the artifacts of this process, None while nobody watches."""
+        """Receives what happens in the artifacts of this process. None if no listener is set."""
         listener: EnvironmentListener | None = self._setting.listener
         return listener
 
@@ -97,81 +100,81 @@ class Environment:
         self._setting.listener = listener
 
     def artifact(self, artifact_id: ArtifactId) -> object | None:
-        """The artifact behind an id, for those who watch it; None when it has not been made, is gone or lives elsewhere."""
+        """Return the artifact object behind an id, or None if it does not exist yet, is gone or is remote."""
         steps = self._registry.made(artifact_id)
         return steps.artifact if steps is not None else None
 
     def when_disposed(self, callback: Callable[[ArtifactId], None]) -> None:
-        """Call *callback* with the id of every artifact that is gone, when all who observed it have been told."""
+        """Call *callback* with the id of every disposed artifact, after its observers have been notified."""
         self._registry.when_disposed.append(callback)
 
     def workspaces(self) -> tuple[ports.Workspace, ...]:
-        """All workspaces, the oldest first."""
+        """Return all workspaces, the oldest first."""
         return self._tree.all()
 
     def workspace(self, path: str) -> ports.Workspace:
-        """The workspace with that full path; names of links may stand in it.
+        """Return the workspace with this full path, which may contain names of links.
 
         Raises:
-            UnknownWorkspace: there is none.
+            UnknownWorkspace: the workspace does not exist.
         """
         return self._tree.find(path)
 
     def create_workspace(self, path: str) -> ports.Workspace:
-        """Make a workspace with its default artifacts.
+        """Create a workspace with its standard artifacts.
 
         Args:
-            path: full path; the workspace that it is a part of must be there.
+            path: full path. Its parent workspace must exist.
 
         Raises:
-            OperationFailed: it is there already; reason ``workspace_already_present(Path)``.
-            UnknownWorkspace: the workspace above it is not there.
+            OperationFailed: it already exists; reason ``workspace_already_present(Path)``.
+            UnknownWorkspace: the parent workspace does not exist.
         """
         return self._tree.create(path)
 
     def link_workspace(self, path: str, target: str) -> None:
-        """Let a full path, at which there is nothing yet, lead to another workspace.
+        """Make an unused full path lead to another workspace.
 
         Raises:
-            OperationFailed: something is there already; reason ``workspace_already_present(Path)``.
-            UnknownWorkspace: the target, or the workspace above the path, is not there.
+            OperationFailed: the path is in use; reason ``workspace_already_present(Path)``.
+            UnknownWorkspace: the target, or the parent workspace of the path, does not exist.
         """
         self._tree.link(path, target)
 
     def _make(self, path: str, above: ports.Workspace | None) -> Workspace:
         if above is not None and above not in self._own:
-            message = f"workspace {above.path} is served from elsewhere: {path} is to be made there"
+            message = f"workspace {above.path} is remote: create {path} in the process that serves it"
             raise OperationFailed(message, Structure("not_supported", ("createWorkspace",)))
         workspace = Workspace(path, self._registry, self._setting, self._find_type)
-        furnish(workspace, self._tree)
+        add_standard_artifacts(workspace, self._tree)
         self._own.append(workspace)
         return workspace
 
     def mount(self, workspace: ports.Workspace) -> Callable[[], None]:
-        """Make a workspace visible here that is served from elsewhere, under its `path`; gives what ends that.
+        """Add a remote workspace under its `path`. Return a function that removes it.
 
         Raises:
-            OperationFailed: there is one at that path already; reason ``workspace_already_present(Path)``.
-            UnknownWorkspace: the workspace above it is not there.
+            OperationFailed: the path is in use; reason ``workspace_already_present(Path)``.
+            UnknownWorkspace: the parent workspace does not exist.
         """
         return self._tree.mount(workspace)
 
     def execute(self, request: OperationRequest) -> UnderWay:
-        """Run an operation for an agent, wherever the artifact lives; see `Workspace.execute`."""
+        """Run an operation for an agent, wherever the artifact is. See `Workspace.execute`."""
         steps = self._registry.find(request.artifact)
         if steps is None:
             return self._tree.at(request.artifact.workspace, self._own[0]).execute(request)
         return steps.execute(request, OPERATION)
 
     def log(self, text: str) -> None:
-        """Write a line for people."""
+        """Log a line."""
         self._setting.log(text)
 
     def log_error(self, who: str, what: str, error: BaseException) -> None:
-        """Tell people that *what* went wrong in the code of *who*."""
+        """Log that *what* failed in the code of *who*."""
         self._setting.log_error(who, what, error)
 
     async def close(self) -> None:
-        """Dispose every artifact, the workspaces made last first; those served from elsewhere are left alone."""
+        """Dispose all artifacts, those of the newest workspaces first. Remote workspaces do not change."""
         for workspace in reversed(self._own):
             await workspace.close()

@@ -1,4 +1,4 @@
-"""One operation on its way: waiting, running, paused, cancelled or ended."""
+"""The execution of one operation: waiting, running, paused, cancelled or ended."""
 
 import asyncio
 from collections.abc import Callable, Sequence
@@ -16,7 +16,7 @@ from jacaros.trace import Cause
 
 
 class Turns(Protocol):
-    """What an execution needs of the artifact that it belongs to."""
+    """The part of an artifact that an execution needs."""
 
     clock: Clock
 
@@ -24,36 +24,36 @@ class Turns(Protocol):
         """End *execution* without an outcome."""
 
     def reconsider(self) -> None:
-        """See whether somebody who waits may go on now."""
+        """Check whether a waiting operation can continue."""
 
     def complain(self, what: str, error: BaseException) -> None:
-        """Log an error of the artifact's code that harms nobody."""
+        """Log an error of the artifact's code that does not fail an operation."""
 
     def hold(self, execution: "OperationExecution", uses: tuple[Use, ...]) -> Holding:
-        """Let an operation use something; it has to enter and to leave."""
+        """Return a claim of an operation, which the operation enters and leaves."""
 
 
 class OperationExecution:
-    """One operation on its way; the handle of its caller, and `Artifact.current` of its code.
+    """The execution of one operation: the handle of its caller, and `Artifact.current` of its code.
 
     Attributes:
-        request: what was asked for.
-        declared: the operation that serves it, None when it was refused.
-        arguments: what the operation receives.
-        asked_for: step boundaries that it may have forgotten to await.
+        request: the request of the caller.
+        declared: the operation that serves it. None if it was refused.
+        arguments: the converted arguments.
+        asked_for: step boundaries that may not have been awaited.
         cause: what led to it.
         begun: True once its code has run.
-        cancelled: True when it was dropped; nobody is told its outcome.
-        verdict: what its caller is told however it ends now: its artifact is gone, or its time is up; None while
-            it ends by itself.
-        told: True once its caller knows the outcome, though it may not have ended (a thread cannot be stopped).
-        limit: rings when its time is up, None without a limit.
-        thread: the thread in which it runs, None when that is the loop's.
-        ended: True when all is over, code in ``finally`` included.
-        holding: what it holds of the resources that it uses, None when it uses none.
-        suspended: its caller has paused it; it may be paused without that, because it waits for a resource.
-        task: the task of a coroutine that has been given its first turn.
-        linked: executions in other artifacts that it waits for now.
+        cancelled: True if it was cancelled. Its outcome is not reported.
+        verdict: the outcome that its caller gets however it ends, because its artifact is gone or its time limit has
+            passed. None while it ends normally.
+        told: True once the caller has the outcome. The operation may still run (a thread cannot be stopped).
+        limit: timer of its time limit. None without a limit.
+        thread: the thread in which it runs. None if it runs on the event loop.
+        ended: True when everything has ended, including code in ``finally``.
+        holding: the resources that it holds. None if it uses none.
+        suspended: its caller has paused it. It may also be paused because it waits for a resource.
+        task: the task of a coroutine that has begun.
+        linked: executions in other artifacts that it is waiting for.
     """
 
     __slots__ = (
@@ -100,20 +100,20 @@ class OperationExecution:
 
     @property
     def stopped(self) -> bool:
-        """True when it has been cancelled, its artifact disposed, or its time is up."""
+        """Whether it has been cancelled, its artifact disposed, or its time limit has passed."""
         return self.cancelled or self.verdict is not None
 
     def cancel(self) -> None:
-        """Drop it: a coroutine is cancelled and its ``finally`` runs, a waiting operation is forgotten.
+        """Cancel it: a coroutine is cancelled and runs its ``finally`` blocks; a waiting operation is removed.
 
-        The outcome is not told.  What the step in progress changed is undone; what ``finally`` changes is
-        published.  An operation in a thread runs to its end.
+        The outcome is not reported. Changes of the step in progress are rolled back; changes in ``finally`` are
+        published. An operation in a thread runs to its end.
         """
         if self._turns is not None:
             self._turns.cancel(self)
 
     def pause(self) -> None:
-        """Ask it to stop for a while; obeyed by pausable operations, and passed on through links.
+        """Ask it to pause. Pausable operations obey, and linked operations get the request, too.
 
         An operation that has not begun does not begin before `resume`.
         """
@@ -128,7 +128,7 @@ class OperationExecution:
             self.holding.suspended()
 
     def adapt(self) -> None:
-        """Pause or continue, as its caller and the resources that it uses allow."""
+        """Pause or continue, depending on its caller and the resources it uses."""
         if self._turns is None:
             return
         barred = self.suspended or (self.holding is not None and self.holding.barred)
@@ -151,7 +151,7 @@ class OperationExecution:
                 turns.complain(f"a pause callback of {self.request.operation} failed", error)
 
     def resume(self) -> None:
-        """Let it go on after `pause`."""
+        """Let it continue after `pause`."""
         for each in self.linked:
             each.resume()
         if not self.suspended:
@@ -163,11 +163,11 @@ class OperationExecution:
 
     @property
     def active(self) -> bool:
-        """True once its code has begun, or its task has been made."""
+        """Whether its code has begun, or its task exists."""
         return self.begun or self.task is not None
 
     def hold(self, uses: tuple[Use, ...]) -> Holding:
-        """What it holds; of *uses* if it has not declared any, and then it has to enter and to leave itself."""
+        """Return its claim. If it has declared none, return one of *uses*, which it enters and leaves itself."""
         if self.holding is None:
             assert self._turns is not None
             self._turns.hold(self, uses)
@@ -176,31 +176,31 @@ class OperationExecution:
 
     @property
     def claims(self) -> tuple[Claim, ...]:
-        """What operations are within that it asks for."""
+        """Return the claims that operations called by it are part of."""
         if self.holding is None or not self.holding.entered:
             return self.request.within
         return (*self.request.within, self.holding.claim)
 
     @property
     def waits_for_others(self) -> bool:
-        """True while it waits for linked operations."""
+        """Whether it is waiting for linked operations."""
         return bool(self.linked)
 
     @property
     def pausable(self) -> bool:
-        """True when it obeys `pause`."""
+        """Whether it obeys `pause`."""
         return self.declared is not None and self.declared.pausable
 
     @property
     def paused(self) -> bool:
-        """True between `pause` and `resume`."""
+        """Whether it is between `pause` and `resume`."""
         return self._pause is not None and self._pause.since is not None
 
     def on_pause(self, callback: Callable[[], None]) -> Callable[[], None]:
-        """Call *callback* at the moment of every `pause` from now on, at once if it is paused already.
+        """Call *callback* at every `pause`, immediately if it is paused. Return a function that ends this.
 
-        It runs outside of the steps of the artifact: it may stop a motor, not change properties.  Call what this gives
-        when it is to be called no more; without that it is called until the operation ends.
+        The callback runs outside of the artifact's steps: it may stop a motor, but must not change properties. Without
+        a call of the returned function, it is called until the operation ends.
         """
         if self._turns is None:
             return lambda: None
@@ -211,17 +211,17 @@ class OperationExecution:
         return lambda: callbacks.remove(callback) if callback in callbacks else None
 
     def on_resume(self, callback: Callable[[], None]) -> None:
-        """Call *callback* at the end of every pause from now on; like that of `on_pause`, it must not change properties."""
+        """Call *callback* at the end of every pause. As with `on_pause`, it must not change properties."""
         if self._turns is not None:
             self._pauses(self._turns).resumers.append(callback)
 
     async def resumed(self) -> None:
-        """Wait until it is not paused; to be awaited through `Artifact.pause_point` or `Artifact.step`."""
+        """Wait until it is not paused. Await it through `Artifact.pause_point` or `Artifact.step`."""
         while self._pause is not None and self._pause.since is not None:
             await self._rest(self._pause)
 
     async def _rest(self, pause: "Pause") -> None:
-        """Wait for the end of the pause; nothing moves, so others may have what it holds."""
+        """Wait for the end of the pause. Nothing moves, so others may use its resources."""
         if self.holding is None:
             await pause.wait()
             return
@@ -234,7 +234,7 @@ class OperationExecution:
             self.holding.resting = False
 
     def take_paused_time(self) -> float:
-        """Seconds that it has been paused since this was last asked."""
+        """Return the seconds that it has been paused since the last call."""
         return self._pause.take() if self._pause is not None else 0.0
 
     def _pauses(self, turns: Turns) -> "Pause":
@@ -247,9 +247,9 @@ class Pause:
     """The pauses of one execution.
 
     Attributes:
-        since: when the present pause began, None while there is none.
-        callbacks: called when one begins.
-        resumers: called when one ends.
+        since: begin of the current pause, or None.
+        callbacks: called when a pause begins.
+        resumers: called when a pause ends.
     """
 
     __slots__ = ("_clock", "_spent", "_waiting", "callbacks", "resumers", "since")
@@ -263,7 +263,7 @@ class Pause:
         self._waiting: list[asyncio.Future[None]] = []
 
     def end(self) -> bool:
-        """End the present pause and wake who waits for that; False when there is none."""
+        """End the current pause and wake the waiting tasks. Return False without a pause."""
         if self.since is None:
             return False
         self._spent += self._clock.elapsed - self.since
@@ -275,12 +275,12 @@ class Pause:
         return True
 
     async def wait(self) -> None:
-        """Wait for the end of the present pause."""
+        """Wait for the end of the current pause."""
         future: asyncio.Future[None] = asyncio.get_running_loop().create_future()
         self._waiting.append(future)
         await future
 
     def take(self) -> float:
-        """Seconds of pause not taken before."""
+        """Return the seconds of pause that have not been taken before."""
         spent, self._spent = self._spent, 0.0
         return spent

@@ -1,18 +1,17 @@
-"""Identities of artifacts, and the paths that name workspaces."""
+"""Identities of artifacts, and paths of workspaces."""
 
 
 class ArtifactId:
-    """Which artifact: made once by the kernel, an opaque reference to everybody else.
+    """The identity of an artifact: an opaque reference that the kernel creates once.
 
-    Two ids are the same only if they are one object, so the id of a disposed artifact is never mistaken
-    for that of a later one with the same name.
+    Ids are compared by identity. A new artifact with the name of a disposed one has a different id.
 
     Attributes:
         name: unique in its workspace.
-        type_name: the type as it was given to ``makeArtifact``.
+        type_name: the type as given to ``makeArtifact``.
         workspace: full path of the workspace, such as ``/main/lab``.
         number: order of creation in the environment, from 1.
-        creator: the agent that made it, None for the environment itself.
+        creator: the agent that created it. None for the environment itself.
     """
 
     __slots__ = ("creator", "name", "number", "type_name", "workspace")
@@ -31,10 +30,10 @@ class ArtifactId:
 
 
 def resolve_path(base: str, path: str) -> str:
-    """Turn *path* into a full path.
+    """Return *path* as a full path.
 
     Args:
-        base: full path of the workspace that *path* starts from.
+        base: full path of the workspace that *path* is relative to.
         path: ``/main/lab``, ``lab``, ``sub/lab``, ``.`` or ``../other``.
     """
     parts = [] if path.startswith("/") else base.strip("/").split("/")

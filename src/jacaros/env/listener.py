@@ -1,4 +1,4 @@
-"""The port through which an environment is watched as a whole; `Environment.listener` takes one."""
+"""The port through which a whole environment is observed. See `Environment.listener`."""
 
 from typing import Protocol
 
@@ -9,22 +9,22 @@ from jacaros.env.operation import OperationOutcome
 
 
 class EnvironmentListener(Protocol):
-    """Receives what happens in the artifacts of one environment, on the loop.
+    """Receives what happens in the artifacts of one environment, on the event loop.
 
-    Nothing is made for it while there is none.  It returns soon, does not raise and changes nothing.
+    Without a listener, this costs nothing. A listener returns soon, does not raise and changes nothing.
     """
 
     def artifact(self, artifact: ArtifactId, present: bool) -> None:
-        """An artifact has been made (True) or disposed; those that stand for agents are left out."""
+        """An artifact has been created (True) or disposed. Artifacts that represent agents are left out."""
 
     def focused(self, artifact: ArtifactId, agent: str, on: bool) -> None:
-        """An agent begins to focus an artifact (True), or no longer does."""
+        """An agent has begun to focus an artifact (True), or stopped."""
 
     def published(self, observation: Observation) -> None:
         """An artifact has changed properties or sent signals."""
 
     def began(self, execution: OperationExecution) -> None:
-        """An operation that somebody asked for is about to begin, or to wait for its turn."""
+        """A requested operation begins, or waits for its turn."""
 
     def ended(self, execution: OperationExecution, outcome: OperationOutcome | None) -> None:
-        """That operation has ended; None: it was cancelled."""
+        """The operation has ended. None: it was cancelled."""

@@ -1,6 +1,6 @@
-"""Which artifact is meant: who offers an operation in a workspace, and what a name means in the joined ones.
+"""Artifact resolution: which artifact serves an operation, and which one a name means.
 
-When several artifacts offer an operation, CArtAgO's rule decides, for agents and for sessions alike.
+If several artifacts offer an operation, CArtAgO's rule decides, for agents and sessions alike.
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -10,7 +10,7 @@ from jacaros.env.ids import ArtifactId, resolve_path
 from jacaros.env.ports import Environment, Workspace
 
 
-class Offering:
+class OperationIndex:
     """The artifacts of a workspace that offer one operation with one number of arguments."""
 
     __slots__ = ("_every", "_exact", "_providers")
@@ -21,11 +21,11 @@ class Offering:
         self._providers: Providers | None = None
 
     def add(self, artifact: ArtifactId, exact: bool) -> None:
-        """Take in an artifact that is younger than all others.
+        """Add an artifact, which must be younger than all others.
 
         Args:
             artifact: the artifact.
-            exact: whether it takes exactly so many arguments, and not any number.
+            exact: whether it takes exactly this number of arguments, rather than any number.
         """
         self._every.add(artifact)
         if exact:
@@ -33,7 +33,7 @@ class Offering:
         self._providers = None
 
     def remove(self, artifact: ArtifactId) -> None:
-        """Forget an artifact; nothing happens when it is not there."""
+        """Remove an artifact, if present."""
         if artifact in self._every.artifacts:
             self._every.remove(artifact)
             if artifact in self._exact.artifacts:
@@ -41,22 +41,22 @@ class Offering:
             self._providers = None
 
     def providers(self) -> "Providers":
-        """All of them, the oldest first."""
+        """Return all artifacts, the oldest first."""
         if self._providers is None:
             self._providers = Providers(self._every.artifacts)
-            self._providers.offering = self
+            self._providers.operation_index = self
         return self._providers
 
     def is_preferred(self, artifact: ArtifactId) -> bool:
-        """Whether an artifact may be chosen: those that take exactly so many arguments come before the others."""
+        """Return whether an artifact may be chosen. An exact number of arguments has precedence."""
         return artifact in self._preferred.artifacts
 
     def oldest(self) -> ArtifactId:
-        """The oldest that may be chosen; there must be one."""
+        """Return the oldest artifact that may be chosen. At least one must exist."""
         return next(iter(self._preferred.artifacts))
 
     def oldest_of(self, creator: str) -> ArtifactId | None:
-        """The oldest that may be chosen of those that *creator* made."""
+        """Return the oldest artifact that may be chosen and that *creator* created."""
         return next(iter(self._preferred.by_creator.get(creator, ())), None)
 
     @property
@@ -68,14 +68,14 @@ class Providers(tuple[ArtifactId, ...]):
     """Artifacts that offer an operation, the oldest first.
 
     Attributes:
-        offering: where they are from.
+        operation_index: the index that they come from.
     """
 
-    offering: Offering
+    operation_index: OperationIndex
 
 
 class _ByAge:
-    """Artifacts in the order of their making, also by who made them."""
+    """Artifacts by age, also by creator."""
 
     __slots__ = ("artifacts", "by_creator")
 
@@ -98,18 +98,18 @@ class _ByAge:
 def chosen_artifact(
     places: Iterable[Workspace], operation: str, arity: int, own: str, focused: Sequence[ArtifactId]
 ) -> ArtifactId | None:
-    """The artifact that is to serve an operation; None when nobody offers it.
+    """Return the artifact that serves an operation, or None if no artifact offers it.
 
-    The first workspace that has one decides.  There, those that take exactly so many arguments come before
-    those that take any number; among them the oldest one made by *own*, else the one focused first, else the
-    oldest.
+    The first workspace that has one decides. There, artifacts that take exactly this number of arguments have
+    precedence over those that take any number. Of these, the oldest one created by *own* is chosen; else the one
+    focused first; else the oldest.
 
     Args:
-        places: the workspaces, in the order in which they count.
+        places: the workspaces, in order of precedence.
         operation: its name.
-        arity: the number of its arguments.
-        own: who asks, as it is noted as the creator of artifacts.
-        focused: what they focus, in the order of focusing.
+        arity: number of its arguments.
+        own: name of the caller, to compare with creators.
+        focused: artifacts that the caller focuses, in the order of focusing.
     """
     for workspace in places:
         candidates = workspace.providers(operation, arity)
@@ -123,10 +123,10 @@ def chosen_artifact(
 
 
 def artifact_named(places: Iterable[Workspace], name: str) -> ArtifactId:
-    """The artifact of that name in the first workspace that has one.
+    """Return the artifact with this name in the first workspace that has one.
 
     Raises:
-        UnknownArtifact: none has.
+        UnknownArtifact: no workspace has one.
     """
     failures = []
     for workspace in places:
@@ -146,26 +146,26 @@ def _preferred(
     focused: Sequence[ArtifactId],
 ) -> ArtifactId:
     if isinstance(candidates, Providers):
-        offering = candidates.offering
+        index = candidates.operation_index
     else:
-        # The workspace is served from elsewhere.
-        offering = Offering()
+        # The workspace is remote.
+        index = OperationIndex()
         exact = f"{operation}/{arity}"
         for candidate in candidates:
-            offering.add(candidate, exact in workspace.offers(candidate))
-    of_own = offering.oldest_of(own)
+            index.add(candidate, exact in workspace.offers(candidate))
+    of_own = index.oldest_of(own)
     if of_own is not None:
         return of_own
-    return next((artifact for artifact in focused if offering.is_preferred(artifact)), offering.oldest())
+    return next((artifact for artifact in focused if index.is_preferred(artifact)), index.oldest())
 
 
 def in_order(joined: Mapping[str, Workspace], current: Workspace, home: Workspace) -> Iterator[Workspace]:
-    """Where things are looked for: the current workspace, home while it is joined, then the others.
+    """Iterate over workspaces in the order of lookup: the current one, home (while joined), then the others.
 
     Args:
-        joined: the joined workspaces by full path, in the order of joining.
-        current: the current one.
-        home: the one in which everything began.
+        joined: joined workspaces by full path, in the order of joining.
+        current: the current workspace.
+        home: the workspace joined at the start.
     """
     yield current
     if home is not current and home.path in joined:
@@ -177,13 +177,13 @@ def in_order(joined: Mapping[str, Workspace], current: Workspace, home: Workspac
 def joined_workspace(
     environment: Environment, joined: Mapping[str, Workspace], current: Workspace, home: Workspace, name: str
 ) -> Workspace | None:
-    """The joined workspace with that plain name or path, which starts from the current one; None without one."""
+    """Return the joined workspace with this name or path (relative to the current one), or None."""
     full = resolve_path(current.path, name)
     for workspace in in_order(joined, current, home):
         if (workspace.path == full or workspace.name == name) and workspace.path in joined:
             return workspace
     try:
-        # A link may lead there.
+        # The path may contain a link.
         return joined.get(environment.workspace(full).path)
     except OperationFailed:
         return None

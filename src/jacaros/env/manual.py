@@ -1,4 +1,4 @@
-"""Manuals: what an artifact type offers, for agents, people and the inspector."""
+"""Manuals: what an artifact type offers, for agents, users and the inspector."""
 
 import inspect
 from collections.abc import Callable, Iterable, Iterator
@@ -22,9 +22,9 @@ class ParameterManual:
 
     Attributes:
         name: its name.
-        expected: the kind of value it takes, for people.
-        output: True when it is an output.
-        optional: True when it may be left out.
+        expected: the kind of value it accepts, as text.
+        output: whether it is an output.
+        optional: whether it has a default value.
     """
 
     name: str
@@ -38,14 +38,14 @@ class OperationManual:
     """One operation.
 
     Attributes:
-        name: what its callers call it.
-        kind: ``operation``, ``linked operation`` or ``internal operation``; ``init`` for what makes the artifact.
+        name: its name for callers.
+        kind: ``operation``, ``linked operation``, ``internal operation``, or ``init`` for the initialisation.
         usage: name and parameters in one line, outputs with a minus sign.
-        parameters: those with a place of their own.
-        more: True when any number of further arguments may follow.
-        text: what it does, as its author describes it.
-        guarded: True when it may have to wait before it begins.
-        pausable: True when it stops while the intention that asked for it is suspended.
+        parameters: the positional parameters.
+        more: whether any number of further arguments may follow.
+        text: its description.
+        guarded: whether it may have to wait before it begins.
+        pausable: whether it pauses while the intention that called it is suspended.
     """
 
     name: str
@@ -63,9 +63,9 @@ class ObservableManual:
     """A property or a signal.
 
     Attributes:
-        name: the functor of the belief or event.
+        name: functor of the belief or event.
         usage: the name with words for its values.
-        text: what it means, as its author describes it; empty when only the code tells of it.
+        text: its description. Empty if it is only known from the code.
     """
 
     name: str
@@ -79,11 +79,11 @@ class Manual:
 
     Attributes:
         type_name: name of the class.
-        text: what it is for, as its author describes it.
-        inits: how it is made: each ``init`` with its parameters.
-        operations: its operations: for agents, for other artifacts, for itself.
+        text: its description.
+        inits: how to create it: each ``init`` with its parameters.
+        operations: its operations: for agents, for other artifacts, and internal ones.
         properties: its observable properties.
-        signals: what it signals.
+        signals: its signals.
         ports: its out ports.
     """
 
@@ -99,7 +99,7 @@ class Manual:
         return "\n".join(self.lines())
 
     def lines(self) -> Iterator[str]:
-        """The manual for people; what the artifact starts itself is not their concern."""
+        """Return the manual as text, without internal operations."""
         yield self.type_name
         yield from _indented(self.text, 2)
         yield from _titled("made with", map(_operation_lines, self.inits))
@@ -145,17 +145,17 @@ def describe(
     interface: Interface | None = None,
     properties: Iterable[ObservableProperty] = (),
 ) -> Manual:
-    """Describe what artifacts of *artifact_type* offer.
+    """Return the manual of *artifact_type*.
 
-    Properties and signals are those of the sections ``Properties:`` and ``Signals:`` of its docstring, and those that its
-    code defines and sends by name.
+    Properties and signals come from the sections ``Properties:`` and ``Signals:`` of its docstring, and from the names that
+    its code defines and sends.
 
     Args:
         artifact_type: the class.
-        interface: the operations of one artifact that defines more of its own (`Workspace.interface`).
-        properties: those that one artifact has.
+        interface: the operations of an artifact that defines more of its own (`Workspace.interface`).
+        properties: the properties of an artifact.
     """
-    # Imported here: reading sources is for those who ask for a manual only.
+    # Imported on demand: only manuals read sources.
     from jacaros.env import manual_sources as sources
 
     offered = interface if interface is not None else artifact_type.interface
@@ -200,8 +200,7 @@ def _describe(declared: DeclaredOperation) -> OperationManual:
 
 
 def _worded(declared: DeclaredOperation) -> Signature:
-    """The signature, with what only the maker of an operation knows of its parameters: those of mappings are not written
-    in Python, and have no annotations."""
+    """Return the signature, with descriptions of parameters from mapping files, which have no annotations."""
     signature = declared.signature
     words: dict[str, str] = getattr(declared.source, "parameter_words", dict)()
     parameters = [
@@ -221,13 +220,13 @@ def _text(source: Callable[..., object]) -> str:
 
 
 def manual_term(manual: Manual) -> Structure:
-    """A manual as a term that agents can take apart.
+    """Return a manual as a term for agents.
 
     ``manual(Type,Text,Inits,Operations,Properties,Signals,Ports)``: Type and all texts are strings, names are atoms.
-    An init is ``init(Parameters,Text)``; an operation, for agents, ``operation(Name,Parameters,Text)``, and for other
-    artifacts ``linked(Name,Parameters,Text)``; a parameter ``input(Name,Expected)``, ``optional(Name,Expected)``,
-    ``output(Name)`` or, for any number of further ones, the atom ``more``.  A property is
-    ``property(Name,Usage,Text)``, a signal ``signal(Name,Usage,Text)``, a port its name.
+    An init is ``init(Parameters,Text)``; an operation for agents ``operation(Name,Parameters,Text)``, one for other
+    artifacts ``linked(Name,Parameters,Text)``. A parameter is ``input(Name,Expected)``, ``optional(Name,Expected)``,
+    ``output(Name)`` or, for any number of further ones, the atom ``more``. A property is
+    ``property(Name,Usage,Text)``, a signal ``signal(Name,Usage,Text)``, and a port its name.
     """
     operations = [each for each in manual.operations if each.kind != INTERNAL]
     return Structure(

@@ -1,4 +1,4 @@
-"""What the source and the docstrings of an artifact type tell of its properties and signals."""
+"""Properties and signals of an artifact type, read from its source and docstrings."""
 
 import ast
 import inspect
@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator
 from jacaros.env.artifact import Artifact
 
 _DEFINES = {"define_property": 0, "signal": 0, "signal_to": 1}
-"""The methods that make something observable, and which of their arguments is its name."""
+"""The methods that make something observable, and the index of the argument that names it."""
 
 _WORDS: dict[type, str] = {
     bool: "true or false",
@@ -21,24 +21,24 @@ _WORDS: dict[type, str] = {
 }
 
 Usages = dict[str, str]
-"""From a name to how it is written with its values, such as ``count(start)``."""
+"""From a name to its usage with values, such as ``count(start)``."""
 
 Entries = dict[str, tuple[str, str]]
-"""From a name to how it is written, and what its author says of it."""
+"""From a name to its usage and description."""
 
 
 def own_classes(artifact_type: type) -> list[type]:
-    """The class and those above it that their authors wrote, the most general last."""
+    """Return the class and its user-defined base classes, the most general last."""
     return [each for each in artifact_type.__mro__ if issubclass(each, Artifact) and each is not Artifact]
 
 
 def written_properties(artifact_type: type) -> Usages:
-    """The properties that the code of the class defines by name, the most general class first."""
+    """Return the properties that the code of the class defines by name, the most general class first."""
     return _written(artifact_type, ("define_property",))
 
 
 def written_signals(artifact_type: type) -> Usages:
-    """The signals that the code of the class sends by name, the most general class first."""
+    """Return the signals that the code of the class sends by name, the most general class first."""
     return _written(artifact_type, ("signal", "signal_to"))
 
 
@@ -53,7 +53,7 @@ def _written(artifact_type: type, methods: tuple[str, ...]) -> Usages:
 def _calls(kind: type, methods: tuple[str, ...]) -> Iterator[tuple[str, str]]:
     try:
         tree = ast.parse(textwrap.dedent(inspect.getsource(kind)))
-    except (OSError, TypeError, SyntaxError):  # made in a running program: nobody can read it
+    except (OSError, TypeError, SyntaxError):  # created at run time: no source
         return
     for node in _in_order(tree):
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr in methods:
@@ -71,7 +71,7 @@ def _in_order(node: ast.AST) -> Iterator[ast.AST]:
 
 
 def _value(node: ast.expr) -> str:
-    """A word for a value, from the expression that gives it."""
+    """Return a word for a value, from the expression that computes it."""
     if isinstance(node, ast.Starred):
         return "..."
     if isinstance(node, ast.Name):
@@ -94,7 +94,7 @@ def _value(node: ast.expr) -> str:
 
 
 def _property_read(call: ast.Call) -> str | None:
-    """The property that ``self.value("count")`` reads."""
+    """Return the property that ``self.value("count")`` reads."""
     match call:
         case ast.Call(func=ast.Attribute(attr="value"), args=[ast.Constant(value=str(name)), *_]):
             return name
@@ -108,7 +108,7 @@ def _called(function: ast.expr) -> str:
 
 
 def described(artifact_type: type, section: str) -> Entries:
-    """The entries of a section such as ``Properties:`` in the docstrings of the class and those above it."""
+    """Return the entries of a section such as ``Properties:`` in the docstrings of the class and its bases."""
     found: Entries = {}
     for each in reversed(own_classes(artifact_type)):
         for usages, text in _entries(_section(inspect.cleandoc(each.__doc__ or ""), section)):
@@ -126,7 +126,7 @@ def _section(doc: str, wanted: str) -> str:
 
 
 def _entries(section: str) -> Iterator[tuple[list[str], str]]:
-    """Usages with their text; lines that are indented further belong to the entry before."""
+    """Return usages with their text. Lines with deeper indentation belong to the entry above."""
     entries: list[str] = []
     for line in section.splitlines():
         if line.startswith(" ") and entries:
@@ -139,11 +139,11 @@ def _entries(section: str) -> Iterator[tuple[list[str], str]]:
 
 
 def _usages(written: str) -> list[str]:
-    """Several usages are separated by commas outside of their brackets."""
+    """Split usages at commas outside of brackets."""
     return [each.strip() for each in re.split(r",\s*(?![^()]*\))", written)]
 
 
 def without_sections(doc: str, sections: Iterable[str]) -> str:
-    """A docstring without some of its sections."""
+    """Return a docstring without these sections."""
     heads = {f"{section}:" for section in sections}
     return "\n\n".join(part for part in doc.split("\n\n") if part.partition("\n")[0] not in heads)

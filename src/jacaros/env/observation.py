@@ -1,4 +1,4 @@
-"""What an artifact publishes, and who receives it."""
+"""Observations: what an artifact publishes to its observers."""
 
 from typing import NamedTuple, Protocol, runtime_checkable
 
@@ -8,10 +8,10 @@ from jacaros.trace import Cause
 
 
 class Signal(NamedTuple):
-    """Something that happened in an artifact; it is not kept.
+    """A signal of an artifact. It is not stored.
 
     Attributes:
-        name: the functor of the event.
+        name: functor of the event.
         arguments: plain values.
     """
 
@@ -20,15 +20,15 @@ class Signal(NamedTuple):
 
 
 class Observation(NamedTuple):
-    """All that one commit of one artifact publishes; its parts are to be handled in this order.
+    """Everything that one commit of one artifact publishes. Process the parts in this order.
 
     Attributes:
-        artifact: where it comes from.
-        signals: what happened.
-        changed: properties with new values, as they were and as they are.
+        artifact: the source.
+        signals: the signals.
+        changed: properties with new values, before and after.
         added: new properties; all properties when an observer begins to focus.
-        removed: properties that are gone; all properties when the focus or the artifact ends.
-        cause: what led to it, None when nothing is known.
+        removed: removed properties; all properties when the focus or the artifact ends.
+        cause: what led to it. None if unknown.
     """
 
     artifact: ArtifactId
@@ -40,21 +40,21 @@ class Observation(NamedTuple):
 
 
 class Observer(Protocol):
-    """Who focuses artifacts; it must be hashable by identity."""
+    """An observer of artifacts. It must be hashable by identity."""
 
     @property
     def agent(self) -> str:
-        """Name of the agent it observes for; `signal_to` finds it by this name."""
+        """Name of the agent it observes for. `signal_to` finds it by this name."""
 
     def observe(self, observation: Observation) -> None:
-        """Receive an observation, in the order of the commits; return soon, and do not raise."""
+        """Receive an observation, in the order of the commits. Return soon and do not raise."""
 
     def __hash__(self) -> int: ...
 
 
 @runtime_checkable
 class SlowObserver(Observer, Protocol):
-    """An observer that takes observations up later than it receives them, and can say so."""
+    """An observer that processes observations later than it receives them, and reports whether it has."""
 
     def has_untaken(self, name: str) -> bool:
-        """Whether something that it received about properties called *name* has still to be taken up."""
+        """Return whether a received change of properties called *name* has not been processed yet."""

@@ -1,4 +1,4 @@
-"""Operations: how artifacts declare them, how they are asked for, and what comes of it."""
+"""Operations: how artifacts declare them, how callers request them, and their outcomes."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -13,9 +13,9 @@ from jacaros.trace import Cause
 F = TypeVar("F", bound=Callable[..., Any])
 
 WhenPreempted = Literal["pause", "cancel", "finish"]
-"""What an operation does when a more urgent claim takes away what it uses."""
+"""What an operation does when a more urgent claim takes away its resources."""
 Uses = str | Use | tuple[str | Use, ...]
-"""What an operation uses, such as ``"wheels"``, ``("base", "arm")`` or ``"lift(2)"``."""
+"""The resources of an operation, such as ``"wheels"``, ``("base", "arm")`` or ``"lift(2)"``."""
 
 OPERATION = "operation"
 LINK = "linked operation"
@@ -26,12 +26,12 @@ EXTERNAL = "external session"
 
 @dataclass(frozen=True, slots=True)
 class OperationOutcome:
-    """What came of an operation; its outputs are in the `Out` objects among the arguments.
+    """The outcome of an operation. Its outputs are in the `Out` objects among the arguments.
 
     Attributes:
-        ok: False when it failed.
-        message: text for people, None when it succeeded.
-        reason: term for programs, None when it succeeded or failed without one.
+        ok: whether it succeeded.
+        message: text for users. None if it succeeded.
+        reason: term for programs. None if it succeeded, or failed without a reason.
     """
 
     ok: bool
@@ -43,33 +43,32 @@ SUCCEEDED = OperationOutcome(True)
 
 
 def ignore_outcome(outcome: OperationOutcome) -> None:
-    """Take an outcome that nobody waits for."""
+    """Ignore an outcome."""
 
 
 def ignore_preemption(resource: str | None) -> None:
-    """Take a preemption that nobody asks about."""
+    """Ignore a preemption."""
 
 
 @dataclass(slots=True)
 class OperationRequest:
-    """What somebody asks of an artifact.
+    """A request to run an operation of an artifact.
 
     Attributes:
-        artifact: which one.
-        operation: name of the operation; with the number of arguments it selects the method.
-        arguments: plain values, and `Out` objects where results are wanted.
-        agent: on whose behalf, None for the environment itself.
+        artifact: the artifact.
+        operation: name of the operation. With the number of arguments it selects the method.
+        arguments: plain values, and `Out` objects for results.
+        agent: the agent on whose behalf it runs. None for the environment itself.
         cause: what led to it.
-        on_done: told the outcome once, after observers were told the changes; never after a cancel.
-        timeout: seconds that the operation may take, waiting for its turn, its guard and its pauses included; then
-            it is stopped like one that is cancelled, and fails with ``operation_timeout(Operation,Milliseconds)``.
-            None: no limit.
-        urgency: decides who gets what the operation uses; the greater one first.
-        policy: what happens when it cannot have that at once.
-        yields: the resources may be taken away from it; False for an operation of an atomic plan.
-        within: claims of the caller that the operation is a part of, outermost first.
+        on_done: called once with the outcome, after observers have received the changes. Never called after a cancel.
+        timeout: time limit in seconds, including the wait for its turn, its guard and pauses. After it, the operation is
+            cancelled and fails with ``operation_timeout(Operation,Milliseconds)``. None: no limit.
+        urgency: decides who gets the resources that the operation uses. The greater one wins.
+        policy: what happens if a resource is not available immediately.
+        yields: whether its resources may be taken away. False for an operation of an atomic plan.
+        within: claims of the caller that the operation is part of, outermost first.
         on_preempted: called with the resource that a more urgent claim takes away from the running operation, and with
-            None when it continues.
+            None when the operation continues.
     """
 
     artifact: ArtifactId
@@ -88,7 +87,7 @@ class OperationRequest:
 
 @dataclass(frozen=True, slots=True)
 class Mark:
-    """What a decorator leaves on a function until its class is complete; see the decorators."""
+    """The mark that a decorator leaves on a function until its class is complete. See the decorators."""
 
     kind: str
     name: str | None = None
@@ -104,7 +103,7 @@ _MARKS = "__jacaros_operations__"
 
 
 def marks_of(function: object) -> tuple[Mark, ...]:
-    """The marks that decorators left on *function*; empty for an ordinary method."""
+    """Return the marks that decorators left on *function*. Empty for an ordinary method."""
     marks: tuple[Mark, ...] = getattr(function, _MARKS, ())
     return marks
 
@@ -140,33 +139,37 @@ def operation(
     uses: Uses = (),
     when_preempted: WhenPreempted | None = None,
 ) -> F | Callable[[F], F]:
-    """Make a method an operation that agents can call.
+    """Declare a method as an operation for agents.
 
     Args:
-        function: the method, a ``def`` (one step) or ``async def`` (a step up to each step boundary).
-        name: what agents call it, if not the method's name; several methods may share a name as long as
-            they take different numbers of arguments.
-        guard: name of a method with the same parameters; the operation waits until that is true.
-        pausable: the operation obeys pauses (see `Artifact.pause_point`), because it stops what it does.
-        threaded: the method blocks, so it runs in a worker thread; a plain ``def`` whose changes and
-            signals are published together when it ends.
-        uses: resources that no other operation may use meanwhile: a name, such as ``"wheels"``; several; ``"lift(2)"`` for
-            one that two may use, ``"map(shared)"`` for one that only readers share.  Those of an artifact with a
-            `robot_prefix` belong to this robot, all others to the run.
+        function: the method, a ``def`` (one step) or ``async def`` (one step up to each step boundary).
+        name: its name for agents. Default: the method's name. Several methods may share a name if they take different
+            numbers of arguments.
+        guard: name of a method with the same parameters. The operation waits until it returns true.
+        pausable: whether the operation stops its work while paused (see `Artifact.pause_point`).
+        threaded: whether the method blocks, and so runs in a worker thread: a plain ``def`` whose changes and signals are
+            published together at its end.
+        uses: resources that no other operation may use meanwhile: a name, such as ``"wheels"``; several names;
+            ``"lift(2)"`` for two units; ``"map(shared)"`` for shared (read) access. In an artifact with a `robot_prefix`
+            they belong to this robot, otherwise to the run.
         when_preempted: what it does when a more urgent claim takes them away: ``pause`` and continue later (the default if
-            it is pausable), ``cancel`` (it fails with ``preempted(Resource)``), or ``finish`` first (the default else).
+            it is pausable), ``cancel`` (it fails with ``preempted(Resource)``), or ``finish`` first (the default
+            otherwise).
+
+    Raises:
+        InvalidArtifact: (when the class is created) the declaration is invalid.
     """
     return _marked(function, Mark(OPERATION, name, guard, pausable, threaded, False, uses, when_preempted))
 
 
 def initializer(function: F, /) -> F:
-    """Make a method a further ``init``: of all of them the one runs that takes the given number of arguments."""
+    """Declare a method as a further ``init``. The one that takes the given number of arguments is called."""
     setattr(function, _MARKS, (*marks_of(function), Mark(INIT, "init")))
     return function
 
 
 def common_operation(name: str) -> Callable[[F], F]:
-    """Make a method of `Artifact` itself an operation called *name*, which every artifact has."""
+    """Declare a method of `Artifact` itself as an operation called *name* of every artifact."""
 
     def decorate(function: F) -> F:
         setattr(function, _MARKS, (Mark(OPERATION, name, common=True),))
@@ -198,9 +201,9 @@ def link(
     uses: Uses = (),
     when_preempted: WhenPreempted | None = None,
 ) -> F | Callable[[F], F]:
-    """Make a method a linked operation: other artifacts call it through their ports, agents cannot.
+    """Declare a method as a linked operation: other artifacts call it through their ports, agents cannot.
 
-    The arguments are those of `operation`; a method may be both.
+    The arguments are those of `operation`. A method may be both.
     """
     return _marked(function, Mark(LINK, name, guard, pausable, threaded, False, uses, when_preempted))
 
@@ -219,7 +222,7 @@ def internal_operation(
     guard: str | None = None,
     threaded: bool = False,
 ) -> F | Callable[[F], F]:
-    """Make a method a process that the artifact starts itself, with `Artifact.start`.
+    """Declare a method as a process that the artifact starts itself, with `Artifact.start`.
 
     The arguments are those of `operation`.
     """

@@ -1,11 +1,11 @@
-"""The ports of an environment: what those who act and observe in it ask of it.
+"""The ports of an environment, for everything that acts and observes in it.
 
-`jacaros.env.workspace.Workspace` and `jacaros.env.environment.Environment` stand behind them, and so can workspaces of
-another process, see `Environment.mount`.
+`jacaros.env.workspace.Workspace` and `jacaros.env.environment.Environment` implement them. Workspaces of another
+process can do so, too: see `Environment.mount`.
 
-What is *looked up* is answered at once, from what is known here: a workspace that is served from elsewhere keeps a copy of
-which artifacts it has and what they offer.  What is *asked for* may take time: its end is told to a callback, which may be
-called before the method returns, and does not come at all when it was given up.
+A *lookup* returns immediately, from local knowledge: a remote workspace keeps a copy of its artifacts and what they
+offer. A *request* may take time. Its outcome is passed to a callback, possibly before the method returns, and never
+after a cancel.
 """
 
 import asyncio
@@ -22,71 +22,71 @@ from jacaros.env.resources.arbiter import Arbiter
 from jacaros.env.resources.resource import Use
 from jacaros.trace import Cause, Tracer
 
-Told = Callable[[OperationOutcome], None]
-"""Told how something ended."""
+OnOutcome = Callable[[OperationOutcome], None]
+"""Called with the outcome of a request."""
 
-Made = Callable[[ArtifactId | None, OperationOutcome], None]
-"""Told what came of making an artifact: its id, or None and why not."""
+OnMade = Callable[[ArtifactId | None, OperationOutcome], None]
+"""Called with the id of a new artifact, or with None and the failure."""
 
 
-def nobody_waits(artifact_id: ArtifactId | None, outcome: OperationOutcome) -> None:
-    """Take what came of making an artifact that nobody waits for."""
+def ignore_made(artifact_id: ArtifactId | None, outcome: OperationOutcome) -> None:
+    """Ignore the creation of an artifact."""
 
 
 class UnderWay(Protocol):
-    """Something that was asked for and has not ended."""
+    """A request that has not ended."""
 
     def cancel(self) -> None:
-        """Give it up; its end is not told."""
+        """Cancel it. Its outcome is not reported."""
 
     def pause(self) -> None:
-        """Let it rest, if it can."""
+        """Pause it, if it is pausable."""
 
     def resume(self) -> None:
-        """Let it go on."""
+        """Let it continue."""
 
 
 @runtime_checkable
 class Workspace(Protocol):
-    """A workspace, wherever its artifacts live.  The ids that it gives carry its `path`.
+    """A workspace, local or remote. Its ids contain its `path`.
 
     Attributes:
-        path: full path in the environment that it is seen in, such as ``/main/lab``.
+        path: full path in the environment in which it is visible, such as ``/main/lab``.
         name: last part of the path.
     """
 
     path: str
     name: str
 
-    # ---- looked up
+    # ---- lookups
 
     def artifacts(self) -> tuple[ArtifactId, ...]:
-        """All artifacts, the oldest first."""
+        """Return all artifacts, the oldest first."""
 
     def lookup(self, name: str) -> ArtifactId:
-        """Find an artifact by its name; raises `UnknownArtifact`."""
+        """Return the artifact with this name. Raises `UnknownArtifact`."""
 
     def watch(
         self, watcher: Callable[[ArtifactId, bool], None], personal: bool = False
     ) -> Callable[[], None]:
-        """Call *watcher* with every artifact that comes (True) or goes (False); gives what ends that.
+        """Call *watcher* with every artifact that is added (True) or removed (False). Return a function that ends this.
 
-        With *personal* also with the bodies and sessions of agents, which are many.
+        With *personal*, include the bodies and sessions of agents, which are many.
         """
 
     def providers(self, operation: str, arity: int) -> tuple[ArtifactId, ...]:
-        """The artifacts that offer *operation* with *arity* arguments to agents, the oldest first."""
+        """Return the artifacts that offer *operation* with *arity* arguments to agents, the oldest first."""
 
     def offers(self, artifact_id: ArtifactId) -> Collection[str]:
-        """The operations of an artifact for agents, such as ``inc/1`` and ``sum/any``; raises `UnknownArtifact`."""
+        """Return the operations of an artifact for agents, such as ``inc/1`` and ``sum/any``. Raises `UnknownArtifact`."""
 
     def histories(self, artifact_id: ArtifactId) -> Mapping[str, float]:
-        """For properties by name, the seconds for which past values are to be kept; raises `UnknownArtifact`."""
+        """Return the seconds for which past values are kept, by property name. Raises `UnknownArtifact`."""
 
     def has_method(self, artifact_id: ArtifactId, name: str) -> bool:
-        """True when its class has a public method of that name that is no operation of agents; see `offers`."""
+        """Return whether its class has a public method of this name that is not an operation. See `offers`."""
 
-    # ---- asked for
+    # ---- requests
 
     async def make_artifact(
         self,
@@ -95,18 +95,18 @@ class Workspace(Protocol):
         args: Sequence[object] = (),
         creator: str | None = None,
     ) -> ArtifactId:
-        """Make an artifact and wait until its ``init`` has ended.
+        """Create an artifact and wait until its ``init`` has ended.
 
         Args:
             name: unique in the workspace.
-            type_name: looked up where the workspace lives; or the class itself.
+            type_name: a type that the workspace knows, or the class itself.
             args: plain values for ``init``.
-            creator: the agent that makes it.
+            creator: the agent that creates it.
 
         Raises:
             OperationFailed: with reason ``makeArtifactFailure(Why,What)``, where Why is
                 ``"artifact_already_present"``, ``"unknown_artifact_template"`` (What is the type) or
-                ``"init_failed"``; nothing is left behind.
+                ``"init_failed"``. Nothing remains of the artifact.
         """
         made: asyncio.Future[ArtifactId] = asyncio.get_running_loop().create_future()
 
@@ -131,71 +131,73 @@ class Workspace(Protocol):
         type_name: str | type[Artifact],
         args: Sequence[object] = (),
         creator: str | None = None,
-        on_done: Made = nobody_waits,
+        on_done: OnMade = ignore_made,
         cause: Cause | None = None,
     ) -> UnderWay:
-        """Make an artifact, of a type that is known where the workspace lives."""
+        """Create an artifact of a type that the workspace knows, and report to *on_done*."""
 
-    def dispose_artifact(self, artifact_id: ArtifactId, on_done: Told = ignore_outcome) -> None:
-        """End an artifact; raises `UnknownArtifact` when it is known to be gone."""
+    def dispose_artifact(self, artifact_id: ArtifactId, on_done: OnOutcome = ignore_outcome) -> None:
+        """Dispose an artifact. Raises `UnknownArtifact` if it is known to be gone."""
 
     def offer(
         self, name: str, artifact_type: type[Artifact], args: Sequence[object] = (), personal: bool = False
     ) -> ArtifactId:
-        """Have an artifact of JaCaROS itself, such as the body of an agent; it need not be made before it is used.
+        """Add an artifact of JaCaROS itself, such as the body of an agent. It may be created at its first use.
 
-        Where the workspace is served from elsewhere it is an id that nobody finds by its name.
+        In a remote workspace, it is an id that cannot be looked up by name.
         """
         return ArtifactId(name, artifact_type.__name__, self.path, 0, None)
 
     def take_back(self, artifact_id: ArtifactId) -> None:
-        """End an artifact that was offered, if it is still there."""
+        """Dispose an artifact that was added with `offer`, if it still exists."""
 
     def execute(self, request: OperationRequest) -> UnderWay:
-        """Run an operation for an agent; ``request.on_done`` is told its end, after observers were told the changes."""
+        """Run an operation for an agent. ``request.on_done`` gets the outcome after observers have received the changes."""
 
-    def focus(self, artifact_id: ArtifactId, observer: Observer, on_done: Told = ignore_outcome) -> None:
-        """Let *observer* receive what an artifact publishes; all its properties come before *on_done* is told.
+    def focus(self, artifact_id: ArtifactId, observer: Observer, on_done: OnOutcome = ignore_outcome) -> None:
+        """Let *observer* receive what an artifact publishes. It receives all properties before *on_done* is called.
 
-        Focusing again has no effect.  Raises `UnknownArtifact` when it is known to be gone.
+        Focusing again has no effect. Raises `UnknownArtifact` if the artifact is known to be gone.
         """
 
     def stop_focus(self, artifact_id: ArtifactId, observer: Observer) -> None:
-        """Let *observer* receive nothing more, after the removal of all properties."""
+        """Stop sending observations to *observer*. The last one removes all properties."""
 
-    def link(self, from_id: ArtifactId, port: str, to_id: ArtifactId, on_done: Told = ignore_outcome) -> None:
-        """Put an artifact behind an out port of another one; raises `OperationFailed` when that is known to be wrong."""
+    def link(
+        self, from_id: ArtifactId, port: str, to_id: ArtifactId, on_done: OnOutcome = ignore_outcome
+    ) -> None:
+        """Link an out port of an artifact to another artifact. Raises `OperationFailed` if that is known to be invalid."""
 
 
 class Environment(Protocol):
-    """All workspaces that can be seen from here."""
+    """All visible workspaces."""
 
     @property
     def tracer(self) -> Tracer | None:
-        """Told of every cause that arises, None while nobody watches."""
+        """Receives every cause. None if no tracer is set."""
 
     @property
     def arbiter(self) -> Arbiter:
-        """Decides who has what operations and plans use."""
+        """Assigns resources to operations and plans."""
 
     def used_by(self, artifact_id: ArtifactId) -> Sequence[Use]:
-        """What the operations of an artifact use; nothing if it lives elsewhere."""
+        """Return the resources that the operations of an artifact use. Empty if it is remote."""
 
     @property
     def clock(self) -> Clock:
-        """Where artifacts and time limits take time from."""
+        """Clock of artifacts and time limits."""
 
     def workspaces(self) -> Sequence[Workspace]:
-        """All workspaces, the oldest first."""
+        """Return all workspaces, the oldest first."""
 
     def workspace(self, path: str) -> Workspace:
-        """The workspace with that full path; raises `UnknownWorkspace`."""
+        """Return the workspace with this full path. Raises `UnknownWorkspace`."""
 
     def create_workspace(self, path: str) -> Workspace:
-        """Make a workspace; raises `OperationFailed`."""
+        """Create a workspace. Raises `OperationFailed`."""
 
     def execute(self, request: OperationRequest) -> UnderWay:
-        """Run an operation, wherever the artifact lives; see `Workspace.execute`."""
+        """Run an operation, wherever the artifact is. See `Workspace.execute`."""
 
     def log_error(self, who: str, what: str, error: BaseException) -> None:
-        """Tell people that *what* went wrong in the code of *who*."""
+        """Log that *what* failed in the code of *who*."""

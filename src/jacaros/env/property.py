@@ -4,22 +4,22 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
-from jacaros.env.errors import InvalidArtifact, UnknownProperty, spelling_hint
+from jacaros.env.errors import InvalidArtifact, UnknownProperty, suggestion
 from jacaros.env.ids import ArtifactId
 from jacaros.env.values import SCALARS, Structure, equal, plain, text
 
 
 @dataclass(slots=True)
 class ObservableProperty:
-    """What observers see of one property at one moment; nobody changes it.
+    """An immutable snapshot of one property, as observers receive it.
 
     Attributes:
-        name: the functor of the belief.
+        name: functor of the belief.
         values: plain values, the arguments of the belief.
         annotations: further annotations of the belief (atoms and structures).
-        key: identity within its artifact; it stays when the values change, and is never used again.
-        written: what the observers of a run have made of it, kept so that it is made once for all of them and for the
-            end of the value too; theirs alone.
+        key: identity within its artifact. It does not change with the values, and is never reused.
+        written: terms that observers have built from it, kept so that they are built once for all observers and for the
+            removal. Used by observers only.
     """
 
     name: str
@@ -30,18 +30,18 @@ class ObservableProperty:
 
 
 def histories_of(artifact_type: type) -> Mapping[str, float]:
-    """Return the properties whose past observers of an artifact keep: seconds by name."""
+    """Return the properties whose past values observers keep: seconds by name."""
     found: Mapping[str, float] = getattr(artifact_type, "property_histories", {})
     return found
 
 
 class PropertySnapshot:
-    """A property at one moment, as the operation ``observeProperty`` gives it: an opaque object for agents.
+    """A property at one moment, as ``observeProperty`` returns it: an opaque object for agents.
 
-    The methods with the names of Java are there for ``cartago.invoke_obj`` in programs written for CArtAgO.
+    The methods with Java names are for ``cartago.invoke_obj`` in programs written for CArtAgO.
 
     Attributes:
-        name: the name of the property.
+        name: name of the property.
         values: its plain values.
         annotations: its annotations.
     """
@@ -52,35 +52,35 @@ class PropertySnapshot:
         self.name, self.values, self.annotations = of.name, of.values, of.annotations
 
     def value(self, index: int = 0) -> object:
-        """One of the values."""
+        """Return one of the values."""
         return plain(self.values[index])
 
     def getName(self) -> str:  # noqa: N802 - Java's name
-        """The name of the property."""
+        """Return the name of the property."""
         return self.name
 
     def getValue(self, index: int = 0) -> object:  # noqa: N802 - Java's name
-        """One of the values."""
+        """Return one of the values."""
         return self.value(int(index))
 
     def getValues(self) -> list[object]:  # noqa: N802 - Java's name
-        """All values."""
+        """Return all values."""
         return [plain(value) for value in self.values]
 
     def intValue(self, index: int = 0) -> int:  # noqa: N802 - Java's name
-        """One of the values as an integer."""
-        return int(self.values[int(index)])  # type: ignore[call-overload,no-any-return]  # it raises if it is none
+        """Return one of the values as an integer."""
+        return int(self.values[int(index)])  # type: ignore[call-overload,no-any-return]  # raises if it is not a number
 
     def doubleValue(self, index: int = 0) -> float:  # noqa: N802 - Java's name
-        """One of the values as a real number."""
-        return float(self.values[int(index)])  # type: ignore[arg-type]  # it raises if it is none
+        """Return one of the values as a float."""
+        return float(self.values[int(index)])  # type: ignore[arg-type]  # raises if it is not a number
 
     def stringValue(self, index: int = 0) -> str:  # noqa: N802 - Java's name
-        """One of the values as a text."""
+        """Return one of the values as a string."""
         return text(self.values[int(index)])
 
     def booleanValue(self, index: int = 0) -> bool:  # noqa: N802 - Java's name
-        """One of the values as a truth value."""
+        """Return one of the values as a Boolean."""
         return bool(self.values[int(index)])
 
     def __str__(self) -> str:
@@ -97,7 +97,7 @@ Change = tuple[ObservableProperty, ObservableProperty]
 
 
 class PropertyChanges(NamedTuple):
-    """The difference that one step made: several updates of a property in it are one change."""
+    """The changes of one step. Several updates of a property in a step are one change."""
 
     changed: tuple[Change, ...]
     added: tuple[ObservableProperty, ...]
@@ -106,21 +106,21 @@ class PropertyChanges(NamedTuple):
 
 _NONE: dict[int, ObservableProperty] = {}
 _FEW = 8
-"""So many properties of one name are gone through; more are found by their first value."""
+"""Up to this number of properties with one name are searched in turn; beyond it, an index of first values is used."""
 _INDEXED = SCALARS | {ArtifactId}
-"""Types of values that only values of these types are equal to."""
+"""Types whose values are equal only to values of these types."""
 _OTHERS = object()
-"""The key of all properties that have another first value, or none."""
+"""Key of all properties whose first value is of another type or missing."""
 NO_CHANGES = PropertyChanges((), (), ())
 
 
 class PropertyStore:
-    """The properties of one artifact, and a journal of the step in progress.
+    """The properties of one artifact, with a journal of the step in progress.
 
-    Several properties may have one name, even with equal values; "the first" is the oldest.
+    Several properties may have one name, even with equal values. "The first" is the oldest.
 
     Attributes:
-        changing: how the properties were that the step in progress has touched, by key; empty when there are none.
+        changing: the previous state of the properties that the step in progress has changed, by key.
     """
 
     __slots__ = ("_by_first", "_by_name", "_last_key", "changing")
@@ -135,11 +135,11 @@ class PropertyStore:
         """Add a property.
 
         Raises:
-            InvalidArtifact: *name* cannot be the name of a belief.
+            InvalidArtifact: *name* is not a valid name of a belief.
         """
         check_name(name)
         key = self._last_key + 1
-        # What cannot be converted raises here, before anything has changed.
+        # A value that cannot be converted raises here, before anything has changed.
         new = ObservableProperty(name, _plain(values), plain_annotations(annotations or ()), key)
         self._last_key = key
         self.changing[key] = (name, None)
@@ -155,12 +155,12 @@ class PropertyStore:
         if_new: bool = False,
         where: tuple[object, ...] = (),
     ) -> None:
-        """Give the first property called *name* that fits *where* new values; None as annotations keeps the old ones.
+        """Update the first property called *name* that matches *where*. None as annotations keeps the current ones.
 
-        With *if_new* nothing happens when values and annotations are equal to the old ones.
+        With *if_new*, do nothing if values and annotations are unchanged.
 
         Raises:
-            UnknownProperty: there is none.
+            UnknownProperty: no property matches.
         """
         properties = self._by_name.get(name)
         if not properties:
@@ -179,10 +179,10 @@ class PropertyStore:
             self._by_first[name].setdefault(_first(new), {})[key] = None
 
     def put(self, name: str, values: tuple[object, ...]) -> None:
-        """Give the first property called *name* new values; if there is none, add one.
+        """Update the first property called *name*, or add one.
 
         Raises:
-            InvalidArtifact: *name* cannot be the name of a belief.
+            InvalidArtifact: *name* is not a valid name of a belief.
         """
         if self._by_name.get(name):
             self.update(name, values, None)
@@ -190,10 +190,10 @@ class PropertyStore:
             self.define(name, values, None)
 
     def remove(self, name: str, template: tuple[object, ...]) -> None:
-        """Remove the first property called *name* whose values fit *template* (see `first`).
+        """Remove the first property called *name* whose values match *template* (see `first`).
 
         Raises:
-            UnknownProperty: there is none.
+            UnknownProperty: no property matches.
         """
         old = self.first(name, template)
         self.changing.setdefault(old.key, (name, old))
@@ -208,7 +208,7 @@ class PropertyStore:
             del index[first]
 
     def _like(self, name: str, template: tuple[object, ...]) -> Iterable[ObservableProperty]:
-        """The properties called *name* that may fit *template*, the oldest first."""
+        """Return the properties called *name* that may match *template*, the oldest first."""
         properties = self._by_name.get(name, _NONE)
         if not template or len(properties) < _FEW:
             return properties.values()
@@ -224,13 +224,13 @@ class PropertyStore:
         return [properties[key] for key in sorted(keys)]
 
     def first(self, name: str, template: tuple[object, ...] = ()) -> ObservableProperty:
-        """The oldest property called *name* whose values fit *template*.
+        """Return the oldest property called *name* whose values match *template*.
 
         Args:
-            template: as many values as the property has, None for any value; empty fits every property.
+            template: as many values as the property has, None for any value. Empty matches every property.
 
         Raises:
-            UnknownProperty: there is none.
+            UnknownProperty: no property matches.
         """
         for found in self._like(name, template):
             if not template or _fits(template, found.values):
@@ -238,7 +238,7 @@ class PropertyStore:
         raise self._unknown(name, template)
 
     def all(self, name: str, template: tuple[object, ...] = ()) -> tuple[ObservableProperty, ...]:
-        """The properties called *name* whose values fit *template* (see `first`), the oldest first."""
+        """Return the properties called *name* whose values match *template* (see `first`), the oldest first."""
         return tuple(p for p in self._like(name, template) if not template or _fits(template, p.values))
 
     def _unknown(self, name: str, template: tuple[object, ...] = ()) -> UnknownProperty:
@@ -249,25 +249,25 @@ class PropertyStore:
             )
         names = [each for each, properties in self._by_name.items() if properties]
         known = f" (it has {', '.join(names)})" if names else " (it has none)"
-        help = spelling_hint(name, names) or f'; self.define_property("{name}", ...) makes one'
-        return UnknownProperty(f"no observable property {name}{known}{help}")
+        help = suggestion(name, names) or f'; add it with self.define_property("{name}", ...)'
+        return UnknownProperty(f"unknown observable property `{name}`{known}{help}")
 
     @staticmethod
     def _unlike(name: str, template: tuple[object, ...], counts: list[int]) -> str:
         written = f"({', '.join(map(repr, template))}{',' if len(template) == 1 else ''})"
         if len(template) in counts:
-            return f"no observable property {name} has the values {written}; None stands for any value"
+            return f"no property {name} has the values {written}; None matches any value"
         wanted = " or ".join(map(str, sorted(set(counts))))
-        return f"property {name} has {wanted} values, not {len(template)} as {written}: give all, None for any value"
+        return f"expected {wanted} values of property {name}, found {len(template)}: {written}; None matches any value"
 
     def has(self, name: str, template: tuple[object, ...] = ()) -> bool:
-        """True when there is a property called *name* whose values fit *template*."""
+        """Return whether a property called *name* has values that match *template*."""
         if not template:
             return bool(self._by_name.get(name))
         return any(_fits(template, p.values) for p in self._like(name, template))
 
     def committed(self) -> tuple[ObservableProperty, ...]:
-        """The properties as observers know them, in the order of their definition."""
+        """Return the properties as observers know them, in the order of their definition."""
         known = {p.key: p for properties in self._by_name.values() for p in properties.values()}
         for key, (_, before) in self.changing.items():
             if before is None:
@@ -277,7 +277,7 @@ class PropertyStore:
         return tuple(known[key] for key in sorted(known))
 
     def commit(self) -> PropertyChanges:
-        """End the step: forget how it was before and tell what is different now."""
+        """End the step and return its changes."""
         if not self.changing:
             return NO_CHANGES
         changed: list[Change] = []
@@ -300,7 +300,7 @@ class PropertyStore:
         return PropertyChanges(tuple(changed), tuple(added), tuple(removed))
 
     def roll_back(self) -> None:
-        """Undo the step: additions, updates and removals alike."""
+        """Undo all additions, updates and removals of the step."""
         for name, _ in self.changing.values():
             self._by_first.pop(name, None)
         for key, (name, before) in self.changing.items():
@@ -316,17 +316,19 @@ class PropertyStore:
 
 
 def check_name(name: str) -> None:
-    """Refuse what cannot be the functor of a belief or the name of a signal.
+    """Check the name of a property or signal.
 
     Raises:
         InvalidArtifact: *name* does not begin with a lower-case letter.
     """
     if not isinstance(name, str) or not name[:1].islower():
-        raise InvalidArtifact(f"{name!r} cannot name a property or signal: begin with a lower-case letter")
+        raise InvalidArtifact(
+            f"the name of a property or signal must begin with a lower-case letter: {name!r}"
+        )
 
 
 def _plain(values: tuple[object, ...]) -> tuple[object, ...]:
-    """Make values plain; numbers and texts, which most are, are so already."""
+    """Convert values to plain values. Numbers and strings, the common case, are plain already."""
     for value in values:
         if type(value) not in SCALARS:
             return tuple(map(plain, values))
@@ -334,17 +336,17 @@ def _plain(values: tuple[object, ...]) -> tuple[object, ...]:
 
 
 def _all_equal(new: tuple[object, ...], old: tuple[object, ...]) -> bool:
-    """Whether values are equal to an agent; what is not equal to Python is not, and that is found sooner."""
+    """Return whether values are equal for an agent. Values that differ for Python differ, and that check is faster."""
     return new == old and all(map(equal, new, old))
 
 
 def plain_annotations(annotations: tuple[object, ...]) -> tuple[object, ...]:
-    """Make annotations plain values."""
+    """Convert annotations to plain values."""
     return tuple(map(plain, annotations))
 
 
 def _first(each: ObservableProperty) -> object:
-    """What a property is indexed by."""
+    """Return the value that a property is indexed by."""
     return each.values[0] if each.values and type(each.values[0]) in _INDEXED else _OTHERS
 
 

@@ -1,4 +1,4 @@
-"""Artifacts that every workspace has from the beginning: blackboard, console, system, and the manuals of types."""
+"""The standard artifacts of every workspace: blackboard, console, system, and manuals of types."""
 
 from typing import NoReturn
 
@@ -16,53 +16,55 @@ Entry = tuple[object, ...]
 class Blackboard(Artifact):
     """A tuple space, as in the coordination language Linda.
 
-    A tuple is a name with any number of arguments.  A pattern fits a tuple of the same length when its
-    bound arguments are equal; unbound ones are outputs and fit anything (the same variable twice only
-    equal values).  The oldest fitting tuple is taken.
+    A tuple is a name with any number of arguments. A pattern matches a tuple of the same length if its bound arguments
+    are equal. Unbound arguments are outputs and match anything; the same variable twice matches only equal values. The
+    oldest matching tuple is used.
     """
 
     def init(self) -> None:
-        """Begin without tuples."""
+        """Start without tuples."""
         self._tuples: list[Entry] = []
 
     @operation
     def out(self, *entry: object) -> None:
-        """Put a tuple; its arguments must be bound."""
+        """Add a tuple. Its arguments must be bound."""
         if any(isinstance(item, Out) for item in entry):
-            self.fail("a tuple on the blackboard must not contain unbound variables", "unbound_argument")
+            self.fail(
+                "a tuple on the blackboard must be ground: it has an unbound variable", "unbound_argument"
+            )
         self._tuples.append(tuple(map(plain, entry)))
 
     @operation(name="in", guard="is_there")
     def take(self, *pattern: object) -> None:
-        """Take a fitting tuple away; waits until there is one."""
+        """Remove a matching tuple. Waits until there is one."""
         taken = self._bind(pattern)
         self._tuples = [entry for entry in self._tuples if entry is not taken]
 
     @operation(guard="is_there")
     def rd(self, *pattern: object) -> None:
-        """Read a fitting tuple; waits until there is one."""
+        """Read a matching tuple. Waits until there is one."""
         self._bind(pattern)
 
     @operation
     def inp(self, *pattern: object) -> None:
-        """Take a fitting tuple away; fails with reason ``no_match`` when there is none."""
+        """Remove a matching tuple. Fails with reason ``no_match`` if no tuple matches."""
         self._need(pattern)
         self.take(*pattern)
 
     @operation
     def rdp(self, *pattern: object) -> None:
-        """Read a fitting tuple; fails with reason ``no_match`` when there is none."""
+        """Read a matching tuple. Fails with reason ``no_match`` if no tuple matches."""
         self._need(pattern)
         self._bind(pattern)
 
     def is_there(self, *pattern: object) -> bool:
-        """True when there is a tuple that fits *pattern*."""
+        """Return whether a tuple matches *pattern*."""
         return self._find(pattern) is not None
 
     def _need(self, pattern: Entry) -> None:
         if not self.is_there(*pattern):
             shown = ",".join("_" if isinstance(item, Out) else text(item, quoted=True) for item in pattern)
-            self.fail(f"no tuple on the blackboard fits ({shown})", "no_match")
+            self.fail(f"no tuple on the blackboard matches ({shown})", "no_match")
 
     def _find(self, pattern: Entry) -> Entry | None:
         return next((entry for entry in self._tuples if _fits(pattern, entry)), None)
@@ -89,10 +91,10 @@ def _fits(pattern: Entry, entry: Entry) -> bool:
 
 
 class Console(Artifact):
-    """Prints for agents, one line for each call, arguments written one after the other.
+    """Prints lines for agents, one line for each call.
 
-    The lines go to ``resources["console"]``, a function of agent and text; without it to the log.  The
-    names with ``AgName`` are other names of the same: the host shows who prints anyway.
+    The lines go to ``resources["console"]``, a function of agent and text, or else to the log. The operations with
+    ``AgName`` are equivalent, because the host shows the agent anyway.
     """
 
     @operation(name="printWithAgName")
@@ -100,12 +102,12 @@ class Console(Artifact):
     @operation(name="print")
     @operation
     def println(self, *arguments: object) -> None:
-        """Print the arguments as one line."""
+        """Print the arguments as one line, without separators."""
         write_line(self, "".join(map(text, arguments)))
 
 
 def write_line(artifact: Artifact, line: str) -> None:
-    """Print a line for the agent that has called an operation of *artifact*."""
+    """Print a line for the agent that called an operation of *artifact*."""
     write = artifact.resources.get("console")
     if callable(write):
         write(artifact.caller, line)
@@ -121,18 +123,18 @@ class SystemArtifact(Artifact):
         """End the run, as ``.stopMAS`` does."""
         stop = self.resources.get("stop")
         if not callable(stop):
-            self.fail("nobody here can end the run", "not_supported", "shutdownNode/0")
+            self.fail("the host does not support ending the run", "not_supported", "shutdownNode/0")
         stop()
 
     @operation
     def crash(self) -> None:
-        """End the process at once: not supported."""
-        self._refuse("a run is not ended without putting things in order; shutdownNode or .stopMAS ends it")
+        """Kill the process. Not supported."""
+        self._refuse("a run cannot be killed; use shutdownNode or .stopMAS to end it")
 
     @operation(name="spawnNode")
     def spawn(self, *arguments: object) -> None:
-        """Start another process: not possible yet."""
-        self._refuse("other processes cannot be started yet")
+        """Start another process. Not supported yet."""
+        self._refuse("starting other processes is not supported yet")
 
     def _refuse(self, message: str) -> NoReturn:
         request = self.current.request
@@ -142,23 +144,23 @@ class SystemArtifact(Artifact):
 class ManualRepository(Artifact):
     """Manuals of artifact types.
 
-    Every type has one, made from its code: its operations, properties and signals with what its author says of them.
-    Agents may put other texts in their places.
+    Every type has a manual, generated from its code: operations, properties and signals with their descriptions. Agents may
+    replace the text of a manual.
     """
 
     def init(self, workspace: Workspace, tree: WorkspaceTree) -> None:
-        """Begin without texts of agents."""
+        """Start without manuals of agents."""
         self._here, self._tree = workspace, tree
         self._stored: dict[str, str] = {}
 
     @operation(name="storeManual")
     def store(self, type_name: str, content: str) -> None:
-        """Keep a text as the manual of a type."""
+        """Store a text as the manual of a type."""
         self._stored[str.__str__(type_name)] = content
 
     @operation(name="getManualContent")
     def give_content(self, type_name: str, content: Out) -> None:
-        """Give the manual of a type as a text."""
+        """Return the manual of a type as a text."""
         content.set(self._content(type_name))
 
     @operation(name="consultManual")
@@ -169,7 +171,7 @@ class ManualRepository(Artifact):
 
     @operation(name="getManual")
     def give(self, what: ArtifactId | str, manual: Out) -> None:
-        """Give the manual of a type, or of one artifact with what it has defined for itself, as a term."""
+        """Return the manual of a type or an artifact (with its own operations) as a term."""
         manual.set(manual_term(self._manual(what)))
 
     def _content(self, type_name: str) -> str:
@@ -188,11 +190,11 @@ class ManualRepository(Artifact):
 DEFAULT_TYPES = frozenset(
     each.__name__ for each in (Blackboard, Console, ManualRepository, SystemArtifact, WorkspaceArtifact)
 )
-"""Names of the types of the artifacts that every workspace has."""
+"""Type names of the standard artifacts."""
 
 
-def furnish(workspace: Workspace, tree: WorkspaceTree) -> None:
-    """Give a workspace the artifacts that each one has; none of them is made before somebody needs it."""
+def add_standard_artifacts(workspace: Workspace, tree: WorkspaceTree) -> None:
+    """Add the standard artifacts to a workspace. Each one is created at its first use."""
     workspace.offer("blackboard", Blackboard)
     workspace.offer("console", Console)
     workspace.offer("manrepo", ManualRepository, (workspace, tree))

@@ -1,20 +1,20 @@
-"""The workspaces of an environment by their paths, and the links between them."""
+"""The workspaces of an environment by path, and the links between them."""
 
 from collections.abc import Callable
 
-from jacaros.env.errors import OperationFailed, UnknownWorkspace, spelling_hint
+from jacaros.env.errors import OperationFailed, UnknownWorkspace, suggestion
 from jacaros.env.ports import Workspace
 from jacaros.env.values import Structure
 
 _LINKS_ON_ONE_PATH = 100
-"""So many links one behind the other lead in a circle."""
+"""A path with more links than this is a cycle."""
 
 
 class WorkspaceTree:
-    """Workspaces by full path; a link gives one of them a second place.
+    """Workspaces by full path. A link gives a workspace a second path.
 
     Args:
-        make: makes the workspace with that full path in another one (None for the first of all).
+        make: creates the workspace with this full path in a parent workspace (None for the root).
     """
 
     def __init__(self, make: Callable[[str, Workspace | None], Workspace]) -> None:
@@ -24,24 +24,24 @@ class WorkspaceTree:
         self._watchers: dict[str, list[Callable[[], None]]] = {}
 
     def all(self) -> tuple[Workspace, ...]:
-        """All workspaces, the oldest first."""
+        """Return all workspaces, the oldest first."""
         return tuple(self._workspaces.values())
 
     def at(self, path: str, otherwise: Workspace) -> Workspace:
-        """The workspace with that full path, without regard to links."""
+        """Return the workspace with this full path, without following links."""
         return self._workspaces.get(path, otherwise)
 
     def find(self, path: str) -> Workspace:
-        """The workspace at a full path, in which names of links may stand.
+        """Return the workspace at a full path, which may contain names of links.
 
         Raises:
-            UnknownWorkspace: there is none.
+            UnknownWorkspace: the workspace does not exist.
         """
         found = self._workspaces.get(path) or self._workspaces.get(self._without_links(path))
         if found is None:
-            help = spelling_hint(path, (*self._workspaces, *self._links))
+            help = suggestion(path, (*self._workspaces, *self._links))
             reason = Structure("unknown_workspace", (str.__str__(path),))
-            raise UnknownWorkspace(f"there is no workspace {path}{help}", reason)
+            raise UnknownWorkspace(f"unknown workspace `{path}`{help}", reason)
         return found
 
     def _without_links(self, path: str) -> str:
@@ -53,11 +53,11 @@ class WorkspaceTree:
         return path
 
     def create(self, path: str) -> Workspace:
-        """Make a workspace at a full path; the one that it is a part of must be there.
+        """Create a workspace at a full path. Its parent workspace must exist.
 
         Raises:
-            OperationFailed: it is there already; reason ``workspace_already_present(Path)``.
-            UnknownWorkspace: the workspace above it is not there.
+            OperationFailed: it already exists; reason ``workspace_already_present(Path)``.
+            UnknownWorkspace: the parent workspace does not exist.
         """
         path = self._free(path)
         above = path.rpartition("/")[0]
@@ -66,11 +66,11 @@ class WorkspaceTree:
         return workspace
 
     def mount(self, workspace: Workspace) -> Callable[[], None]:
-        """Have a workspace at its path that was not made here; gives what ends that.
+        """Add a remote workspace at its path. Return a function that removes it.
 
         Raises:
-            OperationFailed: something is there already; reason ``workspace_already_present(Path)``.
-            UnknownWorkspace: the workspace above the path is not there.
+            OperationFailed: the path is in use; reason ``workspace_already_present(Path)``.
+            UnknownWorkspace: the parent workspace does not exist.
         """
         path = self._free(workspace.path)
         self._workspaces[path] = workspace
@@ -84,11 +84,11 @@ class WorkspaceTree:
         return unmount
 
     def link(self, path: str, target: str) -> None:
-        """Let a full path, at which there is nothing yet, lead to the workspace at another one.
+        """Make an unused full path lead to the workspace at another path.
 
         Raises:
-            OperationFailed: something is there already; reason ``workspace_already_present(Path)``.
-            UnknownWorkspace: the target, or the workspace above the path, is not there.
+            OperationFailed: the path is in use; reason ``workspace_already_present(Path)``.
+            UnknownWorkspace: the target, or the parent workspace of the path, does not exist.
         """
         to = self.find(target)
         path = self._free(path)
@@ -96,25 +96,25 @@ class WorkspaceTree:
         self._tell(path)
 
     def _free(self, path: str) -> str:
-        """A path for something new, without links in it."""
+        """Return an unused path, with its links resolved."""
         above, _, name = str.__str__(path).rpartition("/")
         path = f"{self.find(above).path}/{name}" if above else path
         if not name or path in self._workspaces or path in self._links:
             reason = Structure("workspace_already_present", (str.__str__(path),))
-            raise OperationFailed(f"there is a workspace {path} already", reason)
+            raise OperationFailed(f"workspace `{path}` already exists", reason)
         return path
 
     def children(self, path: str) -> tuple[str, ...]:
-        """Names of the workspaces directly below one."""
+        """Return the names of the workspaces directly below one."""
         return tuple(w.name for w in self._workspaces.values() if w.path.rpartition("/")[0] == path)
 
     def links(self, path: str) -> tuple[tuple[str, str], ...]:
-        """The links in a workspace: their names, and the full paths to which they lead."""
+        """Return the links in a workspace: their names, and the full paths they lead to."""
         found = ((at.rpartition("/"), to) for at, to in self._links.items())
         return tuple((name, to) for (above, _, name), to in found if above == path)
 
     def watch(self, path: str, watcher: Callable[[], None]) -> None:
-        """Call *watcher* whenever there is something else directly below a workspace."""
+        """Call *watcher* whenever a workspace or link directly below a workspace is added or removed."""
         self._watchers.setdefault(path, []).append(watcher)
 
     def _tell(self, path: str) -> None:
@@ -123,6 +123,6 @@ class WorkspaceTree:
 
 
 def _beginnings(path: str) -> list[str]:
-    """The full paths with which a path begins, the shortest first."""
+    """Return the full paths of the workspaces above a path and of the path itself, the shortest first."""
     parts = path.split("/")
     return ["/".join(parts[:length]) for length in range(2, len(parts) + 1)]

@@ -1,8 +1,8 @@
-"""Plain values: what crosses between agents and artifacts.
+"""Plain values: the values that agents and artifacts exchange.
 
-Numbers, truth values, texts, `Atom`, `Structure`, lists and dictionaries cross by content; output
-parameters are `Out` objects; anything else crosses as an opaque reference.  Nothing here knows the terms
-of the language: the body joins the two.
+Numbers, Booleans, strings, `Atom`, `Structure`, lists and dictionaries are passed by content. Output parameters are `Out`
+objects. Anything else is passed as an opaque reference. This module does not depend on the terms of the language: the body
+converts between the two.
 """
 
 import dataclasses
@@ -22,10 +22,9 @@ else:
 
 
 class Atom(str):
-    """An atom of AgentSpeak, such as ``kitchen``; a plain ``str`` is an AgentSpeak *string*.
+    """An atom of AgentSpeak, such as ``kitchen``. A plain ``str`` is an AgentSpeak *string*.
 
-    It compares and hashes like its text, so an artifact need not care whether an agent wrote
-    ``clean(kitchen)`` or ``clean("kitchen")``.
+    It compares and hashes like its text, so an artifact need not distinguish ``clean(kitchen)`` from ``clean("kitchen")``.
     """
 
     __slots__ = ()
@@ -38,12 +37,12 @@ class Atom(str):
 class Structure:
     """A compound term such as ``aborted(3)``.
 
-    Two structures are equal when functors and arguments are, whatever their annotations.
+    Two structures are equal if functors and arguments are equal, whatever their annotations.
 
     Attributes:
-        functor: the name in front of the brackets.
-        arguments: plain values, at least one; without arguments it would be an `Atom`.
-        annotations: atoms and structures, those in the square brackets behind it.
+        functor: the name before the brackets.
+        arguments: plain values, at least one. Without arguments, use an `Atom`.
+        annotations: atoms and structures in square brackets after it.
     """
 
     functor: str
@@ -55,7 +54,7 @@ class Structure:
 
 
 class Unset:
-    """The kind of `UNSET`, the value of an output parameter that no operation has set."""
+    """The type of `UNSET`, the value of an output parameter that no operation has set."""
 
     __slots__ = ()
 
@@ -64,16 +63,16 @@ class Unset:
 
 
 UNSET = Unset()
-"""The value of an output parameter before an operation sets it; the agent's variable stays unbound."""
+"""The value of an output parameter before an operation sets it. The agent's variable remains unbound."""
 
 
 class Out(Generic[T]):
-    """An output parameter: the place where an operation leaves a result for its caller.
+    """An output parameter, in which an operation stores a result for its caller.
 
-    ``Out[int]`` tells type checkers, and readers, what it gives; ``Out`` is for anything.
+    ``Out[int]`` declares the type of the result for type checkers and readers; ``Out`` accepts any value.
 
     Attributes:
-        variable: what the caller writes there; where it writes the same twice, both results have to be equal.
+        variable: the caller's variable. If the caller passes the same one twice, both results must be equal.
     """
 
     __slots__ = ("_value", "variable")
@@ -84,16 +83,16 @@ class Out(Generic[T]):
 
     @property
     def value(self) -> T:
-        """The plain value left here, or `UNSET`."""
+        """The stored plain value, or `UNSET`."""
         return self._value  # type: ignore[return-value]
 
     @property
     def is_set(self) -> bool:
-        """True when a value was left here."""
+        """Whether a value has been stored."""
         return self._value is not UNSET
 
     def set(self, value: T) -> None:
-        """Leave *value*, turned into a plain value (see `plain`); a later call replaces it."""
+        """Store *value*, converted to a plain value (see `plain`). A later call replaces it."""
         self._value = plain(value)
 
     def __repr__(self) -> str:
@@ -101,37 +100,37 @@ class Out(Generic[T]):
 
 
 SCALARS: frozenset[type] = frozenset({int, float, bool, str, Atom, type(None)})
-"""Classes of values that are plain as they are."""
+"""Classes whose values are plain."""
 
 
 _DEPTH = 200
-"""How deeply a value may be nested."""
+"""Maximum nesting depth of a value."""
 _NUMBERS = ("decimal", "fractions")
-"""Modules of further numbers of Python, which need not be loaded to know them."""
+"""Modules with further number types, which need not be imported to recognise them."""
 
 
 def plain(value: Any) -> object:
-    """Turn *value* into a plain value that shares no mutable part with it.
+    """Convert *value* to a plain value that shares no mutable part with it.
 
-    Lists, tuples, ranges and deques become new lists, dictionaries are copied, sets become frozen sets; a
-    dataclass or named tuple becomes a `Structure` with the class name, first letter in lower case; numpy
-    scalars and arrays (known by their ``tolist``) become numbers and lists; decimals and fractions become
-    numbers; members of an ``Enum`` become atoms (their names in lower case), those of ``StrEnum`` and
-    ``IntEnum`` texts and numbers.  What is none of these stays as it is: an opaque reference.
+    Lists, tuples, ranges and deques become new lists; dictionaries are copied; sets become frozen sets. A dataclass or
+    named tuple becomes a `Structure` with the class name, first letter in lower case. Numpy scalars and arrays
+    (recognised by their ``tolist``), decimals and fractions become numbers and lists. Members of an ``Enum`` become
+    atoms (their names in lower case), those of ``StrEnum`` and ``IntEnum`` strings and numbers. Anything else is
+    returned as it is: an opaque reference.
 
     Raises:
-        ValueError: it contains itself, or is nested deeper than 200 levels.
+        ValueError: the value contains itself, or is nested deeper than 200 levels.
     """
     if type(value) in SCALARS:
         return value
     try:
         return _plain(value, _DEPTH)
     except _TooDeep:
-        raise ValueError(f"a value contains itself, or is nested deeper than {_DEPTH} levels") from None
+        raise ValueError(f"the value contains itself, or is nested deeper than {_DEPTH} levels") from None
 
 
 class _TooDeep(Exception):
-    """There is no room for another level."""
+    """The value is nested too deeply."""
 
 
 def _plain(value: Any, room: int) -> object:
@@ -181,7 +180,7 @@ def _plain_number_or_array(value: Any, room: int) -> object:
 
 def _plain_structure(value: Structure, room: int) -> Structure:
     if not isinstance(value.functor, str) or not value.functor:
-        raise TypeError(f"the functor of a structure is a text, not {value.functor!r}")
+        raise TypeError(f"expected a string as functor of a structure, found {value.functor!r}")
     arguments = tuple(_plain(argument, room) for argument in value.arguments)
     if not value.annotations:
         return Structure(value.functor, arguments)
@@ -198,7 +197,7 @@ def _plain_key(key: Any, room: int) -> Any:
 
 
 def functor_of(kind: type) -> str:
-    """The functor of the structure that stands for a dataclass or named tuple: ``pose`` for ``Pose``."""
+    """Return the functor of the structure for a dataclass or named tuple: ``pose`` for ``Pose``."""
     return kind.__name__[:1].lower() + kind.__name__[1:]
 
 
@@ -209,7 +208,7 @@ def _structure(kind: type, values: Any, room: int) -> object:
 
 
 def equal(left: object, right: object) -> bool:
-    """Tell whether two plain values are equal to an agent: 3 and 3.0 are, 1 and ``true`` are not."""
+    """Return whether two plain values are equal for an agent: 3 and 3.0 are, 1 and ``true`` are not."""
     if isinstance(left, bool) or isinstance(right, bool):
         return left is right
     if isinstance(left, list) and isinstance(right, list):
@@ -220,7 +219,7 @@ def equal(left: object, right: object) -> bool:
 
 
 def text(value: object, quoted: bool = False) -> str:
-    """Write *value* the way agents print it; *quoted* puts strings in double quotes."""
+    """Return *value* as agents print it. With *quoted*, strings are in double quotes."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, float) and value.is_integer() and abs(value) < 1e15:

@@ -1,4 +1,4 @@
-"""Workspaces: where artifacts are made, found, focused, linked, used and disposed."""
+"""Workspaces: create, find, focus, link, use and dispose artifacts."""
 
 import asyncio
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
@@ -7,7 +7,7 @@ from functools import partial
 from jacaros.env import ports
 from jacaros.env.artifact import Artifact
 from jacaros.env.creation import FindType, artifact_type_of, attach, init_failed, init_of, refused
-from jacaros.env.errors import OperationFailed, UnknownArtifact, spelling_hint
+from jacaros.env.errors import OperationFailed, UnknownArtifact, suggestion
 from jacaros.env.execution import OperationExecution
 from jacaros.env.ids import ArtifactId
 from jacaros.env.kernel import faults
@@ -15,7 +15,7 @@ from jacaros.env.kernel.interface import Interface
 from jacaros.env.kernel.registry import Registry
 from jacaros.env.kernel.setting import Setting
 from jacaros.env.kernel.steps import Steps
-from jacaros.env.lookup import Offering
+from jacaros.env.lookup import OperationIndex
 from jacaros.env.manual import Manual, describe
 from jacaros.env.observation import Observer
 from jacaros.env.operation import (
@@ -27,19 +27,19 @@ from jacaros.env.operation import (
     ignore_outcome,
     marks_of,
 )
-from jacaros.env.ports import Made, Told, nobody_waits
+from jacaros.env.ports import OnMade, OnOutcome, ignore_made
 from jacaros.env.property import ObservableProperty, histories_of
 from jacaros.env.values import Structure
 from jacaros.trace import Cause
 
 Watcher = Callable[[ArtifactId, bool], None]
-"""Told of an artifact that comes (True) or goes (False)."""
+"""Called with an artifact that is added (True) or removed (False)."""
 
 
 class Workspace(ports.Workspace):
-    """A named place for artifacts; made by `Environment.create_workspace`.
+    """A named place for artifacts, created by `Environment.create_workspace`.
 
-    Ids are good in the whole environment: what takes an id works for artifacts of other workspaces too.
+    Ids are valid in the whole environment: methods that take an id accept artifacts of other workspaces, too.
 
     Attributes:
         path: full path, such as ``/main/lab``.
@@ -53,7 +53,7 @@ class Workspace(ports.Workspace):
         self._artifacts: dict[str, ArtifactId] = {}
         self._personal: dict[str, ArtifactId] = {}
         self._making: dict[str, Steps] = {}
-        self._offerings: dict[tuple[str, int], Offering] = {}
+        self._indexes: dict[tuple[str, int], OperationIndex] = {}
         self._offers: dict[ArtifactId, dict[str, None]] = {}
         self._watchers: dict[object, Watcher] = {}
         self._watchers_of_all: dict[object, Watcher] = {}
@@ -64,14 +64,13 @@ class Workspace(ports.Workspace):
     def offer(
         self, name: str, artifact_type: type[Artifact], args: Sequence[object] = (), personal: bool = False
     ) -> ArtifactId:
-        """Have an artifact of JaCaROS itself, which is made when somebody first uses or perceives it.
+        """Add an artifact of JaCaROS itself. It is created at its first use or focus.
 
         Args:
             name: unique in the workspace.
             artifact_type: its ``init`` is a plain ``def``.
-            args: for ``init``.
-            personal: it belongs to one agent: it is found by its name, and nobody's actions are done by it who
-                does not name it.
+            args: arguments of ``init``.
+            personal: it belongs to one agent: it can be looked up by name, but serves only actions that name it.
         """
         artifact_id = self._new_id(name, artifact_type, None)
         make = partial(self._keep_promise, artifact_id, artifact_type, tuple(args))
@@ -88,7 +87,7 @@ class Workspace(ports.Workspace):
         self, artifact_id: ArtifactId, artifact_type: type[Artifact], args: tuple[object, ...]
     ) -> Steps:
         steps = attach(artifact_type, artifact_id, self, self._setting)
-        # Known at once: its ``init`` may look around.
+        # Add it first: its ``init`` may look up artifacts.
         self._registry.add(steps, self._forget)
         request = OperationRequest(artifact_id, "init", args)
         steps.initialise(init_of(artifact_type, request), request)
@@ -96,7 +95,7 @@ class Workspace(ports.Workspace):
         return steps
 
     def take_back(self, artifact_id: ArtifactId) -> None:
-        """End an artifact that was offered, if it is still there."""
+        """Dispose an artifact that was added with `offer`, if it still exists."""
         name = artifact_id.name
         if artifact_id in (self._artifacts.get(name), self._personal.get(name)):
             self.dispose_artifact(artifact_id)
@@ -107,13 +106,13 @@ class Workspace(ports.Workspace):
         type_name: str | type[Artifact],
         args: Sequence[object] = (),
         creator: str | None = None,
-        on_done: Made = nobody_waits,
+        on_done: OnMade = ignore_made,
         cause: Cause | None = None,
     ) -> OperationExecution:
-        """Make an artifact like `make_artifact`, and tell *on_done*.
+        """Create an artifact like `make_artifact`, and report to *on_done*.
 
-        An ``init`` that is a plain ``def`` has ended when this returns.  Cancelling what this gives
-        ends the making, and nothing is left behind.
+        An ``init`` that is a plain ``def`` has ended when this returns. Cancelling the returned execution abandons the
+        creation, and nothing remains of the artifact.
         """
         name = str.__str__(name)
         request = OperationRequest(
@@ -143,12 +142,12 @@ class Workspace(ports.Workspace):
         is_there = name in self._artifacts or name in self._personal
         if is_there or (making is not None and not making.disposed):
             raise refused(
-                "artifact_already_present", name, f"workspace {self.path} has an artifact {name} already"
+                "artifact_already_present", name, f"artifact `{name}` already exists in workspace {self.path}"
             )
         artifact_type = artifact_type_of(type_name, self._find_type, self._setting)
         return artifact_type, attach(artifact_type, artifact_id, self, self._setting)
 
-    def _made(self, steps: Steps, on_done: Made, outcome: OperationOutcome) -> None:
+    def _made(self, steps: Steps, on_done: OnMade, outcome: OperationOutcome) -> None:
         name = steps.id.name
         if self._making.get(name) is steps:
             del self._making[name]
@@ -162,13 +161,13 @@ class Workspace(ports.Workspace):
         self._changed(steps.id, True)
         on_done(steps.id, SUCCEEDED)
 
-    def dispose_artifact(self, artifact_id: ArtifactId, on_done: Told = ignore_outcome) -> None:
-        """End an artifact: observers are told that its properties are gone, its operations fail.
+    def dispose_artifact(self, artifact_id: ArtifactId, on_done: OnOutcome = ignore_outcome) -> None:
+        """Dispose an artifact: its observers lose its properties, and its operations fail.
 
-        Its `Artifact.dispose` runs when the last operation has ended, which may be after this returns.
+        `Artifact.dispose` runs when the last operation has ended, possibly after this returns.
 
         Raises:
-            UnknownArtifact: it is gone already.
+            UnknownArtifact: it is gone.
         """
         if self._registry.withdraw(artifact_id):
             self._forget(artifact_id)
@@ -185,7 +184,7 @@ class Workspace(ports.Workspace):
             self._changed(artifact_id, False)
 
     async def close(self) -> None:
-        """Dispose all artifacts, the last one made first, and wait until they have given back everything."""
+        """Dispose all artifacts, the newest first, and wait until they have released everything."""
         for steps in tuple(self._making.values()):
             self._registry.dispose(steps)
         for artifact_id in reversed((*self.artifacts(), *self.personal_artifacts())):
@@ -195,28 +194,28 @@ class Workspace(ports.Workspace):
     # ---- artifacts are found
 
     def artifacts(self) -> tuple[ArtifactId, ...]:
-        """All artifacts, the oldest first; those that every workspace has are the first."""
+        """Return all artifacts, the oldest first. The standard artifacts come first."""
         return tuple(self._artifacts.values())
 
     def personal_artifacts(self) -> tuple[ArtifactId, ...]:
-        """The artifacts that stand for the agents in this workspace."""
+        """Return the artifacts that represent agents in this workspace."""
         return tuple(self._personal.values())
 
     def lookup(self, name: str) -> ArtifactId:
-        """Find an artifact by its name.
+        """Return the artifact with this name.
 
         Raises:
-            UnknownArtifact: there is none, or its ``init`` has not ended.
+            UnknownArtifact: it does not exist, or its ``init`` has not ended.
         """
         found = self._artifacts.get(name) or self._personal.get(name)
         if found is None:
-            help = spelling_hint(name, self._artifacts)
-            message = f"workspace {self.path} has no artifact {name}{help}"
+            help = suggestion(name, self._artifacts)
+            message = f"unknown artifact `{name}` in workspace {self.path}{help}"
             raise UnknownArtifact(message, Structure("artifact_not_available", (str.__str__(name),)))
         return found
 
     async def available(self, name: str) -> ArtifactId:
-        """Wait until there is an artifact of that name."""
+        """Wait until an artifact of this name exists, and return it."""
         if name not in self._artifacts:
             found: asyncio.Future[None] = asyncio.get_running_loop().create_future()
 
@@ -232,11 +231,11 @@ class Workspace(ports.Workspace):
         return self.lookup(name)
 
     def watch(self, watcher: Watcher, personal: bool = False) -> Callable[[], None]:
-        """Call *watcher* with every artifact that comes (True) or goes (False); gives what ends that.
+        """Call *watcher* with every artifact that is added (True) or removed (False). Return a function that ends this.
 
         Args:
-            watcher: called at once, within the turn of the loop.
-            personal: also with those of `personal_artifacts`.
+            watcher: called immediately, in the same turn of the event loop.
+            personal: include `personal_artifacts`.
         """
         watchers = self._watchers_of_all if personal else self._watchers
         watch = object()
@@ -244,22 +243,22 @@ class Workspace(ports.Workspace):
         return lambda: watchers.pop(watch, None) and None
 
     def providers(self, operation: str, arity: int) -> tuple[ArtifactId, ...]:
-        """The artifacts that offer *operation* with *arity* arguments to agents, the oldest first."""
-        offering = self._offerings.get((operation, arity))
-        if offering is None:
-            offering = self._offerings[operation, arity] = Offering()
+        """Return the artifacts that offer *operation* with *arity* arguments to agents, the oldest first."""
+        index = self._indexes.get((operation, arity))
+        if index is None:
+            index = self._indexes[operation, arity] = OperationIndex()
             for artifact_id in self._artifacts.values():
-                self._offer_of(artifact_id, operation, arity, offering)
-        return offering.providers()
+                self._offer_of(artifact_id, operation, arity, index)
+        return index.providers()
 
-    def _offer_of(self, artifact_id: ArtifactId, operation: str, arity: int, offering: Offering) -> None:
-        """Take an artifact into the offering of an operation, if it offers it."""
+    def _offer_of(self, artifact_id: ArtifactId, operation: str, arity: int, index: OperationIndex) -> None:
+        """Add an artifact to the index of an operation, if it offers it."""
         declared = self.interface(artifact_id).operations.find(operation, arity)
         if declared is not None:
-            offering.add(artifact_id, not declared.common and declared.signature.rest is None)
+            index.add(artifact_id, not declared.common and declared.signature.rest is None)
 
     def offers(self, artifact_id: ArtifactId) -> Collection[str]:
-        """The operations of an artifact for agents, such as ``inc/1`` and ``sum/any``.
+        """Return the operations of an artifact for agents, such as ``inc/1`` and ``sum/any``.
 
         Raises:
             UnknownArtifact: it is gone.
@@ -270,15 +269,15 @@ class Workspace(ports.Workspace):
         return found
 
     def artifact_type(self, type_name: str) -> type[Artifact]:
-        """The class that `make_artifact` would make an artifact of.
+        """Return the class that `make_artifact` would use.
 
         Raises:
-            OperationFailed: there is none.
+            OperationFailed: the type is unknown.
         """
         return artifact_type_of(type_name, self._find_type, self._setting)
 
     def manual(self, artifact_id: ArtifactId) -> Manual:
-        """What an artifact offers, with the operations that it has defined for itself.
+        """Return the manual of an artifact, including operations that it has defined itself.
 
         Raises:
             UnknownArtifact: it is gone.
@@ -287,13 +286,13 @@ class Workspace(ports.Workspace):
         return describe(steps.artifact_type, steps.interface, steps.publication.committed())
 
     def operations_changed(self, artifact_id: ArtifactId) -> None:
-        """Be told that an artifact has other operations from now on."""
+        """Update the indexes after an artifact has changed its operations."""
         self._offers.pop(artifact_id, None)
         if self._artifacts.get(artifact_id.name) is artifact_id:
-            self._offerings.clear()
+            self._indexes.clear()
 
     def interface(self, artifact_id: ArtifactId) -> Interface:
-        """The operations of an artifact.
+        """Return the operations of an artifact.
 
         Raises:
             UnknownArtifact: it is gone.
@@ -301,7 +300,7 @@ class Workspace(ports.Workspace):
         return self._registry.interface(artifact_id) or self._steps_of(artifact_id).interface
 
     def histories(self, artifact_id: ArtifactId) -> Mapping[str, float]:
-        """For properties by name, the seconds for which those who focus an artifact keep past values.
+        """Return the seconds for which agents that focus an artifact keep past values, by property name.
 
         Raises:
             UnknownArtifact: it is gone.
@@ -309,7 +308,7 @@ class Workspace(ports.Workspace):
         return histories_of(self._steps_of(artifact_id).artifact_type)
 
     def has_method(self, artifact_id: ArtifactId, name: str) -> bool:
-        """True when the author of an artifact's class wrote a public method of that name that is no operation of agents.
+        """Return whether the class of an artifact has a public user-defined method of this name that is not an operation.
 
         Raises:
             UnknownArtifact: it is gone.
@@ -317,11 +316,11 @@ class Workspace(ports.Workspace):
         method = vars(self._steps_of(artifact_id).artifact_type).get(name)
         if name.startswith("_") or not callable(method):
             return False
-        # One that is marked and not offered was taken away by `Artifact.remove_operation`.
+        # `Artifact.remove_operation` has removed a method that is marked but not offered.
         return all(mark.kind != OPERATION or mark.name not in (None, name) for mark in marks_of(method))
 
     def properties(self, artifact_id: ArtifactId) -> tuple[ObservableProperty, ...]:
-        """The observable properties of an artifact, as observers know them.
+        """Return the observable properties of an artifact, as observers know them.
 
         Raises:
             UnknownArtifact: it is gone.
@@ -329,7 +328,7 @@ class Workspace(ports.Workspace):
         return self._steps_of(artifact_id).publication.committed()
 
     def observers(self, artifact_id: ArtifactId) -> tuple[Observer, ...]:
-        """Who focuses an artifact, in the order of focusing.
+        """Return the observers that focus an artifact, in the order of focusing.
 
         Raises:
             UnknownArtifact: it is gone.
@@ -337,7 +336,7 @@ class Workspace(ports.Workspace):
         return self._steps_of(artifact_id).publication.observers
 
     def pending(self, artifact_id: ArtifactId) -> tuple[OperationExecution, ...]:
-        """The operations of an artifact that run (its internal ones included) or wait to begin.
+        """Return the operations of an artifact that run (including internal ones) or wait to begin.
 
         Raises:
             UnknownArtifact: it is gone.
@@ -349,8 +348,8 @@ class Workspace(ports.Workspace):
     def execute(self, request: OperationRequest) -> OperationExecution:
         """Run an operation for an agent.
 
-        A plain ``def`` of a free artifact has ended when this returns: its changes are committed, observers
-        have been told, then ``request.on_done``.
+        A plain ``def`` of a free artifact has ended when this returns: its changes are committed, observers have
+        received them, and ``request.on_done`` has been called.
         """
         steps = self._registry.find(request.artifact)
         if steps is None:
@@ -358,7 +357,7 @@ class Workspace(ports.Workspace):
         return steps.execute(request, OPERATION)
 
     def execute_linked(self, request: OperationRequest) -> OperationExecution:
-        """Run a linked operation for another artifact; see `Artifact.call_linked`."""
+        """Run a linked operation for another artifact. See `Artifact.call_linked`."""
         steps = self._registry.find(request.artifact)
         if steps is None:
             return self._gone(request)
@@ -369,7 +368,7 @@ class Workspace(ports.Workspace):
         request.on_done(faults.not_available(request.artifact))
         return refused_execution
 
-    def focus(self, artifact_id: ArtifactId, observer: Observer, on_done: Told = ignore_outcome) -> None:
+    def focus(self, artifact_id: ArtifactId, observer: Observer, on_done: OnOutcome = ignore_outcome) -> None:
         """Let *observer* receive what an artifact publishes, beginning with all its properties.
 
         Focusing again has no effect.
@@ -381,18 +380,18 @@ class Workspace(ports.Workspace):
         on_done(SUCCEEDED)
 
     def stop_focus(self, artifact_id: ArtifactId, observer: Observer) -> None:
-        """Let *observer* receive nothing more, after the removal of all properties.
+        """Stop sending observations to *observer*. The last one removes all properties.
 
-        Without effect when it does not focus the artifact, or the artifact is gone.
+        Without effect if it does not focus the artifact, or the artifact is gone.
         """
         steps = self._registry.find(artifact_id)
         if steps is not None:
             steps.publication.remove(observer)
 
     def link(
-        self, from_id: ArtifactId, port: str | None, to_id: ArtifactId, on_done: Told = ignore_outcome
+        self, from_id: ArtifactId, port: str | None, to_id: ArtifactId, on_done: OnOutcome = ignore_outcome
     ) -> None:
-        """Put an artifact behind an out port of another one, beside those that are there; None: its first port.
+        """Link an out port of an artifact to another artifact, in addition to present links. None means its first port.
 
         Raises:
             UnknownArtifact: one of them is gone.
@@ -403,15 +402,15 @@ class Workspace(ports.Workspace):
         if port is None and ports:
             port = ports[0]
         if port is None or port not in ports:
-            offer = f"; its ports are {', '.join(ports)}" if ports else "; it has none"
+            known = f"; its ports are {', '.join(ports)}" if ports else "; it has none"
             wanted = "any" if port is None else str.__str__(port)
-            message = f"artifact {from_id.name} ({from_id.type_name}) has no out port {wanted}{offer}"
+            message = f"unknown out port `{wanted}` of artifact {from_id.name} ({from_id.type_name}){known}"
             raise OperationFailed(message, Structure("unknown_port", (wanted,)))
         self._registry.link(from_id, port, to_id)
         on_done(SUCCEEDED)
 
     def linked(self, from_id: ArtifactId, port: str) -> tuple[ArtifactId, ...]:
-        """The artifacts behind an out port, in the order of linking."""
+        """Return the artifacts that are linked to an out port, in the order of linking."""
         return self._registry.linked(from_id, port)
 
     def _steps_of(self, artifact_id: ArtifactId) -> Steps:
@@ -422,18 +421,18 @@ class Workspace(ports.Workspace):
         return steps
 
     def _changed(self, artifact_id: ArtifactId, present: bool) -> None:
-        for (operation, arity), offering in self._offerings.items():
+        for (operation, arity), index in self._indexes.items():
             if present:
-                self._offer_of(artifact_id, operation, arity, offering)
+                self._offer_of(artifact_id, operation, arity, index)
             else:
-                offering.remove(artifact_id)
+                index.remove(artifact_id)
         self._offers.pop(artifact_id, None)
         if self._setting.listener is not None:
             self._setting.listener.artifact(artifact_id, present)
         self._tell((*self._watchers.values(), *self._watchers_of_all.values()), artifact_id, present)
 
     def _tell(self, watchers: tuple[Watcher, ...], artifact_id: ArtifactId, present: bool) -> None:
-        # A watcher may end the artifact that has just come: the others hear of its coming first.
+        # A watcher may dispose the new artifact: notify the others of its creation first.
         self._tell_rest()
         self._telling = iter(watchers), artifact_id, present
         self._tell_rest()

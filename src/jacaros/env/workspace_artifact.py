@@ -1,4 +1,4 @@
-"""The artifact ``workspace``: what agents do with artifacts and workspaces as such."""
+"""The artifact ``workspace``: agents' operations on artifacts and workspaces."""
 
 from typing import NoReturn
 
@@ -14,16 +14,16 @@ from jacaros.env.workspace import Workspace
 class WorkspaceArtifact(Artifact):
     """The workspace itself.
 
-    Paths start from this workspace, if they do not begin with ``/``.
+    Paths that do not begin with ``/`` are relative to this workspace.
 
     Properties:
         artifact(Id, Name, Type): one for each artifact.
         childWsp(Name): one for each workspace directly below this one.
-        linkedWsp(Name, Path): one for each link made by ``linkWorkspace``, with the full path to which it leads.
+        linkedWsp(Name, Path): one for each link made by ``linkWorkspace``, with the full path it leads to.
     """
 
     def init(self, workspace: Workspace, tree: WorkspaceTree) -> None:
-        """Show what there is, and what comes and goes."""
+        """Show the artifacts and workspaces, and follow changes."""
         self._here, self._tree = workspace, tree
         self._children: set[str] = set()
         for artifact in (*workspace.artifacts(), *workspace.personal_artifacts()):
@@ -56,12 +56,12 @@ class WorkspaceArtifact(Artifact):
 
     @operation(name="makeArtifact")
     async def make(self, name: str, type_name: str, parameters: list[object] = []) -> None:  # noqa: B006
-        """Make an artifact: here, or in the workspace to which a path in front of its name leads."""
+        """Create an artifact, here or in the workspace at the path before its name."""
         await self._make(name, type_name, parameters)
 
     @operation(name="makeArtifact")
     async def make_and_tell(self, name: str, type_name: str, parameters: list[object], artifact: Out) -> None:
-        """Make an artifact, and give its id."""
+        """Create an artifact, and return its id."""
         artifact.set(await self._make(name, type_name, parameters))
 
     async def _make(self, name: str, type_name: str, parameters: list[object]) -> ArtifactId:
@@ -71,13 +71,13 @@ class WorkspaceArtifact(Artifact):
 
     @operation(name="lookupArtifact")
     def look_up(self, name: str, artifact: Out) -> None:
-        """Find an artifact by its name, or by the path of a workspace and its name."""
+        """Return the artifact with this name or path."""
         workspace, plain_name = self._place(name)
         artifact.set(workspace.lookup(plain_name))
 
     @operation(name="lookupArtifactByType")
     def look_up_by_type(self, type_name: str, artifact: Out) -> None:
-        """Find the oldest artifact of a type; a package in front of its name need not be given."""
+        """Return the oldest artifact of a type. The package of the type may be left out."""
         for each in self._here.artifacts():
             if is_called(type_name, each.type_name):
                 artifact.set(each)
@@ -85,66 +85,66 @@ class WorkspaceArtifact(Artifact):
         self._missing(type_name)
 
     def _missing(self, type_name: str) -> NoReturn:
-        message = f"workspace {self._here.path} has no artifact of type {type_name}"
+        message = f"no artifact of type {type_name} in workspace {self._here.path}"
         raise UnknownArtifact(message, Structure("artifact_not_available", (str.__str__(type_name),)))
 
     @operation(name="getCurrentArtifacts")
     def names(self, names: Out) -> None:
-        """Give the names of all artifacts, those that every workspace has among them."""
+        """Return the names of all artifacts, including the standard ones."""
         names.set([each.name for each in (*self._here.artifacts(), *self._here.personal_artifacts())])
 
     @operation(name="disposeArtifact")
     def dispose_it(self, artifact: ArtifactId) -> None:
-        """End an artifact."""
+        """Dispose an artifact."""
         self._tree.find(artifact.workspace).dispose_artifact(artifact)
 
     @operation(name="linkArtifacts")
     def link_them(self, source: ArtifactId, port: str, target: ArtifactId) -> None:
-        """Put an artifact behind an out port of another one."""
+        """Link an out port of an artifact to another artifact."""
         self._tree.find(source.workspace).link(source, port, target)
 
     # ---- workspaces
 
     @operation(name="createWorkspace")
     def create(self, path: str) -> None:
-        """Make a workspace."""
+        """Create a workspace."""
         self._tree.create(resolve_path(self._here.path, path))
 
     @operation(name="createWorkspace")
     def create_elsewhere(self, path: str, address: str) -> None:
-        """Make a workspace on another computer: not possible yet."""
-        self._refuse(f"workspace {path} cannot be made at {address}: all workspaces are in this process")
+        """Create a workspace on another computer. Not supported yet."""
+        self._refuse(f"cannot create workspace {path} at {address}: remote workspaces are not supported yet")
 
     @operation(name="createWorkspaceWithTopology")
     def create_with_topology(self, path: str, topology: object) -> None:
-        """Make a workspace in which agents and artifacts have positions: not supported."""
-        self._refuse(f"workspace {path}: workspaces have no topology; createWorkspace makes one without")
+        """Create a workspace in which agents and artifacts have positions. Not supported."""
+        self._refuse(f"cannot create workspace {path} with a topology; use createWorkspace")
 
     @operation(name="linkWorkspace")
     def link_workspace(self, path: str, local_name: str) -> None:
-        """Let a name in this workspace lead to another workspace."""
+        """Make a name in this workspace lead to another workspace."""
         here = self._here.path
         self._tree.link(resolve_path(here, local_name), resolve_path(here, path))
 
     @operation(name="linkWorkspaces")
     def link_workspaces(self, source: str, target: str, local_name: str) -> None:
-        """Let a name in one workspace lead to another one."""
+        """Make a name in one workspace lead to another one."""
         here = self._here.path
         above = self._tree.find(resolve_path(here, source)).path
         self._tree.link(resolve_path(above, local_name), resolve_path(here, target))
 
     @operation(name="linkRemoteWorkspace")
     def link_remote_workspace(self, *arguments: object) -> None:
-        """Link a workspace of another system: not possible yet."""
+        """Link a workspace of another system. Not supported yet."""
         self._refuse(
-            "workspaces of other processes cannot be linked yet; linkWorkspace links one of this process"
+            "linking remote workspaces is not supported yet; use linkWorkspace for one of this process"
         )
 
     @operation(name="mountWorkspace")
     def mount_workspace(self, mas_url: str, remote_path: str, local_path: str) -> None:
-        """Mount a workspace of another system: not possible yet."""
+        """Mount a workspace of another system. Not supported yet."""
         self._refuse(
-            f"{mas_url}{remote_path} cannot be mounted at {local_path}: other processes cannot be reached yet"
+            f"cannot mount {mas_url}{remote_path} at {local_path}: remote workspaces are not supported yet"
         )
 
     def _refuse(self, message: str) -> NoReturn:
@@ -152,7 +152,7 @@ class WorkspaceArtifact(Artifact):
         self.fail(message, "not_supported", f"{request.operation}/{len(request.arguments)}")
 
     def _place(self, path: str) -> tuple[ports.Workspace, str]:
-        """The workspace and the plain name meant by the name or path of an artifact."""
+        """Return the workspace and plain name that the name or path of an artifact means."""
         if "/" not in path:
             return self._here, path
         above, _, name = resolve_path(self._here.path, path).rpartition("/")
@@ -160,7 +160,7 @@ class WorkspaceArtifact(Artifact):
 
 
 def is_called(wanted: str, type_name: str) -> bool:
-    """Whether a type that was named when an artifact was made is the *wanted* one."""
+    """Return whether the type name of an artifact means the *wanted* type."""
     if wanted == type_name:
         return True
     return ("." in wanted) != ("." in type_name) and wanted.rpartition(".")[2] == type_name.rpartition(".")[2]

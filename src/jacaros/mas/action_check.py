@@ -1,7 +1,7 @@
-"""Actions of a project's programs that none of its artifacts can carry out, and the types of artifacts that agents make.
+"""Check that artifacts of a project offer the actions of its programs, and that the artifact types that agents use exist.
 
-Only what is certain is told: a program may make artifacts of types that are worked out at run time, artifacts may
-define operations then, and an architecture may carry out actions itself.
+Only certain errors are reported: a program may create artifacts of types computed at run time, artifacts may define
+operations at run time, and an agent architecture may run actions itself.
 """
 
 import inspect
@@ -29,32 +29,32 @@ if TYPE_CHECKING:
 
 _MAKES: Final = "makeArtifact"
 _USES: Final = frozenset({"use_artifact", "create_artifact"})
-"""Goals with the same arguments, of the library of plans for artifacts."""
+"""Goals of the artifact library with the same arguments."""
 _OPEN_WORLD: Final = frozenset({"linkRemoteWorkspace", "linkWorkspace", "linkWorkspaces", "mountWorkspace"})
-"""Actions that bring artifacts of other systems in."""
+"""Actions that add artifacts of other systems."""
 
 _FAKES: Final = frozenset({"fake_action", "fake_message", "fake_service", "fake_subscriber"})
-"""Goals by which a test plays the environment."""
+"""Goals by which a test simulates the environment."""
 
 _CLOSED: Final = ("jacaros.env.", "jacaros.artifacts.")
-"""Modules whose artifacts offer what their classes declare."""
+"""Modules whose artifacts have only the operations that their classes declare."""
 
 _OPEN_METHODS: Final = ("define_operation", "make_artifact", "create(")
-"""What an artifact's Python code does when it offers more than its class declares."""
+"""Methods that add operations at run time."""
 
 
 class _NotCertain(Exception):
-    """What the project's artifacts offer is not known before it runs."""
+    """The operations of the project's artifacts are not known before it runs."""
 
 
 def check_actions(
     deployment: Deployment, programs: Sequence[tuple[AgentSpec, nodes.Program]], find_type: "FindType"
 ) -> list[Diagnostic]:
-    """Warnings about actions that no artifact offers, and about types of artifacts that there are not.
+    """Return warnings about unknown operations and unknown types of artifacts.
 
     Args:
         deployment: the project.
-        programs: the agents with all that they run.
+        programs: the agents with their programs, including included files.
         find_type: finds the project's artifact types.
     """
     found = [(agent, list(_steps(program))) for agent, program in programs]
@@ -70,12 +70,12 @@ def check_actions(
         return warnings
     for agent, steps in found:
         if not (any(map(is_own_architecture, agent.architecture_classes)) or agent.agent_class):
-            warnings += filter(None, map(offered.blame, steps))
+            warnings += filter(None, map(offered.diagnose, steps))
     return warnings
 
 
 def _steps(program: nodes.Program) -> Iterator[nodes.Literal]:
-    """The actions in the plans of a program."""
+    """Return the actions in the plans of a program."""
     return _actions(*clauses_of(program))
 
 
@@ -86,7 +86,9 @@ def _actions(*roots: object) -> Iterator[nodes.Literal]:
 
 
 def _makes(program: nodes.Program) -> Iterator[nodes.Literal]:
-    """The steps ``makeArtifact(Name,Type,...)`` of a program, and its goals for plans of a library that make artifacts."""
+    """Return the steps ``makeArtifact(Name,Type,...)`` of a program, and its goals for library plans that create
+    artifacts.
+    """
     library = [plan for plan in program.plans if _is_of_library(plan)]
     offered = _goals(plan.trigger.literal for plan in library)
     own = [plan for plan in program.plans if not _is_of_library(plan)]
@@ -100,7 +102,7 @@ def _makes(program: nodes.Program) -> Iterator[nodes.Literal]:
         if isinstance(head, nodes.Literal) and (head.functor, len(head.arguments)) in used:
             goals = (node.goal for node in walk(plan.body) if isinstance(node, nodes.Achieve))
             for goal in goals:
-                # A variable is a parameter of the plan: the type is named where the goal is posted.
+                # A variable is a parameter of the plan: the goal names the type.
                 if isinstance(goal, nodes.Literal) and goal.functor in _USES and _type_of(goal) is not None:
                     yield goal
 
@@ -114,12 +116,12 @@ def _is_of_library(plan: nodes.Plan) -> bool:
 
 
 def artifact_types(program: nodes.Program) -> list[str]:
-    """The types of artifacts that a program makes, as far as they are written in it."""
+    """Return the artifact types that a program names."""
     return [name for make in _makes(program) if (name := _type_of(make)) is not None]
 
 
 def _is_open(program: nodes.Program) -> bool:
-    """Whether a program brings in other ones at run time, or lets a test answer its actions."""
+    """Return whether a program adds others at run time, or a test answers its actions."""
     for node in walk(*clauses_of(program), *program.goals):
         if isinstance(node, nodes.InternalAction) and STANDARD.get(node.name, UNDECLARED).brings_in:
             return True
@@ -129,7 +131,7 @@ def _is_open(program: nodes.Program) -> bool:
 
 
 def _type_of(action: nodes.Literal) -> str | None:
-    """The type that ``makeArtifact(Name,Type,...)``, or such a goal, names; None when it is worked out at run time."""
+    """Return the type in ``makeArtifact(Name,Type,...)`` or in such a goal; None if it is computed at run time."""
     if len(action.arguments) < 2:
         return None
     wanted = action.arguments[1]
@@ -151,14 +153,14 @@ def _unknown_types(makes: Sequence[nodes.Literal], find_type: "FindType") -> Ite
             span = action.arguments[1].span
             yield Diagnostic("warning", str(unknown), span, code="unknown-artifact-type")
         except Exception:
-            # A module with a mistake in it: a run tells it.
+            # The module has an error, which a run reports.
             continue
 
 
 def _types(
     deployment: Deployment, makes: Sequence[nodes.Literal], find_type: "FindType"
 ) -> "list[type[Artifact]]":
-    """All types that the project makes artifacts of.
+    """Return all artifact types of the project.
 
     Raises:
         _NotCertain: not all of them are known.
@@ -179,7 +181,7 @@ def _types(
 
 
 def _offers_more(artifact_type: "type[Artifact]") -> bool:
-    """Whether artifacts of a type may define operations, or make other artifacts, at run time."""
+    """Return whether artifacts of a type may define operations, or create other artifacts, at run time."""
     for each in artifact_type.__mro__:
         if each.__module__.startswith(_CLOSED) or each is object:
             continue
@@ -193,7 +195,7 @@ def _offers_more(artifact_type: "type[Artifact]") -> bool:
 
 
 class _Offered:
-    """What the artifacts of a project offer to agents."""
+    """The operations that the artifacts of a project offer to agents."""
 
     def __init__(self, types: "list[type[Artifact]]") -> None:
         self._types = types
@@ -205,17 +207,16 @@ class _Offered:
             return True
         return any(each.interface.operations.find(name, arity) is not None for each in self._types)
 
-    def blame(self, action: nodes.Literal) -> Diagnostic | None:
-        """A warning if nobody can carry *action* out."""
+    def diagnose(self, action: nodes.Literal) -> Diagnostic | None:
+        """Return a warning if no artifact offers *action*."""
         span = action.span
         if span is None or span.file.name.startswith("$") or self._has(action.functor, len(action.arguments)):
             return None
         key = f"{action.functor}/{len(action.arguments)}"
-        return Diagnostic(
-            "warning", f"no artifact of the project offers {key}", span, self._hint(key), "unknown-operation"
-        )
+        message = f"unknown operation `{key}`: no artifact of the project has it"
+        return Diagnostic("warning", message, span, self._help(key), "unknown-operation")
 
-    def _hint(self, key: str) -> str | None:
+    def _help(self, key: str) -> str | None:
         known = list(self._personal)
         for artifact_type in self._types:
             known += artifact_type.interface.operations.keys()
@@ -225,12 +226,12 @@ class _Offered:
         same = [each for each in dict.fromkeys(known) if each.partition("/")[0] == name]
         close = close_matches(name, [each.partition("/")[0] for each in known], 0.75)
         if same:
-            return f"there is {', '.join(same)}"
-        return f"did you mean {close[0]}?" if close else None
+            return f"did you mean {' or '.join(f'`{each}`' for each in same)}?"
+        return f"did you mean `{close[0]}`?" if close else None
 
 
 class _Place(NamedTuple):
-    """Where a type stands: an argument of an action or of a goal, maybe one of a library that comes with the package."""
+    """Where a type is named: an argument of an action or goal, possibly of a library of JaCaROS."""
 
     functor: str
     arity: int
@@ -244,7 +245,7 @@ _MAKING: Final = tuple(_Place("makeArtifact", arity, 1) for arity in (2, 3, 4))
 def made_types(
     deployment: Deployment, programs: Sequence[nodes.Program], find_type: "Callable[[str], type[Artifact]]"
 ) -> "list[type[Artifact]] | None":
-    """The types of all artifacts of a project; None when they are not known before it runs."""
+    """Return the types of all artifacts of a project; None if they are not known before it runs."""
     names = [artifact.type_name for workspace in deployment.workspaces for artifact in workspace.artifacts]
     for program in programs:
         made = type_names(program)
@@ -254,21 +255,21 @@ def made_types(
     try:
         return [find_type(name) for name in dict.fromkeys(names)]
     except Exception:
-        # An unknown type, or a module with a mistake in it: that is told where it belongs.
+        # An unknown type, or a module with an error, is reported at its location.
         return None
 
 
 def type_names(program: nodes.Program) -> list[str] | None:
-    """The types that a program makes artifacts of; None when some are worked out at run time."""
+    """Return the types that a program creates artifacts of; None if some are computed at run time."""
     uses = list(_uses(program))
     if any(literal.functor in _OPEN_WORLD for literal, _ in uses):
         return None
     names: list[str] = []
     places = list(_MAKING)
-    for place in places:  # it grows
+    for place in places:  # the list grows while it is iterated
         found = [each for each in uses if _key(each[0]) == (place.functor, place.arity)]
         if not found and place not in _MAKING and not place.of_library:
-            return None  # somebody else is to give the agent that goal
+            return None  # the goal comes from outside
         for literal, plan in found:
             wanted = literal.arguments[place.argument]
             if isinstance(wanted, nodes.String):
@@ -289,7 +290,7 @@ def _key(literal: nodes.Literal) -> tuple[str, int]:
 
 
 def _uses(program: nodes.Program) -> Iterator[tuple[nodes.Literal, nodes.Plan | None]]:
-    """All literals of a program but the triggers of plans, with their plans."""
+    """Return all literals of a program except triggers of plans, with their plans."""
     for plan in program.plans:
         for node in walk(plan.context, plan.body, plan.subplans):
             if isinstance(node, nodes.Literal):
@@ -300,7 +301,7 @@ def _uses(program: nodes.Program) -> Iterator[tuple[nodes.Literal, nodes.Plan | 
 
 
 def _given_by_goal(wanted: nodes.Term, plan: nodes.Plan | None) -> _Place | None:
-    """Which argument of a plan's goal a variable is; None when it is none."""
+    """Return which argument of a plan's goal a variable is, or None."""
     if plan is None or not isinstance(wanted, nodes.Variable) or plan.trigger.kind != "!":
         return None
     goal = plan.trigger.literal

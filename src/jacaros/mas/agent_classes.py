@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 _KNOWN_ARCHITECTURES = ("jaca.", "c4jason.")
-"""Packages of architectures of other systems whose work is built in here."""
+"""Packages of architectures of other systems whose work JaCaROS does itself."""
 
 _DEFAULTS = frozenset(
     {"jason.asSemantics.Agent", "jason.architecture.AgArch", "jason.bb.DefaultBeliefBase", ""}
@@ -33,16 +33,16 @@ _DEFAULTS = frozenset(
 
 
 def is_own_architecture(written: str) -> bool:
-    """Whether an ``agentArchClass`` is the project's own, not one of another system whose work is built in here."""
+    """Return whether an ``agentArchClass`` is user-defined, rather than one whose work JaCaROS does itself."""
     return written not in _DEFAULTS and not written.startswith(_KNOWN_ARCHITECTURES)
 
 
 class AgentClasses:
-    """Makes the hosts and minds of a run's agents, those of the project's own classes among them.
+    """Creates the hosts and minds of agents, including those of user-defined classes.
 
     Args:
         modules: the project's Python code.
-        folder: of the project.
+        folder: folder of the project.
         warn: takes a warning.
     """
 
@@ -51,10 +51,10 @@ class AgentClasses:
         self._warned: set[str] = set()
 
     def check(self, agents: Iterable[AgentSpec]) -> None:
-        """Look for all classes, so that mistakes are told before anything runs.
+        """Find all classes, to report errors before anything runs.
 
         Raises:
-            ProjectError: with all that is wrong.
+            ProjectError: all errors.
         """
         wrong: list[Diagnostic] = []
         for spec in agents:
@@ -83,10 +83,10 @@ class AgentClasses:
         code: PythonCode,
         plans: ProgramPlans,
     ) -> AgentHost:
-        """The host and the mind of an agent.
+        """Return the host of an agent, with its mind.
 
         Raises:
-            ProjectError: a class cannot be found or begun.
+            ProjectError: a class cannot be found or instantiated.
         """
         if spec.is_python:
             from jacaros.mas.python_agents import loading
@@ -112,7 +112,7 @@ class AgentClasses:
         plans: ProgramPlans,
         objects: "_Objects",
     ) -> AgentHost:
-        # Imported here: most projects have no classes of their own.
+        # Imported on demand: most projects have no user-defined classes.
         from jacaros.extension.agent import agent_of
         from jacaros.extension.belief_base import install
         from jacaros.extension.customising import CustomMind
@@ -141,12 +141,15 @@ class AgentClasses:
         except Exception as error:
             from jacaros.extension.calling import crash_text
 
-            told = crash_text(f"agent {spec.name}", type(self)._custom, error)
-            raise self._project_error(spec, told) from error
+            message = crash_text(f"agent {spec.name}", type(self)._custom, error)
+            raise self._project_error(spec, message) from error
         return host
 
     def _objects(self, spec: AgentSpec) -> "_Objects":
-        """Objects for the agent class, the belief base and the architectures; the last declared comes first."""
+        """Return objects for the agent class, the belief base and the architectures.
+
+        The last declared architecture comes first.
+        """
         if not _names_classes(spec):
             return None, None, []
         from jacaros.extension.agent import Agent, AgentArch
@@ -183,8 +186,8 @@ class AgentClasses:
             module, _, last = name.rpartition(".")
             file = f"{module.replace('.', '/')}.py"
             own = bool(module) and not name.startswith("jason.")
-            help = f"write it in Python: a class {last}(jacaros.{kind.__name__}) in {file}" if own else None
-            self._warn(Diagnostic("warning", f"the Java class {name} has no effect", spec.span, help))
+            help = f"write `class {last}(jacaros.{kind.__name__})` in {file}" if own else None
+            self._warn(Diagnostic("warning", f"the Java class `{name}` has no effect", spec.span, help))
         return made
 
     def _warn_once(self, warning: Diagnostic) -> None:

@@ -1,4 +1,4 @@
-"""What stands between one mind and its run: Jason's agent architecture."""
+"""The host of a mind in its run (Jason's agent architecture)."""
 
 from collections.abc import Callable, Coroutine, Iterable, Mapping, Sequence
 from random import Random
@@ -22,76 +22,76 @@ _REASON = functor("env_failure_reason", 1)
 
 
 class HostedMind(Protocol):
-    """An agent as its host sees it (`jacaros.bdi.mind.Mind`)."""
+    """A mind, as its host sees it (`jacaros.bdi.mind.Mind`)."""
 
     stopped: bool
-    """Set by the host: no further cycle."""
+    """Set by the host to stop the mind."""
 
     @property
     def options(self) -> Options:
-        """How it handles its events, and how much it tells."""
+        """Options for its events and logs."""
 
     def start(self) -> None:
-        """Take up initial beliefs and goals."""
+        """Adopt initial beliefs and goals."""
 
     def post_goal(self, goal: Term) -> None:
         """Adopt a goal."""
 
     def adopt(self, goals: Iterable[Literal]) -> None:
-        """Take up the goals of a program."""
+        """Adopt the goals of a program."""
 
     def run(self, fuel: int) -> bool:
-        """Make reasoning cycles; True when there is more to do."""
+        """Run reasoning cycles. Return whether there is more to do."""
 
     def receive(self, message: SpeechAct) -> None:
-        """Take a message in."""
+        """Receive a message."""
 
     def accept_kill(self, killer: str) -> bool:
-        """Whether another agent may end this one."""
+        """Return whether another agent may kill this one."""
 
     def perceive(self, percepts: list[Percept]) -> None:
-        """Take percepts in."""
+        """Receive percepts."""
 
     def has_untaken(self, name: str) -> bool:
-        """Whether percepts about properties called *name* have still to be taken up."""
+        """Return whether percepts of properties called *name* have not been processed yet (backpressure)."""
 
     def keep_histories(self, namespace: str | None, histories: Mapping[str, float]) -> None:
-        """Keep what beliefs in a namespace were: seconds by name."""
+        """Keep past values of beliefs in a namespace: seconds by name."""
 
     def complete(self, act_id: int, completion: Completion) -> None:
-        """Be told the end of an action."""
+        """Receive the outcome of an action."""
 
     def preempted(self, act_id: int, resource: str) -> None:
-        """An act, or a plan that needs it, has lost a resource."""
+        """An action, or a plan that needs it, has lost a resource."""
 
     def regained(self, act_id: int) -> None:
         """It has the resource again, or no longer waits for it."""
 
     def shut_down_in(self, milliseconds: float) -> None:
-        """Be told that the end comes after so many milliseconds."""
+        """Receive the announcement that the run ends after this time."""
 
 
 class Body(Protocol):
-    """What carries out the actions of an agent (`jacaros.body.body.AgentBody`)."""
+    """Runs the actions of an agent (`jacaros.body.body.AgentBody`)."""
 
     def act(self, act: Act) -> None:
         """Begin an action."""
 
     def cancel_act(self, act_id: int) -> None:
-        """Give an action up."""
+        """Cancel an action."""
 
     def suspend_act(self, act_id: int) -> None:
-        """Pause the operation of an action, if it can be paused."""
+        """Pause the operation of an action, if it is pausable."""
 
     def resume_act(self, act_id: int) -> None:
-        """Let it go on."""
+        """Let it continue."""
 
     def close(self) -> None:
-        """Give all actions and focused artifacts up."""
+        """Cancel all actions and stop focusing."""
 
 
 class Run(Protocol):
-    """What a host asks of the run that its agent belongs to."""
+    """What a host needs of its run."""
 
     clock: Clock
     scheduler: Scheduler
@@ -103,62 +103,62 @@ class Run(Protocol):
         """The directory facilitator."""
 
     def deliver(self, message: SpeechAct) -> bool:
-        """Bring a message to its receiver; False when there is none."""
+        """Deliver a message. Return False if the receiver is unknown."""
 
     def agent_names(self) -> Sequence[str]:
-        """Names of all agents, in the order of their making."""
+        """Return the names of all agents, in the order of creation."""
 
     def stop_system(self, delay: float, exit_code: int) -> None:
         """End the run after *delay* seconds."""
 
     def goal_lost(self) -> None:
-        """A goal of an agent failed and no plan took over."""
+        """Count a failed goal without a plan for its failure."""
 
     def out_of_memory(self, name: str) -> None:
-        """End the run: an agent met a `MemoryError`."""
+        """End the run after a `MemoryError` of an agent."""
 
     def explain(self, question: str, agent: str) -> Mapping[str, Any]:
         """Answer a question of an agent about the run so far."""
 
     def create_agent(self, name: str, source: str | None, classes: Mapping[str, str]) -> str | None:
-        """Make and start an agent; its final name, or None with the reason logged."""
+        """Create and start an agent. Return its final name, or None after logging the reason."""
 
     def clone_agent(self, original: str, name: str) -> str | None:
-        """Make an agent with a copy of another one's mind; its final name, or None with the reason logged."""
+        """Create an agent with a copy of another's mind. Return its final name, or None after logging the reason."""
 
     def kill_agent(self, name: str, delay: float, killer: str) -> bool:
-        """End an agent on behalf of another; False when there is none of that name, or it does not accept."""
+        """Kill an agent on behalf of another. Return False if it is unknown or refuses."""
 
     def end_agent(self, name: str) -> None:
-        """End an agent at once, without asking it; nothing when there is none of that name."""
+        """End an agent immediately, without asking it. Unknown names have no effect."""
 
     def read_program(self, path: str) -> tuple[str, str]:
-        """Name and text of a program file."""
+        """Return name and text of a program file."""
 
     def list_files(self, folder: str) -> Sequence[str]:
-        """The files below a folder."""
+        """Return the files below a folder."""
 
     def write_file(self, path: str, text: str) -> None:
         """Write a text file."""
 
 
 class AgentHost:
-    """Runs one mind, and is its `jacaros.bdi.architecture.Architecture`.
+    """Runs one mind. It is the mind's `jacaros.bdi.architecture.Architecture`.
 
     Args:
-        name: of the agent.
-        run: the run that it belongs to.
-        seed: of the agent's own generator of random numbers.
+        name: name of the agent.
+        run: its run.
+        seed: seed of the agent's random numbers.
 
     Attributes:
-        queued: True while it waits for a turn; kept by the scheduler.
+        queued: whether it waits for a turn. Set by the scheduler.
         mind: set before the first turn.
-        body: what carries its actions out, None while there is none.
-        make_body: makes the body for the first action; None in a project without environment.
-        intercept: asked first about each action; True when it answers the action itself.  For tests.
+        body: runs its actions. None before the first one.
+        make_body: creates the body. None in a project without an environment.
+        intercept: called first with each action. Returns whether it answers the action itself. For tests.
         intercept_stop: the same for the end of the run.
-        send: delivers a message; False when there is no such agent.
-        run: lets the mind make up to so many cycles; True when there is more to do.
+        send: delivers a message. Returns False if the receiver is unknown.
+        run: runs up to this number of cycles of the mind. Returns whether there is more to do.
     """
 
     __slots__ = (
@@ -188,7 +188,7 @@ class AgentHost:
         self.intercept_stop: Callable[[float, int], bool] | None = None
         self._run = run
         self._scheduler = run.scheduler
-        # These are called for every message and every turn: there is nothing to be done on their way.
+        # Bound directly, because they are called for every message and every turn.
         self.send: Callable[[SpeechAct], bool] = run.deliver
         self.run: Callable[[int], bool] = _no_turn
         self._seed = seed
@@ -198,7 +198,7 @@ class AgentHost:
 
     @property
     def mind(self) -> HostedMind:
-        """Whose host it is."""
+        """The mind."""
         return self._mind
 
     @mind.setter
@@ -212,29 +212,29 @@ class AgentHost:
         return self._ended
 
     def halt(self) -> None:
-        """Let the mind make no further cycle, also when it is in the middle of its turn."""
+        """Stop the mind, even in the middle of its turn."""
         self._ended = True
         self._mind.stopped = True
         self.run = _no_turn
 
     def end(self) -> None:
-        """Give up all actions, coroutines and focused artifacts."""
+        """Cancel all actions and coroutines, and stop focusing."""
         if self._coroutines is not None:
             self._coroutines.cancel()
         if self.body is not None:
             self.body.close()
 
     async def close(self) -> None:
-        """Wait until the coroutines have put their things in order."""
+        """Wait until the coroutines have finished their clean-up."""
         if self._coroutines is not None:
             await self._coroutines.close()
 
     def receive(self, message: SpeechAct) -> None:
-        """Hand a message to the mind."""
+        """Pass a message to the mind."""
         if not self._ended:
             self._mind.receive(message)
 
-    # From here on, the port `jacaros.bdi.architecture.Architecture`.
+    # ---- the port `jacaros.bdi.architecture.Architecture`
 
     def ready(self) -> None:
         """The mind has something to do."""
@@ -243,13 +243,13 @@ class AgentHost:
 
     @property
     def random(self) -> Random:
-        """The agent's own generator."""
+        """The agent's own random number generator."""
         if self._random is None:
             self._random = Random(self._seed)
         return self._random
 
     def now(self) -> float:
-        """Seconds since the Unix epoch on the run's clock."""
+        """Return the time of the run's clock in seconds since the Unix epoch."""
         return self._run.clock.now()
 
     def set_timer(self, delay: float, callback: Callable[[], None]) -> Timer:
@@ -263,7 +263,7 @@ class AgentHost:
         return self._coroutines.start(coroutine, ended)
 
     def act(self, act: Act) -> None:
-        """Begin an external action; without an environment it fails at once."""
+        """Begin an external action. Without an environment, it fails immediately."""
         if self.intercept is not None and act.functor is not NEEDS and self.intercept(act):
             return
         body = self.body or self.situated()
@@ -274,49 +274,49 @@ class AgentHost:
             self._mind.complete(act.id, without_environment(act))
 
     def situated(self) -> Body | None:
-        """The body, made when it is first asked for; None without an environment."""
+        """Return the body, created on first use; None without an environment."""
         if self.body is None and self.make_body is not None:
             self.body = self.make_body()
         return self.body
 
     def cancel_act(self, act_id: int) -> None:
-        """The intention behind an act was dropped."""
+        """The intention of an action was dropped."""
         if self.body is not None:
             self.body.cancel_act(act_id)
 
     def suspend_act(self, act_id: int) -> None:
-        """The intention behind an act was suspended."""
+        """The intention of an action was suspended."""
         if self.body is not None:
             self.body.suspend_act(act_id)
 
     def resume_act(self, act_id: int) -> None:
-        """The intention behind an act was resumed."""
+        """The intention of an action was resumed."""
         if self.body is not None:
             self.body.resume_act(act_id)
 
     def agent_names(self) -> Sequence[str]:
-        """Names of all agents, in the order of their making."""
+        """Return the names of all agents, in the order of creation."""
         return self._run.agent_names()
 
     def print(self, text: str) -> None:
-        """Show a line of the program's output; an agent that has ended prints nothing more."""
+        """Print a line of the program's output. An agent that has ended prints nothing."""
         if not self._ended:
             self._run.console.print(self.name, text)
 
     def log(self, level: str, text: str) -> None:
-        """Tell people about trouble, and what else the agent's option ``verbose`` lets through."""
+        """Log a line, subject to the agent's option ``verbose``."""
         verbose = self._mind.options.verbose
         if verbose > 0 or level not in ("debug", "info"):
-            # Details that an agent is to tell are wanted, whatever is shown of others.
+            # Details that an agent logs on request are shown, whatever the level of the console.
             shown = "info" if level == "debug" and verbose > 1 else level
             self._run.console.log(f"[{self.name}] {level}: {text}", shown)
 
     def goal_lost(self) -> None:
-        """A goal failed and no plan took over."""
+        """Count a failed goal without a plan for its failure."""
         self._run.goal_lost()
 
     def out_of_memory(self) -> None:
-        """A step or an event of the mind met a `MemoryError`."""
+        """End the run after a `MemoryError` in a step or event of the mind."""
         self._run.out_of_memory(self.name)
 
     def stop_system(self, delay: float, exit_code: int) -> None:
@@ -325,7 +325,7 @@ class AgentHost:
             self._run.stop_system(delay, exit_code)
 
     def create_agent(self, name: str, source: str | None, classes: Mapping[str, str]) -> str | None:
-        """Make an agent."""
+        """Create an agent."""
         return self._run.create_agent(name, source, classes)
 
     def explain(self, question: str) -> Mapping[str, Any]:
@@ -333,19 +333,19 @@ class AgentHost:
         return self._run.explain(question, self.name)
 
     def clone_agent(self, name: str) -> str | None:
-        """Make an agent with a copy of this one's mind."""
+        """Create an agent with a copy of this one's mind."""
         return self._run.clone_agent(self.name, name)
 
     def kill_agent(self, name: str, delay: float = 0.0) -> bool:
-        """End an agent."""
+        """Kill an agent."""
         return self._run.kill_agent(name, delay, self.name)
 
     def read_program(self, path: str) -> tuple[str, str]:
-        """Name and text of a program file."""
+        """Return name and text of a program file."""
         return self._run.read_program(path)
 
     def list_files(self, folder: str) -> Sequence[str]:
-        """The files below a folder."""
+        """Return the files below a folder."""
         return self._run.list_files(folder)
 
     def write_file(self, path: str, text: str) -> None:
@@ -353,32 +353,32 @@ class AgentHost:
         self._run.write_file(path, text)
 
     def register_service(self, service: str) -> None:
-        """This agent provides a service."""
+        """Register this agent as provider of a service."""
         self._run.services.register(self.name, service)
 
     def deregister_service(self, service: str) -> None:
-        """It does not any more."""
+        """Deregister this agent as provider of a service."""
         self._run.services.deregister(self.name, service)
 
     def providers(self, service: str) -> Sequence[str]:
-        """The agents that provide a service."""
+        """Return the agents that provide a service."""
         return self._run.services.providers(service)
 
     def subscribe_to_service(self, service: str) -> None:
-        """Have this agent told of all providers of a service."""
+        """Subscribe this agent to all providers of a service."""
         self._run.services.subscribe(self.name, service)
 
 
 def _no_turn(fuel: int) -> bool:
-    """There is no mind yet, or none any more."""
+    """Do nothing: the mind does not exist yet, or has ended."""
     del fuel
     return False
 
 
 def without_environment(act: Act) -> Completion:
-    """How an action ends in a project that has no environment."""
+    """Return the failure of an action in a project without an environment."""
     text = (
-        f"no artifact offers {act.functor!r}: the project has no environment "
+        f"unknown operation `{act.functor}`: the project has no environment "
         "(add the line `environment: jacaros.Environment` to the project file)"
     )
     reason = (_REASON, atom("no_environment"))

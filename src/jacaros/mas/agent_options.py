@@ -1,4 +1,4 @@
-"""The options of agents in project files: what they may be, and what becomes of them."""
+"""The options of agents in project files."""
 
 import re
 from collections.abc import Mapping
@@ -36,10 +36,10 @@ _NUMBERS: Final = (
     "mailbox_limit",
 )
 _WITHOUT_EFFECT: Final = {
-    "synchronised": "agents take turns anyway",
-    "qcache": "queries are answered by indexes",
+    "synchronised": "agents always take turns",
+    "qcache": "queries use indexes instead",
     "qprofiling": "queries are not measured",
-    "mindinspector": "use --view or --record",
+    "mindinspector": "use --view or --record instead",
     "rc": "there is one reasoning cycle",
     "cycles": "agents take turns in one loop",
     "cycles_sense": "every cycle has each stage once",
@@ -49,20 +49,22 @@ _WITHOUT_EFFECT: Final = {
 
 
 def check_option(name: str, value: str, span: Span | None) -> Diagnostic | None:
-    """What is wrong with an option, or that it has no effect here; None for the others, the user's own as well."""
+    """Return an error for an invalid option, a warning for one without effect, or None. Custom options are valid."""
     choices = _CHOICES.get(name)
     if choices is not None and value not in choices:
         close = close_matches(value, choices)
-        help = f"did you mean {close[0]}?" if close else None
-        return Diagnostic("error", f"{name} is one of {', '.join(choices)}, not '{value}'", span, help)
+        help = f"did you mean `{close[0]}`?" if close else None
+        return Diagnostic(
+            "error", f"expected one of {', '.join(choices)} as `{name}`, found `{value}`", span, help
+        )
     if name in _NUMBERS and not (value.isdigit() and int(value) > 0):
-        return Diagnostic("error", f"{name} is a whole number from 1 on, not '{value}'", span)
+        return Diagnostic("error", f"expected a positive integer as `{name}`, found `{value}`", span)
     if name == "urgency" and read_urgencies(value) is None:
-        help = 'write names of events with whole numbers from 0 on: urgency="bumped=10, battery_low=5"'
-        return Diagnostic("error", f"'{value}' does not say how urgent events are", span, help)
+        help = 'write events with non-negative integers: `urgency="bumped=10, battery_low=5"`'
+        return Diagnostic("error", f"expected urgencies of events, found `{value}`", span, help)
     if name in _WITHOUT_EFFECT:
         why = _WITHOUT_EFFECT[name]
-        return Diagnostic("warning", f"the option '{name}' has no effect: {why}", span, code="no-effect")
+        return Diagnostic("warning", f"the option `{name}` has no effect: {why}", span, code="no-effect")
     return None
 
 
@@ -70,7 +72,7 @@ _DEFAULTS: Final = Options()
 
 
 def mind_options(given: Mapping[str, str]) -> Options:
-    """What the options of an agent mean for its mind."""
+    """Return the options of a mind from those of an agent declaration."""
     options = _DEFAULTS
     if not given:
         return options
@@ -93,7 +95,7 @@ def mind_options(given: Mapping[str, str]) -> Options:
 
 
 def read_urgencies(text: str) -> tuple[tuple[str, int], ...] | None:
-    """The option ``urgency``: ``bumped=10, battery_low=5``; None when it cannot be read."""
+    """Parse the option ``urgency``: ``bumped=10, battery_low=5``. Return None if it is invalid."""
     found = []
     for piece in text.split(",") if text.strip() else ():
         name, separator, number = (part.strip() for part in piece.partition("="))

@@ -1,8 +1,8 @@
-"""Beliefs that agents wait or ask for and that nobody makes: the name is misspelt, the number of arguments is another one,
-or the belief is the conclusion of a rule, which makes no event.
+"""Check for beliefs that programs use but that are never added: the name is misspelt, the arity differs, or the belief
+is the conclusion of a rule, which causes no event.
 
-Beliefs may come from anywhere: other programs, Python code, tests, people.  So a name is reported only if it is one, or
-nearly one, that the project makes for certain, and if it appears nowhere else.
+Beliefs may come from anywhere: other programs, Python code, tests, users. So a name is reported only if the project
+certainly adds a similar one, and if it appears nowhere else.
 """
 
 import os
@@ -28,17 +28,17 @@ CODE: Final = "misspelt-belief"
 NEVER: Final = "event-never-happens"
 
 _TEXTS: Final = (".asl", ".py", ".mas2j", ".jcm", ".yaml", ".yml")
-"""Files in which a name may stand that becomes a belief."""
+"""Kinds of files that may contain the name of a belief."""
 _WORD: Final = re.compile(r"\w+")
 _MOST_FILES, _DEEPEST = 500, 4
-"""A folder with more files is no project: nothing is certain there.  Those in deeper folders are not looked at."""
+"""A folder with more files is not a project, so nothing is certain there. Files in deeper folders are ignored."""
 _NAMES_ITSELF: Final = re.compile(r"\b(?:define_property|signal)\(\s*[^\s\"')]")
-"""Code that works a name out."""
+"""Code that computes a name."""
 _OF_THE_SYSTEM: Final = frozenset(
     {"artifact", "childWsp", "connected", "current_wsp", "focused", "focusing", "joinedWsp", "linkedWsp"}
     | {"parentWsp", "provider", "workspace", "jag_awaking", "jag_shutting_down", "jag_sleeping"}
 )
-"""Beliefs and events that every run may have."""
+"""Beliefs and events that may occur in every run."""
 
 
 def check_beliefs(
@@ -46,13 +46,13 @@ def check_beliefs(
     types: "Callable[[], Sequence[type[Artifact]] | None]",
     folders: Iterable[Path],
 ) -> list[Diagnostic]:
-    """Warnings about misspelt names of beliefs, and about events of beliefs that never happen.
+    """Return warnings about misspelt names of beliefs, and about events of beliefs that never happen.
 
     Args:
-        programs: all that the agents of a project run.
-        types: gives the types of all artifacts that there may be, None when they are not known: then only what programs
-            make counts.  Asked when it matters.
-        folders: of the project; their files are looked through when it matters.
+        programs: all programs of the agents of a project.
+        types: returns all artifact types of the project, or None if they are not known; then only programs count. Called on
+            demand.
+        folders: folders of the project. Their files are searched on demand.
     """
     found = [beliefs_of(program, STANDARD) for program in programs]
     if any(each.is_open for each in found):
@@ -68,7 +68,7 @@ def check_beliefs(
 def check_histories(
     programs: Sequence[nodes.Program], types: "Callable[[], Sequence[type[Artifact]] | None]"
 ) -> list[Diagnostic]:
-    """Warnings about conditions that ask for the past of beliefs of which neither a program nor an artifact keeps it.
+    """Return warnings about conditions on the past of beliefs for which neither a program nor an artifact keeps a history.
 
     Args:
         programs: as for `check_beliefs`.
@@ -112,7 +112,7 @@ def _misspelt(
 
 
 def _forms(name: str, asked: Sequence[nodes.Literal], found: Sequence[Beliefs]) -> list[str]:
-    """Names that are another form of a word (``zone``, ``zones``) and have a fact that answers what is asked."""
+    """Return names that are another form of a word (``zone``, ``zones``) and have a fact that answers the query."""
     return sorted(
         {
             known
@@ -126,8 +126,9 @@ def _forms(name: str, asked: Sequence[nodes.Literal], found: Sequence[Beliefs]) 
 def _from_wrong_source(
     found: Sequence[Beliefs], types: "Callable[[], Sequence[type[Artifact]] | None]", folders: Sequence[Path]
 ) -> list[Diagnostic]:
-    """Warnings about plans for beliefs from a source that they never have: percepts that only the agent notes, and notes
-    that only artifacts make."""
+    """Return warnings about plans for beliefs from a source that they never have: percepts that only the agent adds, and
+    notes that only artifacts publish.
+    """
     brought = {key for each in found for key in each.brought | set(each.concluded)}
     said = {word for each in found for word in each.said} | _OF_THE_SYSTEM
     wrong: list[tuple[str, nodes.Literal, bool]] = []
@@ -158,17 +159,17 @@ def _wrong_source(sign: str, literal: nodes.Literal, is_percept: bool) -> Diagno
     key = f"{literal.functor}/{len(literal.arguments)}"
     if is_percept:
         why = f"no artifact has `{literal.functor}`, so its source is never `percept`"
-        help = "the agent notes it itself: write [source(self)], or leave the source out"
+        help = "the agent adds it itself: write `[source(self)]`, or omit the source"
     else:
-        why = f"only artifacts make `{literal.functor}`, so its source is never `self`"
-        help = "write [source(percept)], or leave the source out"
-    return Diagnostic("warning", f"the event {sign}{key} never happens: {why}", literal.span, help, NEVER)
+        why = f"only artifacts have `{literal.functor}`, so its source is never `self`"
+        help = "write `[source(percept)]`, or omit the source"
+    return Diagnostic("warning", f"event `{sign}{key}` never happens: {why}", literal.span, help, NEVER)
 
 
 def _never_happening(
     found: Sequence[Beliefs], types: "Callable[[], Sequence[type[Artifact]] | None]", folders: Sequence[Path]
 ) -> list[Diagnostic]:
-    """Warnings about plans for events of beliefs that only rules conclude, or that are made with other arguments only."""
+    """Return warnings about plans for beliefs that only rules conclude, or that are added only with another arity."""
     made = {key for each in found for key in each.made_as}
     mentioned = {key for each in found for key in each.mentioned_as} | made
     said = {word for each in found for word in each.said} | _OF_THE_SYSTEM
@@ -201,27 +202,29 @@ def _never(sign: str, literal: nodes.Literal, rule: nodes.Rule | None, other: Se
     key = f"{literal.functor}/{len(literal.arguments)}"
     if rule is not None:
         asked = next((part for part in parts_of(rule.body) if isinstance(part, nodes.Literal)), None)
-        example = "" if asked is None else f", as in +{format_term(asked)} : {format_term(rule.head)}"
-        why = f"{key} is the conclusion of a rule"
-        help = f"conclusions cause no events; react to a belief that the rule asks for{example}"
+        example = "" if asked is None else f": `+{format_term(asked)} : {format_term(rule.head)}`"
+        why = f"`{key}` is the conclusion of a rule"
+        help = f"rules cause no events; react to a belief in the body of the rule{example}"
     else:
-        why = f"nobody makes a belief {key}"
-        help = f"did you mean {' or '.join(f'{literal.functor}/{size}' for size in other)}?"
-    return Diagnostic("warning", f"the event {sign}{key} never happens: {why}", literal.span, help, NEVER)
+        why = f"belief `{key}` is never added"
+        help = f"did you mean {' or '.join(f'`{literal.functor}/{size}`' for size in other)}?"
+    return Diagnostic("warning", f"event `{sign}{key}` never happens: {why}", literal.span, help, NEVER)
 
 
 def _is_own(literal: nodes.Literal) -> bool:
-    """Whether it stands in a file of the project, not in a library that comes with the package."""
+    """Return whether a literal is in a file of the project, not in a library of JaCaROS."""
     return literal.span is not None and not literal.span.file.name.startswith("$")
 
 
 def _warning(name: str, meant: str, literal: nodes.Literal) -> Diagnostic:
     key = f"{name}/{len(literal.arguments)}"
-    return Diagnostic("warning", f"nobody makes a belief {key}", literal.span, f"did you mean {meant}?", CODE)
+    return Diagnostic(
+        "warning", f"belief `{key}` is never added", literal.span, f"did you mean `{meant}`?", CODE
+    )
 
 
 def _observables(types: "Sequence[type[Artifact]]") -> set[str] | None:
-    """Properties and signals of artifacts; None when some of them work names out."""
+    """Return the properties and signals of artifacts; None if some of them compute names."""
     from jacaros.env.manual_sources import described, own_classes, written_properties, written_signals
 
     names: set[str] = set()
@@ -235,7 +238,7 @@ def _observables(types: "Sequence[type[Artifact]]") -> set[str] | None:
 
 
 def _works_names_out(artifact_class: type) -> bool:
-    """Whether the code of a class makes names of properties that are not written in it; built-in ones tell all theirs."""
+    """Return whether the code of a class computes names of properties. Built-in classes declare all of theirs."""
     import inspect
 
     if artifact_class.__module__.startswith("jacaros."):
@@ -247,7 +250,7 @@ def _works_names_out(artifact_class: type) -> bool:
 
 
 def _only_here(asked: Mapping[str, Sequence[nodes.Literal]], folders: Iterable[Path]) -> list[str]:
-    """Those of the names that stand in no file besides those that ask for them."""
+    """Return the names that appear in no file except those that query them."""
     if not asked:
         return []
     own = {
@@ -267,7 +270,7 @@ def _only_here(asked: Mapping[str, Sequence[nodes.Literal]], folders: Iterable[P
 
 
 def _texts(folders: Iterable[Path]) -> Iterator[Path]:
-    """The files of a project in which a name may stand."""
+    """Return the files of a project in which a name may appear."""
     for folder in dict.fromkeys(each.resolve() for each in folders):
         for place, inner, files in os.walk(folder):
             depth = len(Path(place).relative_to(folder).parts)

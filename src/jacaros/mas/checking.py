@@ -1,4 +1,4 @@
-"""Checking programs and projects without running them."""
+"""Check programs and projects without running them."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
@@ -33,12 +33,12 @@ _SKIPPED: Final = frozenset({"__pycache__", "node_modules", "build", "dist"})
 
 @dataclass
 class Findings:
-    """What there is to say about some files.
+    """The result of checking files.
 
     Attributes:
-        diagnostics: sorted by file and place, each once.
-        files: all files that have been read, programs, included files and projects.
-        unseen: Python files with names that only running them can tell; None when they are run.
+        diagnostics: sorted by file and location, without duplicates.
+        files: all files that have been read: programs, included files and projects.
+        unseen: Python files with names that are known only after running them; None if they are run.
     """
 
     diagnostics: list[Diagnostic] = field(default_factory=list)
@@ -49,13 +49,13 @@ class Findings:
 def check_files(paths: Sequence[Path], mappings: Sequence[str] = (), imports: bool = False) -> Findings:
     """Check programs, projects with the programs of their agents, and whole folders.
 
-    In a folder a program is checked by itself only if no project there names it and no other program includes it.
-    World files and mapping files are checked, too; other YAML files are skipped.
+    In a folder, a program is checked by itself only if no project there names it and no other program includes it.
+    World files and mapping files are checked, too. Other YAML files are skipped.
 
     Args:
         paths: files and folders.
-        mappings: mapping files that programs given by themselves are run with; what they do is compared with these.
-        imports: run the Python files of projects, to know all that they declare; otherwise they are read only.
+        mappings: mapping files for programs that are given by themselves. Their actions are compared with these.
+        imports: run the Python files of projects, to know everything that they declare. Otherwise they are only parsed.
     """
     findings = Findings(unseen=None if imports else set())
     for path in paths:
@@ -79,15 +79,15 @@ def check_files(paths: Sequence[Path], mappings: Sequence[str] = (), imports: bo
 def _not_imported(file: Path) -> Diagnostic:
     return Diagnostic(
         "note",
-        f"names from {file} were not checked: they are known only at run time",
+        f"names from {file} were not checked: they are only known at run time",
         None,
-        "--import runs the Python code of the project, and checks them",
+        "run the Python code of the project with --import to check them",
         "not-imported",
     )
 
 
 def files_below(folder: Path, suffixes: Sequence[str]) -> Iterator[Path]:
-    """The files of these kinds in a folder and the folders in it, without hidden and made ones, sorted."""
+    """Return the files of these kinds in a folder and its subfolders, without hidden and generated ones, sorted."""
     for path in sorted(folder.iterdir()):
         if path.name.startswith(".") or path.name in _SKIPPED:
             continue
@@ -116,7 +116,7 @@ def _check_folder(folder: Path, findings: Findings) -> None:
 
 
 def _check_projects(folder: Path, findings: Findings) -> None:
-    """Check the projects in a folder; those that another one uses, only as a part of that one."""
+    """Check the projects in a folder. One that another project uses is checked only as part of that one."""
     used: set[Path] = set()
     alone: dict[Path, Findings] = {}
     for path in files_below(folder, PROJECTS):
@@ -129,7 +129,7 @@ def _check_projects(folder: Path, findings: Findings) -> None:
 
 
 def _check_project(path: Path, findings: Findings) -> frozenset[Path]:
-    """Check a project with all that belongs to it; the project files that it uses."""
+    """Check a project with all its files. Return the project files that it uses."""
     findings.files.add(path.resolve())
     try:
         reading = read_project(path)
@@ -154,7 +154,7 @@ def _check_project(path: Path, findings: Findings) -> frozenset[Path]:
         _check_mapping(mapping, findings)
     _check_world(deployment, findings)
     if deployment.artifact_environment:
-        # What agents in Python make, and what programs with errors would make, is not known.
+        # What Python agents, and programs with errors, would add is not known.
         known = programs if len(programs) == len(different) else []
         findings.diagnostics += _of_artifacts(deployment, known, folders, findings.unseen)
     if len(programs) == len(different):
@@ -168,7 +168,7 @@ def _of_beliefs(
     folders: tuple[Path, ...],
     unseen: set[Path] | None,
 ) -> list[Diagnostic]:
-    """Report histories that no agent keeps, and misspelt beliefs unless classes of the project may make more."""
+    """Report histories that no agent keeps, and misspelt beliefs unless classes of the project may add more."""
     from jacaros.mas.action_check import made_types
     from jacaros.mas.belief_check import check_beliefs, check_histories  # here: see `_of_artifacts`
 
@@ -203,14 +203,14 @@ def _check_lone_artifacts(
     folders: tuple[Path, ...],
     findings: Findings,
 ) -> None:
-    """Check the artifacts that a lone program makes: without any, its actions may be anybody's."""
+    """Check the artifacts that a lone program creates. Without any, its actions may belong to any artifact."""
     for mapping in _mapping_files(lone, programs, folders):
         _check_mapping(mapping, findings)
     from jacaros.mas.action_check import artifact_types  # here: see `_of_artifacts`
 
     if any(map(artifact_types, (program for _, program in programs))):
         told = _of_artifacts(lone, programs, folders, findings.unseen)
-        # A run may add artifacts by --mapping: an operation that is like none of the known ones may be theirs.
+        # A run may add artifacts with --mapping: an operation unlike all known ones may be theirs.
         findings.diagnostics += [each for each in told if each.code != "unknown-operation" or each.help]
 
 
@@ -220,8 +220,8 @@ def _of_artifacts(
     folders: tuple[Path, ...],
     unseen: set[Path] | None,
 ) -> list[Diagnostic]:
-    """What is wrong with the artifacts of a project, and with what its agents do with them."""
-    # Imported here: programs without artifacts are checked without them.
+    """Return the errors in the artifacts of a project, and in what its agents do with them."""
+    # Imported on demand: programs without artifacts do not need them.
     from jacaros.artifacts.registry import type_finder
     from jacaros.mas.action_check import check_actions, made_types
     from jacaros.mas.environment import types_of
@@ -249,7 +249,7 @@ def _of_artifacts(
 
 
 def _is_wrong_mapping(type_name: str, folders: tuple[Path, ...]) -> bool:
-    """Whether an artifact's type is a mapping file with mistakes, which are told by themselves."""
+    """Return whether an artifact's type is a mapping file with errors, which are reported there."""
     if not type_name.partition("#")[0].endswith(MAPPINGS):
         return False
     from jacaros.mas.mappings import is_wrong  # here: see `_check_mapping`
@@ -258,7 +258,7 @@ def _is_wrong_mapping(type_name: str, folders: tuple[Path, ...]) -> bool:
 
 
 def _is_of_wrong_mapping(diagnostic: Diagnostic, folders: tuple[Path, ...]) -> bool:
-    """Whether a warning about an unknown type is about a mapping file with mistakes."""
+    """Return whether a warning about an unknown type concerns a mapping file with errors."""
     span = diagnostic.span
     if diagnostic.code != "unknown-artifact-type" or span is None:
         return False
@@ -285,7 +285,7 @@ def _check_world(deployment: Deployment, findings: Findings) -> None:
 
 
 def _check_yaml(path: Path, findings: Findings, named: bool = True) -> None:
-    """Check a world file, a fault file or a mapping file; one that is neither only if it is *named* on the command line."""
+    """Check a world, fault or mapping file. Other YAML files are an error only if they are *named* on the command line."""
     from jacaros.artifacts.mapping.file import is_mapping  # here: see `_check_mapping`
     from jacaros.sim.faults.file import fault_file_problems, is_fault_file
     from jacaros.sim.files.world import is_world, world_problems
@@ -294,7 +294,7 @@ def _check_yaml(path: Path, findings: Findings, named: bool = True) -> None:
         _check_world_file(path, findings, world_problems)
     elif is_fault_file(path):
         _check_world_file(path, findings, fault_file_problems)
-    elif named or is_mapping(path):  # other programs have YAML files, too
+    elif named or is_mapping(path):  # other YAML files belong to other programs
         _check_mapping(path, findings)
 
 
@@ -310,7 +310,7 @@ def _check_world_file(
 
 
 def _check_mapping(path: Path, findings: Findings) -> None:
-    """Check a mapping file; once, however many artifacts of a project come from it."""
+    """Check a mapping file, once for all artifacts that come from it."""
     if path.resolve() in findings.files:
         return
     from jacaros.mas.mappings import check_mapping_file  # here: programs are checked without
@@ -320,7 +320,7 @@ def _check_mapping(path: Path, findings: Findings) -> None:
 
 
 def _check_program_with_mappings(path: Path, mappings: Sequence[str], findings: Findings) -> None:
-    """Check a lone program, and whether the artifacts of mapping files offer what it asks of them."""
+    """Check a lone program, and whether the artifacts of mapping files offer its actions."""
     from jacaros.artifacts.mapping.file import find_mapping  # here: see `_check_mapping`
     from jacaros.mas.mappings import with_mappings
 
@@ -333,7 +333,7 @@ def _check_program_with_mappings(path: Path, mappings: Sequence[str], findings: 
     try:
         deployment = with_mappings(lone, mappings)
     except ProjectError as error:
-        # The mistakes in a file have been told, with those that only the check finds; what is not there has not.
+        # The errors in a file have been reported, including those that only the check finds; a missing file has not.
         findings.diagnostics += [_of_project(each) for each in error.diagnostics if not each.code]
         return
     if program is not None:
@@ -345,7 +345,7 @@ def _check_program_with_mappings(path: Path, mappings: Sequence[str], findings: 
 def _mapping_files(
     deployment: Deployment, programs: list[tuple[AgentSpec, nodes.Program]], folders: tuple[Path, ...]
 ) -> Iterator[Path]:
-    """The mapping files that a project names, or its agents in ``makeArtifact``."""
+    """Return the mapping files that a project, or ``makeArtifact`` in its programs, names."""
     from jacaros.mas.action_check import artifact_types  # here: see `_of_artifacts`
 
     names = [artifact.type_name for workspace in deployment.workspaces for artifact in workspace.artifacts]
@@ -358,7 +358,7 @@ def _mapping_files(
 
 
 def _check_python_agent(path: Path, findings: Findings) -> None:
-    """Check that the class of a lone agent written in Python can be found."""
+    """Check that the class of a lone Python agent exists."""
     findings.files.add(path.resolve())
     agent = AgentSpec(path.stem, path, path.stem)
     deployment = Deployment(path.stem, path.parent, (agent,))
@@ -370,7 +370,7 @@ def _check_python_agent(path: Path, findings: Findings) -> None:
 def _of_classes(
     deployment: Deployment, folders: tuple[Path, ...], unseen: set[Path] | None
 ) -> list[Diagnostic]:
-    """What is wrong with the classes that agents are declared to be of."""
+    """Return the errors in the classes that agents declare."""
     found: list[Diagnostic] = []
     try:
         AgentClasses(ProjectModules(*folders, unseen=unseen), deployment.base_path, found.append).check(
@@ -391,7 +391,7 @@ def _check_program(
     """Check a program with its includes, and with what a project adds to it for *agent*.
 
     Returns:
-        All that the agent runs; None if it cannot be run.
+        The whole program of the agent; None if it cannot run.
     """
     findings.files.add(path.resolve())
     code = PythonCode(ProjectModules(*folders, unseen=findings.unseen))
@@ -427,7 +427,7 @@ def _check_program(
 
 
 def _of_size(program: nodes.Program, code: PythonCode) -> Iterator[Diagnostic]:
-    """Plans that take longer because Python does not compile them."""
+    """Return warnings about plans that run slower because they are too large for Python's compiler."""
     from jacaros.bdi.engines import new_engine  # here: see `_of_artifacts`
     from jacaros.bdi.fast.compiler import too_large
     from jacaros.bdi.fast.units import Units
@@ -437,7 +437,7 @@ def _of_size(program: nodes.Program, code: PythonCode) -> Iterator[Diagnostic]:
     for plan, fault in too_large(plans, Units(code.actions)):
         yield Diagnostic(
             "warning",
-            f"{fault}: it takes longer",
+            f"{fault}, so it runs slower",
             plan.node.span,
             "write several plans, or rules for parts of it",
             "plan-too-large",
@@ -445,10 +445,9 @@ def _of_size(program: nodes.Program, code: PythonCode) -> Iterator[Diagnostic]:
 
 
 def _concerns_author(diagnostic: Diagnostic, path: Path) -> bool:
-    """Whether it is for whoever wrote the program at *path*.
+    """Return whether a diagnostic concerns the author of the program at *path*.
 
-    A library that comes with the package is of no concern; and a plan that stands before an include is often meant to
-    take the place of one in it.
+    A library of JaCaROS does not. And a plan before an include often replaces one in it.
     """
     if diagnostic.span is None:
         return True
@@ -457,12 +456,12 @@ def _concerns_author(diagnostic: Diagnostic, path: Path) -> bool:
 
 
 def _declaration(agent: AgentSpec) -> str:
-    """What the text that a project adds to a program is called."""
+    """Return the name of the text that a project adds to a program."""
     return f"the declaration of {agent.declared_name}"
 
 
 def _located(diagnostic: Diagnostic, agent: AgentSpec | None) -> Diagnostic:
-    """The diagnostic at the agent's place in the project file if it is about what the project adds."""
+    """Return the diagnostic at the agent's location in the project file, if it is about what the project adds."""
     span = diagnostic.span
     if agent is None or span is None or span.file.name != _declaration(agent):
         return diagnostic
@@ -477,6 +476,6 @@ def _with_additions(program: nodes.Program, agent: AgentSpec | None) -> nodes.Pr
         beliefs = parse_literals(agent.beliefs, where) if agent.beliefs.strip() else ()
         goals = parse_literals(agent.goals, where) if agent.goals.strip() else ()
     except AslError:
-        # The project file has been blamed for it.
+        # The error has been reported in the project file.
         return program
     return replace(program, beliefs=(*program.beliefs, *beliefs), goals=(*goals, *program.goals))

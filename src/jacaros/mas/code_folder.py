@@ -1,4 +1,4 @@
-"""Generated code in a folder of the user: what has run before starts without compiling."""
+"""Generated code in a folder of the user: programs that have run before start without compilation."""
 
 import marshal
 import os
@@ -19,9 +19,9 @@ from jacaros.text_files import kept_files
 from jacaros.version import VERSION
 
 LARGEST = 64 << 20
-"""Bytes that the folder may hold; files that no run has used for the longest time go first."""
+"""Maximum size of the folder in bytes. The least recently used files are removed first."""
 PATIENCE = 1.0
-"""Seconds that the end of a run waits for a disk."""
+"""Maximum number of seconds that the end of a run waits for a disk."""
 _DECIDING = ("terms", "asl", "bdi")
 """The packages whose sources decide which code is generated."""
 _OF_OTHERS = stat.S_IWGRP | stat.S_IWOTH
@@ -29,7 +29,7 @@ _DIGEST = 32
 
 
 def code_folder() -> "CodeFolder | None":
-    """Return the user's folder, ``plans`` in `kept_files`; None if nothing is to be kept, or nothing is compiled.
+    """Return the user's folder ``plans`` in `kept_files`; None if nothing is to be kept, or nothing is compiled.
 
     Windows keeps nothing: its files have no owners in Python, so nothing there can be trusted.
     """
@@ -38,14 +38,14 @@ def code_folder() -> "CodeFolder | None":
 
 
 class CodeFolder:
-    """One file for each program.  Its name stands for the text of the program, the sources of the generator and the version
-    of Python: if one of them changes, there is no such file.
+    """One file for each program. Its name is a hash of the text of the program, the sources of the generator and the
+    version of Python, so any change leads to a new file.
 
-    What is read is executed.  A folder or file that belongs to another user, or that others may write, is ignored; so is a
-    file that is not whole.  No failure of a disk is reported: the program is compiled, as without the folder.
+    The contents are executed. So a folder or file that belongs to another user, or that others may write, is ignored; an
+    incomplete file, too. Disk errors are not reported: the program is compiled as without the folder.
 
     Args:
-        path: of the folder; it is made when there is something to write.
+        path: path of the folder, created on demand.
     """
 
     def __init__(self, path: Path) -> None:
@@ -54,7 +54,7 @@ class CodeFolder:
         self._writers: list[Thread] = []
 
     def of_program(self, plans: Iterable[Plan]) -> "ProgramCode":
-        """Return the code of a program.  It is read now, so that no agent waits for a disk later."""
+        """Return the code of a program. It is read now, so that no agent waits for a disk later."""
         files = {plan.span.file for plan in plans if plan.span is not None}
         text = repr(sorted((file.name, file.text) for file in files))
         path = self.path / sha256(_own_build() + text.encode()).hexdigest()
@@ -63,7 +63,7 @@ class CodeFolder:
         return self._programs[path]
 
     def write(self) -> None:
-        """Begin to write what is new, in a thread: agents do not wait for a disk."""
+        """Begin to write new code in a thread, so that agents do not wait for a disk."""
         changed = {path: code.taken() for path, code in self._programs.items() if code.changed}
         if changed:
             writer = Thread(target=self._write, args=(changed,), daemon=True)
@@ -71,7 +71,7 @@ class CodeFolder:
             self._writers.append(writer)
 
     def close(self) -> None:
-        """Write what is new, and wait for the disk, `PATIENCE` seconds at most."""
+        """Write new code, waiting at most `PATIENCE` seconds for the disk."""
         self.write()
         for writer in self._writers:
             writer.join(PATIENCE)
@@ -86,10 +86,10 @@ class CodeFolder:
 
 
 class ProgramCode:
-    """The code of one program, in memory: see `jacaros.bdi.state.engine.CodeCache`.
+    """The code of one program, in memory. See `jacaros.bdi.state.engine.CodeCache`.
 
     Attributes:
-        changed: something was put since it was `taken`.
+        changed: whether something was put since it was `taken`.
     """
 
     def __init__(self, entries: dict[bytes, bytes]) -> None:
@@ -97,16 +97,15 @@ class ProgramCode:
         self.changed = False
 
     def get(self, key: bytes) -> bytes | None:
-        """What is kept under a key."""
+        """Return the entry of a key, or None."""
         return self._entries.get(key)
 
     def put(self, key: bytes, entry: bytes) -> None:
-        """Keep an entry."""
         self._entries[key] = entry
         self.changed = True
 
     def taken(self) -> dict[bytes, bytes]:
-        """A copy of all entries, to be written."""
+        """Return a copy of all entries, to be written."""
         self.changed = False
         return dict(self._entries)
 
@@ -117,7 +116,10 @@ def _own_build() -> bytes:
 
 
 def build(root: Path) -> bytes:
-    """Return what decides the code besides the program: Python, and the sources of the generator in the package *root*."""
+    """Return what determines the code besides the program:
+
+    Python, and the sources of the generator in the package *root*.
+    """
     digest = sha256(repr((VERSION, sys.version, sys.implementation.cache_tag, sys.flags.optimize)).encode())
     digest.update(MAGIC_NUMBER)
     for package in _DECIDING:
@@ -127,7 +129,7 @@ def build(root: Path) -> bytes:
 
 
 def _is_own(path: Path) -> bool:
-    """Whether a folder belongs to the user, and others cannot write it."""
+    """Return whether a folder belongs to the user, and others cannot write it."""
     try:
         return _trusted(path.stat())
     except OSError:
@@ -139,7 +141,7 @@ def _trusted(status: os.stat_result) -> bool:
 
 
 def _read(path: Path) -> dict[bytes, bytes]:
-    """The entries in a file; none if it is not there, not whole, or not to be trusted."""
+    """Return the entries in a file; empty if it is missing, incomplete or not trusted."""
     if sys.platform == "win32":
         return {}
     try:
@@ -159,7 +161,7 @@ def _read(path: Path) -> dict[bytes, bytes]:
 
 
 def _replace(path: Path, entries: dict[bytes, bytes]) -> None:
-    """Write a file as a whole: other processes see the old one or the new one.
+    """Write a file atomically: other processes see the old one or the new one.
 
     Raises:
         OSError: it cannot be written.
@@ -167,7 +169,7 @@ def _replace(path: Path, entries: dict[bytes, bytes]) -> None:
     if sys.platform == "win32":
         return
     body = marshal.dumps(entries)
-    # No other process has this number, and no other thread of this one the other.
+    # Unique to this process and thread.
     aside = path.with_suffix(f".{os.getpid()}-{threading.get_ident()}.part")
     try:
         with open(os.open(aside, os.O_CREAT | os.O_WRONLY | os.O_TRUNC | os.O_NOFOLLOW, 0o600), "wb") as file:
@@ -180,12 +182,12 @@ def _replace(path: Path, entries: dict[bytes, bytes]) -> None:
 
 
 def _seal(path: Path, body: bytes) -> bytes:
-    """What shows that a file is whole, and the one of its name."""
+    """Return a checksum that shows that a file is complete and has its own name."""
     return sha256(path.name.encode() + body).digest()
 
 
 def _remove_oldest(folder: Path) -> None:
-    """Remove files until the folder holds no more than `LARGEST`."""
+    """Remove files until the folder is within `LARGEST` bytes."""
     files = []
     for entry in os.scandir(folder):
         with suppress(OSError):  # another process has removed it

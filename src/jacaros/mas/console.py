@@ -1,4 +1,4 @@
-"""Where a run writes: output of the agents goes out as ``[agent] text``, everything else to the errors."""
+"""The console of a run: output of agents as ``[agent] text`` on standard output, everything else on standard error."""
 
 import contextlib
 import os
@@ -15,22 +15,22 @@ class Console(Protocol):
     """The outputs of a run."""
 
     def print(self, agent: str, text: str) -> None:
-        """Show a line of an agent's output."""
+        """Print a line of an agent's output."""
 
     def log(self, text: str, level: str = "info") -> None:
-        """Tell people about what happens; *level* is one of `LEVELS`."""
+        """Log a line; *level* is one of `LEVELS`."""
 
 
 class StandardConsole:
-    """Agents' lines on the standard output, complete lines immediately; logs on the standard error output.
+    """Prints agents' lines to standard output, unbuffered, and logs to standard error.
 
-    Neither raises nor waits for a reader: see `jacaros.output.Output`.
+    It neither raises nor waits for a reader: see `jacaros.output.Output`.
 
     Args:
-        level: the least level that is shown.
-        output: takes the lines of agents; the standard output of the moment unless given.
-        errors: takes the logs; the standard error output of the moment unless given.
-        patience: seconds to wait for a reader that takes nothing while the queue is full.
+        level: the lowest level that is shown.
+        output: stream for agents' lines. Default: the current standard output.
+        errors: stream for logs. Default: the current standard error.
+        patience: seconds to wait for a slow reader while the queue is full.
     """
 
     def __init__(
@@ -50,9 +50,9 @@ class StandardConsole:
 
     @contextlib.contextmanager
     def with_prints(self) -> Iterator[None]:
-        """Take in what other code of the process prints, to write it as safely as the agents' lines and in its order.
+        """Capture what other code of the process prints, and write it in order with the agents' lines.
 
-        It changes `sys.stdout` and `sys.stderr` of the whole process: only for one that is ours.
+        It replaces `sys.stdout` and `sys.stderr` of the whole process, so use it only for a process of JaCaROS's own.
         """
         with open(os.devnull, "w", encoding="utf-8") as nothing:
             for name, output in (("stdout", self._output), ("stderr", self._errors)):
@@ -73,24 +73,24 @@ class StandardConsole:
         return stream
 
     def print(self, agent: str, text: str) -> None:
-        """Write a line, so that it is complete for every reader."""
+        """Write a line as a whole."""
         if (printed := self._printed.get("stdout")) is not None:
             printed.flush()
         self._output.write(line_of(agent, text))
 
     def log(self, text: str, level: str = "info") -> None:
-        """Write a line for people."""
+        """Log a line."""
         if LEVELS.index(level) >= self._least:
             if (printed := self._printed.get("stderr")) is not None:
                 printed.flush()
             self._errors.write(f"{text}\n")
 
-    def when_gone(self, told: Callable[[], object]) -> None:
-        """Call *told*, in any thread, instead of warning when the reader closes the pipe of the agents' lines."""
-        self._output.when_gone = told
+    def when_gone(self, callback: Callable[[], object]) -> None:
+        """Call *callback*, in any thread, instead of warning when the reader closes the pipe of the agents' lines."""
+        self._output.when_gone = callback
 
     def close(self, patience: float | None = CLOSING, limit: float | None = None) -> None:
-        """Write what waits for a slow reader; see `jacaros.output.Output.close`."""
+        """Write what waits for a slow reader. See `jacaros.output.Output.close`."""
         self._output.close(patience, limit)
         self._errors.close(patience, limit)
 
@@ -99,13 +99,13 @@ class StandardConsole:
 
 
 class HeardConsole:
-    """Passes everything on to another console, and log lines to those who listen.
+    """Passes everything on to another console, and log lines to listeners.
 
     Args:
-        console: where everything goes.
+        console: the other console.
 
     Attributes:
-        print: shows a line of an agent's output: that of *console*.
+        print: prints a line of an agent's output on *console*.
     """
 
     def __init__(self, console: Console) -> None:
@@ -114,13 +114,13 @@ class HeardConsole:
         self._listeners: tuple[Callable[[str, str], None], ...] = ()
 
     def log(self, text: str, level: str = "info") -> None:
-        """Tell people about what happens."""
+        """Log a line."""
         self._console.log(text, level)
         for listener in self._listeners:
             listener(text, level)
 
     def listen(self, listener: Callable[[str, str], None]) -> Callable[[], None]:
-        """Call *listener* with text and level of each line from now on; gives what ends that."""
+        """Call *listener* with text and level of each line from now on. Return a function that ends this."""
         self._listeners = (*self._listeners, listener)
 
         def end() -> None:
@@ -130,5 +130,5 @@ class HeardConsole:
 
 
 def line_of(agent: str, text: str) -> str:
-    """The line that shows what an agent prints; line ends inside stay, as the agent wants them."""
+    """Return the line for an agent's output. Line ends in the text are kept."""
     return f"[{agent}] {text}\n"

@@ -1,4 +1,4 @@
-"""The coroutines of internal actions, which run beside the agents that wait for them."""
+"""Coroutines of internal actions, which run beside the waiting agents."""
 
 import asyncio
 from collections.abc import Callable, Coroutine
@@ -7,17 +7,17 @@ from typing import Any
 from jacaros.mas.idleness import Activity
 
 Ended = Callable[[object, BaseException | None], None]
-"""Told what a coroutine returned, or the exception that ended it."""
+"""Called with the result of a coroutine, or the exception that ended it."""
 
 _PATIENCE = 5.0
-"""Seconds that coroutines have at the end of a run to put their things in order."""
+"""Seconds that coroutines have for their clean-up at the end of a run."""
 
 
 class Coroutines:
     """The coroutines of one agent.
 
     Args:
-        activity: told of those that somebody waits for.
+        activity: counts the running ones.
     """
 
     def __init__(self, activity: Activity) -> None:
@@ -25,7 +25,7 @@ class Coroutines:
         self._running: set[AgentCoroutine] = set()
 
     def start(self, coroutine: Coroutine[Any, Any, Any], ended: Ended) -> "AgentCoroutine":
-        """Run a coroutine; *ended* is called at its end unless it is cancelled before."""
+        """Run a coroutine. *ended* is called at its end unless it is cancelled before."""
         running = AgentCoroutine(coroutine, ended, self._activity, self._running.discard)
         self._running.add(running)
         return running
@@ -36,17 +36,17 @@ class Coroutines:
             running.cancel()
 
     async def close(self) -> None:
-        """Cancel all, and wait until they have put their things in order."""
+        """Cancel all, and wait for their clean-up."""
         self.cancel()
         if self._running:
             await asyncio.wait([running.task for running in self._running], timeout=_PATIENCE)
 
 
 class AgentCoroutine:
-    """One coroutine under way.
+    """One running coroutine.
 
     Attributes:
-        task: that runs it.
+        task: the task that runs it.
     """
 
     def __init__(
@@ -63,7 +63,7 @@ class AgentCoroutine:
         self.task.add_done_callback(self._done)
 
     def cancel(self) -> None:
-        """Nobody waits for it any more: its ``finally`` blocks run, and nobody is told of its end."""
+        """Cancel it: its ``finally`` blocks run, and its end is not reported."""
         if self._wanted:
             self._wanted = False
             self._activity.end()
@@ -80,7 +80,7 @@ class AgentCoroutine:
 
 
 async def without_exit(work: Coroutine[Any, Any, Any]) -> Any:
-    """Do the work of a coroutine; its ``sys.exit`` would end the loop, and is made an error of its own."""
+    """Await a coroutine. Turn its ``sys.exit``, which would end the event loop, into an error."""
     try:
         return await work
     except SystemExit as error:

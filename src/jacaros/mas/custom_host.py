@@ -1,4 +1,4 @@
-"""The host of an agent whose architecture is the project's."""
+"""The host of an agent with user-defined architectures."""
 
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -15,7 +15,7 @@ from jacaros.mas.agent_host import AgentHost, Run
 
 
 class CustomHost(AgentHost):
-    """Asks a chain of architectures, the first one first, and does itself what they leave to it."""
+    """Calls a chain of architectures, the first one first, and does what they leave to it."""
 
     def __init__(self, name: str, run: Run, seed: str) -> None:
         super().__init__(name, run, seed)
@@ -44,7 +44,7 @@ class CustomHost(AgentHost):
         self._leaving.append(leave)
 
     def _perceive_and_run(self, fuel: int) -> bool:
-        """Let the mind have its turn, and the architectures perceive before each cycle."""
+        """Run a turn of the mind. The architectures perceive before each cycle."""
         for _ in range(fuel):
             self._perceive()
             if not self.mind.run(1):
@@ -56,13 +56,13 @@ class CustomHost(AgentHost):
             found = self._ask(link.perceive, None)
             if found is not None:
                 changes = self._ask(partial(perception.changes, found), [])
-                # The agent has its turn already: what it perceives now is no reason for another one.
+                # The agent has its turn already, so new percepts need not schedule another one.
                 self.queued = True
                 self.mind.perceive(changes)
                 self.queued = False
 
     def act(self, act: Act) -> None:
-        """Do an external action."""
+        """Run an external action."""
         if not self._chain or act.functor is NEEDS:
             super().act(act)
             return
@@ -93,7 +93,7 @@ class CustomHost(AgentHost):
         self.mind.complete(action.raw.id, action.completion(False, told))
 
     def cancel_act(self, act_id: int) -> None:
-        """The intention behind an act was dropped."""
+        """The intention of an action was dropped."""
         under_way = self._acting.pop(act_id, None)
         if under_way is not None:
             under_way.cancel()
@@ -104,22 +104,22 @@ class CustomHost(AgentHost):
         return bool(self._ask(lambda: self._chain[0].send(Message(message)), False))
 
     def deliver(self, message: SpeechAct) -> bool:
-        """What `send` is without architectures."""
+        """Deliver a message without the architectures."""
         return self._run.deliver(message)
 
     def receive(self, message: SpeechAct) -> None:
-        """Hand a message to the mind, if the architectures let it through."""
+        """Pass a message to the mind, if the architectures accept it."""
         if not self._chain or self._ask(lambda: self._chain[0].check_mail(Message(message)), True):
             super().receive(message)
 
     def end(self) -> None:
-        """Give up all actions, then end what is the project's."""
+        """Cancel all actions, then end the user-defined objects."""
         super().end()
         for leave in self._leaving:
             self._ask(leave, None)
 
     def _ask(self, method: Callable[[], Any], default: Any) -> Any:
-        """What the project's code says; the default when it raises."""
+        """Return the result of the project's code, or the default if it raises."""
         try:
             return method()
         except FAULTS as error:

@@ -1,4 +1,4 @@
-"""What a project file declares: agents, workspaces with their artifacts, and the settings of the run."""
+"""The declarations of a project: agents, workspaces with artifacts, and settings of the run."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -12,14 +12,14 @@ from jacaros.errors import JacarosError
 CARTAGO_ENVIRONMENTS = frozenset(
     {"jaca.CartagoEnvironment", "c4jason.CartagoEnvironment", "CartagoEnvironment", "jacaros.Environment"}
 )
-"""Class names of `.mas2j` files that mean: agents with an artifact environment."""
+"""Class names in `.mas2j` files for an artifact environment."""
 
 CARTAGO_2 = "c4jason.CartagoEnvironment"
-"""The one of CArtAgO 2: percepts have its annotations, too."""
+"""The class name of CArtAgO 2, whose annotations percepts also get."""
 
 
 def has_own_artifacts(folder: Path) -> bool:
-    """Whether a project in *folder* has artifacts of its own: a file ``artifacts.py`` or a folder ``artifacts``."""
+    """Return whether a project in *folder* has artifacts: a file ``artifacts.py`` or a folder ``artifacts``."""
     return (folder / "artifacts.py").is_file() or (folder / "artifacts").is_dir()
 
 
@@ -27,7 +27,7 @@ _NO_OPTIONS: Mapping[str, str] = MappingProxyType({})
 
 
 class ProjectError(JacarosError):
-    """A wrong project file.  ``diagnostics`` holds all errors and warnings, ``str()`` shows them."""
+    """An invalid project file. ``diagnostics`` holds all errors and warnings, and ``str()`` shows them."""
 
     def __init__(self, diagnostics: Sequence[Diagnostic]) -> None:
         self.diagnostics = tuple(diagnostics)
@@ -36,7 +36,7 @@ class ProjectError(JacarosError):
 
 @dataclass(frozen=True)
 class FocusSpec:
-    """An artifact an agent focuses on at its start; ``workspace`` is None if the project does not tell."""
+    """An artifact that an agent focuses at its start. ``workspace`` is None if the project does not name it."""
 
     artifact: str
     workspace: str | None = None
@@ -45,20 +45,20 @@ class FocusSpec:
 
 @dataclass(frozen=True)
 class AgentSpec:
-    """One agent, that is, one instance: ``agents: a #3;`` gives three of them, ``a1`` to ``a3``.
+    """One agent, that is, one instance: ``agents: a #3;`` declares three of them, ``a1`` to ``a3``.
 
     Attributes:
-        name: the name of the agent in the run.
-        declared_name: the name in the project file, without the number of the instance.
+        name: name of the agent in the run.
+        declared_name: name in the project file, without the number of the instance.
         source_path: its AgentSpeak program, or the Python file of its class.
-        options: settings such as ``verbose`` and ``events``, and keys of the user's own, as text.
+        options: settings such as ``verbose`` and ``events``, and user-defined keys, as text.
         beliefs, goals: literals separated by commas, as text (see `jacaros.asl.loader.parse_literals`).
-        join: workspaces it joins at its start, in order; all workspaces of ``focus`` are among them.
-        focus: artifacts it focuses on at its start, in order.
-        agent_class, architecture_classes, belief_base_class: class names as written; without use here.
-        host: the computer that is asked for, without use here.
-        python_class: the class of an agent written in Python, in place of a file.
-        span: where it is declared.
+        join: workspaces it joins at its start, in order. They include all workspaces of ``focus``.
+        focus: artifacts it focuses at its start, in order.
+        agent_class, architecture_classes, belief_base_class: class names as written.
+        host: the requested computer, without effect.
+        python_class: the class of a Python agent, in place of a file.
+        span: location of the declaration.
     """
 
     name: str
@@ -78,17 +78,17 @@ class AgentSpec:
 
     @property
     def is_python(self) -> bool:
-        """Whether it is an agent written in Python."""
+        """Whether it is a Python agent."""
         return self.python_class is not None or str(self.source_path).endswith(".py")
 
 
 @dataclass(frozen=True)
 class ArtifactSpec:
-    """An artifact to be made at the start.
+    """An artifact to be created at the start.
 
-    ``arguments`` are plain values: numbers, truth values, strings, lists, `jacaros.env.values.Atom` for names
-    without quotes, `jacaros.env.values.Structure`.  ``focused_by`` are agents as written (``*``: all); they
-    have it in their ``focus``.  ``span`` and ``type_span`` are where its name and its type are written.
+    ``arguments`` are plain values: numbers, Booleans, strings, lists, `jacaros.env.values.Atom` for names without
+    quotes, and `jacaros.env.values.Structure`. ``focused_by`` are agents as written (``*``: all); they also have it in
+    their ``focus``. ``span`` and ``type_span`` are the locations of its name and type.
     """
 
     name: str
@@ -101,10 +101,9 @@ class ArtifactSpec:
 
 @dataclass(frozen=True)
 class WorkspaceSpec:
-    """A workspace to be made at the start: a child of ``parent``, or of ``/main`` without one.
+    """A workspace to be created at the start: a child of ``parent``, or of ``/main`` without one.
 
-    ``artifacts`` are to be made in this order.  ``agents`` are as written (``*``: all); they have it in their
-    ``join``.
+    ``artifacts`` are created in this order. ``agents`` are as written (``*``: all); they also have it in their ``join``.
     """
 
     name: str
@@ -119,17 +118,17 @@ class Deployment:
     """A whole multi-agent system as declared.
 
     Attributes:
-        name: of the system.
-        base_path: the folder of the project file.
+        name: name of the system.
+        base_path: folder of the project file.
         agents, workspaces: in the order of the file, but a workspace comes after its parent.
-        environment: the class of ``environment:`` in a `.mas2j` file as written; None if there is none.
-        artifact_environment: whether the agents live among artifacts: in a `.jcm` file, a lone `.asl` file, or
-            with one of the known environment classes.
-        infrastructure: of a `.mas2j` file, or the platforms of a `.jcm` file, as written.
+        environment: the class of ``environment:`` in a `.mas2j` file as written; None without one.
+        artifact_environment: whether agents use artifacts: in a `.jcm` file, a lone `.asl` file, or with one of the known
+            environment classes.
+        infrastructure: infrastructure of a `.mas2j` file, or platforms of a `.jcm` file, as written.
         world: the world file (a path that exists, or the name as written).
-        world_span: where the project names it.
-        source_paths: folders in which agent programs and included files are looked for, in order.
-        ignored: warnings about what is declared and has no effect here.
+        world_span: location of its name.
+        source_paths: folders that are searched for agent programs and included files, in order.
+        ignored: warnings about declarations without effect.
     """
 
     name: str

@@ -1,8 +1,8 @@
-"""What a run tells people on the graph: its log on ``/rosout``, and its state on ``/diagnostics``.
+"""The ROS outputs of a run: its log on ``/rosout``, and its state on ``/diagnostics``.
 
-The state goes out once a second, as robot monitors read it (``diagnostic_msgs``, REP 107).  There is a status for the
-connection and one for each agent.  An agent whose queue of things to take in grows for some seconds has a warning; a defect
-of JaCaROS, which ends the run, is an error.
+The state is published once a second for robot monitors (``diagnostic_msgs``, REP 107), with a status for the connection
+and one for each agent. An agent whose queues grow for some seconds has a warning. A defect of JaCaROS, which ends the
+run, is an error.
 """
 
 from collections.abc import Callable, Iterable
@@ -21,25 +21,25 @@ if TYPE_CHECKING:
 TOPIC = "/diagnostics"
 TYPE = "diagnostic_msgs/msg/DiagnosticArray"
 PERIOD = 1.0
-"""Seconds between two messages, as REP 107 has it."""
+"""Seconds between two messages, as REP 107 recommends."""
 
 OK, WARN, ERROR = 0, 1, 2
 """Levels of ``diagnostic_msgs/DiagnosticStatus``."""
 
 MANY = 100
-"""A queue of fewer things is none to worry about."""
+"""A queue of fewer entries causes no warning."""
 GROWING = 3
-"""Periods in a row in which a queue must grow to be a warning."""
+"""Number of consecutive periods in which a queue must grow to cause a warning."""
 
 
 @dataclass(frozen=True, slots=True)
 class Status:
-    """The state of one thing.
+    """The state of one component.
 
     Attributes:
-        name: of the thing.
+        name: name of the component.
         level: `OK`, `WARN` or `ERROR`.
-        text: one line for people.
+        text: one line for users.
         values: figures by name.
     """
 
@@ -49,11 +49,11 @@ class Status:
     values: dict[str, str] = field(default_factory=dict)
 
 
-class AgentVitals:
-    """Follows how one agent does.
+class AgentHealth:
+    """Observes the queues of one agent.
 
     Args:
-        host: of the agent.
+        host: host of the agent.
     """
 
     def __init__(self, host: AgentHost) -> None:
@@ -63,10 +63,10 @@ class AgentVitals:
         self._grown = 0
 
     def look(self, seconds: float) -> Status:
-        """Its state, *seconds* after the last look."""
+        """Return its state, *seconds* after the last call."""
         mind = self._host.mind
         if not isinstance(mind, Mind):
-            return Status(f"agent {self._host.name}", OK, "an agent in Python")
+            return Status(f"agent {self._host.name}", OK, "Python agent")
         waiting = len(mind.events) + len(mind.incoming.messages) + len(mind.incoming.percepts)
         self._grown = self._grown + 1 if waiting > self._waiting else 0
         rate = (mind.counts.cycles - self._cycles) / seconds
@@ -79,9 +79,9 @@ class AgentVitals:
             "cycles per second": f"{rate:.0f}",
         }
         if self._grown >= GROWING and waiting > MANY:
-            text = f"{waiting} events, messages and percepts wait, and more come than it can take in"
+            text = f"{waiting} events, messages and percepts are waiting, and arrive faster than the agent processes them"
             return Status(f"agent {self._host.name}", WARN, text, values)
-        doing = "reasons" if mind.alive else "waits for events"
+        doing = "reasoning" if mind.alive else "waiting for events"
         return Status(f"agent {self._host.name}", OK, doing, values)
 
 
@@ -89,10 +89,10 @@ class Diagnostics:
     """Publishes the state of a run.
 
     Args:
-        backend: our node.
-        clock: of the run.
-        hosts: gives the agents that there are now.
-        error: gives the defect that ended the run, None while there is none.
+        backend: the node of the run.
+        clock: clock of the run.
+        hosts: returns the current agents.
+        error: returns the defect that ended the run, or None.
     """
 
     def __init__(
@@ -106,7 +106,7 @@ class Diagnostics:
         self._clock = clock
         self._hosts = hosts
         self._error = error
-        self._vitals: dict[AgentHost, AgentVitals] = {}
+        self._health: dict[AgentHost, AgentHealth] = {}
         self._publisher: Publisher | None = None
         self._timer: Timer | None = None
         self._lost = 0
@@ -122,18 +122,18 @@ class Diagnostics:
         self._timer = self._clock.call_later(PERIOD, self._tick)
 
     def close(self) -> None:
-        """Publish the state at the end, and no more."""
+        """Publish the final state, and stop."""
         if self._timer is not None:
             self._timer.cancel()
             self._timer = None
             self._publish()
 
     def look(self) -> list[Status]:
-        """The state of everything, `PERIOD` after the last look."""
+        """Return the state of everything, `PERIOD` seconds after the last call."""
         hosts = list(self._hosts())
-        for gone in set(self._vitals) - set(hosts):
-            del self._vitals[gone]
-        agents = [self._vitals.setdefault(host, AgentVitals(host)).look(PERIOD) for host in hosts]
+        for gone in set(self._health) - set(hosts):
+            del self._health[gone]
+        agents = [self._health.setdefault(host, AgentHealth(host)).look(PERIOD) for host in hosts]
         return [self._connection(), *self._defect(), *agents]
 
     def _connection(self) -> Status:
@@ -141,17 +141,17 @@ class Diagnostics:
         values = {
             "middleware": backend.name,
             "node": backend.node_name,
-            "times lost": str(self._lost),
+            "connection losses": str(self._lost),
         }
         if backend.connected:
             return Status("connection", OK, "connected", values)
-        return Status("connection", WARN, "the graph cannot be reached", values)
+        return Status("connection", WARN, "ROS graph unreachable", values)
 
     def _defect(self) -> list[Status]:
         error = self._error()
         if error is None:
             return []
-        return [Status("run", ERROR, f"a defect of jacaros ended the run: {type(error).__name__}: {error}")]
+        return [Status("run", ERROR, f"internal error: {type(error).__name__}: {error}")]
 
     def _note_connection(self, connected: bool) -> None:
         self._lost += not connected
@@ -181,18 +181,18 @@ if TYPE_CHECKING:
     from jacaros.ros.backend import Backend
 
 LEVELS = {"debug": "debug", "info": "info", "warning": "warn", "error": "error"}
-"""A console's levels, in the words of ROS's log."""
+"""From a console's levels to those of ROS's log."""
 
 _ABOUT_THE_GRAPH = "[ros]"
-"""Lines about the connection itself begin so; the graph need not be told of them, and may be unable to be."""
+"""Prefix of lines about the connection itself, which are not published."""
 
 
 class RosoutConsole:
-    """Writes to another console, and under our node's name to ``/rosout`` as soon as the graph has been joined.
+    """Writes to another console and, once the graph has been joined, to ``/rosout`` under the name of our node.
 
     Args:
-        console: where all goes in any case.
-        backend: gives our node; None before the graph has been joined.
+        console: the other console.
+        backend: returns our node; None before the graph has been joined.
     """
 
     def __init__(self, console: Console, backend: "Callable[[], Backend | None]") -> None:
@@ -201,12 +201,12 @@ class RosoutConsole:
         self._refused = False
 
     def print(self, agent: str, text: str) -> None:
-        """Show a line of an agent's output; on the graph it is a message of level info."""
+        """Print a line of an agent's output, on the graph as a message of level info."""
         self._console.print(agent, text)
         self._tell("info", f"[{agent}] {text}")
 
     def log(self, text: str, level: str = "info") -> None:
-        """Tell people about what happens, with the same level on the graph."""
+        """Log a line, on the graph with the same level."""
         self._console.log(text, level)
         if not text.startswith(_ABOUT_THE_GRAPH):
             self._tell(LEVELS[level], text)
@@ -218,6 +218,6 @@ class RosoutConsole:
         try:
             backend.rosout(level, text)
         except RosError as error:
-            # Said once, and here alone: a log that cannot be written must not stop what it tells of.
+            # Logged once, and only here: an error in logging must not stop the run.
             self._refused = True
-            self._console.log(f"{_ABOUT_THE_GRAPH} nothing is written to /rosout: {error}", "warning")
+            self._console.log(f"{_ABOUT_THE_GRAPH} cannot write to /rosout: {error}", "warning")

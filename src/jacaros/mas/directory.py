@@ -1,11 +1,10 @@
-"""Who is there, where messages go, and who provides which service.
+"""Names of agents, delivery of messages, and the directory facilitator.
 
-A message between agents arrives once, in the order of sending, as a copy of its own.  The directory facilitator is an
-agent, ``df``, as in Jason, made at its first use: what it knows are its beliefs, so it can be asked.
+A message between agents arrives once, in the order of sending, as a copy. The directory facilitator is an agent,
+``df``, as in Jason, created at its first use. Its knowledge is its belief base, so agents can query it.
 
-Whatever takes part besides the agents of this process stands behind the same ports: agents of other processes, Python code
-with a mailbox of its own.  Nothing here waits: what is asked of another process is sent, what is asked about it is answered
-from what is known here.
+Other participants use the same ports: agents of other processes, and Python code with a mailbox. Nothing here waits:
+requests to another process are sent, and lookups are answered from local knowledge.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -22,12 +21,12 @@ from jacaros.terms.values import BY_SELF, Annotated, String, Term, atom, functor
 
 
 class Mailbox(Protocol):
-    """Where the messages for one participant go."""
+    """The mailbox of one participant."""
 
     def receive(self, message: SpeechAct) -> None:
-        """Take a message in, or send it on its way; return soon.
+        """Receive a message, or forward it. Return soon.
 
-        A message that turns out later not to reach its receiver is given to `Mailboxes.returned`.
+        A message that later turns out to be undeliverable is passed to `Mailboxes.returned`.
 
         Raises:
             Failure: the mailbox is full.
@@ -35,39 +34,39 @@ class Mailbox(Protocol):
 
 
 class Participants(Protocol):
-    """Participants of the system that are not agents of this run; their names are those of no agent of it."""
+    """Participants of the system other than agents of this run. Their names differ from those of all agents."""
 
     def names(self) -> Sequence[str]:
-        """The names known by now, in an order that stays."""
+        """Return the known names, in a stable order."""
 
     def find(self, name: str) -> Mailbox | None:
-        """Where the messages for a name go; None when it is not among the `names`."""
+        """Return the mailbox of a name, or None if it is not among the `names`."""
 
 
 class Services(Protocol):
-    """The directory facilitator: who provides which service."""
+    """The directory facilitator: which agents provide which services."""
 
     def register(self, name: str, service: str) -> None:
-        """An agent provides a service; its subscribers are told."""
+        """Register an agent as provider of a service, and notify the subscribers."""
 
     def deregister(self, name: str, service: str) -> None:
-        """It does not any more."""
+        """Deregister an agent as provider of a service."""
 
     def providers(self, service: str) -> Sequence[str]:
-        """The agents that provide a service, as far as is known by now, in the order of their registration."""
+        """Return the known providers of a service, in the order of registration."""
 
     def subscribe(self, name: str, service: str) -> None:
-        """An agent wants to be told of all providers of a service, by messages."""
+        """Subscribe an agent to all providers of a service, by messages."""
 
 
 H = TypeVar("H")
 
 
 class Directory(Generic[H]):
-    """The agents of a run, in the order of their making, and after them its other participants.
+    """The agents of a run, in the order of creation, and then its other participants.
 
     Attributes:
-        find: the agent of a name, or None.
+        find: returns the agent with a name, or None.
     """
 
     def __init__(self) -> None:
@@ -78,21 +77,21 @@ class Directory(Generic[H]):
         self.find: Callable[[str], H | None] = self._hosts.get
 
     def add(self, name: str, host: H) -> None:
-        """Enter an agent; the name must be free."""
+        """Add an agent. Its name must be free."""
         if self._is_taken(name):
-            raise ValueError(f"duplicate agent name {name}")
+            raise ValueError(f"duplicate agent name `{name}`")
         self._hosts[name] = host
         self._changed(name, True)
 
     def remove(self, name: str) -> H | None:
-        """Take an agent out; None when there is none of that name."""
+        """Remove an agent and return it, or None if it is unknown."""
         host = self._hosts.pop(name, None)
         if host is not None:
             self._changed(name, False)
         return host
 
     def watch(self, watcher: Callable[[str, bool], None]) -> Callable[[], None]:
-        """Call *watcher* with the name of every agent of this run that comes (True) or goes; gives what ends that."""
+        """Call *watcher* with the name of every agent that is added (True) or removed. Return a function that ends this."""
         self._watchers.append(watcher)
         return lambda: self._watchers.remove(watcher) if watcher in self._watchers else None
 
@@ -102,12 +101,12 @@ class Directory(Generic[H]):
             watcher(name, present)
 
     def join(self, others: Participants) -> Callable[[], None]:
-        """Let others take part; gives what ends that."""
+        """Add other participants. Return a function that removes them."""
         self._others.append(others)
         return lambda: self._others.remove(others) if others in self._others else None
 
     def find_other(self, name: str) -> Mailbox | None:
-        """Where the messages for a participant go that is no agent of this run; None when there is none."""
+        """Return the mailbox of a participant that is not an agent of this run, or None."""
         for others in self._others:
             found = others.find(name)
             if found is not None:
@@ -115,7 +114,7 @@ class Directory(Generic[H]):
         return None
 
     def names(self) -> Sequence[str]:
-        """The names of all agents and other participants."""
+        """Return the names of all agents and other participants."""
         if self._names is None:
             self._names = tuple(self._hosts)
         if self._others:
@@ -123,7 +122,7 @@ class Directory(Generic[H]):
         return self._names
 
     def free_name(self, wanted: str) -> str:
-        """*wanted*, or ``wanted_1``, ``wanted_2`` … when it is taken."""
+        """Return *wanted*, or ``wanted_1``, ``wanted_2`` … if it is in use."""
         name, number = wanted, 0
         while self._is_taken(name):
             number += 1
@@ -134,7 +133,7 @@ class Directory(Generic[H]):
         return name in self._hosts or self.find_other(name) is not None
 
     def __iter__(self) -> Iterator[H]:
-        """The agents of this run."""
+        """Iterate over the agents of this run."""
         return iter(list(self._hosts.values()))
 
     def __len__(self) -> int:
@@ -142,14 +141,14 @@ class Directory(Generic[H]):
 
 
 class Mailboxes:
-    """Delivers what agents say to each other.
+    """Delivers messages between agents.
 
     Args:
-        find: from an agent's name to where its messages go, None when there is no such agent.
-        find_other: the same for participants that are no agents of this run; asked after *find*.
+        find: returns the mailbox of an agent, or None.
+        find_other: the same for other participants. Called after *find*.
 
     Attributes:
-        observer: called with each message that is delivered, or None.
+        observer: called with each delivered message, or None.
     """
 
     def __init__(
@@ -162,13 +161,13 @@ class Mailboxes:
         self.observer: Callable[[SpeechAct], None] | None = None
 
     def deliver(self, message: SpeechAct) -> bool:
-        """Put *message* into the mailbox of its receiver; False when nobody of that name is known.
+        """Put *message* into the mailbox of its receiver. Return False if the receiver is unknown.
 
-        Variables are renamed apart, and sets, maps and queues copied: what the receiver binds or changes stays
-        unknown to the sender.
+        Variables are renamed apart, and sets, maps and queues are copied, so that the receiver shares no state with the
+        sender.
 
         Raises:
-            Failure: the mailbox is full; the step that sends fails.
+            Failure: the mailbox is full. The sending step fails.
         """
         receiver = self._find(message.receiver)
         if receiver is None:
@@ -183,21 +182,21 @@ class Mailboxes:
         return True
 
     def returned(self, message: SpeechAct) -> None:
-        """Tell the sender of a message that was accepted that it did not reach its receiver.
+        """Report to the sender of an accepted message that it did not reach its receiver.
 
-        It gets a message ``undelivered`` about it.  A question that it waits for fails with ``receiver_not_found``.
+        The sender gets a message ``undelivered`` about it. A question that it waits for fails with ``receiver_not_found``.
         """
         sender = self._find(message.sender)
         if sender is not None:
             id = f"{message.id}_undelivered"
             told = ("undelivered", message.receiver, message.sender, message.content, id, message.id)
-            # Whoever reports it runs no step that could fail: a sender whose mailbox is full does not learn of it.
+            # No step could fail here, so a sender whose mailbox is full gets no report.
             with suppress(Failure):
                 sender.receive(SpeechAct(*told))
 
 
 def _parted(message: SpeechAct) -> SpeechAct:
-    """The message with a content that shares nothing that can be bound or changed."""
+    """Return the message with a copy of its content that shares nothing that can be bound or changed."""
     content = message.content
     if not is_ground(content):
         content = rename(content)
@@ -210,15 +209,15 @@ NAME = "df"
 _PROVIDER, _SUBSCRIBE = functor("provider", 2), functor("subscribe", 2)
 
 Watcher = Callable[[str, str, bool], None]
-"""Told of an agent, a service, and whether the agent provides it from now on."""
+"""Called with an agent, a service, and whether the agent provides it from now on."""
 
 
 class ServiceDirectory:
-    """Keeps providers and subscribers of services; it is the `Services` of a run.
+    """Keeps providers and subscribers of services. It is the `Services` of a run.
 
     Args:
-        make: makes the agent that keeps them.
-        deliver: brings a message to its receiver.
+        make: creates the agent that keeps them.
+        deliver: delivers a message.
     """
 
     def __init__(self, make: Callable[[], Mind], deliver: Callable[[SpeechAct], bool]) -> None:
@@ -229,13 +228,13 @@ class ServiceDirectory:
 
     @property
     def agent(self) -> Mind:
-        """The agent, made when it is first asked for."""
+        """Return the agent, created on first use."""
         if self._agent is None:
             self._agent = self._make()
         return self._agent
 
     def register(self, name: str, service: str) -> None:
-        """An agent provides a service; its subscribers are told."""
+        """Register an agent as provider of a service, and notify the subscribers."""
         if name not in self.providers(service):
             belief_update.tell(self.agent, (_PROVIDER, atom(name), String(service)))
             self._changed(name, service, True)
@@ -243,26 +242,27 @@ class ServiceDirectory:
             self._tell(subscriber, name, service)
 
     def deregister(self, name: str, service: str) -> None:
-        """It does not any more."""
+        """Deregister an agent as provider of a service."""
         believed = Annotated((_PROVIDER, atom(name), String(service)), BY_SELF)
         belief_update.untell(self.agent, believed)
         self._changed(name, service, False)
 
     def providers(self, service: str) -> Sequence[str]:
-        """The agents that provide a service, in the order of their registration."""
+        """Return the providers of a service, in the order of registration."""
         return self._held(_PROVIDER, service)
 
     def subscribe(self, name: str, service: str) -> None:
-        """An agent wants to be told of all providers; of those there are it is told now."""
+        """Subscribe an agent to all providers, beginning with the present ones."""
         if name not in self._held(_SUBSCRIBE, service):
             belief_update.tell(self.agent, (_SUBSCRIBE, atom(name), String(service)))
         for provider in self.providers(service):
             self._tell(name, provider, service)
 
     def watch(self, watcher: Watcher) -> Callable[[], None]:
-        """Call *watcher* whenever an agent begins (True) or ceases (False) to provide a service; gives what ends that.
+        """Call *watcher* whenever an agent begins (True) or ceases (False) to provide a service. Return a function that
+        ends this.
 
-        For those that keep a copy elsewhere.
+        For copies elsewhere.
         """
         self._watchers.append(watcher)
         return lambda: self._watchers.remove(watcher) if watcher in self._watchers else None

@@ -1,6 +1,4 @@
-"""The environment of a run: workspaces and artifacts of the project, made in the order of the file, and found by
-its names.
-"""
+"""The environment of a run: workspaces and artifacts of the project, created in the order of the file."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
@@ -15,7 +13,7 @@ from jacaros.body.percepts import PerceptWriter
 from jacaros.body.values import References
 from jacaros.clock import Clock
 from jacaros.env.environment import Environment
-from jacaros.env.errors import OperationFailed, UnknownArtifact, UnknownArtifactType, spelling_hint
+from jacaros.env.errors import OperationFailed, UnknownArtifact, UnknownArtifactType, suggestion
 from jacaros.env.kernel.kinds import Unsuitable
 from jacaros.env.kernel.signature import Parameter
 from jacaros.env.ports import Workspace
@@ -41,7 +39,7 @@ if TYPE_CHECKING:
 
 
 class Resources(Mapping[str, object]):
-    """What a run lends to artifacts; each thing is made when it is first asked for."""
+    """Services of a run for artifacts, each created on first use."""
 
     def __init__(self, makers: Mapping[str, Callable[[], object]]) -> None:
         self._makers = makers
@@ -57,13 +55,13 @@ class Resources(Mapping[str, object]):
 
 
 class TypeFinder:
-    """Finds artifact classes for type names.
+    """Finds artifact classes by type name.
 
-    A project's own artifacts are read at the start, so that a mistake in them is told before anything runs;
-    those that come with JaCaROS are imported when the first artifact is made.
+    A project's own artifacts are imported at the start, so that errors in them are reported before anything runs; those of
+    JaCaROS are imported when the first artifact is created.
 
     Attributes:
-        given: classes by name that come before all others.
+        given: classes by name that have precedence over all others.
     """
 
     def __init__(self, folder: Path, modules: ProjectModules) -> None:
@@ -74,14 +72,14 @@ class TypeFinder:
             self._prepare()
 
     def __call__(self, type_name: str) -> "type[Artifact]":
-        """The class of that name; raises `UnknownArtifactType`."""
+        """Return the class with this name. Raises `UnknownArtifactType`."""
         given = self.given.get(type_name)
         if given is not None:
             return given
         try:
             return (self._find or self._prepare())(type_name)
         except UnknownArtifactType:
-            if spelling_hint(type_name, self.given):
+            if suggestion(type_name, self.given):
                 raise UnknownArtifactType(type_name, self.given) from None
             raise
 
@@ -95,23 +93,23 @@ class TypeFinder:
 class RunEnvironment:
     """The environment of a run, and the bodies of its agents in it.
 
-    A module of its own, so that a program that does nothing in an environment need not import one.
+    It is a separate module, so that a program without an environment need not import one.
 
     Args:
-        deployment: what the project declares.
+        deployment: declarations of the project.
         modules: its Python files.
-        clock: of the run.
-        resources: what artifacts are lent.
-        console: for what artifacts log.
-        activity: told of the operations under way for agents.
-        on_internal_error: told of defects of JaCaROS itself.
+        clock: clock of the run.
+        resources: services for artifacts.
+        console: log of artifacts.
+        activity: counts running operations of agents.
+        on_internal_error: called with defects of JaCaROS itself.
 
     Attributes:
         environment: all workspaces and artifacts.
         types: finds the classes of artifacts.
 
     Raises:
-        ModuleUnreadable: the project's own artifacts have a mistake.
+        ModuleUnreadable: the project's own artifacts have an error.
     """
 
     def __init__(
@@ -131,20 +129,20 @@ class RunEnvironment:
         self._references = References()
         older = deployment.environment == CARTAGO_2
         self._writer = PerceptWriter(self._references, self.environment.workspace, older)
-        # Artifacts may come and go by the million.
+        # A run may create and dispose millions of artifacts.
         self.environment.when_disposed(self._references.forget)
         self.environment.when_disposed(self._writer.forget)
 
     def make_body(self, host: AgentHost) -> AgentBody:
-        """A body for an agent, in ``/main``."""
+        """Return a body for an agent, in ``/main``."""
         return AgentBody(
             host.name, host.mind, self.environment, self._references, self._writer, host.print, self._activity
         )
 
     def situated_body(self, host: AgentHost, spec: AgentSpec) -> AgentBody:
-        """A body that has joined and focused what the project says.
+        """Return a body that has joined and focused what the project declares.
 
-        An artifact that is not there is focused when somebody makes it; what else is wrong is told in the log.
+        An artifact that does not exist is focused as soon as it is created. Other errors are logged.
         """
         body = self.make_body(host)
         body.enter()
@@ -172,7 +170,7 @@ class RunEnvironment:
             self._focus_later(host, body, wanted, path_of(self.environment, wanted.workspace))
 
     def _focus_later(self, host: AgentHost, body: AgentBody, wanted: FocusSpec, path: str) -> None:
-        """Focus an artifact as soon as there is one of that name."""
+        """Focus an artifact as soon as one with this name exists."""
 
         def look(artifact: "ArtifactId", present: bool) -> None:
             if present and artifact.name == wanted.artifact:
@@ -182,13 +180,13 @@ class RunEnvironment:
 
         stop = self.environment.workspace(path).watch(look)
 
-    async def furnish(self, deployment: Deployment) -> None:
-        """Make the workspaces and artifacts that the project declares.
+    async def set_up(self, deployment: Deployment) -> None:
+        """Create the workspaces and artifacts that the project declares.
 
         Raises:
-            ProjectError: one cannot be made.
+            ProjectError: one cannot be created.
         """
-        await furnish(self.environment, deployment.workspaces, self.types)
+        await set_up_workspaces(self.environment, deployment.workspaces, self.types)
 
 
 if TYPE_CHECKING:
@@ -196,17 +194,17 @@ if TYPE_CHECKING:
     from jacaros.env.ids import ArtifactId
 
 
-async def furnish(
+async def set_up_workspaces(
     environment: Environment,
     workspaces: Sequence[WorkspaceSpec],
     find_type: "Callable[[str], type[Artifact]]",
 ) -> None:
-    """Make workspaces and their artifacts.
+    """Create workspaces and their artifacts.
 
-    The artifacts have no creator: no agent prefers them as its own.
+    The artifacts have no creator, so no agent prefers them as its own.
 
     Raises:
-        ProjectError: with all types that there are not, before anything is made; or with all that cannot be made.
+        ProjectError: all unknown types, before anything is created; or all failures of creation.
     """
     artifacts = [artifact for workspace in workspaces for artifact in workspace.artifacts]
     types = types_of(artifacts, find_type)
@@ -226,10 +224,10 @@ async def furnish(
 def types_of(
     artifacts: Sequence[ArtifactSpec], find_type: "Callable[[str], type[Artifact]]"
 ) -> "dict[str, type[Artifact]]":
-    """The classes of artifacts by their names.
+    """Return the classes of artifacts by artifact name.
 
     Raises:
-        ProjectError: with all that are not found.
+        ProjectError: all unknown types.
     """
     found: dict[str, type[Artifact]] = {}
     wrong: list[Diagnostic] = []
@@ -241,25 +239,25 @@ def types_of(
         except NotImported:
             continue
         except Exception as error:
-            told = str(error) or type(error).__name__
-            help = None if "did you mean" in told else _where(artifact.type_name)
-            wrong.append(Diagnostic("error", told, artifact.type_span or artifact.span, help))
+            message = str(error) or type(error).__name__
+            help = None if "did you mean" in message else _where(artifact.type_name)
+            wrong.append(Diagnostic("error", message, artifact.type_span or artifact.span, help))
     if wrong:
         raise ProjectError(wrong)
     return found
 
 
 def _where(type_name: str) -> str:
-    """What to do about a type that is not there."""
+    """Return the help for an unknown type."""
     package, _, name = type_name.rpartition(".")
     file = f"{package.replace('.', '/')}.py or artifacts.py" if package else "artifacts.py"
-    return f"write a class {name}(Artifact) in {file} beside the project file"
+    return f"write `class {name}(Artifact)` in {file} beside the project file"
 
 
 def fitted(arguments: tuple[object, ...], artifact_type: "type[Artifact]") -> tuple[object, ...]:
-    """The arguments of a project file as the ``init`` of a type wants them.
+    """Return the arguments of a project file as the ``init`` of a type expects them.
 
-    In JaCaMo a number in quotes is a number.  Here it is a text, unless that is not what the parameter takes.
+    In JaCaMo, a number in quotes is a number. Here it is a string, unless the parameter does not accept one.
     """
     init = artifact_type.interface.inits.find("init", len(arguments))
     if init is None or not any(isinstance(argument, str) for argument in arguments):
@@ -282,7 +280,7 @@ def _fitting(argument: object, parameter: Parameter | None) -> object:
 
 
 def _readings(text: str) -> list[object]:
-    """What else a text may stand for."""
+    """Return other values that a string may stand for."""
     if text in ("true", "false"):
         return [text == "true"]
     found: list[object] = []
@@ -312,10 +310,10 @@ def _workspace(environment: Environment, spec: WorkspaceSpec) -> Workspace:
 
 
 def path_of(environment: Environment, name: str) -> str:
-    """The full path of a workspace that the project calls *name*.
+    """Return the full path of a workspace of the project.
 
     Raises:
-        UnknownWorkspace: there is none.
+        UnknownWorkspace: the workspace does not exist.
     """
     for workspace in environment.workspaces():
         if name in (workspace.name, workspace.path):
@@ -324,10 +322,10 @@ def path_of(environment: Environment, name: str) -> str:
 
 
 def artifact_of(environment: Environment, focus: FocusSpec) -> "ArtifactId":
-    """The artifact that an agent of the project is to focus.
+    """Return the artifact that an agent of the project focuses.
 
     Raises:
-        OperationFailed: there is none.
+        OperationFailed: it does not exist.
     """
     if focus.workspace is not None:
         return environment.workspace(path_of(environment, focus.workspace)).lookup(focus.artifact)

@@ -1,7 +1,7 @@
-"""What people are told once of the graph of a run, since no middleware does.
+"""Warnings about the ROS graph of a run that no middleware gives.
 
-Its nodes go by a simulator's time, and the run does not; nobody else is in it, which is most often another domain; nobody
-declares a parameter that was given.
+The run ignores a simulator's time; no other node is in the graph, usually because of a different domain; or nothing
+declares a given parameter.
 """
 
 import asyncio
@@ -17,18 +17,18 @@ from jacaros.ros.waiting import MISSING_AFTER
 
 SIM_TIME = "use_sim_time"
 PATIENCE = 5.0
-"""Seconds that the ROS 1 master has to tell a parameter."""
+"""Seconds to wait for a parameter of the ROS 1 master."""
 
 
 class GraphTime:
-    """Looks for signs of a simulator in a graph, for a run that goes by the time of day.
+    """Detects a simulator's time in a graph, for a run on the real clock.
 
-    A simulator publishes ``/clock``.  On ROS 1 the parameter ``/use_sim_time`` says besides that nodes go by it, and may do
-    so before the simulator runs: rospy and roscpp read it when a node begins.
+    A simulator publishes ``/clock``. On ROS 1, the parameter ``/use_sim_time`` also tells nodes to use it, possibly
+    before the simulator runs: rospy and roscpp read it when a node starts.
 
     Args:
-        backend: our node.
-        log: takes a line for people.
+        backend: the node of the run.
+        log: takes a line of the log.
     """
 
     def __init__(self, backend: Backend, log: Callable[[str], None]) -> None:
@@ -38,7 +38,7 @@ class GraphTime:
         self._told = False
 
     def watch(self) -> None:
-        """Begin to look."""
+        """Begin to watch."""
         from jacaros.ros.backend import PARAMETERS
         from jacaros.ros.ros_clock import CLOCK_QOS, CLOCK_TOPIC, CLOCK_TYPE
 
@@ -49,19 +49,19 @@ class GraphTime:
             self._connected(backend.connected)
 
     def close(self) -> None:
-        """Look no more."""
-        self._hear_no_more()
+        """Stop watching."""
+        self._unsubscribe()
         if self._asking is not None:
             self._asking.cancel()
 
     def _heard(self, _: object) -> None:
-        self._hear_no_more()
+        self._unsubscribe()
         self._tell(
-            "a simulator gives the time on /clock, and this run goes by the time of day; to follow the simulator run "
-            "with --clock ros"
+            "a simulator publishes its time on /clock, but this run uses the real clock; to follow the simulator, run with "
+            "--clock ros"
         )
 
-    def _hear_no_more(self) -> None:
+    def _unsubscribe(self) -> None:
         if self._listening is not None:
             self._listening.close()
             self._listening = None
@@ -71,11 +71,11 @@ class GraphTime:
             self._asking = asyncio.get_running_loop().create_task(self._ask())
 
     async def _ask(self) -> None:
-        with suppress(RosError):  # there is no such parameter, or the master has gone again
+        with suppress(RosError):  # the parameter does not exist, or the master is gone
             if await self._backend.parameters("/").get(SIM_TIME, PATIENCE):
                 self._tell(
-                    "the ROS master says use_sim_time: nodes go by a simulator's time on /clock, and this run goes by the "
-                    "time of day; to follow the simulator run with --clock ros"
+                    "use_sim_time is set on the ROS master, so other nodes follow /clock, but this run uses the "
+                    "real clock; to follow the simulator, run with --clock ros"
                 )
 
     def _tell(self, text: str) -> None:
@@ -85,17 +85,17 @@ class GraphTime:
 
 
 _ANSWER = 5.0
-"""Seconds for the graph to tell what is in it."""
+"""Seconds to wait for the contents of the graph."""
 _STEP, _LATE = 0.1, 0.02
-"""Seconds between two looks at the loop, and how late it may be to count as on time."""
+"""Seconds between two checks of the event loop, and the delay up to which it counts as on time."""
 _AT_MOST = 30.0
-"""Seconds after which a loop that is always late is waited for no longer."""
+"""Seconds after which a loop that is always late is checked no longer."""
 
 
-def _everybody(contents: GraphContents) -> Iterator[str]:
-    """The names of all who are there.
+def _participants(contents: GraphContents) -> Iterator[str]:
+    """Return the names of all other participants.
 
-    Of a busy process its topics may be known before the names of its nodes; then they have an empty one.
+    The topics of a busy process may be known before the names of its nodes. Then the name is empty.
     """
     yield from contents.nodes
     for topic in contents.topics.values():
@@ -103,14 +103,14 @@ def _everybody(contents: GraphContents) -> Iterator[str]:
 
 
 class EmptyGraph:
-    """Logs when nobody else is in the graph `MISSING_AFTER` seconds after our node was started.
+    """Logs if no other node is in the graph `MISSING_AFTER` seconds after our node was started.
 
-    Only seconds in which the loop is on time count: on a busy machine discovery is late, too, and so are other nodes.
+    Only seconds in which the event loop is on time count: on a busy machine, discovery and other nodes are late, too.
 
     Args:
-        backend: our node, started.
+        backend: the node of the run, started.
         clock: measures the seconds.
-        graph: says which graph it is, for people.
+        graph: name of the graph, for messages.
         log: takes one line.
     """
 
@@ -137,35 +137,35 @@ class EmptyGraph:
         try:
             contents = await self._backend.contents(_ANSWER)
         except RosError:
-            return  # who cannot ask cannot tell either
-        if not any(who != self._backend.node_name for who in _everybody(contents)):
+            return  # without an answer there is nothing to report
+        if not any(who != self._backend.node_name for who in _participants(contents)):
             self._log(
-                f"no other node is in {self._graph}. Is the robot running? It must have the same ROS_DOMAIN_ID (here "
-                "--domain-id, too) and ROS_AUTOMATIC_DISCOVERY_RANGE"
+                f"no other node is in {self._graph}; check that the robot is running with the same ROS_DOMAIN_ID (or "
+                "--domain-id) and ROS_AUTOMATIC_DISCOVERY_RANGE"
             )
 
     def close(self) -> None:
-        """Tell nothing any more."""
+        """Stop watching."""
         self._timer.cancel()
         if self._task is not None:
             self._task.cancel()
 
 
 _DECLARING = 3.0
-"""Seconds of the run's clock: agents make artifacts with their first steps, too."""
+"""Seconds of the run's clock: agents also create artifacts with their first steps."""
 
 _FEW = 5
-"""So many names are told: a file for all nodes of a robot may have hundreds."""
+"""Maximum number of names in a message: a file for all nodes of a robot may have hundreds."""
 
 
 class UndeclaredParameters:
-    """Tells in a log which of the given parameters nobody has declared `_DECLARING` seconds after the start.
+    """Logs which of the given parameters are not declared `_DECLARING` seconds after the start.
 
-    A run that ends before that tells it at its end.
+    A run that ends before that logs it at its end.
 
     Args:
-        names: of the parameters that were given.
-        given: those of our node; None while there is no node.
+        names: names of the given parameters.
+        given: returns the parameters of our node; None without a node.
         clock: measures the seconds.
         log: takes one line.
     """
@@ -182,7 +182,7 @@ class UndeclaredParameters:
         self._timer = clock.call_later(_DECLARING, self.tell)
 
     def tell(self) -> None:
-        """Tell it, unless it is told."""
+        """Log it, unless it has been logged."""
         if self._is_told:
             return
         self.close()
@@ -192,23 +192,23 @@ class UndeclaredParameters:
             self._log(_text(unknown, known))
 
     def close(self) -> None:
-        """Tell nothing any more."""
+        """Stop watching."""
         self._is_told = True
         self._timer.cancel()
 
 
 def _text(unknown: Sequence[str], known: Sequence[str]) -> str:
-    from jacaros.asl.slips import close_matches  # here: only for mistakes
+    from jacaros.asl.slips import close_matches  # here: only for errors
 
     several = len(unknown) > 1
     listed = ", ".join(unknown[:_FEW]) + (f" and {len(unknown) - _FEW} more" if len(unknown) > _FEW else "")
     near = [found[0] for name in unknown if (found := close_matches(name, known))]
     help = (
-        f"did you mean {', '.join(dict.fromkeys(near))}?"
+        f"did you mean {', '.join(f'`{name}`' for name in dict.fromkeys(near))}?"
         if near
-        else f"a mapping file does that, parameters: {{{unknown[0].rpartition('.')[2]}: {{default: ...}}}}"
+        else f"declare it in a mapping file: `parameters: {{{unknown[0].rpartition('.')[2]}: {{default: ...}}}}`"
     )
     return (
-        f"the parameter{'s' if several else ''} {listed} {'have' if several else 'has'} no effect: nothing here declares "
+        f"parameter{'s' if several else ''} {listed} {'have' if several else 'has'} no effect: nothing declares "
         f"{'them' if several else 'it'}; {help}"
     )

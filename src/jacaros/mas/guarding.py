@@ -1,4 +1,4 @@
-"""The guard of a run: found or started, and told that the run is alive."""
+"""The guard of a run: find or start it, and send it the heartbeat of the run."""
 
 import asyncio
 import subprocess
@@ -13,7 +13,7 @@ from jacaros.ros.guarded import guarded_by
 from jacaros.ros.heartbeat import Heartbeat, socket_path
 
 STARTING = 15.0
-"""Seconds that a guard has to start and to join the graph."""
+"""Seconds in which a guard must start and join the graph."""
 RETRY = 0.05
 """Seconds between two attempts to connect."""
 
@@ -21,14 +21,14 @@ RETRY = 0.05
 class RunGuard:
     """Keeps a guard beside a run, from its start to its end.
 
-    A guard that is running for this node is used; it may have been started separately, or have stopped the robot after a
-    former run died.  Otherwise one is started.  It outlives the agents unless they end in good order.
+    A running guard for this node is reused: it may have been started separately, or have stopped the robot after an
+    earlier run died. Otherwise one is started. It outlives the agents unless they shut down in order.
 
     Args:
-        address: of the graph.
+        address: address of the graph.
         backend: the node of the run.
         simulated_time: whether the run follows ``/clock``.
-        log: takes a line for people.
+        log: takes a line of the log.
     """
 
     def __init__(
@@ -44,7 +44,7 @@ class RunGuard:
         """Find or start the guard, and wait until it can stop the robot.
 
         Raises:
-            UsageError: no guard was ready in time.
+            UsageError: the guard was not ready in time.
         """
         self._backend.add_exit_hook(self._leaving)
         try:
@@ -56,7 +56,7 @@ class RunGuard:
             ) from None
 
     async def close(self) -> None:
-        """Tell the guard that the robot has been stopped and the run has ended."""
+        """Report to the guard that the robot has been stopped and the run has ended."""
         if self._returning is not None:
             self._returning.cancel()
         if self._heartbeat is not None:
@@ -87,12 +87,10 @@ class RunGuard:
             [sys.executable, "-P", "-m", "jacaros", "guard", name, "--once", *self._address.arguments],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
-            start_new_session=True,  # Ctrl+C at the terminal is for the agents, which then say goodbye
+            start_new_session=True,  # Ctrl+C at the terminal ends the agents, which then stop the guard
         )
 
     def _lost(self) -> None:
         self._heartbeat = None
-        self._log(
-            "warning: the guard is gone; starting another, and until it is ready nothing guards the robot"
-        )
+        self._log("warning: the guard died; restarting it, and until it is ready the robot is unguarded")
         self._returning = asyncio.ensure_future(self._connect())

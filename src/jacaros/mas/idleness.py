@@ -1,6 +1,6 @@
-"""Whether a run is idle: nobody has anything to do, and nothing that was begun will give anybody something.
+"""Idleness of a run: no agent has anything to do, and nothing pending will give an agent something to do.
 
-What may: the timers of agents, and their operations.
+Pending are timers of agents and their operations.
 """
 
 import asyncio
@@ -12,25 +12,25 @@ from jacaros.clock import Clock
 
 
 class Activity:
-    """Counts what will give an agent something to do again.
+    """Counts what will give an agent something to do.
 
-    Worlds, batteries and the processes of artifacts do not count: they never end.
+    Worlds, batteries and processes of artifacts do not count: they never end.
     """
 
     def __init__(self) -> None:
         self.pending = 0
 
     def begin(self) -> None:
-        """Something has been begun."""
+        """Something has begun."""
         self.pending += 1
 
     def end(self) -> None:
-        """It is over, or was taken back."""
+        """It has ended, or was cancelled."""
         self.pending -= 1
 
 
 class AgentTimer:
-    """A call that is to come, counted until it has come or was taken back."""
+    """A timer of an agent, counted until it fires or is cancelled."""
 
     __slots__ = ("_activity", "_callback", "_timer")
 
@@ -41,7 +41,7 @@ class AgentTimer:
         self._timer: Timer | None = clock.call_later(delay, self._ring)
 
     def cancel(self) -> None:
-        """Take the call back; nothing happens when it is past."""
+        """Cancel the timer. No effect after it has fired."""
         if self._timer is not None:
             self._timer.cancel()
             self._timer = None
@@ -55,26 +55,27 @@ class AgentTimer:
 
 
 _HOPS = 8
-"""Turns of the loop that must pass without anything to do before a run counts as idle: a message of a ROS
-graph inside the process takes a few to become a belief."""
+"""Number of idle turns of the event loop before a run counts as idle: a message of the in-process ROS graph takes a few
+turns to become a belief.
+"""
 
 
 class Turns(Protocol):
-    """What gives the agents their turns."""
+    """The scheduler of the agents."""
 
     @property
     def idle(self) -> bool:
-        """True when no agent is ready."""
+        """Whether no agent is ready."""
 
 
 class Idleness:
-    """Tells when a run is idle, to those who want to know; it costs nothing while there are none.
+    """Detects when a run is idle. Costs nothing without listeners.
 
     Args:
-        activity: what the agents wait for.
+        activity: counts what the agents wait for.
 
     Attributes:
-        turns: to be set before the first look.
+        turns: set before the first check.
     """
 
     turns: Turns
@@ -84,17 +85,17 @@ class Idleness:
         self._watchers: list[Callable[[], None]] = []
         self._looks = 0
 
-    def watch(self, told: Callable[[], None]) -> Callable[[], None]:
-        """Call *told* whenever the run has become idle; gives what ends that."""
-        self._watchers.append(told)
-        return lambda: self._watchers.remove(told) if told in self._watchers else None
+    def watch(self, callback: Callable[[], None]) -> Callable[[], None]:
+        """Call *callback* whenever the run has become idle. Return a function that ends this."""
+        self._watchers.append(callback)
+        return lambda: self._watchers.remove(callback) if callback in self._watchers else None
 
     def stop(self) -> None:
-        """Tell nobody any more."""
+        """Remove all listeners."""
         self._watchers.clear()
 
     def look(self) -> None:
-        """Look whether the run is idle: the last agent has run out of things to do."""
+        """Check whether the run is idle, after the last agent has run out of things to do."""
         if self._watchers:
             self._looks += 1
             self._look_again(self._looks, _HOPS)
@@ -105,5 +106,5 @@ class Idleness:
         if hops:
             asyncio.get_running_loop().call_soon(self._look_again, look, hops - 1)
             return
-        for told in tuple(self._watchers):
-            told()
+        for callback in tuple(self._watchers):
+            callback()

@@ -1,8 +1,8 @@
-"""Launching a project in a process: clock, loop, signals, garbage collector.
+"""Launch a project in a process: clock, event loop, signals, garbage collector.
 
-Ctrl+C, SIGTERM, SIGHUP and, on Windows, SIGBREAK (Ctrl+Break) end a run, whatever it is doing.  `jacaros.ros.lifetime`
-handles the signals: it stops the robots, then asks here.  The loop serves a signal between two callbacks.  A step that
-never ends leaves it no turn; then the signal is raised in the middle of the step.
+Ctrl+C, SIGTERM, SIGHUP and, on Windows, SIGBREAK (Ctrl+Break) end a run in any state. `jacaros.ros.lifetime` handles
+the signals: it stops the robots and then calls this module. The event loop handles a signal between two callbacks. A
+step that never ends blocks it; then the signal is raised in the middle of the step.
 """
 
 import asyncio
@@ -27,13 +27,15 @@ from jacaros.mas.watchdog import Watchdog
 from jacaros.ros import lifetime
 
 GARBAGE_THRESHOLD = 100_000
-"""Terms are made and dropped by the million, mostly without cycles: looking for cycles more often costs a
-tenth of the time and finds nothing."""
+"""Programs create and drop millions of terms, mostly without cycles. More frequent garbage collection costs 10 % of the
+time and finds nothing.
+"""
 
 SWITCH_INTERVAL = 0.0005
-"""Seconds for which a busy loop may keep the interpreter from a thread that has a message for it.
+"""Seconds for which a busy event loop may keep the interpreter from a thread that has a message for it.
 
-Python's own 5 ms are more than a message otherwise takes to become a command."""
+Python's default of 5 ms is longer than a message otherwise takes to become a command.
+"""
 
 
 def launch(
@@ -43,22 +45,22 @@ def launch(
     when_started: Callable[[System], None] | None = None,
     own_process: bool = True,
 ) -> int:
-    """Run a project to its end; the exit code.
+    """Run a project to its end. Return the exit code.
 
     Args:
-        project: a project file, a lone program, or what one declares.
-        options: how to run it.
+        project: a project file, a lone program, or a deployment.
+        options: run options.
         console: its outputs.
-        when_started: called when everything has been made, before the first agent has its turn.
-        own_process: settings of the whole process may be changed: signals, the garbage collector, the switches of threads.
+        when_started: called when everything has been created, before the first agent has its turn.
+        own_process: whether settings of the whole process may be changed: signals, garbage collector, thread switches.
 
     Raises:
-        JacarosError: the project cannot be run; the text tells what is wrong.
-        InternalError: a defect of JaCaROS showed itself.
+        JacarosError: the project cannot run. The text says why.
+        InternalError: a defect of JaCaROS.
     """
     options.check()
     if own_process:
-        # Before the programs are read: their syntax trees are many objects that all stay.
+        # Before the programs are read: their syntax trees are many long-lived objects.
         gc.set_threshold(GARBAGE_THRESHOLD, 20, 100)
         sys.setswitchinterval(SWITCH_INTERVAL)
     deployment = mapped(
@@ -103,7 +105,7 @@ def _clock(options: RunOptions, console: Console) -> Clock:
 
 
 def _escaped(mas: System, context: dict[str, Any]) -> None:
-    """Something raised an exception outside of anybody's care."""
+    """Handle an exception that no caller can catch."""
     error = context.get("exception")
     if isinstance(error, Interrupted):
         return
@@ -114,34 +116,34 @@ def _escaped(mas: System, context: dict[str, Any]) -> None:
 
 
 PATIENCE = 0.3
-"""Seconds that the loop has to serve a signal."""
+"""Seconds that the event loop has to handle a signal."""
 CLOSING = 5.0
-"""Seconds that may pass until everything is closed."""
+"""Seconds until everything is closed."""
 THREADS = 1.0
-"""Seconds that threads of operations have to come to their end when everything else is closed."""
+"""Seconds in which threads of operations must end after everything else is closed."""
 AGAIN = 2.0
-"""Seconds until an `Interrupted` that somebody swallowed is raised once more."""
+"""Seconds after which an `Interrupted` that was swallowed is raised again."""
 
 
 class Interrupted(KeyboardInterrupt):
-    """Raised in the middle of a step, or of whatever else leaves the loop no turn.
+    """Raised in the middle of a step, or of other code that blocks the event loop.
 
-    A `KeyboardInterrupt`, because asyncio lets no other exception but `SystemExit` end a loop; what is open on the loop is
-    closed after that.
+    It is a `KeyboardInterrupt`, because asyncio lets only that and `SystemExit` end a loop. What is open on the loop is
+    closed afterwards.
     """
 
 
 class Interruption:
     """How signals end a run.
 
-    The first one lets the run end in good order as soon as the loop has a turn, and takes the turn by force after
-    `PATIENCE`.  Another one takes it at once.
+    The first signal ends the run in order as soon as the event loop has a turn, and by force after `PATIENCE`. Another
+    one ends it immediately.
 
     Args:
-        tell: takes a line for people.
+        tell: takes a line of the log.
 
     Attributes:
-        exit_code: 128 and the number of the signal; 0 while there was none.
+        exit_code: 128 plus the number of the signal; 0 without one.
     """
 
     def __init__(self, tell: Callable[[str], None]) -> None:
@@ -153,13 +155,13 @@ class Interruption:
         self._alarm = Alarm(self._interrupt)
 
     def run(self, make_loop: Callable[[], asyncio.AbstractEventLoop], main: Coroutine[Any, Any, int]) -> int:
-        """Run *main*, which says by `of` what signals end, on a new loop; the exit code."""
+        """Run *main*, which sets by `of` what signals end, on a new event loop. Return the exit code."""
         try:
             with asyncio.Runner(loop_factory=make_loop) as runner:
                 try:
                     return runner.run(main)
                 except Interrupted:
-                    # What is open on the loop is closed next, when the runner is.
+                    # The runner closes what is open on the loop.
                     self._alarm.set(THREADS if self._ending else CLOSING, AGAIN)
                     return self.exit_code
         except Interrupted:
@@ -169,12 +171,12 @@ class Interruption:
             self._alarm.cancel()
 
     def signals(self) -> AbstractContextManager[None]:
-        """Have signals end the run; entered on the main thread, around `run`."""
+        """Let signals end the run. Enter it on the main thread, around `run`."""
         return lifetime.serving(self._notice)
 
     @contextmanager
     def of(self, end: Callable[[int], None]) -> Iterator[None]:
-        """Have signals call *end* with an exit code, on the running loop."""
+        """Let signals call *end* with an exit code, on the running event loop."""
         loop = asyncio.get_running_loop()
 
         def serve() -> None:
@@ -190,7 +192,7 @@ class Interruption:
                 self._alarm.set(THREADS, AGAIN)
 
     def _notice(self, number: int, frame: FrameType | None) -> None:
-        """Take a signal, in its handler."""
+        """Handle a signal, in its handler."""
         if self._over:
             return  # nothing is left to interrupt
         again, self.exit_code = self.exit_code != 0, 128 + number
@@ -202,15 +204,13 @@ class Interruption:
     def _interrupt(self, number: int, frame: FrameType | None) -> NoReturn:
         del number
         if not self._told:
-            from jacaros.mas.watchdog import at_work, task_of  # here: most runs end without it
+            from jacaros.mas.watchdog import current_step, task_of  # here: most runs end without it
 
             self._told = True
             if task_of(frame) is not None:
-                self._tell(f"interrupted in the middle of a step: {at_work(frame)}")
-            elif (
-                self._ending
-            ):  # else what was interrupted is an import, as at the start: nothing is left behind
-                self._tell("the run has ended; abandoning an operation that does not stop")
-        # The exception may hit between the making of a coroutine and its first step; the process ends anyway.
+                self._tell(f"interrupted in the middle of a step: {current_step(frame)}")
+            elif self._ending:  # otherwise an import was interrupted, as at the start: nothing is abandoned
+                self._tell("the run has ended; abandoning an operation that did not stop")
+        # The exception may occur between the creation of a coroutine and its first step. The process ends anyway.
         warnings.filterwarnings("ignore", "coroutine .* was never awaited", RuntimeWarning)
         raise Interrupted

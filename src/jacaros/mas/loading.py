@@ -1,4 +1,4 @@
-"""From a file to what is to be run."""
+"""From a file to a deployment."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -12,10 +12,10 @@ _PROJECTS: Final = (".mas2j", ".jcm")
 
 
 def load_deployment(path: str | Path) -> Deployment:
-    """What the project file *path* declares; a lone `.asl` or `.py` file is a system of one agent of its name.
+    """Return what the project file *path* declares. A lone `.asl` or `.py` file is a system of one agent with its name.
 
     Raises:
-        ProjectError: with all errors of the file, also when a program of an agent is not found.
+        ProjectError: all errors of the file, including missing programs of agents.
     """
     path = Path(path)
     if path.suffix in (".asl", ".py"):
@@ -33,10 +33,10 @@ def load_deployment(path: str | Path) -> Deployment:
 
 
 def mapped(deployment: Deployment, names: Sequence[str | Path]) -> Deployment:
-    """The same with the artifacts of mapping files; a lone program focuses all of them.
+    """Return the deployment with the artifacts of mapping files. A lone program focuses all of them.
 
     Raises:
-        ProjectError: with all that is wrong in the files.
+        ProjectError: all errors in the files.
     """
     if not names:
         return deployment

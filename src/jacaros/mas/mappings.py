@@ -1,4 +1,4 @@
-"""Mapping files of a run: their artifacts as if the project had declared them, and what is wrong with them."""
+"""Mapping files of a run: their artifacts, as if the project declared them, and their errors."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
@@ -24,18 +24,18 @@ UNKNOWN_TYPE = "unknown-message-type"
 def read_mapping_file(
     name: str, folders: Sequence[Path], span: Span | None = None
 ) -> tuple[list[ArtifactSpec], list[Diagnostic]]:
-    """The artifacts of a mapping file, and what is wrong with it.
+    """Return the artifacts of a mapping file, and its errors.
 
     Args:
-        name: path below one of the folders, or file name of a mapping that comes with the package.
-        folders: where it is looked for.
+        name: path below one of the folders, or file name of a mapping that comes with JaCaROS.
+        folders: searched in this order.
         span: where it is named.
     """
     path = find_mapping(name, folders)
     if path is None:
         known = [each.name for folder in folders for each in folder.glob("*.y*ml")] + shipped_mappings()
         near = close_matches(name, known)
-        help = f"did you mean {near[0]}?" if near else f"expected in {folders[0]}"
+        help = f"did you mean `{near[0]}`?" if near else f"expected in {folders[0]}"
         return [], [Diagnostic("error", f"mapping file not found: {name}", span, help)]
     mapping, problems = read_with_problems(path)
     specs = [
@@ -46,7 +46,7 @@ def read_mapping_file(
 
 
 def diagnostics_of(file: str, text: str, problems: Iterable[Problem], wrong: str = WRONG) -> list[Diagnostic]:
-    """What is wrong with a YAML file, as the rest of a project tells it; *wrong* is the code of mistakes."""
+    """Return the problems of a YAML file as diagnostics. *wrong* is the code of errors."""
     source = SourceFile(file, text)
     return [_diagnostic(source, problem, wrong) for problem in problems]
 
@@ -58,7 +58,7 @@ def _diagnostic(source: SourceFile, problem: Problem, wrong: str) -> Diagnostic:
         word = rest.split("#")[0].split(",")[0].rstrip()
         end = problem.column + max(1, len(word))
     span = Span(source, problem.line, problem.column, problem.line, end)
-    # The robot's own middleware may know more types than the package.
+    # The robot's own middleware may know more types than JaCaROS.
     uncertain = UNCERTAIN in problem.message and "did you mean" not in problem.help
     level, code = ("warning", UNKNOWN_TYPE) if uncertain else ("error", wrong)
     return Diagnostic(
@@ -67,37 +67,37 @@ def _diagnostic(source: SourceFile, problem: Problem, wrong: str) -> Diagnostic:
 
 
 def check_mapping_file(path: Path) -> list[Diagnostic]:
-    """What is wrong with a mapping file, also when it is compared with the message types that are known without a robot."""
+    """Return the errors of a mapping file, also against the message types that are known without a robot."""
     mapping, problems = read_with_problems(path)
-    # What a wrong line says is made up, so its types are not looked at.
+    # A line with an error has placeholder values, so its types are not checked.
     wrong = {problem.line for problem in problems}
-    told = [
+    uncertain = [
         each
         for part in mapping.artifacts.values()
         for each in type_problems(part, stored_interfaces(part.interfaces))
     ]
-    problems += [each for each in told if each.line not in wrong]
+    problems += [each for each in uncertain if each.line not in wrong]
     return diagnostics_of(mapping.file, mapping.text, problems)
 
 
 def is_wrong(name: str, folders: Sequence[Path]) -> bool:
-    """Whether *name* is the type of a mapping file that has mistakes; they are told where they are."""
+    """Return whether *name* is the type of a mapping file with errors, which are reported at their location."""
     path = find_mapping(name.partition("#")[0], folders)
     return path is not None and bool(read_with_problems(path)[1])
 
 
 def with_mappings(deployment: Deployment, names: Sequence[str]) -> Deployment:
-    """A deployment with the artifacts of further mapping files; a lone program focuses all of them.
+    """Return a deployment with the artifacts of further mapping files. A lone program focuses all of them.
 
     Raises:
-        ProjectError: with all that is wrong.
+        ProjectError: all errors of the files.
     """
     artifacts: list[ArtifactSpec] = []
     wrong: list[Diagnostic] = []
     for name in names:
-        found, told = read_mapping_file(name, (Path(), deployment.base_path))
+        found, errors = read_mapping_file(name, (Path(), deployment.base_path))
         artifacts += found
-        wrong += told
+        wrong += errors
     wrong += _repeated(deployment, artifacts)
     if wrong:
         raise ProjectError(wrong)
@@ -118,8 +118,8 @@ def _repeated(deployment: Deployment, artifacts: Sequence[ArtifactSpec]) -> list
     found = []
     for artifact in artifacts:
         if artifact.name in seen:
-            help = "name the artifacts of a file below 'artifacts:'"
-            found.append(Diagnostic("error", f"two artifacts have the name '{artifact.name}'", None, help))
+            help = "name the artifacts of a file under `artifacts:`"
+            found.append(Diagnostic("error", f"duplicate artifact `{artifact.name}`", None, help))
         seen.add(artifact.name)
     return found
 
@@ -127,7 +127,7 @@ def _repeated(deployment: Deployment, artifacts: Sequence[ArtifactSpec]) -> list
 def added(
     workspaces: Sequence[WorkspaceSpec], artifacts: Sequence[ArtifactSpec]
 ) -> tuple[WorkspaceSpec, ...]:
-    """The workspaces with more artifacts in ``main``."""
+    """Return the workspaces with more artifacts in ``main``."""
     if not any(space.name == MAIN and space.parent is None for space in workspaces):
         workspaces = (WorkspaceSpec(MAIN), *workspaces)
     return tuple(

@@ -1,4 +1,4 @@
-"""Resources that plans need and that no artifact of the project uses: probably misspelt."""
+"""Check for resources that plans need but no artifact of the project uses: they are probably misspelt."""
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
@@ -17,10 +17,10 @@ if TYPE_CHECKING:
 
 
 def check_needs(programs: Sequence[nodes.Program], types: "Iterable[type[Artifact]]") -> Iterator[Diagnostic]:
-    """Warnings about resources that nothing but one plan names.
+    """Return warnings about resources that only one plan names.
 
-    Plans may share a resource that no artifact knows, so one that several plans need is taken for such a one unless
-    its name is nearly that of a resource of an artifact.
+    Plans may share a resource that no artifact uses. So if several plans need it, it is reported only if its name is
+    similar to that of an artifact's resource.
     """
     known = sorted(set(_used_by(types)))
     if not known:
@@ -32,12 +32,12 @@ def check_needs(programs: Sequence[nodes.Program], types: "Iterable[type[Artifac
             continue
         close = close_matches(name, known, 0.7)
         if close or counts[name] == 1:
-            listed = f"the artifacts of the project use {', '.join(known)}"
+            listed = f"resources of the project: {', '.join(known)}"
             yield Diagnostic(
                 "warning",
-                f"no artifact of the project uses `{name}`",
+                f"unknown resource `{name}`: no artifact of the project uses it",
                 item.span,
-                f"did you mean {close[0]}?" if close else listed,
+                f"did you mean `{close[0]}`?" if close else listed,
                 "unknown-resource",
             )
 

@@ -1,4 +1,4 @@
-"""A mind that Python code talks to and looks into, with literals, goals and formulae written as in the language."""
+"""Access to a mind from Python code, with literals, goals and formulae in the syntax of the language."""
 
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -18,9 +18,9 @@ from jacaros.terms.values import BY_SELF, SOURCE_PERCEPT, Term, annotations_of, 
 
 
 class OpenMind:
-    """Gives things to a mind and asks it.
+    """Changes and queries a mind.
 
-    What is given reaches the mind at once; if it is in the middle of a step (as when an agent prints), before its next one.
+    Changes reach the mind immediately; in the middle of a step (for example when an agent prints), before its next one.
     """
 
     @property
@@ -28,13 +28,13 @@ class OpenMind:
         """The agent itself, for what this class does not offer."""
         raise NotImplementedError
 
-    # ---- giving
+    # ---- changes
 
     def add_belief(self, *literals: str) -> None:
-        """Let the agent believe something, as its own note unless the literal names a source; the events are external.
+        """Add beliefs, as the agent's own notes unless a literal names a source. The events are external.
 
         Raises:
-            AslError: it is no literal.
+            AslError: one is not a literal.
         """
         terms = [literal(each) for each in literals]
 
@@ -45,10 +45,10 @@ class OpenMind:
         self._do(tell)
 
     def remove_belief(self, *literals: str) -> None:
-        """Take the agent's own notes (or what the named source told) away; the first match of each.
+        """Remove the agent's own notes (or those of the named source), the first match of each.
 
         Raises:
-            AslError: it is no literal.
+            AslError: one is not a literal.
         """
         terms = [literal(each) for each in literals]
 
@@ -59,7 +59,7 @@ class OpenMind:
         self._do(untell)
 
     def replace_belief(self, written: str) -> None:
-        """Put a belief in the place of the agent's own note with the same functor, as ``-+b`` does.
+        """Replace the agent's own note with the same functor, as ``-+b`` does.
 
         Raises:
             AslError: it is not a literal.
@@ -75,7 +75,7 @@ class OpenMind:
         self._do(replace)
 
     def post_goal(self, written: str) -> None:
-        """Give the agent a goal, with an intention of its own.
+        """Add a goal, with an intention of its own.
 
         Raises:
             AslError: it is not a literal.
@@ -84,7 +84,7 @@ class OpenMind:
         self._do(lambda: self.mind.post_goal(goal))
 
     def drop_goal(self, written: str) -> bool:
-        """Drop the intentions and events for a goal, as ``.drop_desire`` does; return whether there are any.
+        """Drop the intentions and events of a goal, as ``.drop_desire`` does. Return whether there were any.
 
         Raises:
             AslError: it is not a literal.
@@ -104,20 +104,20 @@ class OpenMind:
         mind.architecture.ready()
 
     def perceive(self, *literals: str) -> None:
-        """Let the agent perceive something from now on: beliefs with ``source(percept)``.
+        """Add percepts that last: beliefs with ``source(percept)``.
 
         Raises:
-            AslError: it is no literal.
-            ValueError: it has variables.
+            AslError: one is not a literal.
+            ValueError: one has variables.
         """
         self._perceive("add", literals)
 
     def perceive_no_more(self, *literals: str) -> None:
-        """End percepts that were given by `perceive`; written as they were."""
+        """Remove percepts that were added by `perceive`, written in the same way."""
         self._perceive("remove", literals)
 
     def signal(self, *literals: str) -> None:
-        """Let the agent notice something that does not last: an event, no belief."""
+        """Add percepts that do not last: events without beliefs."""
         self._perceive("signal", literals)
 
     def _perceive(self, kind: str, literals: Sequence[str]) -> None:
@@ -125,18 +125,18 @@ class OpenMind:
         for written in literals:
             term = literal(written)
             if not is_ground(term):
-                raise ValueError(f"a percept has no variables: {written}")
+                raise ValueError(f"a percept must be ground: {written}")
             annotations = annotation_set((*annotations_of(term), SOURCE_PERCEPT))
             percepts.append(Percept(kind, bare(term), annotations))
         self.mind.perceive(percepts)
 
-    # ---- asking
+    # ---- queries
 
     def answers(self, formula: str) -> list[dict[str, Any]]:
-        """All answers of a formula (``battery(L) & L < 20``): values by the names of its variables, as plain values.
+        """Return all answers of a formula (``battery(L) & L < 20``): plain values by variable name.
 
         Raises:
-            AslError: it is no formula.
+            AslError: it is not a formula.
         """
         mind = self.mind
         term, names = question(formula)
@@ -147,10 +147,10 @@ class OpenMind:
             undo(mind.trail, mark)
 
     def ask(self, formula: str) -> dict[str, Any] | None:
-        """The first answer of a formula; None when it does not hold.
+        """Return the first answer of a formula, or None if it does not hold.
 
         Raises:
-            AslError: it is no formula.
+            AslError: it is not a formula.
         """
         mind = self.mind
         term, names = question(formula)
@@ -161,22 +161,22 @@ class OpenMind:
             undo(mind.trail, mark)
 
     def believes(self, formula: str) -> bool:
-        """Whether a formula holds."""
+        """Return whether a formula holds."""
         return self.ask(formula) is not None
 
     @property
     def beliefs(self) -> list[str]:
-        """All beliefs with their annotations, as text."""
+        """Return all beliefs with their annotations, as text."""
         return [text(each) for each in self.mind.beliefs.literals()]
 
     @property
     def goals(self) -> list[str]:
-        """All goals that it pursues or is about to, as text without annotations."""
+        """Return all goals that it pursues or is about to pursue, as text without annotations."""
         return [text(bare(goal)) for goal, _ in goals.desires(self.mind)]
 
     @property
     def intentions(self) -> list[list[str]]:
-        """The goals of each intention, the one that it began with first, as text without annotations."""
+        """Return the goals of each intention, the first one first, as text without annotations."""
         stacks = [
             [text(bare(goal)) for goal in reversed(goals.goal_literals(intention))]
             for intention in self.mind.alive.values()
@@ -185,16 +185,16 @@ class OpenMind:
 
 
 def literal(written: str) -> Term:
-    """The term of a literal in a text."""
+    """Parse a literal."""
     return lower_value(parse_literal(written))
 
 
 def question(formula: str) -> tuple[Term, Names]:
-    """The term of a formula in a text, and its variables by name."""
+    """Parse a formula. Return its term and its variables by name."""
     names = Names()
     return lower_value(parse_formula(formula), names.__getitem__), names
 
 
 def values_of(names: Names) -> dict[str, Any]:
-    """The values that variables have now, by name."""
+    """Return the current values of variables, by name."""
     return {name: to_value(resolve(value)) for name, value in names.items() if name[0] != "_"}

@@ -1,4 +1,4 @@
-"""How a project is run: what the command line or a Python program decides."""
+"""Run options, from the command line or a Python program."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -18,23 +18,23 @@ class RunOptions(GraphAddress):
     """How to run a project, and in which ROS graph: the attributes of `GraphAddress`, and these.
 
     Attributes:
-        fast: on the virtual clock, as fast as the machine can; else in real time.
-        seed: of all random numbers, the world's too; None for other numbers in each run.
-        world: world file, or name of a world of JaCaROS, in place of the project's own.
-        faults: fault file: what goes wrong in the embedded world, and when.
-        keep_ground_truth: keep in memory all that happens in the embedded world, not only the last minutes.
-        show_world: make the world at the start, even when nobody asks for a robot yet.
-        until_idle: end when no agent has anything to do and no operation is under way.
-        fail_on_lost_goal: the exit code is 1 instead of 0 if a goal failed and no plan took over.
-        seconds: end after so many seconds of the run's clock.
-        ros_clock: time is that of the graph's ``/clock``, as a simulator publishes it.
-        rosout: write what agents print, and logs, to the graph's ``/rosout``; None: on real graphs.
-        mappings: mapping files whose artifacts are made at the start.
-        guard: have a process of its own stop the robot when this one no longer can.
-        restricted: agents take no plans from others (``tellHow``), read and write no files, and make no Python objects; see
-            docs/explanation/trust.md.
-        explain: keep the history of the run from its start on, for `Mas.explain` and ``.why``.
-        diagnostics: publish the state of agents and connection on ``/diagnostics``; None: on real graphs.
+        fast: whether to use the virtual clock, as fast as possible, instead of real time.
+        seed: seed of all random numbers, including the world's. None for different numbers in each run.
+        world: world file, or name of a world of JaCaROS, instead of the project's own.
+        faults: fault file: faults in the embedded world, and their times.
+        keep_ground_truth: keep everything that happens in the embedded world in memory, not only the last minutes.
+        show_world: create the world at the start, even if no artifact needs it yet.
+        until_idle: end when no agent has anything to do and no operation is running.
+        fail_on_lost_goal: return exit code 1 instead of 0 if a goal failed without a plan for its failure.
+        seconds: end after this time on the run's clock.
+        ros_clock: follow ``/clock`` of the graph, as a simulator publishes it.
+        rosout: publish output of agents and logs on ``/rosout``. None: on real graphs only.
+        mappings: mapping files whose artifacts are created at the start.
+        guard: let a separate process stop the robot when this one cannot.
+        restricted: agents accept no plans from others (``tellHow``), read and write no files, and create no Python objects;
+            see docs/explanation/trust.md.
+        explain: keep the history of the run from its start, for `Mas.explain` and ``.why``.
+        diagnostics: publish the state of agents and connection on ``/diagnostics``. None: on real graphs only.
     """
 
     fast: bool = False
@@ -57,45 +57,45 @@ class RunOptions(GraphAddress):
 
     @property
     def real_graph(self) -> bool:
-        """Whether the graph is one outside of the process."""
+        """Whether the graph is outside of the process."""
         return self.ros != "memory"
 
     @property
     def wants_rosout(self) -> bool:
-        """Whether lines go to ``/rosout``."""
+        """Whether to publish on ``/rosout``."""
         return self.real_graph if self.rosout is None else self.rosout
 
     @property
     def wants_diagnostics(self) -> bool:
-        """Whether ``/diagnostics`` is published."""
+        """Whether to publish on ``/diagnostics``."""
         return self.real_graph if self.diagnostics is None else self.diagnostics
 
     def check(self) -> None:
-        """Refuse what cannot go together.
+        """Check for options that exclude each other.
 
         Raises:
-            UsageError: with what to do instead.
+            UsageError: some do. The text says what to do instead.
         """
         middleware(self.ros)
         if self.fast and self.ros != "memory":
             raise UsageError(
-                f"the virtual clock (--clock fast) cannot run with a real ROS graph (--ros {self.ros}): its "
-                "nodes live in real time; use --clock real"
+                f"--clock fast excludes a real ROS graph (--ros {self.ros}), whose nodes run in real time; use "
+                "--clock real"
             )
         if self.ros_clock and not self.real_graph:
             raise UsageError(
-                "--clock ros follows the /clock of a real ROS graph (--ros ros1 or ros2); in the graph inside the "
-                "process time is virtual with --clock fast"
+                "--clock ros needs a real ROS graph (--ros ros1 or ros2), whose /clock it follows; for the in-process "
+                "graph, use --clock fast"
             )
         if self.guard and not self.real_graph:
             raise UsageError(
-                "--guard needs a real ROS graph (--ros ros1, ros2 or rosbridge): in the graph inside the process, agents "
-                "and robot end together"
+                "--guard needs a real ROS graph (--ros ros1, ros2 or rosbridge): in the in-process graph, agents and "
+                "robot end together"
             )
         if self.real_graph or self._names_the_graph():
-            GraphAddress.check(self)  # with slots, super() knows an older class
+            GraphAddress.check(self)  # with slots, super() refers to an older class
         if self.seconds is not None and self.seconds < 0:
-            raise UsageError("--for must be a non-negative number of seconds")
+            raise UsageError("expected a non-negative number of seconds as --for")
 
     def _names_the_graph(self) -> bool:
         options = (self.node_name, *(self._given(kind) for kind in MIDDLEWARES.values()))

@@ -18,7 +18,7 @@ from jacaros.mas.python_code import PythonCode
 from jacaros.text_files import file_text, is_file
 
 NEVER_SELECTED = "plan-never-selected"
-"""What is told of plans behind those that are always taken first: agents of a class of their own may take them."""
+"""Code of the warning about unreachable plans. Agents of user-defined classes may select them."""
 
 _LIBRARY = "$jacaros/"
 TEST_LIBRARY = (
@@ -28,13 +28,13 @@ TEST_LIBRARY = (
     "test_performance.asl",
     "tester_agent.asl",
 )
-"""Files that programs of Jason include for their tests; ours stand for them."""
+"""Files that Jason programs include for tests. Those of JaCaROS replace them."""
 _OF_JASON = re.compile(r"\$jason(Jar)?/test/jason/inc/|\btest_manager\b|\bmock_owner\b")
-"""What is found in Jason's own copies of them, which projects have beside their tests."""
+"""Text that identifies Jason's own copies of them, which projects have beside their tests."""
 
 
 def asks_why(program: nodes.Program) -> bool:
-    """Whether the text of a program mentions ``.why``: then the history of the run is kept from its start on."""
+    """Return whether the text of a program mentions ``.why``. Then the run keeps its history from the start."""
     clauses = (*program.beliefs, *program.plans)
     files = {id(each.span.file): each.span.file for each in clauses if each.span is not None}
     return any(".why(" in file.text for file in files.values())
@@ -44,13 +44,13 @@ class Programs:
     """Reads agent programs.
 
     Args:
-        folders: where programs and included files are looked for, in order.
+        folders: searched for programs and included files, in order.
         warn: takes the text of a warning about a program.
         code: the project's Python code, which adds internal actions and functions.
-        prepare: gives what is run of a program that was read, and may add actions to the code; all of it unless given.
+        prepare: returns the part of a program to run, and may add actions to the code. Default: all of it.
 
     Attributes:
-        folders: where they are looked for.
+        folders: the folders that are searched.
     """
 
     def __init__(
@@ -67,10 +67,10 @@ class Programs:
         self._read: dict[Path, nodes.Program] = {}
 
     def load_all(self, agents: Sequence[AgentSpec]) -> list[nodes.Program]:
-        """The programs of all agents, with the beliefs and goals that the project adds.
+        """Return the programs of all agents, with the beliefs and goals that the project adds.
 
         Raises:
-            AslError: with the errors of all programs.
+            AslError: the errors of all programs.
         """
         wrong: list[Diagnostic] = []
         programs = []
@@ -84,10 +84,10 @@ class Programs:
         return programs
 
     def read_again(self, agents: Sequence[AgentSpec]) -> list[nodes.Program]:
-        """The programs of agents, as `load_all`, from their files as they are now.
+        """Return the programs of agents, as `load_all`, from the current files.
 
         Raises:
-            AslError: with the errors of all programs; agents made later run what was read before.
+            AslError: the errors of all programs. Agents created later run what was read before.
         """
         before, self._read = self._read, {}
         try:
@@ -97,14 +97,14 @@ class Programs:
             raise
 
     def load(self, agent: AgentSpec, written: str | None = None) -> nodes.Program:
-        """The program of one agent; of one that is written in Python an empty one.
+        """Return the program of one agent; for a Python agent, an empty one.
 
         Args:
             agent: the agent.
-            written: the text of its program, in place of that of its file.
+            written: the text of its program, instead of its file.
 
         Raises:
-            AslError: the program, or what the project adds, is wrong.
+            AslError: the program, or what the project adds, has errors.
         """
         if agent.is_python and written is None:
             return nodes.Program()
@@ -114,7 +114,7 @@ class Programs:
         else:
             program = self._checked(agent.source_path, written, chooses)
         place = f"the declaration of {agent.name}"
-        # As in Jason: the project's beliefs are believed first, and its goals come first.
+        # As in Jason, the project's beliefs and goals come first.
         beliefs = parse_literals(agent.beliefs, place) if agent.beliefs.strip() else ()
         goals = parse_literals(agent.goals, place) if agent.goals.strip() else ()
         if not beliefs and not goals:
@@ -122,14 +122,14 @@ class Programs:
         return replace(program, beliefs=(*program.beliefs, *beliefs), goals=(*goals, *program.goals))
 
     def read(self, path: Path, chooses: bool = False) -> nodes.Program:
-        """The program in a file.
+        """Return the program in a file.
 
         Args:
-            path: of the file.
-            chooses: its agent is of a class that may choose among plans in its own way.
+            path: path of the file.
+            chooses: whether its agent is of a class that may select plans in its own way.
 
         Raises:
-            AslError: it is wrong, or not there.
+            AslError: it has errors, or does not exist.
         """
         program = self._read.get(path)
         if program is None:
@@ -147,7 +147,7 @@ class Programs:
         return program
 
     def _parse(self, path: Path, written: str) -> tuple[nodes.Program, list[Diagnostic]]:
-        """The program in a text; the project's modules that it names are imported, too."""
+        """Parse a program, and import the project's modules that it names."""
         try:
             program, warnings = load_program(
                 path.as_posix(), written, self.include, self._code.functions, self._code.actions
@@ -160,10 +160,10 @@ class Programs:
         return program, warnings
 
     def find(self, name: str) -> Path:
-        """The file of a program named by another program.
+        """Return the file of a program named by another program.
 
         Raises:
-            FileNotFoundError: there is none.
+            FileNotFoundError: it does not exist.
         """
         candidates = [name] if name.endswith(".asl") else [f"{name}.asl", name]
         for folder in self.folders:
@@ -173,7 +173,7 @@ class Programs:
         raise FileNotFoundError(name)
 
     def list_files(self, folder: str, base: Path) -> list[str]:
-        """The files below a folder, as paths that begin with *folder*, sorted; *base* is the project's folder.
+        """Return the files below a folder, sorted, as paths that begin with *folder*. *base* is the project's folder.
 
         Raises:
             OSError: the folder cannot be read.
@@ -186,19 +186,19 @@ class Programs:
         )
 
     def include(self, path: str, including: str) -> tuple[str, str]:
-        """Name and text of an included file: beside the including one, in one of the folders, or (``$jacaros/…``)
-        in the library that comes with the package.  Jason's files for tests are in that library too, whatever folder
+        """Return name and text of an included file: beside the including one, in one of the folders, or
+        (``$jacaros/…``) in the library of JaCaROS. The library also replaces Jason's files for tests, whatever folder
         is written before their name.
 
         Raises:
-            FileNotFoundError: there is none.
+            FileNotFoundError: it does not exist.
         """
         if path.startswith(_LIBRARY):
             return _of_library(path.removeprefix(_LIBRARY))
         name = path.rpartition("/")[2]
         beside = Path(including).parent / path
         try:
-            # A program that is no file has nothing beside it.
+            # A program that is not in a file has no files beside it.
             file = beside if is_file(beside) and not including.startswith("<") else self.find(path)
         except FileNotFoundError:
             if name in TEST_LIBRARY:
@@ -211,10 +211,9 @@ class Programs:
 
 
 def _concerns_author(warning: Diagnostic, path: Path) -> bool:
-    """Whether a warning is for whoever wrote the program at *path*.
+    """Return whether a warning concerns the author of the program at *path*.
 
-    A library that comes with the package is of no concern; and a plan that stands before an include is often meant to
-    take the place of one in it, as in tests.
+    A library of JaCaROS does not. And a plan before an include often replaces one in it, as in tests.
     """
     if warning.span is None:
         return True
@@ -223,7 +222,7 @@ def _concerns_author(warning: Diagnostic, path: Path) -> bool:
 
 
 def library_file(name: str) -> Path:
-    """The path of a program that comes with the package; it need not be there."""
+    """Return the path of a program in the library of JaCaROS. It need not exist."""
     return Path(asl.__file__).parent / "library" / name
 
 
@@ -232,10 +231,10 @@ def _of_library(name: str) -> tuple[str, str]:
 
 
 def text_of(path: Path) -> str:
-    """The text of a program.
+    """Return the text of a program.
 
     Raises:
-        AslError: it is not there, or no text.
+        AslError: it does not exist, or is not text.
     """
     try:
         return file_text(path)

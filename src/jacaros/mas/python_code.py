@@ -1,4 +1,4 @@
-"""The Python code of a project, read when a program or the project file first names it."""
+"""The Python code of a project, imported when a program or the project file first names it."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -16,24 +16,23 @@ if TYPE_CHECKING:
     from jacaros.extension.declaring import Additions, Limits
 
 _ASSERTIONS: Final = "jacaros.testing.assertions"
-"""The module with the internal actions behind the assertion goals."""
+"""The module with the internal actions for assertion goals."""
 
 
 class PythonCode:
     """What a project's Python modules add to its programs.
 
-    The names in a program say what is needed: when the parser meets ``my.norm(X)``, the module ``my`` is imported
-    if the project has one.  A project without Python code pays for none of this.
+    The names in a program decide what is imported: when the parser meets ``my.norm(X)``, the module ``my`` is imported
+    if the project has one. A project without Python code imports nothing.
 
     Args:
         modules: the project's modules.
-        restricted: internal actions that read or write files, bring programs in or make Python objects fail.
+        restricted: whether internal actions that read or write files, add programs or create Python objects fail.
 
     Attributes:
-        actions: the internal actions of the language and of the modules read so far; shared by all agents.
-        functions: arithmetic functions by name, with their least and greatest numbers of arguments; to be handed
-            to the parser.
-        evaluators: what computes them.
+        actions: internal actions of the language and of the imported modules, shared by all agents.
+        functions: arithmetic functions by name, with their least and greatest numbers of arguments, for the parser.
+        evaluators: the implementations of these functions.
     """
 
     def __init__(self, modules: ProjectModules, restricted: bool = False) -> None:
@@ -49,7 +48,7 @@ class PythonCode:
         self.evaluators: dict[str, Callable[..., Term]] = {}
 
     def name_met(self, name: str) -> None:
-        """A program uses a name with a dot: import the module that it names, if there is one."""
+        """Import the module that a name with a dot in a program refers to, if it exists."""
         if name.startswith("cartago."):
             self._add_python_objects()
         elif name.startswith("jacaros."):
@@ -64,7 +63,7 @@ class PythonCode:
             self._met[module] = None
 
     def _add_python_objects(self) -> None:
-        # Imported here: most programs use no Python objects.
+        # Imported on demand: most programs use no Python objects.
         from jacaros.mas.python_objects import PACKAGE, actions
 
         if not any(known.startswith(PACKAGE) for known in self.actions):
@@ -74,12 +73,12 @@ class PythonCode:
             self.actions.update(found)
 
     def _add_assertions(self) -> None:
-        # By name, as a project's own modules: a run needs nothing of the tests unless a program does.
+        # By name, like a project's own modules: a run imports nothing of the tests unless a program uses it.
         for name, action in import_module(_ASSERTIONS).UNTESTED.items():
             self.actions.setdefault(name, action)
 
     def _read_module(self, module: str) -> None:
-        # Imported here: most projects have no Python code.
+        # Imported on demand: most projects have no Python code.
         from jacaros.extension.declaring import Additions
 
         if self._additions is None:
@@ -93,7 +92,7 @@ class PythonCode:
         self.evaluators.update(self._additions.functions)
 
     def is_unseen(self, name: str) -> bool:
-        """Return whether a name may be there when the project's files are run, which this check does not do."""
+        """Return whether a name may exist once the project's files are run, which this check does not do."""
         if self._additions is None or name in self.actions:
             return False
         for unseen, file in self._additions.unseen.items():
@@ -104,29 +103,30 @@ class PythonCode:
         return False
 
     def take_errors(self) -> list[Diagnostic]:
-        """What is wrong with the modules that programs named since the last call."""
+        """Return the errors in the modules that programs have named since the last call."""
         wrong = [error for name in self._met if (error := self._read.get(name)) is not None]
         self._met.clear()
-        return [Diagnostic("error", str(error), None, "no program that uses it can run") for error in wrong]
+        help = "correct the module: programs that use it cannot run"
+        return [Diagnostic("error", str(error), None, help) for error in wrong]
 
     def help(self, name: str) -> str | None:
-        """What to do about an internal action that is not there."""
+        """Return the help for an unknown internal action, or None."""
         known = self._additions.help(name) if self._additions is not None else None
         if known is not None or name.startswith("."):
             return known
         module, _, function = name.rpartition(".")
         file = f"{module.replace('.', '/')}.py"
         if self.modules.place(module.partition(".")[0]) is not None:
-            return f"{file} has no such function with @internal_action"
-        return f"write it in Python: a function {function} with @internal_action in {file} beside the project"
+            return f"add a function `{function}` with @internal_action to {file}"
+        return f"write a function `{function}` with @internal_action in {file} beside the project file"
 
     def serve(self, agent: Circumstance) -> None:
-        """Let an agent evaluate the functions of the project, also in what it reads at run time."""
+        """Let an agent evaluate the functions of the project, also in run-time input."""
         agent.functions.project = self
 
 
 def _refused(actions: Mapping[str, InternalAction]) -> dict[str, InternalAction]:
-    """The internal actions that a restricted run refuses, each in a form that fails."""
+    """Return the internal actions that a restricted run forbids, in a form that fails."""
     return {
         name: _failing(action, action.restricted)
         for name, action in actions.items()
@@ -144,7 +144,7 @@ def _failing(action: InternalAction, fewest: int) -> InternalAction:
 
 
 class _Functions(dict[str, Any]):
-    """The arithmetic functions of a project; asking for one imports the module that it names."""
+    """The arithmetic functions of a project. Looking one up imports the module that it names."""
 
     def __init__(self, code: PythonCode) -> None:
         super().__init__()

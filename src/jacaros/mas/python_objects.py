@@ -1,7 +1,7 @@
-"""The internal actions ``cartago.*``: agents make Python objects, call their methods, and see where they are.
+"""The internal actions ``cartago.*``: agents create Python objects, call their methods, and list their workspaces.
 
-In CArtAgO they are for Java objects.  Values are converted as for artifacts (`jacaros.body.values`); what is no value
-is an opaque reference.  Whatever goes wrong fails the step with ``error(internal_action)``.
+In CArtAgO they are for Java objects. Values are converted as for artifacts (`jacaros.body.values`). Anything else is an
+opaque reference. All errors fail the step with ``error(internal_action)``.
 """
 
 import builtins
@@ -22,11 +22,11 @@ from jacaros.terms.text import text
 from jacaros.terms.values import Reference, Term, bare, is_list, make_list
 
 PACKAGE = "cartago."
-"""What the names of all of them begin with."""
+"""Common prefix of their names."""
 
 
 def actions(modules: ProjectModules) -> Registry:
-    """The internal actions for a project, whose classes are found beside it."""
+    """Return the internal actions for a project, whose classes are found beside it."""
     classes = _Classes(modules)
     declared = (
         InternalAction(f"{PACKAGE}new_obj", classes.new_object, arity=3, restricted=0),
@@ -39,10 +39,10 @@ def actions(modules: ProjectModules) -> Registry:
 
 
 class _Classes:
-    """Makes objects of classes, and calls methods of objects and classes.
+    """Creates objects of classes, and calls methods of objects and classes.
 
     Args:
-        modules: of the project.
+        modules: modules of the project.
     """
 
     def __init__(self, modules: ProjectModules) -> None:
@@ -66,7 +66,7 @@ class _Classes:
         try:
             member = getattr(owner, name)
         except AttributeError:
-            raise ActionError(f"{shown} has no method {name}") from None
+            raise ActionError(f"unknown method `{name}` of {shown}") from None
         given = [_value(each) for each in call[1:]] if isinstance(call, tuple) else []
         value = member if not given and not callable(member) else _call(f"{name} of {shown}", member, given)
         if not result or value is None:
@@ -83,10 +83,10 @@ class _Classes:
         return self._find(name), f"class {name}"
 
     def _find(self, name: str) -> Any:
-        """The class (or module, which has functions) of that name.
+        """Return the class (or module, which has functions) with this name.
 
-        Beside the project, ``my.shapes.Square`` is in ``my/shapes.py``, and ``Square`` in ``artifacts.py``; else it is
-        looked for among the built-in names of Python and the installed modules.
+        Beside the project, ``my.shapes.Square`` is in ``my/shapes.py``, and ``Square`` in ``artifacts.py``. Otherwise
+        it is searched among Python's built-in names and the installed modules.
         """
         path, _, last = name.rpartition(".")
         try:
@@ -99,11 +99,11 @@ class _Classes:
             raise
         except FAULTS as error:
             help = "; only Python classes are supported" if name.startswith(("java.", "javax.")) else ""
-            raise ActionError(f"unknown class {name}: {_said(error)}{help}") from error
+            raise ActionError(f"unknown class `{name}`: {_error_text(error)}{help}") from error
 
 
 def _installed(name: str) -> Any:
-    """What a name means: a built-in, or the longest beginning that is a module and attributes of it."""
+    """Return what a name means: a built-in, or the longest prefix that is a module, and its attributes."""
     if hasattr(builtins, name):
         return getattr(builtins, name)
     parts = name.split(".")
@@ -123,16 +123,16 @@ def _installed(name: str) -> Any:
 
 def _call(what: str, function: Any, given: list[Any]) -> Any:
     if not callable(function):
-        raise ActionError(f"{what} cannot be called: it is {type(function).__name__}")
+        raise ActionError(f"expected a function as {what}, found {type(function).__name__}")
     try:
         return function(*given)
     except InternalError:
         raise
     except FAULTS as error:
-        raise ActionError(f"{what}: {_said(error)}") from error
+        raise ActionError(f"{what}: {_error_text(error)}") from error
 
 
-def _said(error: BaseException) -> str:
+def _error_text(error: BaseException) -> str:
     return f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
 
 
@@ -149,12 +149,14 @@ def _value(term: Term) -> Any:
 
 def _bound(value: Any) -> Any:
     if isinstance(value, Out):
-        raise ActionError("an argument is an unbound variable; only the result may be one")
+        raise ActionError(
+            "expected ground arguments, found an unbound variable; only the result may be unbound"
+        )
     return value
 
 
 def _new_array(ctx: Context, type_name: Term, items: Term, reference: Term) -> bool:
-    """``cartago.new_array("int[]", List, -Reference)``: a Python list; the type says what its items are."""
+    """``cartago.new_array("int[]", List, -Reference)``: a Python list, whose item type the type declares."""
     name = name_of(bare(type_name))
     if name is None or not name.endswith("[]"):
         raise ActionError(f'expected a type such as "int[]", found {text(type_name)}')
@@ -164,7 +166,7 @@ def _new_array(ctx: Context, type_name: Term, items: Term, reference: Term) -> b
         if kinds is not None and (
             not isinstance(value, kinds) or (isinstance(value, bool) and bool not in kinds)
         ):
-            raise ActionError(f"{value!r} cannot be an item of {name}")
+            raise ActionError(f"expected items of {name}, found {value!r}")
     if kinds is not None and kinds[0] is float:
         values = [float(value) for value in values]
     return ctx.unify(reference, Reference(values))
@@ -177,11 +179,11 @@ _ITEMS: dict[str, tuple[type, ...]] = {
     **dict.fromkeys(("boolean", "Boolean"), (bool,)),
     **dict.fromkeys(("char", "String"), (str,)),
 }
-"""The Python types of items, by the Java names of their types; items of other types may be anything."""
+"""Python types of items, by Java type name. Items of other types may be anything."""
 
 
 def _array_to_list(ctx: Context, reference: Term, result: Term) -> bool:
-    """``cartago.array_to_list(Reference, -List)``: the items of anything that can be iterated over."""
+    """``cartago.array_to_list(Reference, -List)``: the items of any iterable."""
     target = bare(reference)
     value = plain(target.value) if target.__class__ is Reference else None
     if not isinstance(value, Iterable) or isinstance(value, str):
@@ -189,12 +191,12 @@ def _array_to_list(ctx: Context, reference: Term, result: Term) -> bool:
     try:
         items = list(value)
     except FAULTS as error:
-        raise ActionError(f"the items of {text(reference)}: {_said(error)}") from error
+        raise ActionError(f"the items of {text(reference)}: {_error_text(error)}") from error
     return ctx.unify(result, make_list([to_term(item, UNKEPT) for item in items]))
 
 
 def _current_workspaces(ctx: Context, result: Term) -> bool:
-    """``cartago.current_wsps(-Ids)``: the workspaces that the agent has joined, in the order of joining."""
+    """``cartago.current_wsps(-Ids)``: the joined workspaces, in the order of joining."""
     body = getattr(ctx.architecture, "situated", lambda: None)()
     if not isinstance(body, AgentBody):
         raise ActionError("the project has no environment")

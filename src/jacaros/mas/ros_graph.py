@@ -1,7 +1,7 @@
-"""The ROS graph of a run, and the embedded world on it.
+"""The ROS graph of a run, and the embedded world in it.
 
-The graph inside the process, and the world with it, come into being when the first artifact asks for them:
-a program that talks to no robot pays for none.  A real graph is joined at the start.
+The in-process graph, and the world with it, are created when the first artifact uses them: a program without robots
+does not load them. A real graph is joined at the start.
 """
 
 from collections.abc import Callable, Coroutine
@@ -27,31 +27,31 @@ if TYPE_CHECKING:
     from jacaros.trace import Tracer
 
 DEFAULT_WORLD = "empty"
-"""The world of a project that names none: an open floor with one robot."""
+"""The world of a project that does not name one: an open floor with one robot."""
 
 
 NO_WORLD = "none"
-"""In place of the name of a world: nobody else is in the graph inside the process."""
+"""Instead of the name of a world: no other node is in the in-process graph."""
 
 _GROUND_TRUTH = 1000
-"""Points of a robot's path, and events, that are kept in memory unless all are asked for: some minutes of motion."""
+"""Number of points of a robot's path, and of events, that are kept by default: some minutes of motion."""
 
 
 class RosGraph:
     """Opens backend and world of a run.
 
     Args:
-        options: of the run.
-        clock: of the run.
-        name: of the agent system; its ROS node is called so.
-        world: the world that the project names, None for the default one.
-        log: takes a line for people.
-        hurry: called when messages of other processes have been delivered: agents need not wait for the next round of the
-            loop.
-        world_span: where the project names its world.
+        options: options of the run.
+        clock: clock of the run.
+        name: name of the agent system, which is also the name of its ROS node.
+        world: the world that the project names. None for the default one.
+        log: takes a line of the log.
+        hurry: called when messages of other processes have been delivered, so that agents need not wait for the next
+            round of the event loop.
+        world_span: location of the world's name in the project.
 
     Attributes:
-        world: the embedded world, None while there is none.
+        world: the embedded world, or None.
     """
 
     def __init__(
@@ -84,19 +84,19 @@ class RosGraph:
         self._world_watchers: tuple[Callable[[World], None], ...] = ()
 
     async def start(self) -> None:
-        """Join a real graph; make the world if it was asked for by name.
+        """Join a real graph, and create the world if it was requested by name.
 
-        On a real graph the world of the project is left out, and only one given for this run is made.
+        On a real graph, the world of the project is ignored. Only one given for this run is created.
 
         Raises:
-            BackendUnavailable: the library for the graph is missing; the text tells the help.
-            WorldError: the world file is wrong.
+            BackendUnavailable: the library for the graph is missing. The text has help.
+            WorldError: the world file is invalid.
             ProjectError: the project names a world that does not exist.
-            UsageError: there are faults, and no world.
+            UsageError: there are faults, but no world.
         """
         made = self._options.world is not None if self._options.ros != "memory" else self._source != NO_WORLD
         if self._options.faults is not None and not made:
-            raise UsageError("--faults needs an embedded world: give --world, too")
+            raise UsageError("--faults needs an embedded world; add --world")
         if self._options.ros != "memory":
             backend = self._open()
             self._backend = backend
@@ -109,7 +109,7 @@ class RosGraph:
 
                 self._time = GraphTime(backend, self._log_ros)
                 self._time.watch()
-            # Only on demand: a project that names a world for practice also runs on the real robot.
+            # Only on request: a project that names a world for practice also runs on the real robot.
             if self._options.world is not None:
                 self._start_world(backend)
             elif self._options.ros == "ros2":
@@ -121,7 +121,7 @@ class RosGraph:
         """Start the guard, if the options ask for one, and the heartbeat.
 
         Raises:
-            UsageError: it did not start.
+            UsageError: the guard did not start.
         """
         if self._options.guard:
             from jacaros.mas.guarding import RunGuard  # here: only for runs with a guard
@@ -131,7 +131,7 @@ class RosGraph:
             await self._guard.start()
 
     def backend(self) -> "Backend":
-        """The node of the agent system in the ROS graph."""
+        """Return the node of the agent system in the ROS graph."""
         if self._backend is None:
             self._backend = self._open()
             _finish_at_once(self._backend.start())
@@ -140,7 +140,7 @@ class RosGraph:
         return self._backend
 
     def companion(self, name: str) -> Any:
-        """One more node in the graph inside the process, such as that of the world or of a test; it goes with the run."""
+        """Return another node in the in-process graph, such as that of the world or of a test. It ends with the run."""
         from jacaros.ros.open import open_backend
 
         beside: Any = self.backend()
@@ -151,16 +151,16 @@ class RosGraph:
 
     @property
     def node(self) -> "SimNode | None":
-        """The node of the embedded world; None without one, or while nobody has asked for the graph."""
+        """The node of the embedded world; None without one, or before the graph is opened."""
         return self._node
 
     @property
     def joined(self) -> "Backend | None":
-        """Our node, None while nobody has asked for the graph."""
+        """The node of the run; None before the graph is opened."""
         return self._backend
 
     def watch_world(self, watcher: "Callable[[World], None]") -> Callable[[], None]:
-        """Call *watcher* with the embedded world as soon as there is one, now or later; gives what ends that."""
+        """Call *watcher* with the embedded world, now or when it is created. Return a function that ends this."""
         if self.world is not None:
             watcher(self.world)
             return lambda: None
@@ -177,7 +177,7 @@ class RosGraph:
             self._node.time.catch_up()
 
     def watch_parameters(self) -> None:
-        """Everything is made: look whether the parameters that were given are declared."""
+        """Check whether the given parameters are declared. Called when everything has been created."""
         if not self._options.parameters:
             return
         from jacaros.mas.graph_warnings import UndeclaredParameters  # here: few runs are given any
@@ -188,13 +188,13 @@ class RosGraph:
         self._undeclared = UndeclaredParameters(self._options.parameters, given, self._clock, self._log_ros)
 
     def ending(self) -> None:
-        """Tell what is to be told at the latest when the run ends."""
+        """Log pending warnings before the run ends."""
         if self._undeclared is not None:
             self._undeclared.tell()
 
     async def close(self) -> None:
         """Stop the robots, then the world, and leave the graph."""
-        async with AsyncExitStack() as steps:  # the last one that is written goes first
+        async with AsyncExitStack() as steps:  # runs in reverse order
             if self._guard is not None:
                 steps.push_async_callback(self._guard.close)
             for companion in self._companions:
@@ -218,7 +218,7 @@ class RosGraph:
         return backend
 
     def trace(self, tracer: "Tracer | None") -> None:
-        """Have *tracer* told of each message that reaches our node, from now on."""
+        """Pass each message that reaches our node to *tracer*, from now on."""
         self._tracer = tracer
         if self._backend is not None:
             self._backend.tracer = tracer
@@ -262,16 +262,16 @@ class RosGraph:
 
 
 def _finish_at_once(coroutine: Coroutine[Any, Any, None]) -> None:
-    """Run a coroutine that waits for nothing: an artifact that asks for the graph cannot wait."""
+    """Run a coroutine that does not wait: an artifact that opens the graph cannot wait."""
     try:
         coroutine.send(None)
     except StopIteration:
         return
     coroutine.close()
-    raise RuntimeError("the ROS graph inside the process must start without waiting")
+    raise RuntimeError("the in-process ROS graph must start without waiting")
 
 
 def node_name(name: str) -> str:
-    """A ROS name from that of the agent system."""
+    """Return a ROS name for the name of the agent system."""
     plain = "".join(c if c.isascii() and (c.isalnum() or c == "_") else "_" for c in name)
     return plain if plain[:1].isalpha() else f"mas_{plain}"

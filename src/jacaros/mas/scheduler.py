@@ -1,13 +1,13 @@
-"""Who reasons next: the agents that have something to do take turns on the loop.
+"""The scheduler: ready agents take turns on the event loop.
 
-Nothing runs, and nothing is asked, while no agent is ready: an idle system costs nothing.
+While no agent is ready, nothing runs and nothing is polled, so an idle system uses no CPU.
 
-Between two rounds of turns the loop polls its sockets and calls what is due.  In real time a round is bounded in time, so a
-sensor's message is read within some two milliseconds however busy the agents are.  On the virtual clock it is bounded in
-cycles: the machine's speed must not change the order in which things happen.
+Between two rounds of turns, the loop polls its sockets and runs due callbacks. In real time, the duration of a round is
+limited, so a sensor message is read within about two milliseconds however busy the agents are. On the virtual clock,
+the number of cycles is limited instead: the speed of the machine must not change the order of events.
 
-A scheduler can be paused, also in the middle of a turn.  The round continues then where it was interrupted: with the same
-agent, and with the cycles that were left to it.
+A scheduler can be paused, also in the middle of a turn. The round then continues where it was interrupted: with the
+same agent, and with its remaining cycles.
 """
 
 import asyncio
@@ -19,36 +19,36 @@ from jacaros.clock import Clock, real_time, run_context
 
 
 class Runnable(Protocol):
-    """An agent as the scheduler sees it."""
+    """An agent, as the scheduler sees it."""
 
     queued: bool
-    """True while it stands in the queue; kept by the scheduler."""
+    """Whether it is in the queue. Set by the scheduler."""
 
     def run(self, fuel: int) -> bool:
-        """Make up to *fuel* reasoning cycles; True when there is more to do."""
+        """Run up to *fuel* reasoning cycles. Return whether there is more to do."""
 
 
 class Pauses(Protocol):
     """What may pause a scheduler in the middle of a turn."""
 
     def cycles(self, agent: Runnable) -> int:
-        """The reasoning cycles that an agent has made."""
+        """Return the number of reasoning cycles of an agent so far."""
 
     def is_held(self, agent: Runnable) -> bool:
-        """Whether an agent is held before it has used its turn up."""
+        """Return whether an agent is held before the end of its turn."""
 
     def turn_ended(self, agent: Runnable) -> None:
-        """Take note that an agent has used its turn up."""
+        """Note that an agent has used up its turn."""
 
 
 class _Interrupted(NamedTuple):
     """A round that was paused.
 
     Attributes:
-        agent: whose turn it was; None between two turns.
+        agent: the agent whose turn it was; None between two turns.
         queued: whether it waits for another turn after this one.
-        fuel: cycles that are left of the turn.
-        cycles: cycles of the turns before in this round.
+        fuel: remaining cycles of the turn.
+        cycles: cycles of the earlier turns in this round.
     """
 
     agent: Runnable | None
@@ -58,28 +58,28 @@ class _Interrupted(NamedTuple):
 
 
 class Scheduler:
-    """Gives ready agents their turns, first come first served.
+    """Gives ready agents their turns, first come, first served.
 
     Args:
-        clock: told of the cycles, so that a virtual one moves although nobody gets idle.
+        clock: notified of the cycles, so that a virtual clock advances while agents are busy.
         on_idle: called whenever the last ready agent has run out of things to do.
-        on_error: told of what escapes from an agent: a defect of JaCaROS itself.
-        idle_work: in real time, does a little of what can wait whenever no agent is ready; False when nothing is left.
-        real_time: seconds of a steady clock, which bound a round of turns unless *clock* is virtual.
+        on_error: called with exceptions that escape from an agent: defects of JaCaROS itself.
+        idle_work: in real time, does a little deferred work while no agent is ready. Returns False when none is left.
+        real_time: seconds of a steady clock, which limit a round of turns unless *clock* is virtual.
 
     Attributes:
         paused: whether no agent has a turn.
-        pauses: what may pause in the middle of a turn; None when nothing does.
+        pauses: what may pause in the middle of a turn, or None.
     """
 
     QUANTUM = 50
-    """Reasoning cycles of one agent in one turn, at most: enough to make the change of agents cheap."""
+    """Maximum number of reasoning cycles of one agent in one turn: enough to make switching between agents cheap."""
     CYCLES_PER_ROUND = 1000
-    """On the virtual clock: cycles of all agents between two polls of timers, sockets and other callbacks of the loop."""
+    """On the virtual clock: cycles of all agents between two polls of timers, sockets and callbacks of the event loop."""
     SECONDS_PER_ROUND = 0.001
     """In real time: seconds between two polls, unless a single cycle takes longer."""
     PASSES = 4
-    """In real time: passes of the loop between two rounds, enough for a message on its way from socket to agent."""
+    """In real time: passes of the event loop between two rounds, enough for a message from a socket to reach its agent."""
 
     def __init__(
         self,
@@ -109,15 +109,15 @@ class Scheduler:
 
     @property
     def idle(self) -> bool:
-        """True when no agent is ready; not while paused: what agents have yet to do is not known."""
+        """Whether no agent is ready. False while paused, because it is unknown what agents have yet to do."""
         return not self._queue and not self.paused
 
     def pause(self) -> None:
-        """Give no agent another turn until `resume`; the turn under way goes on until the agent gives it back."""
+        """Give no agent another turn until `resume`. The current turn continues until the agent yields."""
         self.paused = True
 
     def resume(self) -> None:
-        """Continue with the turn that was interrupted, or with the next one."""
+        """Continue with the interrupted turn, or with the next one."""
         if not self.paused:
             return
         self.paused = False
@@ -131,7 +131,7 @@ class Scheduler:
             self._on_idle()
 
     def _continue_round(self) -> None:
-        """Finish the round that was interrupted, and do what follows a round."""
+        """Finish the interrupted round, and what follows a round."""
         if self.paused:
             return
         if self._due:  # the next round is scheduled already
@@ -140,7 +140,7 @@ class Scheduler:
             self._turns()
 
     def make_ready(self, agent: Runnable) -> None:
-        """Let *agent* have a turn soon; nothing happens when it already waits for one."""
+        """Give *agent* a turn soon. No effect if it already waits for one."""
         if agent.queued or self._stopped:
             return
         agent.queued = True
@@ -149,16 +149,16 @@ class Scheduler:
             self._call_soon()
 
     def hurry(self) -> None:
-        """Let the ready agents have their turns now and not in the next pass of the loop, unless one has its turn."""
+        """Give the ready agents their turns now instead of in the next pass of the loop, unless one has its turn."""
         if self._queue and not self._taking_turns and not self.paused:
             self._round()
 
     def poll_soon(self) -> None:
-        """In real time, end the round with the current turn: what an agent has begun is waiting for the loop."""
+        """In real time, end the round after the current turn, because the loop has work that an agent started."""
         self._poll_soon = not self._clock.virtual
 
     def stop(self) -> None:
-        """Let nobody have a turn any more."""
+        """Give no more turns."""
         self._stopped = True
         self._queue.clear()
         self._interrupted = None
@@ -189,7 +189,7 @@ class Scheduler:
                 self._work_idly()
 
     def _work_idly(self) -> None:
-        """Do a little of what can wait, and go on after the next poll, unless an agent has something to do by then."""
+        """Do a little deferred work, and continue after the next poll unless an agent is ready by then."""
         self._works_idly = False
         if self._due or self._stopped or self.paused:
             return
@@ -206,8 +206,8 @@ class Scheduler:
     def _call_after(self, passes: int) -> None:
         """Schedule the next round some passes of the loop later.
 
-        The loop polls its sockets, and puts their callbacks behind those that are scheduled already.  A message then makes
-        some hops, each in a pass of its own.  If a round came between them, each would wait for it.
+        The loop polls its sockets and queues their callbacks after those that are already scheduled. A message then
+        makes some hops, each in a pass of its own. If a round ran between them, each hop would wait for it.
         """
         self._due = True
         if passes:
@@ -217,7 +217,7 @@ class Scheduler:
             self._call_soon()
 
     def _round(self) -> None:
-        """Let the ready agents have their turns until it is time to poll."""
+        """Give the ready agents their turns until it is time to poll."""
         self._taking_turns = True
         self._poll_soon = False
         cycles = 0
@@ -231,7 +231,7 @@ class Scheduler:
             self._clock.busy(cycles)
 
     def _virtual_turns(self) -> int:
-        """Give turns until enough cycles were made; the cycles."""
+        """Give turns until the limit of cycles is reached. Return the number of cycles."""
         queue, quantum, pauses, cycles = self._queue, self.QUANTUM, self.pauses, 0
         if self._interrupted is not None:
             cycles = self._finish_turn(self._interrupted)
@@ -250,13 +250,13 @@ class Scheduler:
         return cycles
 
     def _counted_turn(self, pauses: Pauses, agent: Runnable, fuel: int, cycles: int) -> int:
-        """Give a turn that a pause may interrupt; the cycles of the round, this turn included when it is over."""
+        """Give a turn that a pause may interrupt. Return the cycles of the round, including this turn if it has ended."""
         before = pauses.cycles(agent)
         more = agent.run(fuel)
         if self.paused and pauses.is_held(agent):
             left = fuel - (pauses.cycles(agent) - before)
             self._interrupted = _Interrupted(agent, agent.queued, left, cycles)
-            agent.queued = True  # it gets the rest of its turn anyway
+            agent.queued = True  # it gets the rest of its turn in any case
             return cycles
         if more:
             self._requeue(agent)
@@ -264,7 +264,7 @@ class Scheduler:
         return cycles + (self.QUANTUM if more else 1)
 
     def _finish_turn(self, interrupted: _Interrupted) -> int:
-        """Give an agent the rest of its turn; the cycles of the round so far."""
+        """Give an agent the rest of its turn. Return the cycles of the round so far."""
         self._interrupted = None
         agent, queued, fuel, cycles = interrupted
         if agent is None or self.pauses is None:
@@ -278,7 +278,7 @@ class Scheduler:
             self._queue.append(agent)
 
     def _real_turns(self) -> int:
-        """Give turns until it is time to poll; the cycles."""
+        """Give turns until it is time to poll. Return the number of cycles."""
         queue, now = self._queue, self._real_time
         look = quantum = self._quantum
         cycles = 0
@@ -302,7 +302,7 @@ class Scheduler:
         return cycles
 
     def _fitting_quantum(self, seconds: float) -> int:
-        """The quantum, now that the last one took *seconds*: long cycles make it smaller, so that a round ends in time."""
+        """Adapt the quantum to the duration of the last one, so that a round with long cycles ends in time."""
         if seconds > self.SECONDS_PER_ROUND / 2:
             self._quantum = max(1, self._quantum // 2)
         elif self._quantum < self.QUANTUM and seconds < self.SECONDS_PER_ROUND / 8:

@@ -1,4 +1,4 @@
-"""A running multi-agent system: where minds, bodies, environment, ROS and time are put together."""
+"""A running multi-agent system, composed of minds, bodies, environment, ROS graph and clock."""
 
 import asyncio
 import mmap
@@ -14,6 +14,7 @@ from jacaros.bdi.mind import Mind
 from jacaros.clock import Clock, of_run
 from jacaros.mas.agent_classes import AgentClasses
 from jacaros.mas.agent_host import AgentHost
+from jacaros.mas.agent_lifecycle import AgentLifecycle, begin
 from jacaros.mas.code_folder import code_folder
 from jacaros.mas.console import Console, HeardConsole
 from jacaros.mas.deployment import AgentSpec, Deployment, has_own_artifacts
@@ -21,7 +22,6 @@ from jacaros.mas.directory import NAME as DIRECTORY_NAME
 from jacaros.mas.directory import Directory, Mailboxes, ServiceDirectory, Services
 from jacaros.mas.idleness import Activity, AgentTimer, Idleness
 from jacaros.mas.options import RunOptions
-from jacaros.mas.population import Population, begin
 from jacaros.mas.programs import Programs, asks_why
 from jacaros.mas.python_code import PythonCode
 from jacaros.mas.ros_graph import RosGraph
@@ -39,34 +39,34 @@ if TYPE_CHECKING:
 
 
 OUT_OF_MEMORY = 137
-"""Exit code of a run that ended for lack of memory: the one of a process that the kernel ends for it."""
+"""Exit code of a run that ended for lack of memory: that of a process killed by the kernel."""
 RESERVE = 32 << 20
-"""Bytes of address space that are released at the first `MemoryError`; nothing is written there, so they cost no memory."""
+"""Bytes of address space that are released at the first `MemoryError`. They are never written, so they use no memory."""
 
 
 class System:
-    """One run of a project; `run` brings it from its start to its end, or `start` and `close` do.
+    """One run of a project. Call `run` for the whole run, or `start` and `close`.
 
     Args:
-        deployment: what to run.
-        clock: its time; `run` is called on the loop that goes with it.
+        deployment: the project.
+        clock: its clock. `run` must be called on its event loop.
         console: its outputs.
-        options: how to run it.
-        prepare: what is run of a program that was read; all of it unless given.
+        options: run options.
+        prepare: returns the part of a program to run. Default: all of it.
         when_made: called with every agent before it begins.
-        when_idle: called whenever no agent has anything to do or to wait for.
+        when_idle: called whenever the run has become idle.
 
     Attributes:
-        directory: the agents by name, and other participants.
+        directory: agents by name, and other participants.
         ros: the ROS graph and the embedded world.
         scheduler: gives the agents their turns.
-        activity: what the agents wait for.
-        idleness: tells when nobody has anything to do.
-        population: makes and ends agents.
-        mailboxes: the messages between agents.
-        deliver: brings a message to its receiver; False when there is none.
-        lost_goals: how many goals have failed with no plan to take over, and agents in Python ended by an exception.
-        services: the directory facilitator; another one may be put here before the run starts.
+        activity: counts what the agents wait for.
+        idleness: detects when the run is idle.
+        lifecycle: creates and ends agents.
+        mailboxes: delivers messages between agents.
+        deliver: delivers a message. Returns False if the receiver is unknown.
+        lost_goals: number of failed goals without a plan for their failure, and of Python agents that an exception ended.
+        services: the directory facilitator. May be replaced before the run starts.
     """
 
     def __init__(
@@ -107,7 +107,7 @@ class System:
         self._has_environment = deployment.artifact_environment or bool(deployment.workspaces)
         self._seed = self.options.seed if self.options.seed is not None else Random().getrandbits(64)
         self._code_folder = code_folder()
-        self.population = self._found(prepare, when_made)
+        self.lifecycle = self._found(prepare, when_made)
         self._reserve: mmap.mmap | None = mmap.mmap(-1, RESERVE)
         self._ended: asyncio.Future[int] | None = None
         self._ending = False
@@ -116,7 +116,7 @@ class System:
         self._error: BaseException | None = None
 
     def _compile_ahead(self) -> bool:
-        return self.population.compile_ahead()
+        return self.lifecycle.compile_ahead()
 
     def _find_graph(self) -> RosGraph:
         deployment, options = self.deployment, self.options
@@ -139,14 +139,14 @@ class System:
         self,
         prepare: Callable[[Program, PythonCode], Program] | None,
         when_made: Callable[[AgentHost], None] | None,
-    ) -> Population:
+    ) -> AgentLifecycle:
         def warn(text: str) -> None:
             self.console.log(text, "warning")
 
         deployment, code = self.deployment, PythonCode(self._modules, self.options.restricted)
         programs = Programs(deployment.source_paths, warn, code, prepare)
         classes = AgentClasses(self._modules, deployment.base_path, lambda warning: warn(warning.render()))
-        return Population(
+        return AgentLifecycle(
             self,
             self.directory,
             programs,
@@ -159,14 +159,14 @@ class System:
         )
 
     async def run(self, when_started: Callable[[], None] | None = None) -> int:
-        """Run the project until it ends; the exit code.
+        """Run the project until it ends. Return the exit code.
 
         Args:
-            when_started: called when everything has been made, before the first agent has its turn.
+            when_started: called when everything has been created, before the first agent has its turn.
 
         Raises:
-            JacarosError: the project cannot be started; the text tells what is wrong.
-            InternalError: a defect of JaCaROS showed itself.
+            JacarosError: the project cannot start. The text says why.
+            InternalError: a defect of JaCaROS.
         """
         try:
             await self.start()
@@ -181,34 +181,34 @@ class System:
 
     @property
     def environment(self) -> "Environment | None":
-        """Workspaces and artifacts; None while nobody has needed them."""
+        """Workspaces and artifacts; None before their first use."""
         return self._run_environment.environment if self._run_environment is not None else None
 
     def trace(self, tracer: "Tracer | None") -> None:
-        """Have *tracer* told, from now on, why things happen: messages, operations, properties, acts; None ends it."""
+        """Pass the causes of events to *tracer* from now on: messages, operations, properties, actions. None ends this."""
         self._tracer = tracer
         self.ros.trace(tracer)
         if self._run_environment is not None:
             self._run_environment.environment.tracer = tracer
 
-    def when_situated(self, told: "Callable[[Environment], None]") -> Callable[[], None]:
-        """Call *told* with the environment, now or when it is made; gives what ends that."""
-        self._situated = told
+    def when_situated(self, callback: "Callable[[Environment], None]") -> Callable[[], None]:
+        """Call *callback* with the environment, now or when it is created. Return a function that ends this."""
+        self._situated = callback
         if self._run_environment is not None:
-            told(self._run_environment.environment)
+            callback(self._run_environment.environment)
 
         def end() -> None:
             self._situated = None
 
         return end
 
-    def listen_to_log(self, told: Callable[[str, str], None]) -> Callable[[], None]:
-        """Call *told* with text and level of each line that is logged from now on; gives what ends that."""
-        return self._log.listen(told)
+    def listen_to_log(self, callback: Callable[[str, str], None]) -> Callable[[], None]:
+        """Call *callback* with text and level of each line that is logged from now on. Return a function that ends this."""
+        return self._log.listen(callback)
 
     @property
     def debugger(self) -> "Debugger":
-        """What pauses and steps the run, made when it is first asked for."""
+        """Pauses and steps the run. Created on first use."""
         if self._debugger is None:
             from jacaros.mas.debugging.debugger import Debugger  # here: most runs are not debugged
 
@@ -217,12 +217,12 @@ class System:
         return self._debugger
 
     def _look(self) -> None:
-        """Have the history, if there is one, record what agents are at."""
+        """Let the history, if any, record the state of the agents."""
         if self._history is not None:
             self._history.look()
 
     def history(self) -> "History":
-        """What happens in the run, for recordings, views and explanations; made when it is first asked for."""
+        """Return the history of the run, for recordings, views and explanations. Created on first use."""
         if self._history is None:
             from jacaros.mas.history.history import History  # here: most runs are not observed
 
@@ -240,7 +240,7 @@ class System:
     def answer(
         self, question: str, at: float | None = None, agent: str = "", robot: str = ""
     ) -> "Explanation":
-        """Answer a question about the run so far, see `jacaros.mas.history.why.explain`.
+        """Answer a question about the run so far. See `jacaros.mas.history.why.explain`.
 
         What happened before the first question is unknown, unless the option ``explain`` is set.
 
@@ -258,10 +258,10 @@ class System:
     # ---- the start
 
     async def start(self) -> None:
-        """Make everything that the project declares; `close` is to follow, also when this fails.
+        """Create everything that the project declares. Call `close` afterwards, even if this fails.
 
         Raises:
-            JacarosError: the project cannot be started; the text tells what is wrong.
+            JacarosError: the project cannot start. The text says why.
         """
         with of_run():
             await self._start()
@@ -270,17 +270,17 @@ class System:
         self._ended = asyncio.get_running_loop().create_future()
         for diagnostic in self.deployment.ignored:
             self.console.log(diagnostic.render(), "warning")
-        population = self.population
-        programs = population.programs.load_all(self.deployment.agents)
-        population.check(self.deployment.agents)
+        lifecycle = self.lifecycle
+        programs = lifecycle.programs.load_all(self.deployment.agents)
+        lifecycle.check(self.deployment.agents)
         await self.ros.start()
         if self.options.wants_diagnostics:
             self._publish_diagnostics()
-        if self._has_environment and self._is_furnished():
-            await self.run_environment().furnish(self.deployment)
+        if self._has_environment and self._has_workspace_setup():
+            await self.run_environment().set_up(self.deployment)
         await self.ros.guard()
         agents = list(zip(self.deployment.agents, programs, strict=True))
-        hosts = [population.add(spec, program) for spec, program in agents]
+        hosts = [lifecycle.add(spec, program) for spec, program in agents]
         if self.options.explain or any(map(asks_why, programs)):
             self.keep_history()
         for host, (spec, program) in zip(hosts, agents, strict=True):
@@ -298,18 +298,18 @@ class System:
         try:
             diagnostics.start()
         except UnknownInterface as missing:
-            self.console.log(f"warning: there will be no /diagnostics: {missing}", "warning")
+            self.console.log(f"warning: cannot publish /diagnostics: {missing}", "warning")
         else:
             self._diagnostics = diagnostics
 
-    def _is_furnished(self) -> bool:
-        """Whether the environment is made at the start, also to tell mistakes in the project's own artifacts."""
+    def _has_workspace_setup(self) -> bool:
+        """Return whether the environment is created at the start, also to report errors in the project's own artifacts."""
         declared = self.deployment.environment or self.deployment.workspaces
         situated = any(agent.join or agent.focus for agent in self.deployment.agents)
         return bool(declared) or situated or has_own_artifacts(self.deployment.base_path)
 
     def run_environment(self) -> "RunEnvironment":
-        """The environment, opened when it is first asked for."""
+        """Return the environment, created on first use."""
         if self._run_environment is None:
             from jacaros.mas.environment import Resources, RunEnvironment
 
@@ -346,7 +346,7 @@ class System:
             host.body = self._run_environment.situated_body(host, spec)
 
     def _make_directory_agent(self) -> Mind:
-        """The agent of the directory facilitator; an agent of the project that has its name takes its place."""
+        """Create the agent of the directory facilitator. An agent of the project with its name replaces it."""
         host = self.directory.find(DIRECTORY_NAME)
         if host is None:
             host = AgentHost(DIRECTORY_NAME, self, f"{self._seed}/{DIRECTORY_NAME}")
@@ -359,9 +359,9 @@ class System:
     # ---- the end
 
     def end(self, exit_code: int) -> None:
-        """End the run: no agent has another turn, no line is printed any more.
+        """End the run: no agent has another turn, and nothing more is printed.
 
-        With the option ``fail_on_lost_goal`` the exit code 0 becomes 1 if a goal was lost.
+        With the option ``fail_on_lost_goal``, exit code 0 becomes 1 if a goal was lost.
         """
         if self._ending:
             return
@@ -383,34 +383,34 @@ class System:
         if self._ended is not None and not self._ended.done():
             self._ended.set_result(exit_code)
 
-    def when_ended(self, told: Callable[[int], None]) -> None:
-        """Have *told* called soon after the end of the run, with the exit code."""
+    def when_ended(self, callback: Callable[[int], None]) -> None:
+        """Call *callback* with the exit code soon after the end of the run."""
         assert self._ended is not None, "the run has not been started"
-        self._ended.add_done_callback(lambda ended: told(ended.result()))
+        self._ended.add_done_callback(lambda ended: callback(ended.result()))
 
     async def ended(self) -> int:
-        """Wait for the end of the run; the exit code."""
+        """Wait for the end of the run. Return the exit code."""
         assert self._ended is not None, "the run has not been started"
         return await asyncio.shield(self._ended)
 
     @property
     def exit_code(self) -> int | None:
-        """The exit code of the run; None while it goes on."""
+        """The exit code of the run; None while it is running."""
         return self._exit_code
 
     @property
     def error(self) -> BaseException | None:
-        """The defect of JaCaROS that ended the run, if one did."""
+        """The defect of JaCaROS that ended the run, or None."""
         return self._error
 
     def goal_lost(self) -> None:
-        """Count a goal that failed with no plan to take over."""
+        """Count a failed goal without a plan for its failure."""
         self.lost_goals += 1
 
     def out_of_memory(self, name: str = "") -> None:
-        """End the run because a `MemoryError` was raised, in the step of an agent or elsewhere.
+        """End the run after a `MemoryError`, in the step of an agent or elsewhere.
 
-        The reserve makes room for stopping the robots, for closing and for the message.
+        Releasing the reserve makes room for stopping the robots, closing and the message.
         """
         if self._reserve is None:
             return
@@ -420,8 +420,8 @@ class System:
         agent = f"[{name}] " if name else ""
         self.console.log(
             f"{agent}error: out of memory; the run ends\n"
-            "  = help: find out what grows; the agent options belief_limit, event_limit, intention_limit and "
-            "mailbox_limit bound it",
+            "  = help: limit what grows with the agent options belief_limit, event_limit, intention_limit and "
+            "mailbox_limit",
             "error",
         )
 
@@ -435,17 +435,17 @@ class System:
         self.end(1)
 
     def close_last(self, closer: Callable[[], Awaitable[None]]) -> None:
-        """Await *closer* at the end of `close`, when the robots stand still."""
+        """Await *closer* at the end of `close`, when the robots have stopped."""
         self._closers.append(closer)
 
     async def close(self) -> None:
-        """Give everything back: operations are cancelled, robots stand still.
+        """Release everything: cancel operations, stop robots.
 
-        A step that goes wrong does not keep the later ones, least of all the last: it is the graph that stops the robots.
+        A failing step does not prevent the later ones, in particular the last one, in which the graph stops the robots.
         """
         self.end(1)
         hosts = list(self.directory)
-        async with AsyncExitStack() as steps:  # the last one that is written goes first
+        async with AsyncExitStack() as steps:  # runs in reverse order
             for closer in self._closers:
                 steps.push_async_callback(closer)
             if self._code_folder is not None:
@@ -459,17 +459,17 @@ class System:
                 steps.push_async_callback(host.close)
             for host in reversed(hosts):
                 steps.callback(host.end)
-            # A signal has stopped the robots just now: on the graph inside the process, that is delivered in the next turn.
+            # A signal may just have stopped the robots. The in-process graph delivers that in the next turn.
             steps.push_async_callback(asyncio.sleep, 0.0)
 
-    # ---- what agents ask for
+    # ---- requests of agents
 
     def agent_names(self) -> Sequence[str]:
-        """Names of all agents, in the order of their making."""
+        """Return the names of all agents, in the order of creation."""
         return self.directory.names()
 
     def stop_system(self, delay: float, exit_code: int) -> None:
-        """End the run after *delay* seconds; the agents are told that it will."""
+        """End the run after *delay* seconds, after announcing it to the agents."""
         if delay > 0:
             for host in self.directory:
                 host.mind.shut_down_in(delay * 1000)
@@ -478,46 +478,49 @@ class System:
             self.end(exit_code)
 
     def create_agent(self, name: str, source: str | None, classes: Mapping[str, str]) -> str | None:
-        """Make and start an agent; its final name, or None with the reason logged."""
-        return self.population.create(name, source, classes)
+        """Create and start an agent. Return its final name, or None after logging the reason."""
+        return self.lifecycle.create(name, source, classes)
 
     def clone_agent(self, original: str, name: str) -> str | None:
-        """Make an agent with a copy of the mind of *original*; its final name, or None with the reason logged."""
-        return self.population.clone(original, name)
+        """Create an agent with a copy of the mind of *original*.
+
+        Return its final name, or None after logging the reason.
+        """
+        return self.lifecycle.clone(original, name)
 
     def kill_agent(self, name: str, delay: float, killer: str) -> bool:
-        """End an agent after *delay* seconds, of which it is told, on behalf of another one.
+        """Kill an agent on behalf of another, *delay* seconds after announcing it.
 
-        False when there is none of that name, or it does not accept its end.
+        Return False if it is unknown or refuses.
         """
-        return self.population.kill(name, delay, killer)
+        return self.lifecycle.kill(name, delay, killer)
 
     def end_agent(self, name: str) -> None:
-        """End an agent at once, without asking it; nothing when there is none of that name."""
+        """End an agent immediately, without asking it. Unknown names have no effect."""
         host = self.directory.find(name)
         if host is not None:
-            self.population.end(host)
+            self.lifecycle.end(host)
 
     def list_files(self, folder: str) -> Sequence[str]:
-        """The files in a folder and in the folders in it, as paths that begin with *folder*, sorted.
+        """Return the files below a folder, sorted, as paths that begin with *folder*.
 
         Raises:
-            OSError: when it cannot be read.
+            OSError: the folder cannot be read.
         """
-        return self.population.programs.list_files(folder, self.deployment.base_path)
+        return self.lifecycle.programs.list_files(folder, self.deployment.base_path)
 
     def write_file(self, path: str, text: str) -> None:
-        """Write a text file; a path that is not absolute is one of the project's folder.
+        """Write a text file. A relative path is relative to the project's folder.
 
         Raises:
-            OSError: when it cannot be written.
+            OSError: the file cannot be written.
         """
         (self.deployment.base_path / path).write_text(text, encoding="utf-8", newline="\n")
 
     def read_program(self, path: str) -> tuple[str, str]:
-        """Name and text of a program file.
+        """Return name and text of a program file.
 
         Raises:
-            FileNotFoundError: there is none.
+            FileNotFoundError: it does not exist.
         """
-        return self.population.programs.include(path, str(self.deployment.base_path / "."))
+        return self.lifecycle.programs.include(path, str(self.deployment.base_path / "."))

@@ -1,5 +1,5 @@
-"""Tells people of a step that takes so long that the others, and the robot, have to wait for it: which agent, which plan,
-which line, read off the Python frames of the run's thread.
+"""Warn of a step that blocks other agents and the robot: with agent, plan and line, read from the Python frames of the
+run's thread.
 """
 
 import os
@@ -17,19 +17,19 @@ from jacaros.bdi.state.plan import FAILED, Plan
 from jacaros.mas.agent_host import AgentHost
 
 INTERVAL = 1.0
-"""Seconds between two looks."""
+"""Seconds between two checks."""
 LOOKS = 2
-"""How often one and the same step must be met again."""
+"""Number of further checks that must find the same step."""
 
 
 class Watchdog:
-    """Looks from a thread of its own at what the thread that made it is doing.
+    """Watches, from a separate thread, what the thread that created it is doing.
 
-    It asks nothing of the steps themselves, so it costs them nothing.
+    It does not instrument the steps, so it costs them nothing.
 
     Args:
-        tell: takes a line for people; called on the watchdog's thread, because the other one has no time.
-        interval: seconds between two looks.
+        tell: takes a line of the log. Called in the watchdog's thread, because the other one is busy.
+        interval: seconds between two checks.
     """
 
     def __init__(self, tell: Callable[[str], None], interval: float = INTERVAL) -> None:
@@ -46,7 +46,7 @@ class Watchdog:
         threading.Thread(target=self._watch, name="watchdog", daemon=True).start()
 
     def stop(self) -> None:
-        """Look no more."""
+        """Stop watching."""
         self._end.set()
 
     def _watch(self) -> None:
@@ -54,10 +54,13 @@ class Watchdog:
         while not self._end.wait(self._interval):
             frame = sys._current_frames().get(self._watched)
             if self._is_too_long(task_of(frame)):
-                self._complain(at_work(frame))
+                self._complain(current_step(frame))
 
     def _is_too_long(self, task: FrameType | None) -> bool:
-        """Whether what is done now was done at the last looks too; *task* is its frame, which no other call can have."""
+        """Return whether the current work was in progress at the last checks, too.
+
+        *task* is its frame, which is unique to the call.
+        """
         self._met = self._met + 1 if task is not None and task is self._task else 0
         self._task = task
         return self._met == LOOKS
@@ -72,16 +75,16 @@ class Watchdog:
 
 
 _LOOP = "asyncio.events"
-"""The module whose ``Handle._run`` calls all callbacks of the loop."""
+"""The module whose ``Handle._run`` calls all callbacks of the event loop."""
 _STANDARD = str(Path(os.__file__).parent)
-"""Where Python's own modules are."""
+"""Folder of Python's own modules."""
 
 
 def task_of(frame: FrameType | None) -> FrameType | None:
-    """The frame of the one thing that is being done, as long as which nobody else has a turn.
+    """Return the frame of the work during which no other agent has a turn.
 
-    That is the step or the choice of plan of an agent; without one, the callback of the loop.  None while the loop waits,
-    and while a module is imported, which takes as long as it takes.
+    That is the step or plan selection of an agent, or else the callback of the event loop. None while the loop waits,
+    and while a module is imported, which may take long.
     """
     task = callback = None
     for inner in _outwards(frame):
@@ -96,8 +99,8 @@ def task_of(frame: FrameType | None) -> FrameType | None:
     return task
 
 
-def at_work(frame: FrameType | None) -> str:
-    """What is being done, for people: ``agent bob, plan +!find(X) (bob.asl:7)``."""
+def current_step(frame: FrameType | None) -> str:
+    """Return what is being done, for messages: ``agent bob, plan +!find(X) (bob.asl:7)``."""
     frames = list(_outwards(frame))
     host = next((found for found in map(_host, frames) if found is not None), None)
     places = [found for each in frames if (found := _place_in_program(each)) is not None]
@@ -112,20 +115,20 @@ def at_work(frame: FrameType | None) -> str:
 
 
 def _outwards(frame: FrameType | None) -> Iterator[FrameType]:
-    """The frames of a thread, the innermost one first."""
+    """Iterate over the frames of a thread, the innermost first."""
     while frame is not None:
         yield frame
         frame = frame.f_back
 
 
 def _is_generated(frame: FrameType) -> bool:
-    """Whether the compiler made the function of a frame; its file and lines are those of the agent program."""
+    """Return whether the compiler generated the function of a frame, whose file and lines are then those of the program."""
     names = frame.f_globals
     return names.get("FAILED") is FAILED and "__name__" not in names
 
 
 def _place_in_program(frame: FrameType) -> tuple[str, int] | None:
-    """File and line of the agent program that a frame executes, compiled or interpreted."""
+    """Return file and line of the agent program that a frame executes, compiled or interpreted."""
     if _is_generated(frame):
         return frame.f_code.co_filename, _line(frame)
     node = None
@@ -137,13 +140,13 @@ def _place_in_program(frame: FrameType) -> tuple[str, int] | None:
 
 
 def _host(frame: FrameType) -> AgentHost | None:
-    """The host of the agent whose cycles a frame makes."""
+    """Return the host of the agent whose cycle a frame runs."""
     mind = frame.f_locals.get("self") if frame.f_code is Mind.run.__code__ else None
     return mind.architecture if mind is not None and isinstance(mind.architecture, AgentHost) else None
 
 
 def _plan_at(host: AgentHost, file: str, line: int) -> Plan | None:
-    """The plan in whose text a step stands."""
+    """Return the plan that contains a step."""
     mind = host.mind
     return _covering(mind.library.plans, file, line) if isinstance(mind, Mind) else None
 
@@ -157,7 +160,7 @@ def _covering(plans: Sequence[Plan], file: str, line: int) -> Plan | None:
 
 
 def _own_python(frames: Sequence[FrameType]) -> FrameType | None:
-    """The innermost frame of the project's own Python code above the agent program."""
+    """Return the innermost frame of the project's own Python code above the agent program."""
     for frame in frames:
         if _place_in_program(frame) is not None:
             return None
@@ -174,7 +177,7 @@ def _place_of_python(frames: Sequence[FrameType]) -> str:
 
 
 def _is_library(frame: FrameType) -> bool:
-    """Whether a frame belongs to JaCaROS, to Python or to an installed package."""
+    """Return whether a frame belongs to JaCaROS, Python or an installed package."""
     file = frame.f_code.co_filename
     module = str(frame.f_globals.get("__name__", ""))
     return file.startswith("<") or module.partition(".")[0] in ("jacaros", "asyncio") or _is_installed(file)
@@ -189,5 +192,5 @@ def _place(frame: FrameType) -> str:
 
 
 def _line(frame: FrameType) -> int:
-    """The line that a frame is at; that of its function between two lines."""
+    """Return the line of a frame; between two lines, that of its function."""
     return frame.f_lineno or frame.f_code.co_firstlineno

@@ -44,7 +44,7 @@ attempts(2).
      disposeArtifact(Other);
      !visitors.
 
-// Nobody offers what this artifact needs: it waits, and is dropped.
+// No server offers what this artifact needs, so it waits and is cancelled.
 +!hurry
   <- dock.
 

@@ -17,6 +17,6 @@
 
 +connected(Topic) <- .print("connected ", Topic).
 -connected(Topic) <- .print("lost ", Topic).
--pose(_) : not pose(_) <- .print("nobody knows where I am").
+-pose(_) : not pose(_) <- .print("my pose is unknown").
 
 +bad_message(Topic, Why) <- .print("bad ", Topic, " ", Why).

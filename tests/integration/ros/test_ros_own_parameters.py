@@ -30,7 +30,7 @@ def test_what_is_given_at_the_start_is_followed(
     first = "1" if kind == "ros1" else "0.9"
     agents.until_line(f"begins with {first} [attic,cellar] 2")
     if kind == "ros2":
-        agents.until_error("the parameter spede has no effect: nothing here declares it; did you mean speed?")
+        agents.until_error("parameter spede has no effect: nothing declares it; did you mean `speed`?")
         with pytest.raises(ParameterRefused):
             other.set_parameter("speed", 7.0, NODE, timeout=20)
         with pytest.raises(ParameterRefused):

@@ -57,8 +57,8 @@ def test_what_is_no_artifact_type_is_unknown(name: str) -> None:
         find_type(name)
 
 
-def test_an_unknown_type_gets_a_spelling_hint() -> None:
-    with pytest.raises(UnknownArtifactType, match="did you mean ArtOdometry"):
+def test_an_unknown_type_gets_a_suggestion() -> None:
+    with pytest.raises(UnknownArtifactType, match="did you mean `ArtOdometry`"):
         find_type("ArtOdometri")
     with pytest.raises(UnknownArtifactType, match=r"jason\.architecture\.ArtSimBattery"):
         find_type("jason.architecture.ArtSimBatery")
@@ -71,7 +71,7 @@ def test_the_artifacts_file_of_a_project_is_searched_before_the_built_in_ones(tm
     assert find("tools.Counter") is find("Counter")
     assert find("ArtOdometry") is not ArtOdometry
     assert find("jacaros.artifacts.robots.odometry.ArtOdometry") is ArtOdometry
-    with pytest.raises(UnknownArtifactType, match="did you mean Counter"):
+    with pytest.raises(UnknownArtifactType, match="did you mean `Counter`"):
         find("Countre")
 
 

@@ -70,7 +70,7 @@ def test_the_place_of_the_failure_can_be_chosen(on_rails):
         (lambda: Act("fly"), "has an operation fly/0 [unknown_operation"),
         (lambda: Act("drive"), "drive/0; cart has drive/1"),
         (lambda: Act("drive", "far"), "metres"),
-        (lambda: Act("drive", 1, artifact="plane"), "no artifact plane"),
+        (lambda: Act("drive", 1, artifact="plane"), "unknown artifact `plane`"),
         (lambda: Act("break_down"), "no wheels"),
         (lambda: Act("drive", FromBlackboard("far")), "there is no far on the blackboard [not_on_blackboard"),
         (lambda: Act("wait_for_ever", timeout=2), "did not end within 2 s [operation_timeout"),

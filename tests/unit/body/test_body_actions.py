@@ -37,7 +37,7 @@ async def test_a_failed_creation_tells_why(one: Robot, two: Robot, clock: Virtua
     assert reason_of(one.do("makeArtifact", "d", "Countr")) == (
         'makeArtifactFailure("unknown_artifact_template","Countr")'
     )
-    assert "did you mean Counter?" in message_of(one.do("makeArtifact", "d", "Countr"))
+    assert "did you mean `Counter`?" in message_of(one.do("makeArtifact", "d", "Countr"))
     assert (
         reason_of(one.do("makeArtifact", "e", "Counter", [1, 2])) == 'makeArtifactFailure("init_failed","e")'
     )
@@ -59,12 +59,12 @@ async def test_artifacts_are_found_by_type_and_listed(one: Robot, two: Robot, cl
 
 
 @among_artifacts
-async def test_a_missing_artifact_is_told_with_a_spelling_hint(
+async def test_an_unknown_artifact_fails_with_a_suggestion(
     one: Robot, two: Robot, clock: VirtualClock
 ) -> None:
     one.make("motion", "Counter")
     failure = one.do("lookupArtifact", "moton", Var())
-    assert "did you mean motion?" in message_of(failure)
+    assert "did you mean `motion`?" in message_of(failure)
     assert reason_of(failure) == 'artifact_not_available("moton")'
 
 

@@ -48,9 +48,9 @@ async def test_a_directed_action_without_target_says_what_is_wrong(
     one: Robot, two: Robot, clock: VirtualClock
 ) -> None:
     a = one.make("motor", "Counter", 1)
-    assert "did you mean motor?" in message_of(one.do("read", Var(), artifact_name="moter"))
+    assert "did you mean `motor`?" in message_of(one.do("read", Var(), artifact_name="moter"))
     failure = one.do("raed", Var(), artifact_id=a)
-    assert "did you mean read" in message_of(failure)
+    assert "did you mean `read`" in message_of(failure)
     assert (reason_of(failure) or "").startswith("unknown_operation(cobj_")
     assert "the method positive of 'motor' is no operation for agents" in message_of(one.do("positive"))
     assert "says nothing to the environment" in message_of(one.do("read", Var(), artefact_name="motor"))
@@ -63,7 +63,7 @@ async def test_a_directed_action_without_target_says_what_is_wrong(
     failure = one.do("read", Var(), foo=3)
     assert reason_of(failure) == "action_failed(read(_)[foo(3)],unknown_annotation)"
     assert detail_of(failure) == 'unknown_annotation("foo(3)")'
-    assert "did you mean artifact_name" in message_of(one.do("read", Var(), artefact_name="motor"))
+    assert "did you mean `artifact_name`" in message_of(one.do("read", Var(), artefact_name="motor"))
 
 
 @among_artifacts
@@ -109,7 +109,7 @@ async def test_an_action_for_the_artifacts_of_a_namespace_does_not_go_elsewhere_
     one.make("total", "Total")
     one.do("ns::focus", right)
     failure = one.do("ns::inc", 1, 2)
-    assert "artifact right (Counter) has no operation inc/2; there is inc/" in message_of(failure)
+    assert "unknown operation `inc/2` of artifact right (Counter); it has inc/" in message_of(failure)
     assert one.do("ns::inc", 1).success
     assert one.do("inc", 1, 2).success
 

@@ -269,7 +269,7 @@ def test_mistakes_in_such_a_mapping_are_told_once_and_stand_before_those_of_the_
     code, output, _ = outcome(capsys, "good.asl", "--mapping", "nav3.yaml")
     assert code == 1
     assert "mapping file not found: nav3.yaml" in output
-    assert "did you mean nav2.yaml?" in output
+    assert "did you mean `nav2.yaml`?" in output
 
 
 def test_a_world_file_is_checked_as_a_world(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -64,7 +64,7 @@ def test_the_word_run_may_be_left_out(folder: Path, capsys: pytest.CaptureFixtur
         (["run", "hello.asl", "--ros-args", "-q"], "unknown argument -q after --ros-args"),
         (["sim", "empty", "--ros", "ros2", "--clock", "fast"], "--ros memory"),
         (["sim", "empty", "--ros", "ros1", "--domain-id", "3"], "--ros ros2"),
-        (["describe", "ArtOdometri"], "did you mean ArtOdometry"),
+        (["describe", "ArtOdometri"], "did you mean `ArtOdometry`"),
     ],
 )
 def test_wrong_usage_is_told_with_code_2(
@@ -138,7 +138,7 @@ def test_an_agent_in_python_is_run_recorded_checked_and_described(
     assert "agent a: a.py" in outcome(capsys, "describe", "m.jcm")[1]
     (folder / "b.py").write_text("x = 1", encoding="utf-8")
     code, output, _ = outcome(capsys, "check", "b.py")
-    assert (code, "b.py has no class derived from jacaros.PythonAgent" in output) == (1, True)
+    assert (code, "no subclass of jacaros.PythonAgent in b.py" in output) == (1, True)
 
 
 def test_a_world_runs_alone(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

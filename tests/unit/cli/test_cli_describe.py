@@ -103,7 +103,7 @@ def test_all_types_of_a_file_are_described(folder: Path, capsys: pytest.CaptureF
 def test_a_project_is_described_with_its_types(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     output = described(capsys, "house.jcm")
     assert "  workspace w\n    artifact lamp: Lamp\n" in output
-    assert "    artifact odd: Lump (no artifact type is called Lump; did you mean Lamp?)\n" in output
+    assert "    artifact odd: Lump (unknown artifact type `Lump`; did you mean `Lamp`?)\n" in output
     assert f"\n\n{LAMP}\nBlackboard\n  A tuple space" in output
     assert output.endswith(f"\n{BARE}")
 
@@ -127,7 +127,7 @@ def test_the_folders_of_a_project_are_searched(folder: Path, capsys: pytest.Capt
     )
     output = described(capsys, "hall.jcm")
     assert "    artifact lamp: tools.Lamp\n" in output
-    assert "tools.Lomp; did you mean tools.Lamp" in output
+    assert "`tools.Lomp`; did you mean `tools.Lamp`" in output
     assert LAMP in output
 
 
@@ -154,7 +154,7 @@ def test_programs_get_json(folder: Path, capsys: pytest.CaptureFixture[str]) -> 
 @pytest.mark.parametrize(
     ("what", "told"),
     [
-        ("Lump", "no artifact type is called Lump; did you mean Lamp?"),
+        ("Lump", "unknown artifact type `Lump`; did you mean `Lamp`?"),
         ("nothing.py", "file not found: nothing.py"),
         ("empty.py", "empty.py has no artifact type (a class derived from jacaros.env.Artifact)"),
     ],

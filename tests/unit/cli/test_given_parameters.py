@@ -138,7 +138,7 @@ def test_what_nobody_declares_is_told_once(folder: Path, capsys: pytest.CaptureF
     out, told = capsys.readouterr()
     assert out == "[guard] 0.4 [hall]\n"
     assert told == (
-        "[ros] the parameter spede has no effect: nothing here declares it; did you mean speed?\n"
+        "[ros] parameter spede has no effect: nothing declares it; did you mean `speed`?\n"
     )
 
 

@@ -84,7 +84,7 @@ def test_all_that_cannot_be_counted_is_reported_in_one_pass(
     code, output, errors = outcome(capsys, "wrong", "empty", "binary", "sqare", "square.py")
     assert (code, output) == (1, "")
     assert errors == (
-        "wrong/bad.jcm:1:23: error: program of agent 'ann' not found: none.asl\n"
+        "wrong/bad.jcm:1:23: error: program of agent `ann` not found: none.asl\n"
         "  1 | mas bad { agent ann : none.asl }\n"
         "    |                       ^^^^^^^^\n"
         "  = help: expected in wrong\n"

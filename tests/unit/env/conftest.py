@@ -1,4 +1,4 @@
-"""A stage on which artifacts are tried: an environment on a virtual clock, with watching observers."""
+"""A test environment on a virtual clock, with recording observers."""
 
 import asyncio
 
@@ -9,7 +9,7 @@ from jacaros.env import Environment, OperationRequest, UnknownArtifactType
 
 
 class Watcher:
-    """An observer that notes what it sees as short texts: ``~signal +added -removed``."""
+    """An observer that records observations as short texts: ``~signal +added -removed``."""
 
     def __init__(self, stage, agent):
         self.stage, self.agent, self.observations = stage, agent, []
@@ -44,7 +44,7 @@ def notes_of(observation):
 
 
 class Call:
-    """A call of an operation and what came of it."""
+    """A call of an operation and its outcome."""
 
     def __init__(self, stage, label):
         self.stage, self.label, self.outcome, self.execution = stage, label, None, None
@@ -52,7 +52,7 @@ class Call:
         self._done = asyncio.get_running_loop().create_future()
 
     def on_done(self, outcome):
-        assert self.outcome is None, "an outcome is told once"
+        assert self.outcome is None, "an outcome is reported once"
         self.outcome = outcome
         self.ended_at = self.stage.elapsed
         self.stage.story.append((self.label, "ok" if outcome.ok else "failed"))

@@ -1,4 +1,4 @@
-"""Artifact types to be made, and why the making of one failed."""
+"""Artifact types to create, and the reason of a failed creation."""
 
 import pytest
 

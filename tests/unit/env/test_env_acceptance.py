@@ -1,4 +1,4 @@
-"""Annotations of parameters: what agents may give for them, what the operation receives, and what a failure says."""
+"""Annotations of parameters: what agents may pass, what the operation receives, and the messages of failures."""
 
 import collections.abc
 import enum
@@ -134,7 +134,7 @@ def test_an_argument_becomes_what_the_annotation_says(annotation, argument, expe
         (Mode, Atom("fast"), "one of auto, manual", ""),
         (Level, 3, "one of low, high", ""),
         (Pose, Structure("pos", (1, 2)), "pose(x: a number, y: a number, frame: a text (optional))", ""),
-        (Pose, Structure("pose", (1,)), "pose(x: a number, y: a number", "it has 1 of them"),
+        (Pose, Structure("pose", (1,)), "pose(x: a number, y: a number", "it has 1 arguments"),
         (Pose, Structure("pose", (1, Atom("a"))), "pose(", "y is a"),
         (
             Path,
@@ -145,7 +145,7 @@ def test_an_argument_becomes_what_the_annotation_says(annotation, argument, expe
         (Positive, Structure("positive", (-3,)), "positive(value: an integer)", "-3 is not positive"),
         (Home, Atom("away"), "home", ""),
         (Cell, [1, 2], "cell(row: an integer, column: an integer (optional))", ""),
-        (tuple[int, str], [1], "a list of 2 (an integer, a text)", "it has 1"),
+        (tuple[int, str], [1], "a list of 2 (an integer, a text)", "it has 1 elements"),
         (tuple[int, str], ["a", "b"], "a list of 2 (an integer, a text)", 'element 1 is "a"'),
         (tuple[int, str], "ab", "a list of 2", ""),
         (list[int], [1, "b", 3], "a list, each an integer", 'element 2 is "b"'),
@@ -210,12 +210,12 @@ def test_an_operation_fails_with_a_message_that_names_the_parameter(play):
         for arguments, said in [
             (
                 (at, [1, "fast"]),
-                'parameter speeds (number 2) wants a list, each a number, got [1,"fast"]: element 2 is "fast"',
+                'argument 2 (speeds): expected a list, each a number, found [1,"fast"]: element 2 is "fast"',
             ),
-            ((at, [1], Atom("x")), "parameter mode (number 3) wants one of auto, manual, got x"),
-            ((at, [1], Atom("auto"), 1, 1.5), "parameter more (number 5) wants an integer, got 1.5"),
+            ((at, [1], Atom("x")), "argument 3 (mode): expected one of auto, manual, found x"),
+            ((at, [1], Atom("auto"), 1, 1.5), "argument 5 (more): expected an integer, found 1.5"),
             ((at, list("abcdefghijklmnopqrstuvwxyz0123456789" * 9)), '"2","3"...: element 1 is "a"'),
-            ((Out(), [1]), "(optional)), got an unbound variable"),
+            ((Out(), [1]), "(optional)), found an unbound variable"),
         ]:
             call = stage.call(typed, "go", *arguments)
             assert call.reason == Structure("wrong_op_arguments", (typed, f"go/{len(arguments)}"))

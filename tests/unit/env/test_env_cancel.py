@@ -1,4 +1,4 @@
-"""Dropping an operation: the coroutine is cancelled, its ``finally`` runs as a step, nobody is told."""
+"""Cancelling an operation: the coroutine is cancelled, its ``finally`` runs as a step, and no outcome is reported."""
 
 import asyncio
 
@@ -87,7 +87,7 @@ def robot_of(stage):
     return stage.make(Kept)
 
 
-def test_a_cancelled_operation_stops_at_once_and_what_finally_changes_is_published(play):
+def test_a_cancelled_operation_stops_immediately_and_changes_in_finally_are_published(play):
     async def scene(stage):
         robot = await robot_of(stage)
         watcher = stage.watch(robot)
@@ -101,7 +101,7 @@ def test_a_cancelled_operation_stops_at_once_and_what_finally_changes_is_publish
         assert move.execution.ended
         await stage.clock.sleep(20.0)
         assert state(stage, robot) == (False, 2)
-        assert move.outcome is None, "nobody is told"
+        assert move.outcome is None, "no outcome is reported"
 
     play(scene)
 
@@ -119,7 +119,7 @@ def test_cancelling_twice_or_after_the_end_has_no_effect(play):
         await stage.clock.sleep(0.1)
         second.execution.cancel()
         await stage.clock.sleep(1.0)
-        assert state(stage, robot) == (False, 2), "finally came to its end"
+        assert state(stage, robot) == (False, 2), "finally has run"
         ping = stage.call(robot, "ping")
         ping.execution.cancel()
         assert ping.ok
@@ -154,7 +154,7 @@ def test_an_operation_cancelled_while_waiting_for_the_artifact_never_begins(play
     play(scene)
 
 
-def test_the_step_in_which_it_is_cancelled_is_undone(play):
+def test_the_step_in_which_it_is_cancelled_is_rolled_back(play):
     async def scene(stage):
         robot = await robot_of(stage)
         hold = stage.call(robot, "hold", 10.0)
@@ -204,7 +204,7 @@ def test_cancelled_while_it_queues_for_its_next_step_it_keeps_its_turn_and_stops
     play(scene)
 
 
-def test_cancelled_in_the_moment_in_which_its_turn_is_given(play):
+def test_it_is_cancelled_while_it_gets_its_turn(play):
     async def scene(stage):
         robot = await robot_of(stage)
         move = stage.call(robot, "move", 10)
@@ -265,7 +265,7 @@ def test_a_failure_in_finally_is_undone_and_logged(play):
     play(scene)
 
 
-def test_an_operation_may_drop_itself(play):
+def test_an_operation_may_cancel_itself(play):
     async def scene(stage):
         robot = await robot_of(stage)
         call = stage.call(robot, "drop_me")
@@ -292,7 +292,7 @@ def test_an_operation_cancelled_from_outside_of_the_kernel_leaves_the_artifact_u
     play(scene)
 
 
-def test_a_time_out_within_an_operation_is_not_a_cancellation(play):
+def test_a_timeout_within_an_operation_is_not_a_cancellation(play):
     class Impatient(Artifact):
         def init(self):
             self.define_property("result", "")
@@ -320,7 +320,7 @@ def test_a_time_out_within_an_operation_is_not_a_cancellation(play):
     play(scene)
 
 
-def test_observers_that_drop_an_operation_while_they_are_told(play):
+def test_observers_may_cancel_an_operation_while_they_are_notified(play):
     async def scene(stage):
         robot = await robot_of(stage)
         move = stage.call(robot, "move", 10)
@@ -340,7 +340,7 @@ def test_observers_that_drop_an_operation_while_they_are_told(play):
     play(scene)
 
 
-def test_a_plain_operation_that_drops_itself_comes_to_its_end_untold(play):
+def test_a_plain_operation_that_cancels_itself_ends_without_an_outcome(play):
     class Plain(Artifact):
         def init(self):
             self.define_property("n", 0)
@@ -359,7 +359,7 @@ def test_a_plain_operation_that_drops_itself_comes_to_its_end_untold(play):
     play(scene)
 
 
-def test_one_of_several_that_wait_is_dropped(play):
+def test_one_of_several_waiting_operations_is_cancelled(play):
     async def scene(stage):
         robot = await robot_of(stage)
         stage.call(robot, "hold", 1.0)
@@ -373,7 +373,7 @@ def test_one_of_several_that_wait_is_dropped(play):
     play(scene)
 
 
-def test_a_coroutine_that_is_thrown_away_does_not_wait_for_its_turn(play):
+def test_an_abandoned_coroutine_does_not_wait_for_its_turn(play):
     async def scene(stage):
         robot = await robot_of(stage)
         move = stage.call(robot, "move", 1)

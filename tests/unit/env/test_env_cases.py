@@ -1,4 +1,4 @@
-"""The artifacts of the recorded environment cases, played without agents: the kernel's share of each case."""
+"""The artifacts of the recorded environment cases, run without agents: the kernel's part of each case."""
 
 import importlib.util
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Causes: why a property changed, and the tracer that is told of every link."""
+"""Causes: why a property changed, and the tracer, which receives every link."""
 
 from jacaros.env import Artifact, Environment, OperationRequest, internal_operation, link, operation
 from jacaros.trace import Cause
@@ -117,7 +117,7 @@ def test_a_process_started_by_a_callback_is_caused_by_its_sample(play):
     play(scene)
 
 
-def test_commits_are_traced_even_when_nobody_focuses(play):
+def test_commits_are_traced_even_without_observers(play):
     async def scene(stage):
         lamp = await stage.make(Lamp)
         stage.environment.tracer = recorder = Recorder(stage.clock)
@@ -127,7 +127,7 @@ def test_commits_are_traced_even_when_nobody_focuses(play):
     play(scene)
 
 
-def test_an_environment_is_usable_with_the_least(play):
+def test_an_environment_works_with_minimal_arguments(play):
     async def scene(stage):
         environment = Environment(stage.clock)
         assert environment.tracer is None

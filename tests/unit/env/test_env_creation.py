@@ -1,4 +1,4 @@
-"""Making artifacts: names, types, arguments, and who made them."""
+"""Creating artifacts: names, types, arguments and creators."""
 
 import pytest
 from creation_lab import Counter, Fussy, Slow, why
@@ -53,7 +53,7 @@ def test_an_artifact_without_init_is_made_without_arguments_only(play):
         await stage.make(Bare)
         reason, name, message = await why(stage.make(Bare, 1, name="other"))
         assert (reason, name) == ("init_failed", "other")
-        assert "its init takes (), not 1 arguments" in message
+        assert "expected () as arguments of init, found 1 arguments" in message
 
     play(scene)
 
@@ -78,12 +78,12 @@ def test_a_used_name_is_refused_and_the_artifact_stays(play):
     play(scene)
 
 
-def test_an_unknown_type_is_refused_with_a_spelling_hint(play):
+def test_an_unknown_type_is_refused_with_a_suggestion(play):
     async def scene(stage):
         types(stage)
         reason, name, message = await why(stage.main.make_artifact("d", "Cuonter"))
         assert (reason, name) == ("unknown_artifact_template", "Cuonter")
-        assert "did you mean Counter?" in message
+        assert "did you mean `Counter`?" in message
         with pytest.raises(UnknownArtifact):
             stage.main.lookup("d")
 
@@ -95,17 +95,17 @@ def test_without_find_type_no_type_name_is_known(play):
         environment = type(stage.environment)(stage.clock)
         reason, _, message = await why(environment.workspace("/main").make_artifact("d", "Counter"))
         assert reason == "unknown_artifact_template"
-        assert "no artifact type is called Counter" in message
+        assert "unknown artifact type `Counter`" in message
 
     play(scene)
 
 
-def test_a_type_that_is_no_artifact_or_cannot_be_loaded_is_refused(play):
+def test_a_type_that_is_not_an_artifact_or_cannot_be_loaded_is_refused(play):
     async def scene(stage):
         types(stage)
         reason, name, message = await why(stage.main.make_artifact("d", "Nonsense"))
         assert (reason, name) == ("unknown_artifact_template", "Nonsense")
-        assert "not a class derived from Artifact" in message
+        assert "not a subclass of Artifact" in message
 
         def broken(name):
             raise SyntaxError("in artifacts.py")

@@ -1,4 +1,4 @@
-"""Makings of artifacts that take time, fail or are dropped: nothing is left behind."""
+"""Creations of artifacts that take time, fail or are cancelled leave nothing behind."""
 
 import asyncio
 
@@ -20,8 +20,8 @@ from jacaros.env import (
     [
         ((-1,), "negative"),
         ((0,), "RuntimeError in operation init/1 of it: no level"),
-        (("one",), "parameter level (number 1) wants an integer"),
-        ((1, 2), "its init takes (level: an integer), not 2 arguments"),
+        (("one",), "argument 1 (level): expected an integer"),
+        ((1, 2), "expected (level: an integer) as arguments of init, found 2 arguments"),
     ],
 )
 def test_a_failed_init_leaves_nothing_behind(play, arguments, told):
@@ -52,7 +52,7 @@ def test_a_constructor_that_fails_is_an_init_that_fails(play):
     play(scene)
 
 
-def test_init_may_take_its_time_and_the_artifact_is_there_when_it_has_ended(play):
+def test_an_asynchronous_init_makes_the_artifact_available_at_its_end(play):
     async def scene(stage):
         making = asyncio.ensure_future(stage.make(Slow))
         await stage.clock.sleep(0.5)
@@ -76,7 +76,7 @@ def test_a_slow_init_that_fails_leaves_nothing_behind(play):
     play(scene)
 
 
-def test_the_making_can_be_dropped_and_leaves_nothing_behind(play):
+def test_creation_can_be_cancelled_and_leaves_nothing_behind(play):
     async def scene(stage):
         making = asyncio.ensure_future(stage.make(Slow))
         await stage.clock.sleep(0.5)
@@ -89,7 +89,7 @@ def test_the_making_can_be_dropped_and_leaves_nothing_behind(play):
     play(scene)
 
 
-def test_closing_while_an_artifact_is_made_ends_the_making(play):
+def test_closing_during_a_creation_cancels_it(play):
     async def scene(stage):
         making = asyncio.ensure_future(stage.make(Slow))
         await stage.clock.sleep(0.5)
@@ -100,7 +100,7 @@ def test_closing_while_an_artifact_is_made_ends_the_making(play):
     play(scene)
 
 
-def test_a_name_can_be_used_again_while_a_dropped_making_comes_to_its_end(play):
+def test_a_name_can_be_reused_while_a_cancelled_creation_ends(play):
     class Lingering(Artifact):
         async def init(self):
             try:
@@ -120,7 +120,7 @@ def test_a_name_can_be_used_again_while_a_dropped_making_comes_to_its_end(play):
     play(scene)
 
 
-def test_a_making_that_is_ended_from_two_sides_ends_once(play):
+def test_a_creation_that_is_ended_twice_ends_once(play):
     class Lingering(Artifact):
         async def init(self):
             try:
@@ -186,7 +186,7 @@ def test_an_artifact_that_disposes_itself_in_its_init_is_not_made(play):
             self.workspace.dispose_artifact(self.id)
 
     async def scene(stage):
-        with pytest.raises(OperationFailed, match="cannot be made: its init disposed it"):
+        with pytest.raises(OperationFailed, match=r"cannot create artifact .*: its init disposed it"):
             await stage.make(Suicidal)
         assert stage.lines == ["[it] given back"]
         await stage.make(Artifact)
@@ -194,7 +194,7 @@ def test_an_artifact_that_disposes_itself_in_its_init_is_not_made(play):
     play(scene)
 
 
-def test_a_making_that_is_dropped_leaves_no_artifact_behind_its_id(play):
+def test_the_id_of_a_cancelled_creation_has_no_artifact(play):
     class Slow(Artifact):
         async def init(self, keep):
             keep.append(self.id)

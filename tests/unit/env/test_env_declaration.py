@@ -1,4 +1,4 @@
-"""How artifact classes declare their interface, and which mistakes are found when the class is made."""
+"""How artifact classes declare their interface, and which errors are found when the class is created."""
 
 from functools import partial
 from typing import Any
@@ -87,7 +87,7 @@ def test_operations_are_inherited_and_overridden_with_or_without_a_decorator():
     assert keys(Parent) == ["keep/0", "go/1", "replaced/0", "dropped/0", "any_number/any"]
 
 
-def test_two_methods_for_one_name_and_number_of_arguments_are_a_mistake():
+def test_two_methods_with_the_same_name_and_arity_are_an_error():
     with pytest.raises(InvalidArtifact, match=r"one and .*two are both operation go with 1 arguments"):
 
         class Unclear(Artifact):
@@ -140,10 +140,10 @@ def test_init_dispose_and_ports_are_the_authors():
 @pytest.mark.parametrize(
     ("members", "told"),
     [
-        ({"guard_name": "isFree"}, "the guard isFree is not a method; did you mean is_free?"),
-        ({"guard_name": "waits"}, "must be a plain def"),
-        ({"guard_name": "takes_two"}, "its guard takes"),
-        ({"guard_name": "takes_two", "rest": True}, "its guard takes"),
+        ({"guard_name": "isFree"}, "unknown guard method isFree; did you mean `is_free`?"),
+        ({"guard_name": "waits"}, "expected a plain def as guard"),
+        ({"guard_name": "takes_two"}, "expected a guard with the parameters of the operation"),
+        ({"guard_name": "takes_two", "rest": True}, "expected a guard with the parameters of the operation"),
     ],
 )
 def test_guards_are_checked_when_the_class_is_made(members, told):
@@ -167,14 +167,14 @@ def test_guards_are_checked_when_the_class_is_made(members, told):
 
 
 def test_a_threaded_operation_is_a_plain_def():
-    with pytest.raises(InvalidArtifact, match="runs in a thread: make it a plain def"):
+    with pytest.raises(InvalidArtifact, match="runs in a thread, so it cannot be async"):
 
         class Threaded(Artifact):
             @operation(threaded=True)
             async def go(self): ...
 
 
-def test_a_parameter_that_agents_cannot_give_is_a_mistake():
+def test_a_parameter_that_agents_cannot_pass_is_an_error():
     with pytest.raises(InvalidArtifact, match="keyword parameter fast"):
 
         class Keyword(Artifact):
@@ -229,13 +229,16 @@ def test_operations_of_one_artifact_can_be_added_and_removed(play):
         assert stage.call(first, "forget").outcome.message == "replaced"
         assert stage.call(second, "forget").ok
         assert stage.call(first, "more", 1, 2, 3).ok
-        assert "its guard takes" in stage.call(first, "spoil").outcome.message
+        assert (
+            "expected a guard with the parameters of the operation"
+            in stage.call(first, "spoil").outcome.message
+        )
         assert Dynamic.interface.operations.find("add", 1) is None
 
     play(scene)
 
 
-def test_a_part_of_a_function_and_an_object_that_can_be_called_are_operations_too(play):
+def test_partial_functions_and_callable_objects_can_be_operations(play):
     class Greeting:
         """Greets."""
 
@@ -258,7 +261,7 @@ def test_a_part_of_a_function_and_an_object_that_can_be_called_are_operations_to
         price = Out()
         assert stage.call(it, "soup", price).ok
         assert price.value == 4
-        assert "wants a text" in stage.call(it, "greet", 3).outcome.message
+        assert "expected a text" in stage.call(it, "greet", 3).outcome.message
         assert "ValueError in operation greet/1 of it: bob" in stage.call(it, "greet", "bob").outcome.message
         manual = stage.main.manual(it)
         assert [(each.usage, each.text) for each in manual.operations] == [

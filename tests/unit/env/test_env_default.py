@@ -28,7 +28,7 @@ def test_tuples_are_read_and_taken(play):
         assert do("in", "msg", Out(), "one") == [1]
         failed = do("inp", "msg", 1, Out())
         assert failed.reason == Atom("no_match")
-        assert failed.outcome.message == 'no tuple on the blackboard fits ("msg",1,_)'
+        assert failed.outcome.message == 'no tuple on the blackboard matches ("msg",1,_)'
         assert do("inp", "msg", 2, Out()) == ["two"]
         assert do("rdp", "msg", 2, Out()).reason == Atom("no_match")
         assert do("in", "msg", 3) == []
@@ -36,7 +36,7 @@ def test_tuples_are_read_and_taken(play):
     play(scene)
 
 
-def test_the_oldest_fitting_tuple_is_taken(play):
+def test_the_oldest_matching_tuple_is_taken(play):
     async def scene(stage):
         do = blackboard(stage)
         for number in (5, 6):
@@ -47,7 +47,7 @@ def test_the_oldest_fitting_tuple_is_taken(play):
     play(scene)
 
 
-def test_in_and_rd_wait_until_there_is_a_fitting_tuple(play):
+def test_in_and_rd_wait_for_a_matching_tuple(play):
     async def scene(stage):
         do = blackboard(stage)
         reader, taker, other = do("rd", "x", Out()), do("in", "x", Out()), do("in", "y", Out())
@@ -76,7 +76,7 @@ def test_values_are_compared_as_agents_do(play):
     play(scene)
 
 
-def test_the_same_variable_twice_fits_equal_values_only(play):
+def test_the_same_variable_twice_matches_only_equal_values(play):
     async def scene(stage):
         do = blackboard(stage)
         do("out", "pair", 1, 2)

@@ -101,7 +101,7 @@ def thing_of(stage):
     return stage.make(Kept)
 
 
-def test_observers_are_told_that_all_properties_are_gone(play):
+def test_observers_lose_all_properties(play):
     async def scene(stage):
         thing = await thing_of(stage)
         watcher = stage.watch(thing)
@@ -136,7 +136,7 @@ def test_operations_running_or_waiting_fail_with_artifact_disposed(play):
     play(scene)
 
 
-def test_an_operation_that_was_given_its_first_turn_but_has_not_begun_fails_too(play):
+def test_an_operation_that_has_its_first_turn_but_has_not_begun_fails_too(play):
     async def scene(stage):
         thing = await thing_of(stage)
         call = stage.call(thing, "run")
@@ -203,7 +203,7 @@ def test_new_operations_fail_with_artifact_not_available(play):
     play(scene)
 
 
-def test_what_needs_the_artifact_is_refused(play):
+def test_requests_to_a_disposed_artifact_are_refused(play):
     async def scene(stage):
         thing = await thing_of(stage)
         stage.main.dispose_artifact(thing)
@@ -222,7 +222,7 @@ def test_what_needs_the_artifact_is_refused(play):
     play(scene)
 
 
-def test_the_name_is_free_again_and_the_old_id_does_not_mean_the_new_artifact(play):
+def test_the_name_can_be_reused_and_the_old_id_does_not_mean_the_new_artifact(play):
     async def scene(stage):
         old = await thing_of(stage)
         stage.main.dispose_artifact(old)
@@ -246,7 +246,7 @@ def test_an_artifact_may_dispose_itself_and_the_operation_still_succeeds(play):
     play(scene)
 
 
-def test_a_coroutine_may_dispose_its_artifact_and_go_on_while_others_fail(play):
+def test_a_coroutine_may_dispose_its_artifact_and_continue_while_others_fail(play):
     async def scene(stage):
         thing = await thing_of(stage)
         run, call = stage.call(thing, "run"), stage.call(thing, "disposeMeLater")
@@ -347,7 +347,7 @@ def test_closing_waits_for_artifacts_that_are_ending_already(play):
     play(scene)
 
 
-def test_one_who_stops_waiting_for_the_end_does_not_disturb_the_others(play):
+def test_cancelling_one_wait_for_the_end_does_not_affect_others(play):
     async def scene(stage):
         thing = await thing_of(stage)
         stage.call(thing, "run_long")
@@ -403,7 +403,7 @@ def test_an_artifact_can_be_disposed_through_any_workspace(play):
     play(scene)
 
 
-def test_an_operation_that_does_not_let_itself_be_stopped_is_left_behind(play):
+def test_an_operation_that_ignores_cancellation_is_abandoned(play):
     class Stubborn(Artifact):
         @operation
         async def go_on(self):
@@ -430,7 +430,7 @@ def test_an_operation_that_does_not_let_itself_be_stopped_is_left_behind(play):
     play(scene)
 
 
-def test_an_operation_that_rests_in_a_pause_fails_too(play):
+def test_a_paused_operation_fails_too(play):
     class Resting(Artifact):
         @operation(pausable=True)
         async def rest(self):
@@ -483,7 +483,7 @@ class Lonely(Artifact):
         await self.until(lambda: False)
 
 
-def test_who_disposed_its_own_artifact_does_not_wait_for_others(play):
+def test_an_operation_that_disposed_its_own_artifact_does_not_wait_for_others(play):
     async def scene(stage):
         outcome = await stage.call(await stage.make(Lonely), "leave").wait()
         assert outcome.reason == Structure("artifact_disposed", ("it",))

@@ -48,7 +48,7 @@ def test_a_thread_changes_properties_and_all_is_published_at_its_end(play):
         def work():
             with it.external_session():
                 it.update_property("level", 1)
-                it.signal("tick", it.caller or "nobody")
+                it.signal("tick", it.caller or "no agent")
                 it.update_property("level", 2)
                 it.define_property("more", 1)
                 seen.extend(watcher.notes)
@@ -57,7 +57,7 @@ def test_a_thread_changes_properties_and_all_is_published_at_its_end(play):
 
         await in_a_thread(work)
         assert seen[0] == "+level(0)", "nothing is seen of a session in progress"
-        assert seen[1] == "~tick('nobody') -level(0) +level(2) +more(1)", (
+        assert seen[1] == "~tick('no agent') -level(0) +level(2) +more(1)", (
             "it is published before the thread goes on"
         )
         await stage.clock.sleep(0)
@@ -110,7 +110,7 @@ def test_operations_wait_for_the_end_of_a_session(play):
     play(scene)
 
 
-def test_an_exception_undoes_the_session_and_goes_on_to_its_author(play):
+def test_an_exception_rolls_back_the_session_and_propagates(play):
     async def scene(stage):
         sensor, it = await sensor_of(stage)
         watcher = stage.watch(sensor)
@@ -157,7 +157,7 @@ def test_a_task_of_the_loop_uses_async_with_and_may_end_steps(play):
 def test_a_session_in_the_wrong_place_is_refused(play):
     async def scene(stage):
         sensor, it = await sensor_of(stage)
-        wrong = r"'with' is for other threads; in a task write 'async with'"
+        wrong = r"`with` is for other threads; in a task, use `async with`"
         with pytest.raises(InvalidArtifact, match=wrong), it.external_session():
             pass
         for op in ("nested", "nested_in_thread"):
@@ -184,7 +184,7 @@ def test_a_disposed_artifact_has_no_sessions(play):
         await stage.clock.sleep(1)
         waiting = asyncio.ensure_future(task())
         thread = in_a_thread(work)
-        while len(stage.main.pending(sensor)) < 3:  # noqa: ASYNC110 - the thread comes when it comes
+        while len(stage.main.pending(sensor)) < 3:  # noqa: ASYNC110 - the thread arrives at any time
             await asyncio.sleep(0)
         stage.main.dispose_artifact(sensor)
         for failing in (waiting, thread):
@@ -199,7 +199,7 @@ def test_a_disposed_artifact_has_no_sessions(play):
     play(scene)
 
 
-def test_a_session_goes_on_when_its_artifact_is_disposed_but_nobody_sees_it(play):
+def test_a_session_continues_unobserved_when_its_artifact_is_disposed(play):
     async def scene(stage):
         sensor, it = await sensor_of(stage)
         watcher = stage.watch(sensor)
@@ -231,7 +231,7 @@ def test_a_task_that_is_cancelled_while_it_waits_leaves_the_queue(play):
     play(scene)
 
 
-def test_a_thread_whose_loop_has_ended_is_not_left_waiting(play):
+def test_a_thread_does_not_wait_for_a_loop_that_has_ended(play):
     kept = []
 
     async def scene(stage):

@@ -1,4 +1,4 @@
-"""Code of artifacts that raises anything: told as its own fault, its step undone, nobody else disturbed."""
+"""Code of artifacts that raises anything: attributed to the artifact, its step rolled back, without other effects."""
 
 import asyncio
 import functools
@@ -7,7 +7,7 @@ import signal
 import pytest
 
 from jacaros.env import Artifact, OperationFailed, Out, Structure, internal_operation, operation
-from jacaros.env.kernel.faults import is_interruption, told
+from jacaros.env.kernel.faults import error_text, is_interruption
 
 
 class Unspeakable(Exception):
@@ -32,7 +32,7 @@ class OwnKind(BaseException):
 RAISED = [
     (ValueError("bad"), "ValueError in operation {op} of it: bad"),
     (Silent(), "Silent in operation {op} of it"),
-    (Unspeakable(), "Unspeakable in operation {op} of it: (its text cannot be had: ValueError)"),
+    (Unspeakable(), "Unspeakable in operation {op} of it: (its __str__ raised ValueError)"),
     (SystemExit(3), "SystemExit in operation {op} of it: 3"),
     (KeyboardInterrupt("mine"), "KeyboardInterrupt in operation {op} of it: mine"),
     (asyncio.CancelledError("mine"), "CancelledError in operation {op} of it: mine"),
@@ -127,7 +127,7 @@ class Bursting(Artifact):
 
 @pytest.mark.parametrize(("raised", "message"), RAISED, ids=lambda each: type(each).__name__)
 @pytest.mark.parametrize("op", ["now", "at_once", "later", "within", "guarded"])
-def test_an_operation_that_raises_anything_fails_and_is_undone(play, op, raised, message):
+def test_an_operation_that_raises_anything_fails_and_is_rolled_back(play, op, raised, message):
     async def scene(stage):
         it = await stage.make(type("Bursting", (Bursting,), {"what": raised}))
         watcher = stage.watch(it)
@@ -140,13 +140,13 @@ def test_an_operation_that_raises_anything_fails_and_is_undone(play, op, raised,
         assert watcher.notes[1:] == ["-count(0) +count(1)"]
 
     stage = play(scene)
-    assert stage.logged(f"[it] error in operation {op}/0, its step is undone:")
+    assert stage.logged(f"[it] error in operation {op}/0; its step is rolled back:")
     assert not stage.logged("must not run")
-    assert stage.logged("could not be disposed properly"), "errors of dispose are the artifact's too"
+    assert stage.logged("error while disposing"), "errors of dispose are the artifact's too"
 
 
 @pytest.mark.parametrize("op", ["now", "at_once"])
-def test_stop_iteration_is_no_exception_to_that(play, op):
+def test_stop_iteration_fails_an_operation_too(play, op):
     async def scene(stage):
         it = await stage.make(type("Bursting", (Bursting,), {"what": StopIteration("end")}))
         call = stage.call(it, op)
@@ -158,7 +158,7 @@ def test_stop_iteration_is_no_exception_to_that(play, op):
 
 
 @pytest.mark.parametrize(("raised", "message"), RAISED, ids=lambda each: type(each).__name__)
-def test_a_process_and_a_condition_that_raise_anything_are_undone(play, raised, message):
+def test_a_process_and_a_condition_that_raise_anything_are_rolled_back(play, raised, message):
     async def scene(stage):
         it = await stage.make(type("Bursting", (Bursting,), {"what": raised}))
         watcher = stage.watch(it)
@@ -169,12 +169,12 @@ def test_a_process_and_a_condition_that_raise_anything_are_undone(play, raised, 
         assert watcher.notes == ["+count(0) +kept(1)", "-count(0) +count(1)"]
 
     stage = play(scene)
-    assert stage.logged("[it] error in operation process/0, its step is undone:")
+    assert stage.logged("[it] error in operation process/0; its step is rolled back:")
 
 
 @pytest.mark.parametrize("when", ["constructor", "init", "slow init", "awaited init"])
 @pytest.mark.parametrize(("raised", "message"), RAISED, ids=lambda each: type(each).__name__)
-def test_an_artifact_whose_making_raises_anything_is_not_made(play, when, raised, message):
+def test_an_artifact_whose_creation_raises_anything_is_not_created(play, when, raised, message):
     class Unborn(Artifact):
         def __init__(self):
             if when == "constructor":
@@ -205,7 +205,7 @@ def test_an_artifact_whose_making_raises_anything_is_not_made(play, when, raised
     play(scene)
 
 
-def test_a_failure_that_is_no_proper_failure_is_one_all_the_same(play):
+def test_an_incomplete_failure_is_a_failure_too(play):
     class Odd(Artifact):
         @operation
         def homemade(self):
@@ -231,7 +231,7 @@ def test_a_failure_that_is_no_proper_failure_is_one_all_the_same(play):
         for op in ("nameless", "empty"):
             call = stage.call(odd, op)
             assert call.reason == Structure("operation_error", (f"{op}/0",))
-            assert "the reason begins with a name" in call.outcome.message
+            assert "expected a functor as reason" in call.outcome.message
 
     play(scene)
 
@@ -287,10 +287,10 @@ def test_a_guard_must_not_change_anything(play):
             ("a", "updating property count is not possible within a guard"),
             ("b", "the signal tick is not possible within a guard"),
             ("c", "defining property more is not possible within a guard"),
-            ("d", "a guard must be a plain def"),
+            ("d", "expected a plain def as guard"),
             ("e", "updating property count is not possible within a guard"),
-            ("f", "until wants a function"),
-            ("g", "a guard must be a plain def"),
+            ("f", "expected a function in until"),
+            ("g", "expected a plain def as guard"),
         ]:
             call = stage.call(it, op)
             await call.wait()
@@ -301,7 +301,7 @@ def test_a_guard_must_not_change_anything(play):
     play(scene)
 
 
-def test_what_cannot_be_converted_undoes_the_step(play):
+def test_a_value_that_cannot_be_converted_rolls_back_the_step(play):
     class Odd(Artifact):
         def init(self):
             self.define_property("count", 0)
@@ -333,7 +333,7 @@ def test_what_cannot_be_converted_undoes_the_step(play):
         it = await stage.make(Odd)
         watcher = stage.watch(it)
         assert "ValueError" in stage.call(it, "endless").outcome.message
-        assert "the functor of a structure is a text" in stage.call(it, "nameless").outcome.message
+        assert "expected a string as functor of a structure" in stage.call(it, "nameless").outcome.message
         assert "SystemExit" in stage.call(it, "strange", Out()).outcome.message
         assert watcher.notes == ["+count(0)"]
 
@@ -378,9 +378,9 @@ class Handling:
         raise KeyboardInterrupt
 
 
-def test_what_a_signal_handler_raises_is_no_fault_of_the_artifact():
+def test_an_exception_in_a_signal_handler_is_not_an_error_of_the_artifact():
     assert not is_interruption(caught(raise_it, ValueError))
-    assert not is_interruption(caught(raise_it, KeyboardInterrupt)), "somebody else takes Ctrl-C"
+    assert not is_interruption(caught(raise_it, KeyboardInterrupt)), "another handler takes Ctrl-C"
     for handler in (Handling().handler, functools.partial(Handling().handler)):
         signal.signal(signal.SIGINT, handler)
         assert is_interruption(caught(signal.raise_signal, signal.SIGINT))
@@ -410,6 +410,6 @@ async def interrupted(stage, kind):
     await stage.clock.sleep(1)
 
 
-def test_exceptions_are_told_in_words():
-    assert told(ValueError("x")) == "ValueError: x"
-    assert told(Silent()) == "Silent"
+def test_exceptions_are_described_in_words():
+    assert error_text(ValueError("x")) == "ValueError: x"
+    assert error_text(Silent()) == "Silent"

@@ -79,7 +79,7 @@ def test_a_guard_that_is_true_at_once_does_not_delay(play):
     play(scene)
 
 
-def test_the_completion_of_the_step_comes_before_the_operations_that_it_lets_go(play):
+def test_a_step_completes_before_the_operations_that_it_enables(play):
     async def scene(stage):
         store = await stage.make(Store)
         stage.watch(store)
@@ -96,7 +96,7 @@ def test_the_completion_of_the_step_comes_before_the_operations_that_it_lets_go(
     play(scene)
 
 
-def test_those_who_wait_are_served_in_the_order_of_arrival(play):
+def test_waiting_operations_are_served_in_the_order_of_arrival(play):
     async def scene(stage):
         store = await stage.make(Store)
         takes = [stage.call(store, "take", 2, agent=name) for name in ("a", "b", "c")]
@@ -106,7 +106,7 @@ def test_those_who_wait_are_served_in_the_order_of_arrival(play):
     play(scene)
 
 
-def test_one_who_can_go_is_not_held_up_by_one_before_who_cannot(play):
+def test_an_enabled_operation_does_not_wait_for_a_blocked_one_before_it(play):
     async def scene(stage):
         store = await stage.make(Store)
         big, small = stage.call(store, "take", 5), stage.call(store, "take", 1)
@@ -179,7 +179,7 @@ def test_an_error_in_a_guard_fails_the_operation_now_or_later(play):
     play(scene)
 
 
-def test_a_guard_knows_for_whom_it_is_asked(play):
+def test_a_guard_can_read_the_caller(play):
     async def scene(stage):
         kept = []
 

@@ -1,4 +1,4 @@
-"""What `init` is, when an artifact has several, and what it may do."""
+"""Methods `init`: which one is called, and what it may do."""
 
 import pytest
 from creation_lab import Counter
@@ -15,7 +15,7 @@ from jacaros.env import (
 from jacaros.trace import Cause
 
 
-def test_create_tells_a_plain_init_at_once(play):
+def test_create_reports_a_plain_init_immediately(play):
     async def scene(stage):
         told = []
         stage.main.create("c", Counter, [3], "bob", lambda *result: told.append(result))
@@ -26,12 +26,12 @@ def test_create_tells_a_plain_init_at_once(play):
         assert nothing is None
         assert refusal.reason == Structure("makeArtifactFailure", ("artifact_already_present", "c"))
         assert stage.main.create("d", Counter).ended
-        assert stage.main.create("d", Counter).ended, "a failure that nobody waits for"
+        assert stage.main.create("d", Counter).ended, "a failure without a waiting caller"
 
     play(scene)
 
 
-def test_the_cause_of_the_making_is_that_of_its_processes(play):
+def test_the_cause_of_the_creation_is_that_of_its_processes(play):
     class Alive(Artifact):
         def init(self):
             self.start(self.beat)
@@ -62,7 +62,7 @@ def test_the_creator_is_the_caller_in_init(play):
     play(scene)
 
 
-def test_artifacts_know_their_surroundings_in_init(play):
+def test_artifacts_know_their_workspace_in_init(play):
     class Curious(Artifact):
         def init(self):
             self.define_property(
@@ -142,13 +142,13 @@ def test_of_several_inits_the_one_with_that_number_of_arguments_runs(play):
         ]:
             it = await stage.make(kind, *args)
             assert stage.property(it, "made") == values
-            assert "unknown" in str(stage.call(it, "init", *args).reason), "an init is no operation"
+            assert "unknown" in str(stage.call(it, "init", *args).reason), "an init is not an operation"
             stage.main.dispose_artifact(it)
 
     play(scene)
 
 
-def test_two_inits_with_one_number_of_arguments_are_a_mistake():
+def test_two_inits_with_the_same_arity_are_an_error():
     with pytest.raises(InvalidArtifact, match="are both init init with 1 arguments"):
 
         class Twice(Artifact):
@@ -172,7 +172,7 @@ def test_an_init_that_is_an_operation_too_can_be_called_by_agents(play):
     play(scene)
 
 
-def test_an_init_whose_arguments_nobody_takes_tells_those_it_takes(play):
+def test_the_error_for_wrong_init_arguments_lists_the_accepted_ones(play):
     class Two(Artifact):
         def init(self, a): ...
 
@@ -183,7 +183,7 @@ def test_an_init_whose_arguments_nobody_takes_tells_those_it_takes(play):
         with pytest.raises(OperationFailed) as caught:
             await stage.make(Two, 1, 2, 3)
         assert (
-            "its init takes (a: any value) or (a: any value, b: an integer), not 3 arguments"
+            "expected (a: any value) or (a: any value, b: an integer) as arguments of init, found 3 arguments"
             in caught.value.message
         )
 

@@ -1,4 +1,4 @@
-"""Processes of an artifact's own, started by its operations, by ``init`` and by callbacks."""
+"""Internal processes of an artifact, started by its operations, by ``init`` and by callbacks."""
 
 import pytest
 
@@ -90,7 +90,7 @@ class Clock(Artifact):
         self.start(self.guarded)
 
 
-def test_a_process_goes_on_after_the_operation_that_started_it_has_ended(play):
+def test_a_process_continues_after_the_operation_that_started_it(play):
     async def scene(stage):
         clock = await stage.make(Clock)
         watcher = stage.watch(clock)
@@ -161,7 +161,7 @@ def test_processes_begin_after_the_step_that_starts_them_in_their_order(play):
     play(scene)
 
 
-def test_a_failing_process_is_undone_and_logged_and_harms_nobody(play):
+def test_a_failing_process_is_rolled_back_and_logged_without_other_effects(play):
     async def scene(stage):
         clock = await stage.make(Clock)
         assert stage.call(clock, "startAll").ok
@@ -191,13 +191,13 @@ def test_a_guarded_process_waits(play):
     play(scene)
 
 
-def test_an_unknown_process_is_a_mistake_in_the_artifact(play):
+def test_an_unknown_process_is_an_error_of_the_artifact(play):
     async def scene(stage):
         clock = await stage.make(Clock)
         call = stage.call(clock, "wrong")
-        assert "no internal operation no_such with 0 arguments" in call.outcome.message
+        assert "unknown internal operation `no_such/0`" in call.outcome.message
         call = stage.call(clock, "wrongMethod")
-        assert "put @internal_operation above def has_ticks" in call.outcome.message
+        assert "add @internal_operation above def has_ticks" in call.outcome.message
 
     play(scene)
 
@@ -207,12 +207,12 @@ def test_agents_cannot_call_internal_operations(play):
         clock = await stage.make(Clock)
         call = stage.call(clock, "work", 3)
         assert call.reason.functor == "unknown_operation"
-        assert "its internal operation of that name is for the artifact itself only" in call.outcome.message
+        assert "its internal operation of this name is for the artifact itself only" in call.outcome.message
 
     play(scene)
 
 
-def test_a_process_started_in_init_begins_when_the_artifact_is_there(play):
+def test_a_process_started_in_init_begins_when_the_artifact_exists(play):
     class Alive(Artifact):
         def init(self):
             self.define_property("beats", 0)
@@ -235,7 +235,7 @@ def test_a_process_started_in_init_begins_when_the_artifact_is_there(play):
     play(scene)
 
 
-def test_a_callback_starts_a_process_which_runs_at_once_when_the_artifact_is_free(play):
+def test_a_process_started_by_a_callback_runs_immediately_if_the_artifact_is_free(play):
     kept = []
 
     class Sensor(Artifact):
@@ -269,7 +269,7 @@ def test_a_callback_starts_a_process_which_runs_at_once_when_the_artifact_is_fre
         stage.main.dispose_artifact(sensor)
         kept[0].on_sample(10)
         kept[0].start("receive", 11, cause=Cause(1, 0, "sample", "late"))
-        with pytest.raises(InvalidArtifact, match="receive with 0 arguments"):
+        with pytest.raises(InvalidArtifact, match="unknown internal operation `receive/0`"):
             kept[0].start("receive")
 
     play(scene)

@@ -1,4 +1,4 @@
-"""Linked operations: out ports, outputs, failures that pass through, cancelling a chain."""
+"""Linked operations: out ports, outputs, failures that propagate, cancelling a chain."""
 
 import pytest
 
@@ -180,7 +180,7 @@ def test_an_unknown_linked_operation_fails_with_its_reason(play):
         call = stage.call(switch, "forward", "ping")
         await call.wait()
         assert call.reason == Structure("unknown_operation", (lamp, "ping"))
-        assert "no linked operation ping/0" in call.outcome.message
+        assert "unknown linked operation `ping/0`" in call.outcome.message
 
     play(scene)
 
@@ -190,23 +190,23 @@ def test_agents_cannot_call_linked_operations_unless_they_are_operations_too(pla
         lamp, _ = await linked(stage)
         call = stage.call(lamp, "raise", 1)
         assert call.reason == Structure("unknown_operation", (lamp, "raise"))
-        assert "its linked operation of that name is for other artifacts only" in call.outcome.message
+        assert "its linked operation of this name is for other artifacts only" in call.outcome.message
         assert stage.call(lamp, "read", Out()).ok
 
     play(scene)
 
 
-def test_nothing_linked_and_no_such_port(play):
+def test_an_unlinked_or_unknown_port_fails(play):
     async def scene(stage):
         switch = await stage.make(Switch, name="switch")
         call = stage.call(switch, "forward", "refuse")
         await call.wait()
         assert call.reason == Structure("operation_error", ("forward/1",)), "as in CArtAgO"
-        assert call.outcome.message == "nothing is linked to port out of artifact switch"
+        assert call.outcome.message == "port out of artifact switch is not linked"
         wrong = stage.call(switch, "wrong_port")
         await wrong.wait()
         assert wrong.reason == Structure("operation_error", ("wrong_port/0",))
-        assert "no out port 'in'" in wrong.outcome.message
+        assert "unknown out port `in`" in wrong.outcome.message
 
     play(scene)
 
@@ -240,7 +240,7 @@ def test_the_caller_is_free_for_others_while_it_waits(play):
     play(scene)
 
 
-def test_dropping_the_caller_drops_the_linked_operations(play):
+def test_cancelling_the_caller_cancels_the_linked_operations(play):
     async def scene(stage):
         lamp, switch = await linked(stage)
         watcher = stage.watch(lamp)
@@ -287,7 +287,9 @@ def test_disposing_the_caller_leaves_the_other_links_alone(play):
 def test_linking_is_checked(play):
     async def scene(stage):
         lamp, switch = await linked(stage)
-        with pytest.raises(OperationFailed, match="has no out port up; its ports are out, spare") as caught:
+        with pytest.raises(
+            OperationFailed, match=r"unknown out port `up` of .*; its ports are out, spare"
+        ) as caught:
             stage.main.link(switch, "up", lamp)
         assert caught.value.reason == Structure("unknown_port", ("up",))
         with pytest.raises(OperationFailed, match="it has none"):
@@ -320,7 +322,7 @@ def test_links_reach_other_workspaces(play):
     play(scene)
 
 
-def test_a_target_that_goes_away_during_the_call_is_not_available(play):
+def test_a_target_that_is_disposed_during_the_call_is_not_available(play):
     class Jealous(Artifact):
         @link
         def greet(self):
@@ -408,7 +410,7 @@ def test_without_a_port_the_first_one_is_meant(play):
         hub, dim = await stage.make(Hub, name="hub"), await stage.make(Dim, name="dim")
         stage.main.link(hub, None, dim)
         assert stage.main.linked(hub, "first") == (dim,)
-        with pytest.raises(OperationFailed, match="has no out port any; it has none"):
+        with pytest.raises(OperationFailed, match=r"unknown out port `any` of .*; it has none"):
             stage.main.link(dim, None, hub)
 
     play(scene)

@@ -126,7 +126,7 @@ def test_properties_and_signals_are_found_in_docstrings_and_code():
     ]
 
 
-def test_what_was_made_in_a_running_program_is_described_without_its_source():
+def test_a_type_created_at_run_time_is_described_without_its_source():
     names = {"Artifact": Artifact}
     exec("class Made(Artifact):\n    def init(self):\n        self.define_property('p', 1)\n", names)
     assert describe(names["Made"]).properties == ()

@@ -1,4 +1,4 @@
-"""Many artifacts: finding one does not take a look at all, and what is gone leaves nothing behind."""
+"""Many artifacts: finding one needs no search, and disposed ones leave nothing behind."""
 
 import gc
 
@@ -49,7 +49,7 @@ def alive(kind):
     return sum(type(each) is kind for each in gc.get_objects())
 
 
-def test_an_artifact_is_chosen_without_a_look_at_all_others(play, monkeypatch):
+def test_an_artifact_is_chosen_without_searching_all_others(play, monkeypatch):
     async def scene(stage):
         counted = Counted(monkeypatch)
         for number in range(MANY):
@@ -66,7 +66,7 @@ def test_an_artifact_is_chosen_without_a_look_at_all_others(play, monkeypatch):
     play(scene)
 
 
-def test_among_many_ones_own_is_chosen_then_the_one_focused_first(play):
+def test_among_many_an_own_artifact_is_chosen_then_the_one_focused_first(play):
     async def scene(stage):
         made = []
         for number in range(MANY):
@@ -78,8 +78,8 @@ def test_among_many_ones_own_is_chosen_then_the_one_focused_first(play):
             return chosen_artifact([stage.main], "ping", 0, own, focused)
 
         assert (chosen("agent0"), chosen("agent7")) == (made[0], made[7])
-        assert chosen("nobody") is made[0]
-        assert chosen("nobody", (made[9], made[3])) is made[9]
+        assert chosen("other") is made[0]
+        assert chosen("other", (made[9], made[3])) is made[9]
         assert chosen("agent5", (made[9],)) is made[5]
         stage.main.dispose_artifact(made[7])
         assert chosen("agent7") is made[17]
@@ -87,7 +87,7 @@ def test_among_many_ones_own_is_chosen_then_the_one_focused_first(play):
     play(scene)
 
 
-def test_what_is_disposed_leaves_nothing_behind(play):
+def test_disposed_artifacts_leave_nothing_behind(play):
     async def scene(stage):
         gone = []
         stage.environment.when_disposed(gone.append)
@@ -111,7 +111,7 @@ def test_what_is_disposed_leaves_nothing_behind(play):
     play(scene)
 
 
-def test_who_stops_watching_a_workspace_is_forgotten(play):
+def test_a_removed_watcher_of_a_workspace_is_forgotten(play):
     async def scene(stage):
         before = len(stage.main._watchers)
         ends = [stage.main.watch(lambda artifact, present: None) for _ in range(MANY)]
@@ -123,7 +123,7 @@ def test_who_stops_watching_a_workspace_is_forgotten(play):
     play(scene)
 
 
-def test_names_of_properties_that_are_gone_are_forgotten(play):
+def test_names_of_removed_properties_are_forgotten(play):
     async def scene(stage):
         lamp = await stage.make(Lamp, name="lamp")
         for number in range(MANY):

@@ -1,4 +1,4 @@
-"""Mistakes of an artifact's author that once were silent, or told without their help."""
+"""Errors of an artifact's author that were once silent, or reported without a fix."""
 
 import asyncio
 
@@ -13,7 +13,7 @@ def made(**members):
 
 @pytest.mark.parametrize("ports", ["out", (1,)])
 def test_ports_are_a_tuple_of_names(ports):
-    with pytest.raises(InvalidArtifact, match=r'write a tuple of names, such as ports = \("out",\)'):
+    with pytest.raises(InvalidArtifact, match=r'expected a tuple of names as .*; write ports = \("out",\)'):
         made(ports=ports)
 
 
@@ -66,15 +66,15 @@ class Careless(Artifact):
 @pytest.mark.parametrize(
     ("operation_name", "arguments", "told"),
     [
-        ("hide", (), "self.value = ... would replace a part of Artifact: call the attribute otherwise"),
-        ("where", (), "property room has 2 values, not 1 as ('h',): give all, None for any value"),
-        ("index", (), "property room has 2 values, and none at index 5: the first is at 0"),
-        ("get", (Out(),), "to give a result, annotate it: `x: Out`"),
-        ("begin_unmarked", (), "put @internal_operation above def unmarked"),
-        ("undefined", (), 'self.define_property("on", ...) makes one'),
+        ("hide", (), "self.value = ... would replace a part of Artifact; choose another name"),
+        ("where", (), "expected 2 values of property room, found 1: ('h',); None matches any value"),
+        ("index", (), "property room has 2 values, so index 5 is out of range (the first index is 0)"),
+        ("get", (Out(),), "for an output, annotate the parameter: `x: Out`"),
+        ("begin_unmarked", (), "add @internal_operation above def unmarked"),
+        ("undefined", (), 'add it with self.define_property("on", ...)'),
     ],
 )
-def test_the_mistake_of_an_author_is_told_with_its_cure(play, operation_name, arguments, told):
+def test_an_error_of_an_author_is_reported_with_a_fix(play, operation_name, arguments, told):
     async def scene(stage):
         call = stage.call(await stage.make(Careless), operation_name, *arguments)
         assert told in call.outcome.message
@@ -82,17 +82,17 @@ def test_the_mistake_of_an_author_is_told_with_its_cure(play, operation_name, ar
     play(scene)
 
 
-def test_an_operation_that_an_artifact_calls_without_await_is_told(play):
+def test_an_operation_called_without_await_is_reported(play):
     async def scene(stage):
         careless = await stage.make(Careless)
         outcome = await stage.call(careless, "forget").wait()
-        assert "self.rest(...) does nothing without await" in outcome.message
+        assert "self.rest(...) has no effect without await" in outcome.message
         assert (await stage.call(careless, "rest").wait()).ok
 
     play(scene)
 
 
-def test_a_signal_to_nobody_is_told(play):
+def test_a_signal_without_an_agent_is_reported(play):
     async def scene(stage):
         careless = await stage.make(Careless)
         assert stage.call(careless, "begin").ok
@@ -102,7 +102,7 @@ def test_a_signal_to_nobody_is_told(play):
     play(scene)
 
 
-def test_an_annotation_that_names_nothing_is_told_once_and_one_that_comes_later_counts(play):
+def test_an_unknown_annotation_is_reported_once_and_a_later_definition_counts(play):
     names = {"__name__": __name__, "Artifact": Artifact, "operation": operation}
     exec(
         "class Late(Artifact):\n"
@@ -115,11 +115,11 @@ def test_an_annotation_that_names_nothing_is_told_once_and_one_that_comes_later_
     async def scene(stage):
         for name in ("a", "b"):
             made = await stage.make(names["Late"], name=name)
-        (told,) = [line for line in stage.lines if "accepts anything" in line]
+        (told,) = [line for line in stage.lines if "accepts any value" in line]
         assert told.startswith(
-            "[Late] parameter x of Late.put accepts anything: its annotation 'NoSuch' is not known;"
+            "[Late] parameter x of Late.put accepts any value: unknown annotation 'NoSuch';"
         )
-        assert "wants an integer" in stage.call(made, "place", "hall").outcome.message
+        assert "expected an integer" in stage.call(made, "place", "hall").outcome.message
         assert stage.call(made, "put", "hall").ok
 
     play(scene)
@@ -139,12 +139,12 @@ def test_a_missing_port_can_be_caught(play):
     async def scene(stage):
         result = Out()
         assert (await stage.call(await stage.make(Speaker), "say", result).wait()).ok
-        assert result.value.endswith("has no out port 'outt'; its ports are out operation_error(\"say/1\")")
+        assert result.value.endswith('; its ports are out operation_error("say/1")')
 
     play(scene)
 
 
-def test_a_value_is_of_the_class_that_is_asked_for(play):
+def test_a_value_of_another_class_is_an_error(play):
     class Typed(Artifact):
         def init(self):
             self.define_property("free", 3)
@@ -162,7 +162,7 @@ def test_a_value_is_of_the_class_that_is_asked_for(play):
         assert stage.call(typed, "ask", free).ok
         assert free.value is True
         assert (
-            "property free has 3 at index 0, which is no str"
+            "expected str at index 0 of property free, found 3"
             in stage.call(typed, "ask_wrongly").outcome.message
         )
 
@@ -188,13 +188,13 @@ class Copying(Artifact):
         last.set(self.value("path").pop())
 
 
-def test_a_change_of_a_copy_is_told_once(play):
+def test_a_change_of_a_copy_is_reported_once(play):
     async def scene(stage):
         await stage.make(Copying, name="a")
         copying = await stage.make(Copying, name="b")
-        (told,) = [line for line in stage.lines if "changes a copy" in line]
+        (told,) = [line for line in stage.lines if "changes only a copy" in line]
         assert told.startswith("[Copying] in Copying.add (line ")
-        assert "): self.value('path').append(x) changes a copy of the value, and nothing else" in told
+        assert "): self.value('path').append(x) changes only a copy of the value" in told
         assert stage.call(copying, "add_rightly", 3).ok
         assert stage.property(copying, "path") == ([3],)
 

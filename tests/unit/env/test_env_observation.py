@@ -97,7 +97,7 @@ def test_focus_begins_with_all_properties_and_is_idempotent(play):
     play(scene)
 
 
-def test_stop_focus_takes_the_properties_back_and_a_later_focus_shows_the_current_values(play):
+def test_stop_focus_removes_the_properties_and_a_later_focus_shows_the_current_values(play):
     async def scene(stage):
         ticker = await stage.make(Ticker, 10)
         watcher = stage.watch(ticker)
@@ -170,7 +170,7 @@ def test_an_update_to_an_equal_value_is_published(play):
     play(scene)
 
 
-def test_what_comes_and_goes_in_one_step_is_not_published(play):
+def test_a_property_added_and_removed_in_one_step_is_not_published(play):
     async def scene(stage):
         ticker = await stage.make(Ticker)
         watcher = stage.watch(ticker)
@@ -237,7 +237,7 @@ def test_a_signal_to_one_agent_reaches_it_alone_while_the_changes_reach_all(play
     play(scene)
 
 
-def test_a_signal_to_one_agent_without_changes_concerns_nobody_else(play):
+def test_a_signal_to_one_agent_without_changes_reaches_no_other_observer(play):
     class Whisper(Artifact):
         @operation
         def whisper(self, agent: str):
@@ -291,7 +291,7 @@ def test_annotations_of_a_property_are_published(play):
     play(scene)
 
 
-def test_a_broken_observer_is_reported_and_the_others_are_told(play):
+def test_a_broken_observer_is_reported_and_the_others_are_notified(play):
     async def scene(stage):
         ticker = await stage.make(Ticker)
 
@@ -311,7 +311,7 @@ def test_a_broken_observer_is_reported_and_the_others_are_told(play):
     play(scene, expect_defects=True)
 
 
-def test_an_observer_may_leave_while_it_is_told(play):
+def test_an_observer_may_stop_while_it_is_notified(play):
     async def scene(stage):
         ticker = await stage.make(Ticker)
 

@@ -101,7 +101,7 @@ def test_a_plain_operation_has_ended_when_execute_returns(play):
     play(scene)
 
 
-def test_observers_are_told_before_the_caller(play):
+def test_observers_are_notified_before_the_caller(play):
     async def scene(stage):
         counter = await stage.make(Counter)
         stage.watch(counter)
@@ -182,13 +182,13 @@ def test_whole_real_numbers_are_integers_and_integers_are_real_numbers(play):
 @pytest.mark.parametrize(
     ("operation", "arguments", "parameter", "expected", "got"),
     [
-        ("half", (3.5, Out()), "number (number 1)", "an integer", "3.5"),
-        ("half", (True, Out()), "number (number 1)", "an integer", "true"),
-        ("half", ("three", Out()), "number (number 1)", "an integer", '"three"'),
-        ("half", (3, 4), "result (number 2)", "an unbound variable", "4"),
-        ("half", (Out(), Out()), "number (number 1)", "an integer", "an unbound variable"),
-        ("root", (1.5, 7, Out()), "label (number 2)", "a text", "7"),
-        ("root", (10**400, "x", Out()), "number (number 1)", "a number", "1000"),
+        ("half", (3.5, Out()), "argument 1 (number)", "an integer", "3.5"),
+        ("half", (True, Out()), "argument 1 (number)", "an integer", "true"),
+        ("half", ("three", Out()), "argument 1 (number)", "an integer", '"three"'),
+        ("half", (3, 4), "argument 2 (result)", "an unbound variable", "4"),
+        ("half", (Out(), Out()), "argument 1 (number)", "an integer", "an unbound variable"),
+        ("root", (1.5, 7, Out()), "argument 2 (label)", "a text", "7"),
+        ("root", (10**400, "x", Out()), "argument 1 (number)", "a number", "1000"),
     ],
 )
 def test_a_wrong_argument_fails_and_is_named(play, operation, arguments, parameter, expected, got):
@@ -197,37 +197,37 @@ def test_a_wrong_argument_fails_and_is_named(play, operation, arguments, paramet
         call = stage.call(counter, operation, *arguments)
         key = f"{operation}/{len(arguments)}"
         assert call.reason == Structure("wrong_op_arguments", (counter, key))
-        assert (
-            f"operation {key} of artifact it: parameter {parameter} wants {expected}" in call.outcome.message
-        )
-        assert f"got {got}" in call.outcome.message
+        assert f"operation {key} of artifact it: {parameter}: expected {expected}" in call.outcome.message
+        assert f"found {got}" in call.outcome.message
 
     play(scene)
 
 
-def test_an_unknown_operation_fails_with_a_spelling_hint(play):
+def test_an_unknown_operation_fails_with_a_suggestion(play):
     async def scene(stage):
         counter = await stage.make(Counter)
         call = stage.call(counter, "incc")
         assert call.reason == Structure("unknown_operation", (counter, "incc"))
-        assert "did you mean inc?" in call.outcome.message
+        assert "did you mean `inc`?" in call.outcome.message
         assert "inc/0, inc/1, half/2" in call.outcome.message
         assert call.execution.ended
 
     play(scene)
 
 
-def test_a_known_operation_with_a_wrong_number_of_arguments_says_which_there_are(play):
+def test_the_error_for_a_wrong_arity_lists_the_known_ones(play):
     async def scene(stage):
         counter = await stage.make(Counter)
         call = stage.call(counter, "inc", 1, 2, 3)
         assert call.reason == Structure("unknown_operation", (counter, "inc"))
-        assert "no operation inc/3; there is inc/0, inc/1" in call.outcome.message
+        assert (
+            "unknown operation `inc/3` of artifact it (Counter); it has inc/0, inc/1" in call.outcome.message
+        )
 
     play(scene)
 
 
-def test_a_failing_operation_gives_its_message_and_reason(play):
+def test_a_failing_operation_has_a_message_and_a_reason(play):
     async def scene(stage):
         counter = await stage.make(Counter)
         call = stage.call(counter, "refuse", "wrong_key", 3)
@@ -249,7 +249,7 @@ def test_a_reason_without_arguments_is_an_atom_and_a_failure_may_have_no_reason(
     play(scene)
 
 
-def test_a_failing_step_is_undone_and_observers_see_nothing(play):
+def test_a_failing_step_is_rolled_back_unobserved(play):
     async def scene(stage):
         counter = await stage.make(Counter)
         watcher = stage.watch(counter)
@@ -262,7 +262,7 @@ def test_a_failing_step_is_undone_and_observers_see_nothing(play):
     play(scene)
 
 
-def test_an_unexpected_error_is_undone_logged_with_its_trace_and_given_as_operation_error(play):
+def test_an_unexpected_error_is_rolled_back_logged_with_its_traceback_and_an_operation_error(play):
     async def scene(stage):
         counter = await stage.make(Counter)
         watcher = stage.watch(counter)
@@ -281,7 +281,7 @@ def test_an_unexpected_error_is_undone_logged_with_its_trace_and_given_as_operat
     play(scene)
 
 
-def test_a_defect_of_our_own_is_reported_and_the_operation_fails(play):
+def test_an_internal_error_is_reported_and_the_operation_fails(play):
     async def scene(stage):
         counter = await stage.make(Counter)
         call = stage.call(counter, "defect")
@@ -292,7 +292,7 @@ def test_a_defect_of_our_own_is_reported_and_the_operation_fails(play):
     play(scene, expect_defects=True)
 
 
-def test_a_plain_method_that_gives_a_coroutine_is_a_mistake_that_is_explained(play):
+def test_a_plain_method_that_returns_a_coroutine_is_an_explained_error(play):
     async def scene(stage):
         counter = await stage.make(Counter)
         call = stage.call(counter, "badly")
@@ -342,7 +342,7 @@ def test_properties_cannot_be_changed_outside_of_operations(play):
     play(scene)
 
 
-def test_an_error_in_the_callers_callback_is_reported_and_harms_nobody(play):
+def test_an_error_in_the_callers_callback_is_reported_without_other_effects(play):
     async def scene(stage):
         counter = await stage.make(Counter)
         call = stage.call(counter, "inc")
@@ -360,7 +360,7 @@ def test_an_error_in_the_callers_callback_is_reported_and_harms_nobody(play):
     play(scene, expect_defects=True)
 
 
-def test_a_caller_that_calls_again_from_its_callback_is_served_after_those_who_wait(play):
+def test_a_call_from_a_callback_is_served_after_waiting_ones(play):
     async def scene(stage):
         counter = await stage.make(Counter)
         order = []

@@ -1,4 +1,4 @@
-"""Pausing: opt-in, immediate where it matters, and time that was paused is known."""
+"""Pausing: opt-in, immediate where it matters, and with the paused time known."""
 
 from jacaros.env import Artifact, link, operation
 
@@ -92,7 +92,7 @@ def units(stage, robot):
     return stage.property(robot, "units")[0]
 
 
-def test_a_paused_motion_halts_at_once_and_goes_on_with_what_remains(play):
+def test_a_paused_motion_stops_immediately_and_continues_with_the_rest(play):
     async def scene(stage):
         robot = await robot_of(stage)
         move = stage.call(robot, "move", 5)
@@ -127,7 +127,7 @@ def test_a_pause_that_is_over_before_the_pause_point_still_counts_as_lost_time(p
     play(scene)
 
 
-def test_pausing_again_before_it_has_gone_on_keeps_it_paused(play):
+def test_pausing_again_before_it_continues_keeps_it_paused(play):
     async def scene(stage):
         robot = await robot_of(stage)
         move = stage.call(robot, "move", 2)
@@ -163,7 +163,7 @@ def test_pause_and_resume_are_idempotent(play):
     play(scene)
 
 
-def test_an_operation_that_is_not_pausable_goes_on(play):
+def test_an_operation_that_is_not_pausable_continues(play):
     async def scene(stage):
         robot = await robot_of(stage)
         deaf = stage.call(robot, "deaf")
@@ -304,7 +304,7 @@ def test_a_linked_operation_called_while_paused_is_paused_from_the_beginning(pla
     play(scene)
 
 
-def test_a_cancelled_waiter_does_not_disturb_the_resume(play):
+def test_a_cancelled_wait_does_not_prevent_the_resume(play):
     async def scene(stage):
         robot = await robot_of(stage)
         call = stage.call(robot, "waits_itself")
@@ -319,7 +319,7 @@ def test_a_cancelled_waiter_does_not_disturb_the_resume(play):
     play(scene)
 
 
-def test_observers_may_pause_an_operation_while_they_are_told(play):
+def test_observers_may_pause_an_operation_while_they_are_notified(play):
     async def scene(stage):
         robot = await robot_of(stage)
         move = stage.call(robot, "move", 3)

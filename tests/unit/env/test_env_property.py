@@ -37,7 +37,7 @@ def test_an_update_to_an_equal_value_is_a_change():
     assert len(store.commit().changed) == 1
 
 
-def test_an_update_if_new_to_equal_values_is_no_change():
+def test_an_update_if_new_to_equal_values_changes_nothing():
     store = store_of(("count", 0), ("place", 1, [2, True]))
     store.update("count", (0,), None, if_new=True)
     store.update("count", (0.0,), (), if_new=True)
@@ -53,7 +53,7 @@ def test_an_update_if_new_to_other_values_or_annotations_is_a_change():
         assert [change[1].values for change in store.commit().changed] == [new]
 
 
-def test_a_step_that_comes_back_to_the_old_value_has_changed_it_all_the_same():
+def test_a_step_that_restores_the_old_value_still_changes_it():
     store = store_of(("count", 0))
     store.update("count", (1,), None, if_new=True)
     store.update("count", (0,), None, if_new=True)
@@ -78,7 +78,7 @@ def test_removed_and_defined_again_is_a_removal_and_an_addition():
     assert changes.added[0].key != changes.removed[0].key
 
 
-def test_updated_and_removed_in_one_step_tells_the_value_that_observers_know():
+def test_an_update_and_removal_in_one_step_reports_the_observed_value():
     store = store_of(("p", 1))
     store.update("p", (2,), None)
     store.remove("p", ())
@@ -142,7 +142,7 @@ def test_observers_of_a_step_in_progress_see_what_was_committed():
     assert store.first("p").values == (9,)
 
 
-def test_values_are_copied_so_that_nobody_changes_them_behind_the_back():
+def test_values_are_copied_so_later_changes_have_no_effect():
     trace = [1]
     store = store_of(("trace", trace))
     trace.append(2)
@@ -163,7 +163,7 @@ def test_annotations_stay_until_they_are_replaced():
 def test_an_unknown_property_is_explained():
     store = store_of(("count", 0), ("level", 1))
     with pytest.raises(
-        UnknownProperty, match=r"no observable property cuont \(it has count, level\); did you mean"
+        UnknownProperty, match=r"unknown observable property `cuont` \(it has count, level\); did you mean"
     ):
         store.update("cuont", (1,), None)
     with pytest.raises(UnknownProperty, match="it has none"):
@@ -228,7 +228,7 @@ def test_the_property_to_update_is_found_by_its_values(play):
             "-room('kitchen','dirty') +room('kitchen','clean')",
         ]
         call = stage.call(rooms, "clean", "cellar")
-        assert "no observable property room has the values ('cellar', None)" in call.outcome.message
+        assert "no property room has the values ('cellar', None)" in call.outcome.message
 
     play(scene)
 
@@ -273,7 +273,7 @@ def test_annotations_are_added_once_and_a_later_update_is_not_lost(play):
     play(scene)
 
 
-def test_every_artifact_lets_its_properties_be_looked_at_without_focus(play):
+def test_properties_of_every_artifact_can_be_read_without_focus(play):
     async def scene(stage):
         rooms = await stage.make(Rooms)
         out = Out()
@@ -321,7 +321,7 @@ def test_many_properties_are_found_as_few_are():
         try:
             step()
         except UnknownProperty:
-            store.roll_back()  # values that equal nothing, such as those with a number that is none
+            store.roll_back()  # values that equal nothing, such as NaN
         else:
             (store.commit if random.randrange(4) else store.roll_back)()
         for first in FIRST_VALUES:
@@ -333,7 +333,7 @@ def test_many_properties_are_found_as_few_are():
     assert len(store.all("cell")) > 20
 
 
-def test_one_of_many_properties_is_found_without_a_look_at_all(monkeypatch):
+def test_one_of_many_properties_is_found_without_a_search(monkeypatch):
     store = store_of(*(("cell", number, 0) for number in range(1000)))
     looks = []
     fits = properties._fits

@@ -1,4 +1,4 @@
-"""Operations that use resources: they wait, give way, come back, and free what they hold whatever their end."""
+"""Operations that use resources: they wait, yield, resume, and always release what they hold."""
 
 import asyncio
 from typing import Any
@@ -101,7 +101,7 @@ def in_lab(body: Any) -> None:
     run(main, lab.clock)
 
 
-def test_operations_that_use_the_same_follow_each_other() -> None:
+def test_operations_with_the_same_resource_run_in_turn() -> None:
     async def body(lab: Lab) -> None:
         lab.begin("one", 1)
         lab.begin("two", 1, do="dock")
@@ -111,7 +111,7 @@ def test_operations_that_use_the_same_follow_each_other() -> None:
     in_lab(body)
 
 
-def test_an_urgent_operation_has_the_wheels_when_the_robot_stands_and_the_other_continues() -> None:
+def test_an_urgent_operation_gets_the_wheels_when_the_robot_has_stopped_and_the_other_continues() -> None:
     async def body(lab: Lab) -> None:
         lab.begin("tour", 3)
         await lab.clock.sleep(1.05)
@@ -132,7 +132,7 @@ def test_an_urgent_operation_has_the_wheels_when_the_robot_stands_and_the_other_
     in_lab(body)
 
 
-def test_what_cannot_pause_finishes_first_and_what_is_to_be_cancelled_fails() -> None:
+def test_preemption_finishes_or_cancels_what_cannot_pause() -> None:
     async def body(lab: Lab) -> None:
         lab.begin("dock", 2, do="dock")
         lab.begin("grasp", 5, do="grasp")
@@ -148,7 +148,7 @@ def test_what_cannot_pause_finishes_first_and_what_is_to_be_cancelled_fails() ->
     in_lab(body)
 
 
-def test_a_caller_that_suspends_gives_the_wheels_to_others_and_waits_for_them_afterwards() -> None:
+def test_a_suspended_caller_releases_the_wheels_and_waits_for_them_afterwards() -> None:
     async def body(lab: Lab) -> None:
         tour = lab.begin("tour", 2)
         await lab.clock.sleep(1.05)
@@ -171,7 +171,7 @@ def test_a_caller_that_suspends_gives_the_wheels_to_others_and_waits_for_them_af
     in_lab(body)
 
 
-def test_suspending_what_is_preempted_keeps_it_from_continuing() -> None:
+def test_a_preempted_operation_that_is_suspended_does_not_continue() -> None:
     async def body(lab: Lab) -> None:
         tour = lab.begin("tour", 2)
         await lab.clock.sleep(1.05)
@@ -188,7 +188,7 @@ def test_suspending_what_is_preempted_keeps_it_from_continuing() -> None:
     in_lab(body)
 
 
-def test_a_death_frees_what_was_held_and_what_was_waited_for() -> None:
+def test_the_end_of_an_agent_releases_what_it_held_and_waited_for() -> None:
     async def body(lab: Lab) -> None:
         first, second = lab.begin("first", 9), lab.begin("second", 9)
         lab.begin("third", 1)
@@ -209,7 +209,7 @@ def test_a_death_frees_what_was_held_and_what_was_waited_for() -> None:
     in_lab(body)
 
 
-def test_a_lift_takes_two_and_a_limit_of_time_counts_while_waiting() -> None:
+def test_a_lift_has_two_units_and_a_time_limit_includes_waiting() -> None:
     async def body(lab: Lab) -> None:
         for name in ("a", "b", "c"):
             lab.begin(name, 2, do="ride")
@@ -219,7 +219,7 @@ def test_a_lift_takes_two_and_a_limit_of_time_counts_while_waiting() -> None:
     in_lab(body)
 
 
-def test_a_claim_that_does_not_wait_is_refused_at_once() -> None:
+def test_a_claim_that_must_not_wait_is_refused_immediately() -> None:
     async def body(lab: Lab) -> None:
         lab.begin("tour", 2)
         outcomes: list[OperationOutcome] = []
@@ -234,10 +234,10 @@ def test_a_claim_that_does_not_wait_is_refused_at_once() -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"uses": "two words"}, "is not a resource"),
-        ({"uses": "lift(0)"}, "has no units"),
+        ({"uses": "two words"}, "invalid resource `two words`"),
+        ({"uses": "lift(0)"}, "the capacity must be at least 1"),
         ({"uses": "x", "when_preempted": "pause"}, "needs pausable=True"),
-        ({"uses": "x", "when_preempted": "never"}, "write pause, cancel or finish"),
+        ({"uses": "x", "when_preempted": "never"}, "expected pause, cancel or finish"),
         ({"uses": "x", "when_preempted": "cancel", "threaded": True}, "cannot be cancelled"),
     ],
 )
@@ -264,7 +264,7 @@ def test_two_environments_share_nothing() -> None:
     in_lab(body)
 
 
-def test_operations_of_a_session_take_part_with_their_urgency() -> None:
+def test_operations_of_a_session_have_an_urgency() -> None:
     async def body(lab: Lab) -> None:
         session = Session(lab.environment, "script")
         tour = session.begin("drive", "tour", 2)

@@ -1,4 +1,4 @@
-"""The surroundings of artifacts: the log, and who is told of our own defects."""
+"""What artifacts of an environment share: the log, and the handling of internal errors."""
 
 import pytest
 
@@ -41,7 +41,7 @@ def test_without_a_tracer_the_parent_stays_the_cause():
     assert Setting(VirtualClock()).trace("operation", "y", parent) is parent
 
 
-def test_without_anybody_to_be_told_a_defect_is_raised():
+def test_without_a_handler_an_internal_error_is_raised():
     workspace = Environment(VirtualClock(), log=lambda _: None).workspace("/main")
     made = []
     workspace.create("it", Thing, on_done=lambda artifact, _: made.append(artifact))
@@ -58,7 +58,7 @@ def test_without_anybody_to_be_told_a_defect_is_raised():
     assert done[0].ok, "the artifact is still usable"
 
 
-def test_an_interruption_of_the_process_passes_through_and_undoes_the_step():
+def test_an_interruption_of_the_process_propagates_and_rolls_back_the_step():
     workspace = Environment(VirtualClock(), log=lambda _: None, on_internal_error=lambda _: None).workspace(
         "/main"
     )

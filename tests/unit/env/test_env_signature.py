@@ -1,4 +1,4 @@
-"""Signatures: which arguments an operation takes and what it receives."""
+"""Signatures: accepted arguments and their conversion."""
 
 from typing import Any, Literal, NewType, Optional, Protocol
 
@@ -50,11 +50,11 @@ def test_further_arguments_are_checked_when_annotated():
         pass
 
     assert signature(f).bind((1, 2.0)) == (1, 2)
-    with pytest.raises(WrongArguments, match=r"parameter numbers \(number 2\) wants an integer"):
+    with pytest.raises(WrongArguments, match=r"argument 2 \(numbers\): expected an integer"):
         signature(f).bind((1, Out()))
 
 
-def test_keyword_parameters_cannot_be_given_by_agents():
+def test_agents_cannot_pass_keyword_parameters():
     def keyword(*, a):
         pass
 
@@ -70,7 +70,7 @@ def test_a_method_needs_self():
     def bare():
         pass
 
-    with pytest.raises(InvalidArtifact, match="bare: its first parameter must be self"):
+    with pytest.raises(InvalidArtifact, match="bare: expected self as first parameter"):
         signature_of(bare, skip_first=True)
 
 
@@ -134,7 +134,7 @@ def test_suitable_arguments_are_received(annotation, argument, received):
 )
 def test_unsuitable_arguments_are_refused_with_what_was_expected(annotation, argument, expected):
     message = refused(annotation, argument)
-    assert f"parameter x (number 1) wants {expected}" in message
+    assert f"argument 1 (x): expected {expected}" in message
 
 
 def test_an_unannotated_parameter_takes_any_input_but_no_output():
@@ -161,7 +161,7 @@ def test_annotations_written_as_text_are_understood():
     assert found.parameters[4].expected == "an integer"
 
 
-def test_an_annotation_that_is_no_type_accepts_any_input():
+def test_an_annotation_that_is_not_a_type_accepts_any_input():
     assert accepted(list[Any] | Literal[3], [1, "a"]) == [1, "a"]
 
     class Sized(Protocol):

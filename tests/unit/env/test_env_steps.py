@@ -119,7 +119,7 @@ def test_a_pause_publishes_the_changes_so_far(play):
     play(scene)
 
 
-def test_awaiting_anything_without_leaving_keeps_the_artifact(play):
+def test_awaiting_without_a_step_boundary_blocks_the_artifact(play):
     async def scene(stage):
         lane = await stage.make(Lane)
         watcher = stage.watch(lane)
@@ -150,7 +150,7 @@ def test_operations_that_wait_for_the_artifact_are_served_in_their_order(play):
     play(scene)
 
 
-def test_who_comes_back_from_a_pause_queues_behind_those_who_wait(play):
+def test_an_operation_that_resumes_queues_behind_waiting_ones(play):
     async def scene(stage):
         lane = await stage.make(Lane)
         run = stage.call(lane, "run", "r", 2, 1.0)
@@ -163,7 +163,7 @@ def test_who_comes_back_from_a_pause_queues_behind_those_who_wait(play):
     play(scene)
 
 
-def test_until_goes_on_when_a_step_of_another_operation_makes_it_true(play):
+def test_until_continues_when_a_step_of_another_operation_makes_it_true(play):
     async def scene(stage):
         lane = await stage.make(Lane)
         first, second = stage.call(lane, "wait", "1"), stage.call(lane, "wait", "2")
@@ -207,7 +207,7 @@ def test_anything_can_be_awaited_in_a_step_of_its_own(play):
     play(scene)
 
 
-def test_an_error_of_what_is_awaited_reaches_the_operation_which_has_its_turn_again(play):
+def test_an_error_in_an_awaitable_is_raised_in_the_operation_on_its_turn(play):
     async def scene(stage):
         lane = await stage.make(Lane)
         call = stage.call(lane, "awaiting_fails")
@@ -222,7 +222,7 @@ def test_an_error_of_what_is_awaited_reaches_the_operation_which_has_its_turn_ag
     ("name", "reason"),
     [("late", Structure("late", (2,))), ("crash", Structure("operation_error", ("crash/0",)))],
 )
-def test_only_the_failing_step_is_undone(play, name, reason):
+def test_only_the_failing_step_is_rolled_back(play, name, reason):
     async def scene(stage):
         lane = await stage.make(Lane)
         call = stage.call(lane, name)

@@ -1,4 +1,4 @@
-"""Operations that block run in a worker thread; what they change is published when they end."""
+"""Blocking operations run in a worker thread. Their changes are published when they end."""
 
 import asyncio
 import threading
@@ -51,7 +51,7 @@ def blocking_of(stage):
 
 
 async def until_inside(stage):
-    """Let the worker thread come to its gate; virtual time stands still meanwhile."""
+    """Wait until the worker thread reaches its gate. Virtual time does not advance meanwhile."""
     await asyncio.get_running_loop().run_in_executor(None, stage.it.inside.wait, 60.0)
 
 
@@ -85,7 +85,7 @@ def test_it_runs_in_another_thread_and_publishes_once_when_it_ends(play):
     play(scene)
 
 
-def test_a_failure_in_a_thread_is_undone(play):
+def test_a_failure_in_a_thread_is_rolled_back(play):
     async def scene(stage):
         blocking = await blocking_of(stage)
         watcher = stage.watch(blocking)
@@ -98,7 +98,7 @@ def test_a_failure_in_a_thread_is_undone(play):
     play(scene)
 
 
-def test_a_thread_cannot_be_dropped_and_runs_to_its_end_untold(play):
+def test_a_thread_cannot_be_cancelled_and_runs_to_its_end_without_an_outcome(play):
     async def scene(stage):
         blocking = await blocking_of(stage)
         call = stage.call(blocking, "work", Out())
@@ -113,7 +113,7 @@ def test_a_thread_cannot_be_dropped_and_runs_to_its_end_untold(play):
     play(scene)
 
 
-def test_disposing_tells_the_caller_at_once_and_waits_for_the_thread(play):
+def test_disposal_reports_to_the_caller_immediately_and_waits_for_the_thread(play):
     async def scene(stage):
         blocking = await blocking_of(stage)
         watcher = stage.watch(blocking)
@@ -121,7 +121,9 @@ def test_disposing_tells_the_caller_at_once_and_waits_for_the_thread(play):
         await until_inside(stage)
         stage.main.dispose_artifact(blocking)
         assert watcher.notes == ["+count(0)", "-count(0)"]
-        assert call.reason == Structure("artifact_disposed", ("it",)), "nobody can end a thread: why wait"
+        assert call.reason == Structure("artifact_disposed", ("it",)), (
+            "a thread cannot be ended, so there is no wait"
+        )
         assert not call.execution.ended
         stage.it.gate.set()
         await stage.environment.close()
@@ -176,7 +178,7 @@ def test_whatever_a_thread_raises_fails_its_operation(play, raised):
     play(scene)
 
 
-def test_a_thread_that_gives_a_coroutine_is_told_so(play):
+def test_a_thread_that_returns_a_coroutine_fails_with_a_message(play):
     class Odd(Artifact):
         @operation(threaded=True)
         def odd(self):
@@ -187,7 +189,7 @@ def test_a_thread_that_gives_a_coroutine_is_told_so(play):
     async def scene(stage):
         call = stage.call(await stage.make(Odd), "odd")
         await call.wait()
-        assert "gave a coroutine, which a thread cannot run" in call.outcome.message
+        assert "returned a coroutine, which a thread cannot run" in call.outcome.message
 
     play(scene)
 

@@ -1,4 +1,4 @@
-"""Operations that are given a time: when it is up they are stopped, and fail with ``operation_timeout``."""
+"""Operations with a time limit: after it they are cancelled, and fail with ``operation_timeout``."""
 
 import threading
 
@@ -64,7 +64,7 @@ class Slow(Artifact):
             await self.pause_point()
 
 
-def test_an_operation_that_ends_in_time_is_not_concerned(play):
+def test_an_operation_that_ends_in_time_succeeds(play):
     async def scene(stage):
         it = await stage.make(Slow)
         assert stage.call(it, "quick", timeout=1.0).ok
@@ -110,13 +110,13 @@ def test_waiting_for_a_guard_the_artifact_or_the_end_of_a_pause_counts(play, op)
     play(scene)
 
 
-def test_a_thread_runs_on_but_nobody_waits_for_it(play):
+def test_a_thread_continues_after_its_time_limit_but_its_caller_does_not_wait(play):
     async def scene(stage):
         it = await stage.make(Slow)
         call = stage.call(it, "block", timeout=0.0)
         stage.main._registry.find(it)._time_is_up(
             call.execution
-        )  # virtual time stands still while threads work
+        )  # virtual time does not advance while threads run
         assert call.reason == Structure("operation_timeout", ("block/0", 0))
         assert not call.execution.ended
         stage.main._registry.find(it)._artifact.gate.set()
@@ -138,7 +138,7 @@ def test_a_linked_call_is_stopped_with_its_caller(play):
     play(scene)
 
 
-def test_dropped_and_disposed_before_the_time_is_up(play):
+def test_cancelled_and_disposed_before_the_time_limit(play):
     async def scene(stage):
         it = await stage.make(Slow)
         dropped, waiting = stage.call(it, "work", 60, timeout=5), stage.call(it, "guarded", timeout=5)

@@ -1,4 +1,4 @@
-"""Mistakes with ``await`` and ``return`` that Python itself lets pass."""
+"""Errors with ``await`` and ``return`` that Python itself does not report."""
 
 import pytest
 
@@ -68,7 +68,7 @@ def test_a_step_boundary_without_await_fails_the_operation(play, name, method):
         outcome = await call.wait()
         assert outcome.reason == Structure("operation_error", (f"{name}/0",))
         assert (
-            f"self.{method}(...) does nothing without await: write `await self.{method}(...)`"
+            f"self.{method}(...) has no effect without await; write `await self.{method}(...)`"
             in outcome.message
         )
         assert "test_env_unawaited.py:" in outcome.message
@@ -77,7 +77,7 @@ def test_a_step_boundary_without_await_fails_the_operation(play, name, method):
     play(scene)
 
 
-def test_an_operation_that_fails_otherwise_tells_that(play):
+def test_another_failure_of_the_operation_has_precedence(play):
     async def scene(stage):
         it = await stage.make(Forgetful)
         assert (await stage.call(it, "failing").wait()).reason == "no"
@@ -85,7 +85,7 @@ def test_an_operation_that_fails_otherwise_tells_that(play):
     play(scene)
 
 
-def test_an_operation_that_awaits_all_it_asked_for_goes_well(play):
+def test_an_operation_that_awaits_all_step_boundaries_succeeds(play):
     async def scene(stage):
         it = await stage.make(Forgetful)
         call = stage.call(it, "thrice")
@@ -98,15 +98,15 @@ def test_an_operation_that_awaits_all_it_asked_for_goes_well(play):
     play(scene)
 
 
-def test_a_process_that_forgets_is_told_of(play):
+def test_a_process_with_a_missing_await_is_reported(play):
     async def scene(stage):
         await stage.call(await stage.make(Forgetful), "begin").wait()
         await stage.clock.sleep(1)
 
-    assert play(scene).logged("self.sleep(...) does nothing without await")
+    assert play(scene).logged("self.sleep(...) has no effect without await")
 
 
-def test_what_an_operation_returns_is_told_to_be_lost_once(play):
+def test_a_lost_return_value_is_reported_once(play):
     async def scene(stage):
         it = await stage.make(Forgetful)
         for name in ("answer", "answer", "late_answer"):
@@ -114,6 +114,6 @@ def test_what_an_operation_returns_is_told_to_be_lost_once(play):
 
     stage = play(scene)
     assert [line.partition(" is lost")[0] for line in stage.lines if "is lost" in line] == [
-        "[it] what Forgetful.answer returns",
-        "[it] what Forgetful.late_answer returns",
+        "[it] the return value of Forgetful.answer",
+        "[it] the return value of Forgetful.late_answer",
     ]

@@ -1,4 +1,4 @@
-"""Plain values: what crosses, how it is copied, compared and printed."""
+"""Plain values: conversion, copies, comparison and printing."""
 
 import enum
 from collections import namedtuple

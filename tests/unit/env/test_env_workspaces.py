@@ -1,4 +1,4 @@
-"""The tree of workspaces, what each has from the beginning, and how artifacts are found."""
+"""The tree of workspaces, their standard artifacts, and the lookup of artifacts."""
 
 import asyncio
 
@@ -24,7 +24,7 @@ class Other(Artifact):
     def inc_any(self, *x: object): ...
 
 
-def test_main_is_there_with_its_default_artifacts(play):
+def test_main_exists_with_its_standard_artifacts(play):
     async def scene(stage):
         assert stage.environment.workspaces() == (stage.main,)
         assert (stage.main.path, stage.main.name) == ("/main", "main")
@@ -56,12 +56,14 @@ def test_workspaces_form_a_tree(play):
     play(scene)
 
 
-def test_a_workspace_that_is_there_or_hangs_in_the_air_is_refused(play):
+def test_a_workspace_that_exists_or_has_no_parent_is_refused(play):
     async def scene(stage):
-        with pytest.raises(OperationFailed, match="there is a workspace /main already") as present:
+        with pytest.raises(OperationFailed, match="workspace `/main` already exists") as present:
             stage.environment.create_workspace("/main")
         assert present.value.reason == Structure("workspace_already_present", ("/main",))
-        with pytest.raises(UnknownWorkspace, match=r"no workspace /mian; did you mean /main\?") as unknown:
+        with pytest.raises(
+            UnknownWorkspace, match=r"unknown workspace `/mian`; did you mean `/main`\?"
+        ) as unknown:
             stage.environment.create_workspace("/mian/lab")
         assert unknown.value.reason == Structure("unknown_workspace", ("/mian",))
         with pytest.raises(UnknownWorkspace):
@@ -81,7 +83,7 @@ def test_each_workspace_has_names_of_its_own(play):
     play(scene)
 
 
-def test_ids_are_good_in_the_whole_environment(play):
+def test_ids_are_valid_in_the_whole_environment(play):
     async def scene(stage):
         lab = stage.environment.create_workspace("/main/lab")
         there = await lab.make_artifact("it", Counter)
@@ -93,10 +95,12 @@ def test_ids_are_good_in_the_whole_environment(play):
     play(scene)
 
 
-def test_lookup_helps_with_the_spelling(play):
+def test_lookup_of_an_unknown_artifact_suggests_a_name(play):
     async def scene(stage):
         await stage.make(Counter, name="battery")
-        with pytest.raises(UnknownArtifact, match=r"no artifact batery; did you mean battery\?") as caught:
+        with pytest.raises(
+            UnknownArtifact, match=r"unknown artifact `batery` in workspace /main; did you mean `battery`\?"
+        ) as caught:
             stage.main.lookup("batery")
         assert caught.value.reason == Structure("artifact_not_available", ("batery",))
 
@@ -117,7 +121,7 @@ def test_providers_of_an_operation_are_found_in_the_order_of_creation(play):
     play(scene)
 
 
-def test_one_can_wait_until_an_artifact_is_there(play):
+def test_available_waits_until_an_artifact_exists(play):
     async def scene(stage):
         console = await stage.main.available("console")
         assert console is stage.main.lookup("console")
@@ -136,7 +140,7 @@ def test_one_can_wait_until_an_artifact_is_there(play):
     play(scene)
 
 
-def test_an_artifact_that_is_gone_before_the_waiter_runs_is_an_unknown_artifact(play):
+def test_an_artifact_disposed_before_the_waiting_task_runs_is_unknown(play):
     async def scene(stage):
         waiting = asyncio.ensure_future(stage.main.available("it"))
         await stage.clock.sleep(1.0)
@@ -147,7 +151,7 @@ def test_an_artifact_that_is_gone_before_the_waiter_runs_is_an_unknown_artifact(
     play(scene)
 
 
-def test_coming_and_going_can_be_watched(play):
+def test_creation_and_disposal_can_be_watched(play):
     async def scene(stage):
         seen = []
         stop = stage.main.watch(lambda artifact, present: seen.append((artifact.name, present)))

@@ -289,7 +289,7 @@ def test_an_argument_of_another_kind_is_wrong(tmp_path: Path) -> None:
     python = HEAD + "@internal_action\ndef half(x: float) -> float:\n    return x / 2\n"
     program = '!go. +!go <- my.half(a, X). -!go[error(E), error_msg(M)] <- .print(E, " ", M).'
     assert said(tmp_path, program, python) == [
-        "wrong_arguments my.half: parameter x (number 1) wants a number, got a"
+        "wrong_arguments my.half: argument 1 (x): expected a number, found a"
     ]
 
 
@@ -399,7 +399,7 @@ def test_a_module_that_cannot_be_imported_is_reported_with_its_line(tmp_path: Pa
     ("python", "message"),
     [
         ("@internal_action('your.one')\ndef one(): pass\n", "my.py:3: no program can find your.one"),
-        ("@internal_action\ndef one(*, x): pass\n", "my.py:3: my.one: one: agents cannot give the keyword"),
+        ("@internal_action\ndef one(*, x): pass\n", "my.py:3: my.one: one: agents cannot pass the keyword"),
         ("@internal_action\nasync def one():\n    yield 1\n", "cannot be an internal action"),
         ("@internal_action('one')\ndef one(): pass\n", "must begin with the module, as in 'my.norm'"),
         (
@@ -418,9 +418,9 @@ def test_an_invalid_declaration_is_reported_with_its_line(tmp_path: Path, python
     ("call", "help"),
     [
         ("my.nrom(1, X)", "did you mean `my.norm`?"),
-        ("my.plain(1, X)", "put @internal_action before the function my.plain"),
-        ("my.zzz(1, X)", "my.py has no such function with @internal_action"),
-        ("your.norm(1, X)", "a function norm with @internal_action in your.py beside the project"),
+        ("my.plain(1, X)", "the function my.plain exists: put @internal_action before it"),
+        ("my.zzz(1, X)", "add a function `zzz` with @internal_action to my.py"),
+        ("your.norm(1, X)", "write a function `norm` with @internal_action in your.py beside the project"),
     ],
 )
 def test_an_unknown_name_is_an_action_and_gets_help(tmp_path: Path, call: str, help: str) -> None:

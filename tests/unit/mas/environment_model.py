@@ -1,7 +1,7 @@
-"""What artifacts and observers ought to do, in the words of the documentation: a model that shares no code with them.
+"""A model of artifacts and observers, written from the documentation, that shares no code with them.
 
-A script is a list of steps such as ``["def", "p", 1]``; the artifact ``Puppet`` does what a script says, and `Model` says
-what every observer must notice of it, and how the operation must end.
+A script is a list of steps such as ``["def", "p", 1]``; the artifact ``Puppet`` runs a script, and `Model` computes
+what every observer must perceive, and how the operation must end.
 """
 
 NAMES = ("p", "q", "go")
@@ -151,7 +151,7 @@ class Model:
                     self.serve(thing)
 
     def serve(self, thing):
-        """The first who may go on does, and then everybody is asked again."""
+        """The first waiting operation that may continue does so, and then all are checked again."""
         while True:
             ready = (each for each in thing.queue if each.guard is None or thing.first(each.guard))
             doing = next(ready, None)

@@ -1,4 +1,4 @@
-"""What `jacaros check` says of a project's artifacts and of the actions of its agents."""
+"""What `jacaros check` reports about a project's artifacts and the actions of its agents."""
 
 from pathlib import Path
 
@@ -47,15 +47,23 @@ def told(diagnostics: list[Diagnostic]) -> list[tuple[str, str, str | None]]:
     return [(each.code, each.message, each.help) for each in diagnostics]
 
 
-def test_actions_that_nobody_offers_are_told(folder: Path) -> None:
+def test_unknown_operations_are_reported(folder: Path) -> None:
     program = """
     !go.
     +!go <- inc; inc(2); inc(1, 2); incc; println("x", 1, 2); out(a, 1, 2, 3); jump; joinWorkspace(lab).
     """
     assert told(check(folder, program)) == [
-        ("unknown-operation", "no artifact of the project offers inc/2", "there is inc/0, inc/1"),
-        ("unknown-operation", "no artifact of the project offers incc/0", "did you mean inc?"),
-        ("unknown-operation", "no artifact of the project offers jump/0", None),
+        (
+            "unknown-operation",
+            "unknown operation `inc/2`: no artifact of the project has it",
+            "did you mean `inc/0` or `inc/1`?",
+        ),
+        (
+            "unknown-operation",
+            "unknown operation `incc/0`: no artifact of the project has it",
+            "did you mean `inc`?",
+        ),
+        ("unknown-operation", "unknown operation `jump/0`: no artifact of the project has it", None),
     ]
 
 
@@ -63,7 +71,7 @@ def test_operations_of_artifacts_that_programs_make_count(folder: Path) -> None:
     project = "mas p {\n agent ann: a.asl\n}"
     program = '!go.\n+!go <- makeArtifact("c", "Counter", [], Id); focus(Id); inc; hop.'
     assert [each.message for each in check(folder, program, project)] == [
-        "no artifact of the project offers hop/0"
+        "unknown operation `hop/0`: no artifact of the project has it"
     ]
 
 
@@ -76,17 +84,17 @@ def test_operations_of_artifacts_that_programs_make_count(folder: Path) -> None:
         '+kind("Counter"); ?kind(Type); makeArtifact(d, Type)',
     ],
 )
-def test_nothing_is_said_where_it_is_not_certain(folder: Path, step: str) -> None:
+def test_uncertain_cases_are_not_reported(folder: Path, step: str) -> None:
     assert check(folder, f"type(x).\n!go.\n+!go : type(Type) <- {step}; .print(Type); jump.") == []
 
 
-def test_agents_with_architectures_of_their_own_are_left_alone(folder: Path) -> None:
+def test_agents_with_user_defined_architectures_are_not_checked(folder: Path) -> None:
     (folder / "body.py").write_text("from jacaros import AgentArch\n\nclass Body(AgentArch):\n    pass\n")
     project = PROJECT.replace("focus: lab.c", "focus: lab.c  ag-arch: body.Body")
     assert check(folder, "!go.\n+!go <- jump.", project) == []
 
 
-def test_types_that_there_are_not_are_told(folder: Path) -> None:
+def test_unknown_types_are_reported(folder: Path) -> None:
     program = '!go.\n+!go <- makeArtifact("c", "Countr").'
     project = "mas p {\n agent ann: a.asl\n}"
     (found,) = check(folder, program, project)
@@ -96,16 +104,16 @@ def test_types_that_there_are_not_are_told(folder: Path) -> None:
     assert (found.span.line, found.span.column) == (2, 27)
 
 
-def test_types_of_the_project_file_are_looked_for(folder: Path) -> None:
+def test_types_of_the_project_file_are_checked(folder: Path) -> None:
     (found,) = check(folder, "!go.\n+!go <- jump.", PROJECT.replace("Counter(5)", "Cuonter(5)"))
     assert (found.severity, found.code) == ("error", "wrong-project")
-    assert "did you mean Counter?" in found.message
+    assert "did you mean `Counter`?" in found.message
 
 
 @pytest.mark.parametrize(
     ("python", "imports"), [("class Counter(:", False), ("import nothing_of_this_name\n", True)]
 )
-def test_a_mistake_in_the_artifacts_is_told(folder: Path, python: str, imports: bool) -> None:
+def test_an_error_in_the_artifacts_is_reported(folder: Path, python: str, imports: bool) -> None:
     (folder / "artifacts.py").write_text(python, encoding="utf-8")
     check(folder, "!go.\n+!go <- jump.")
     (found,) = check_files([folder / "p.jcm"], imports=imports).diagnostics
@@ -134,23 +142,23 @@ def test_details_of_organisations_are_notes_of_the_checker(folder: Path) -> None
             "warning",
             "no-effect",
             3,
-            "the role 'boss' in 'o.g' has no effect: roles in organisations are not supported",
+            "the role `boss` in `o.g` has no effect: roles in organisations are not supported",
         ),
         (
             "warning",
             "no-effect",
             3,
-            "the role 'guard' in 'o.g' has no effect: roles in organisations are not supported",
+            "the role `guard` in `o.g` has no effect: roles in organisations are not supported",
         ),
-        ("warning", "no-effect", 4, "the organisation 'o' has no effect: organisations are not supported"),
-        ("note", "no-effect", 5, "the group 'g' has no effect: organisations are not supported"),
+        ("warning", "no-effect", 4, "the organisation `o` has no effect: organisations are not supported"),
+        ("note", "no-effect", 5, "the group `g` has no effect: organisations are not supported"),
         (
             "warning",
             "no-effect",
             6,
-            "the role 'cook' of 'ann' in 'g' has no effect: roles in organisations are not supported",
+            "the role `cook` of `ann` in `g` has no effect: roles in organisations are not supported",
         ),
-        ("note", "no-effect", 9, "the scheme 's' has no effect: organisations are not supported"),
+        ("note", "no-effect", 9, "the scheme `s` has no effect: organisations are not supported"),
     ]
 
 
@@ -172,7 +180,7 @@ def test_operations_are_checked_in_a_project_for_jaca(folder: Path, architecture
         f"MAS p {{ environment: jaca.CartagoEnvironment agents: a{architecture}; }}", encoding="utf-8"
     )
     assert [each.message for each in check_files([project]).diagnostics] == [
-        "no artifact of the project offers hop/0"
+        "unknown operation `hop/0`: no artifact of the project has it"
     ]
 
 
@@ -191,23 +199,23 @@ def test_operations_are_checked_in_a_lone_program(folder: Path, make: str) -> No
         encoding="utf-8",
     )
     assert [(each.message, each.help) for each in check_files([lone]).diagnostics] == [
-        ("no artifact of the project offers inc/2", "there is inc/0, inc/1"),
-        ("no artifact of the project offers incc/0", "did you mean inc?"),
+        ("unknown operation `inc/2`: no artifact of the project has it", "did you mean `inc/0` or `inc/1`?"),
+        ("unknown operation `incc/0`: no artifact of the project has it", "did you mean `inc`?"),
     ]
 
 
-def test_plans_of_the_library_make_the_artifacts_that_are_asked_for(folder: Path) -> None:
+def test_library_plans_create_the_requested_artifacts(folder: Path) -> None:
     lone = folder / "lone.asl"
     lone.write_text(
         '{ include("$jacaros/artifacts.asl") }\n!go.\n+!go <- !create_cmd_vel; move(3); moove(3).',
         encoding="utf-8",
     )
     assert [each.message for each in check_files([lone]).diagnostics] == [
-        "no artifact of the project offers moove/1"
+        "unknown operation `moove/1`: no artifact of the project has it"
     ]
 
 
-def test_actions_of_a_lone_program_without_artifacts_may_be_anybodys(folder: Path) -> None:
+def test_actions_of_a_lone_program_without_artifacts_are_not_reported(folder: Path) -> None:
     lone = folder / "lone.asl"
     lone.write_text("!go.\n+!go <- hop.", encoding="utf-8")
     assert check_files([lone]).diagnostics == []

@@ -4,7 +4,7 @@ from jacaros.clock import VirtualClock, run
 from jacaros.mas.idleness import Activity, AgentTimer
 
 
-def test_a_timer_counts_until_it_has_rung_or_was_taken_back() -> None:
+def test_a_timer_counts_until_it_fires_or_is_cancelled() -> None:
     clock, activity = VirtualClock(), Activity()
     rung: list[float] = []
 

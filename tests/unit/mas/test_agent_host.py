@@ -1,4 +1,4 @@
-"""What stands between a mind and its run."""
+"""The host of a mind in its run."""
 
 from collections.abc import Mapping, Sequence
 
@@ -113,7 +113,7 @@ def act() -> Act:
     return Act(1, functor("move", 1), (3.0,), (), 1)
 
 
-def test_an_action_without_environment_fails_at_once() -> None:
+def test_an_action_without_environment_fails_immediately() -> None:
     host, mind, _ = host_and_mind()
     host.act(act())
     host.cancel_act(1)
@@ -143,7 +143,7 @@ def test_the_body_is_made_for_the_first_action() -> None:
     assert mind.log == ["act 1", "act 1", "suspend 1", "resume 1", "cancel 1", "close"]
 
 
-def test_a_halted_agent_neither_runs_nor_prints_nor_hears() -> None:
+def test_a_halted_agent_neither_runs_nor_prints_nor_receives() -> None:
     host, mind, run_ = host_and_mind()
     host.halt()
     host.end()
@@ -166,7 +166,7 @@ def test_a_ready_agent_gets_a_turn() -> None:
     assert host.now() == run_.clock.now()
 
 
-def test_what_the_mind_asks_goes_to_the_run() -> None:
+def test_requests_of_the_mind_go_to_the_run() -> None:
     host, mind, run_ = host_and_mind()
     host.print("hello")
     host.log("warning", "beware")

@@ -1,4 +1,4 @@
-"""What the options of an agent change in how it runs."""
+"""The effects of the options of an agent."""
 
 from pathlib import Path
 
@@ -41,7 +41,7 @@ def test_belief_events_can_have_intentions_of_their_own(
     assert run(tmp_path, f"intBels={option}", FOCUS).of("a") == lines
 
 
-def test_messages_can_be_looked_at_less_often(tmp_path: Path) -> None:
+def test_messages_can_be_read_less_often(tmp_path: Path) -> None:
     program = (
         """!count(1). +!count(40). +!count(N) <- !count(N + 1). +n(X) <- ?n(X); .count(n(_), C); .print(C)."""
     )
@@ -63,7 +63,7 @@ def test_events_can_be_given_urgency_from_outside(tmp_path: Path) -> None:
     ("option", "told"),
     [("0", []), ("1", ["info: some", "debug: fine"]), ("2", ["info: some", "debug: fine"])],
 )
-def test_verbose_tells_more_or_less(tmp_path: Path, option: str, told: list[str]) -> None:
+def test_verbose_logs_more_or_less(tmp_path: Path, option: str, told: list[str]) -> None:
     program = "!go. +!go <- .log(info, some); .log(fine, fine); .print(printed)."
     result = run(tmp_path, f"verbose={option}", program)
     assert result.of("a") == ["printed"]

@@ -30,11 +30,11 @@ def test_the_directory_knows_who_provides_what(tmp_path: Path) -> None:
     assert result.lines == ["[a] [a,b]", "[a] [a]", "[a] []", "[a] [a,b,df]"]
 
 
-def test_there_is_no_directory_before_it_is_used(tmp_path: Path) -> None:
+def test_the_directory_agent_is_created_at_its_first_use(tmp_path: Path) -> None:
     assert run(tmp_path, a_asl="!go. +!go <- .all_names(N); .print(N).").lines == ["[a] [a]"]
 
 
-def test_subscribers_are_told_of_providers_that_are_there_and_that_come(tmp_path: Path) -> None:
+def test_subscribers_are_notified_of_present_and_later_providers(tmp_path: Path) -> None:
     result = run(
         tmp_path,
         m_mas2j="MAS m { agents: a; b; c; }",
@@ -166,7 +166,7 @@ def test_the_name_of_a_clone_is_made_unique(tmp_path: Path) -> None:
     assert run(tmp_path, a_asl=program).of("a") == ["other", "[a,a_1,other]"]
 
 
-def test_agents_are_told_that_they_will_be_shut_down(tmp_path: Path) -> None:
+def test_a_shutdown_is_announced_to_agents(tmp_path: Path) -> None:
     result = run(
         tmp_path,
         m_mas2j="MAS m { agents: a; b; }",
@@ -177,7 +177,7 @@ def test_agents_are_told_that_they_will_be_shut_down(tmp_path: Path) -> None:
     assert result.exit_code == 4
 
 
-def test_the_end_of_the_run_is_told_to_all(tmp_path: Path) -> None:
+def test_the_end_of_the_run_is_announced_to_all_agents(tmp_path: Path) -> None:
     result = run(
         tmp_path,
         a_asl="!go. +!go <- .stopMAS(70). +jag_shutting_down(T) <- .wait(60); .print(ready(T)).",
@@ -186,14 +186,14 @@ def test_the_end_of_the_run_is_told_to_all(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("plan", ["+jag_sleeping <- .print(sleep).", "+jag_awaking <- .print(awake)."])
-def test_an_agent_is_told_that_it_falls_asleep_and_awakes(tmp_path: Path, plan: str) -> None:
+def test_an_agent_gets_events_when_it_sleeps_and_wakes(tmp_path: Path, plan: str) -> None:
     result = run(tmp_path, a_asl=f"!go. +!go <- .wait(10); .print(up); .wait(10). {plan}")
     word = "sleep" if "sleep" in plan else "awake"
     assert sorted(result.of("a")) == sorted(["up", *([word] * (3 if word == "sleep" else 2))])
 
 
 @pytest.mark.parametrize("word", ["sleeping", "awaking"])
-def test_an_agent_falls_asleep_by_plans_that_it_has_learnt(tmp_path: Path, word: str) -> None:
+def test_sleep_events_trigger_plans_added_at_run_time(tmp_path: Path, word: str) -> None:
     result = run(
         tmp_path,
         a_asl=f"""!go.

@@ -1,4 +1,4 @@
-"""What `jacaros check` says of beliefs that nobody makes: only where a name is surely misspelt."""
+"""What `jacaros check` reports about beliefs that are never added: only certainly misspelt names."""
 
 from pathlib import Path
 
@@ -41,18 +41,18 @@ def folder(tmp_path: Path) -> Path:
 
 
 def told(folder: Path, program: str, project: str = "", mappings: tuple[str, ...] = ()) -> list[str]:
-    """The misspelt names of a program, or of a project that it belongs to, with what is meant."""
+    """Return the misspelt names of a program, or of its project, with the suggested names."""
     return [
-        f"{each.message.split()[-1]} {(each.help or '').split()[-1]}"
+        f"{each.message.split()[1].strip('`')} {(each.help or '').split()[-1].replace('`', '')}"
         for each in warnings(folder, program, project, mappings)
         if each.code == "misspelt-belief"
     ]
 
 
 def never(folder: Path, program: str, project: str = "", mappings: tuple[str, ...] = ()) -> list[str]:
-    """What is said of events that never happen, the help behind a semicolon."""
+    """Return the warnings about events that never happen, with the help after a semicolon."""
     return [
-        f"{each.message.removeprefix('the event ')}; {each.help}"
+        f"{each.message.removeprefix('event ')}; {each.help}"
         for each in warnings(folder, program, project, mappings)
         if each.code == "event-never-happens"
     ]
@@ -86,7 +86,7 @@ def warnings(folder: Path, program: str, project: str, mappings: tuple[str, ...]
         "@p[while(obstacel(D) & D > 1)] +!go <- .print(a).",
     ],
 )
-def test_each_place_where_a_property_is_asked_for(folder: Path, use: str) -> None:
+def test_each_place_where_a_property_is_queried(folder: Path, use: str) -> None:
     assert told(folder, f"{MAKES} {use}") == ["obstacel/1 obstacle?"]
     assert told(folder, f"{MAKES} {use}".replace("obstacel", "obstacle")) == []
 
@@ -101,12 +101,12 @@ def test_beliefs_of_the_program_itself_count(folder: Path) -> None:
     assert told(folder, "close_to(X) :- X < 3. +!go : colse_to(2).") == ["colse_to/1 close_to?"]
 
 
-def test_the_warning_names_place_and_cure(folder: Path) -> None:
+def test_the_warning_has_a_location_and_a_fix(folder: Path) -> None:
     (folder / "a.asl").write_text(f"{MAKES}\n+obstacel(D) <- .print(D).\n", encoding="utf-8")
     (found,) = check_files([folder / "a.asl"]).diagnostics
     assert found.span is not None
     assert (found.severity, found.span.line, found.span.column) == ("warning", 2, 2)
-    assert (found.message, found.help) == ("nobody makes a belief obstacel/1", "did you mean obstacle?")
+    assert (found.message, found.help) == ("belief `obstacel/1` is never added", "did you mean `obstacle`?")
 
 
 def test_a_mapping_file_makes_properties_and_signals(folder: Path) -> None:
@@ -144,7 +144,7 @@ def test_what_other_agents_tell_counts_in_a_project(folder: Path) -> None:
         ("robot.yaml", "topics: {obstacel: {topic: /scan}}"),
     ],
 )
-def test_a_word_that_stands_elsewhere_is_meant(folder: Path, file: str, text: str) -> None:
+def test_a_name_that_appears_elsewhere_is_intended(folder: Path, file: str, text: str) -> None:
     (folder / "b.asl").write_text("!t. +!t <- .print(a).", encoding="utf-8")
     program = "+obstacel(D) <- .print(D)."
     assert told(folder, program, PROJECT) == ["obstacel/1 obstacle?"]
@@ -168,11 +168,11 @@ def test_a_word_that_stands_elsewhere_is_meant(folder: Path, file: str, text: st
         "+!more <- .at(3, { +obstacel(3) }).",
     ],
 )
-def test_nothing_is_told_where_beliefs_may_come_in_other_ways(folder: Path, more: str) -> None:
+def test_nothing_is_reported_where_beliefs_may_come_from_elsewhere(folder: Path, more: str) -> None:
     assert told(folder, f"{MAKES} +obstacel(D) <- .print(D). {more}") == []
 
 
-def test_nothing_is_told_of_agents_in_python_and_with_classes_of_their_own(folder: Path) -> None:
+def test_nothing_is_reported_for_python_agents_and_user_defined_classes(folder: Path) -> None:
     (folder / "b.asl").write_text("!t. +!t <- .print(a).", encoding="utf-8")
     (folder / "mind.py").write_text(
         "from jacaros import Agent, PythonAgent\nclass Mind(Agent):\n    pass\nclass P(PythonAgent):\n    pass\n",
@@ -192,22 +192,22 @@ def test_nothing_is_told_of_agents_in_python_and_with_classes_of_their_own(folde
         '!have("Radar"). +!have(T) <- makeArtifact(r, T).',
     ],
 )
-def test_types_that_goals_hand_on_are_known(folder: Path, makes: str) -> None:
+def test_types_passed_by_goals_are_known(folder: Path, makes: str) -> None:
     assert told(folder, f"{makes} +obstacel(D) <- .print(D).") == ["obstacel/1 obstacle?"]
 
 
-def test_what_programs_make_counts_whatever_artifacts_there_are(folder: Path) -> None:
+def test_beliefs_of_programs_count_whatever_artifacts_exist(folder: Path) -> None:
     makes = "+!make(L) <- .member(T, L); makeArtifact(m, T, [], _). "
     assert told(folder, makes + "threshold(3). +!go : treshold(T) <- .print(T).") == ["treshold/1 threshold?"]
 
 
 @pytest.mark.parametrize("cases", ["conformance", "conformance_environment"])
-def test_programs_as_people_write_them_are_not_blamed(cases: str) -> None:
+def test_realistic_programs_cause_no_warning(cases: str) -> None:
     found = check_files([Path(__file__).parents[2] / cases]).diagnostics
     assert [str(each) for each in found if each.code == "misspelt-belief"] == []
 
 
-def test_other_namespaces_are_left_alone(folder: Path) -> None:
+def test_other_namespaces_are_not_checked(folder: Path) -> None:
     assert told(folder, MAKES + "+other::obstacel(D) <- .print(D).") == []
 
 
@@ -237,14 +237,14 @@ def test_plans_for_others_in_strings_count(folder: Path) -> None:
         ("battery_levle", "battery_level", True),
     ],
 )
-def test_what_is_a_slip(written: str, meant: str, misspelt: bool) -> None:
+def test_which_names_are_misspelt(written: str, meant: str, misspelt: bool) -> None:
     assert is_misspelt(written, meant) is misspelt
 
 
 RULE = "low :- battery(B) & B < 20. battery(15). "
 BY_RULE = (
-    "low/0 never happens: low/0 is the conclusion of a rule; "
-    "conclusions cause no events; react to a belief that the rule asks for, as in +battery(B) : low"
+    "low/0` never happens: `low/0` is the conclusion of a rule; "
+    "rules cause no events; react to a belief in the body of the rule: `+battery(B) : low`"
 )
 
 
@@ -259,13 +259,13 @@ BY_RULE = (
     ],
 )
 def test_conclusions_of_rules_make_no_events(folder: Path, reacts: str, sign: str) -> None:
-    assert never(folder, RULE + reacts) == [sign + BY_RULE]
+    assert never(folder, RULE + reacts) == ["`" + sign + BY_RULE]
 
 
-def test_an_event_with_another_number_of_arguments_never_happens(folder: Path) -> None:
+def test_an_event_with_another_arity_never_happens(folder: Path) -> None:
     program = "battery(15). +battery(B, _) <- .print(B). +battery(B) <- .print(B)."
     assert never(folder, program) == [
-        "+battery/2 never happens: nobody makes a belief battery/2; did you mean battery/1?"
+        "`+battery/2` never happens: belief `battery/2` is never added; did you mean `battery/1`?"
     ]
 
 
@@ -284,7 +284,7 @@ def test_an_event_with_another_number_of_arguments_never_happens(folder: Path) -
         '+!more <- makeArtifact(m, "Anything", ["low"], _).',
     ],
 )
-def test_a_conclusion_that_may_be_a_belief_too_is_not_reported(folder: Path, more: str) -> None:
+def test_a_conclusion_that_may_also_be_a_belief_is_not_reported(folder: Path, more: str) -> None:
     assert never(folder, f"{RULE} +low <- .print(a). {more}") == []
 
 
@@ -299,7 +299,7 @@ def test_a_conclusion_that_may_be_a_belief_too_is_not_reported(folder: Path, mor
         "+!more(T) <- makeArtifact(m, T, [], _).",
     ],
 )
-def test_another_number_of_arguments_that_may_come_is_not_reported(folder: Path, more: str) -> None:
+def test_another_arity_that_may_be_added_is_not_reported(folder: Path, more: str) -> None:
     expected = 1 if more.startswith("battery(A") else 0  # then it is the conclusion of a rule
     found = never(folder, f"battery(15). +battery(A, B) <- .print(A, B). {more}")
     assert len(found) == expected
@@ -340,8 +340,8 @@ def test_a_note_is_never_a_percept(folder: Path) -> None:
     program = "!go. +!go <- -+battery(5). +battery(B)[source(percept)] <- .print(B)."
     assert never(folder, program) == [
         (
-            "+battery/1 never happens: no artifact has `battery`, so its source is never `percept`; "
-            "the agent notes it itself: write [source(self)], or leave the source out"
+            "`+battery/1` never happens: no artifact has `battery`, so its source is never `percept`; "
+            "the agent adds it itself: write `[source(self)]`, or omit the source"
         )
     ]
 
@@ -349,8 +349,8 @@ def test_a_note_is_never_a_percept(folder: Path) -> None:
 def test_a_property_is_never_a_note(folder: Path) -> None:
     assert never(folder, MAKES + "+obstacle(D)[source(self)] <- .print(D).") == [
         (
-            "+obstacle/1 never happens: only artifacts make `obstacle`, so its source is never `self`; "
-            "write [source(percept)], or leave the source out"
+            "`+obstacle/1` never happens: only artifacts have `obstacle`, so its source is never `self`; "
+            "write `[source(percept)]`, or omit the source"
         )
     ]
 
@@ -368,10 +368,10 @@ def test_a_property_is_never_a_note(folder: Path) -> None:
         "!go. +!go <- +battery(5); .add_annot(battery(6), source(percept), X). +battery(B)[source(percept)] <- .print(B).",
     ],
 )
-def test_sources_that_may_match_are_no_mistake(folder: Path, program: str) -> None:
+def test_sources_that_may_match_are_not_reported(folder: Path, program: str) -> None:
     assert never(folder, program) == []
 
 
-def test_a_percept_that_python_code_gives_is_no_mistake(folder: Path) -> None:
+def test_a_percept_from_python_code_is_not_reported(folder: Path) -> None:
     (folder / "run.py").write_text('agent.perceive("battery(5)")', encoding="utf-8")
     assert never(folder, "!go. +!go <- +battery(5). +battery(B)[source(percept)] <- .print(B).") == []

@@ -1,4 +1,4 @@
-"""Generated code in a folder of the user: read only if it is certainly the user's own and whole."""
+"""Generated code in a folder of the user: read only if it is certainly the user's own and complete."""
 
 import os
 import shutil
@@ -47,7 +47,7 @@ def found(folder: Path) -> bytes | None:
     return CodeFolder(folder).of_program(plans()).get(b"key")
 
 
-def test_what_was_put_is_found_by_the_next_run(folder: Path) -> None:
+def test_stored_code_is_found_by_the_next_run(folder: Path) -> None:
     assert found(folder) == b"entry"
     assert CodeFolder(folder).of_program(plans()).get(b"other") is None
     assert CodeFolder(folder).of_program(plans(PROGRAM + "\n")).get(b"key") is None
@@ -130,14 +130,14 @@ def test_the_folder_of_another_user_is_neither_read_nor_written(
     assert file.read_bytes() == whole
 
 
-def test_a_link_in_the_place_of_a_file_is_ignored(folder: Path, tmp_path: Path) -> None:
+def test_a_symbolic_link_instead_of_a_file_is_ignored(folder: Path, tmp_path: Path) -> None:
     (file,) = folder.iterdir()
     file.rename(tmp_path / "elsewhere")
     file.symlink_to(tmp_path / "elsewhere")
     assert found(folder) is None
 
 
-def test_a_folder_that_cannot_be_made_is_no_failure(tmp_path: Path) -> None:
+def test_a_folder_that_cannot_be_created_is_not_an_error(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     kept = CodeFolder(tmp_path / "file" / "plans")
     kept.of_program(plans()).put(b"key", b"entry")
@@ -145,7 +145,9 @@ def test_a_folder_that_cannot_be_made_is_no_failure(tmp_path: Path) -> None:
     assert kept.of_program(plans()).get(b"key") == b"entry"
 
 
-def test_a_full_disk_is_no_failure_and_leaves_nothing(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_full_disk_is_not_an_error_and_leaves_nothing(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     def full(*paths: object) -> None:
         raise OSError(28, "No space left on device")
 
@@ -157,9 +159,7 @@ def test_a_full_disk_is_no_failure_and_leaves_nothing(folder: Path, monkeypatch:
     assert {path.name: path.read_bytes() for path in folder.iterdir()} == before
 
 
-def test_the_files_that_were_not_used_for_the_longest_time_are_removed(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_least_recently_used_files_are_removed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(code_folder, "LARGEST", 2500)
     texts = [f"+!go <- .print({number})." for number in range(4)]
     for number, text in enumerate(texts):
@@ -235,13 +235,11 @@ def test_a_second_run_compiles_nothing(program: Path, compiled: list[str]) -> No
     assert (second.lines, second.exit_code) == (first.lines, first.exit_code) == (["[robot] 2"], 0)
 
 
-def test_plans_that_no_event_has_asked_for_are_kept_once_they_are_compiled(
-    program: Path, compiled: list[str]
-) -> None:
+def test_plans_without_events_are_kept_once_they_are_compiled(program: Path, compiled: list[str]) -> None:
     program.write_text("!go. +!go <- .print(going). +!other <- .print(other).")
 
     def compile_all(mas: System) -> None:
-        while mas.population.compile_ahead():
+        while mas.lifecycle.compile_ahead():
             pass
 
     run_project(program, until_idle=True, when_started=compile_all)
@@ -253,9 +251,7 @@ def test_plans_that_no_event_has_asked_for_are_kept_once_they_are_compiled(
 
 
 @pytest.mark.parametrize("variable", ["JACAROS_CACHE=0", "JACAROS_PLAIN=1"])
-def test_nothing_is_kept_when_it_is_turned_off(
-    variable: str, program: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_nothing_is_kept_when_disabled(variable: str, program: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", str(program.parent / "cache"))
     monkeypatch.setenv(*variable.split("="))
     assert run_project(program).lines == ["[robot] 2"]

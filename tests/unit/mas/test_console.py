@@ -1,4 +1,4 @@
-"""Where a run writes."""
+"""The outputs of a run."""
 
 import io
 
@@ -15,7 +15,7 @@ def test_agents_write_to_the_output_and_logs_to_the_errors() -> None:
     assert errors.getvalue() == "[lamp] on\n"
 
 
-def test_unimportant_lines_can_be_left_out() -> None:
+def test_lines_below_the_level_are_hidden() -> None:
     errors = io.StringIO()
     console = StandardConsole("warning", io.StringIO(), errors)
     console.log("note", "info")

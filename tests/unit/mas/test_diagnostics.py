@@ -7,7 +7,7 @@ from typing import Any
 from jacaros.bdi.mind import Mind
 from jacaros.clock import VirtualClock, run
 from jacaros.mas.console import Console
-from jacaros.mas.diagnostics import OK, TOPIC, TYPE, WARN, AgentVitals
+from jacaros.mas.diagnostics import OK, TOPIC, TYPE, WARN, AgentHealth
 from jacaros.mas.loading import load_deployment
 from jacaros.mas.options import RunOptions
 from jacaros.mas.system import System
@@ -64,8 +64,8 @@ def test_once_a_second_there_is_a_status_for_the_connection_and_for_each_agent(t
     assert set(messages[0]) == {"bob: connection", "bob: agent bob"}
     connection, agent = messages[0]["bob: connection"], messages[0]["bob: agent bob"]
     assert (connection.level, connection.message) == (OK, "connected")
-    assert figures(connection) == {"middleware": "memory", "node": "/bob", "times lost": "0"}
-    assert (agent.level, agent.message) == (OK, "reasons")
+    assert figures(connection) == {"middleware": "memory", "node": "/bob", "connection losses": "0"}
+    assert (agent.level, agent.message) == (OK, "reasoning")
     assert figures(agent)["intentions"] == "1"
     assert int(figures(agent)["cycles per second"]) > 0
     assert figures(messages[2]["bob: agent bob"])["cycles per second"] == "0"
@@ -76,10 +76,10 @@ def test_a_queue_that_grows_for_some_seconds_is_a_warning(tmp_path: Path) -> Non
         host = system.directory.find("bob")
         assert host is not None
         assert isinstance(host.mind, Mind)
-        vitals = AgentVitals(host)
+        vitals = AgentHealth(host)
         levels = []
         for more in (60, 60, 60, 60, 0):
-            # Nobody has a turn meanwhile: the agent is busier than it can be.
+            # No agent has a turn meanwhile, so the queue only grows.
             host.mind.incoming.percepts.extend([[]] * more)
             levels.append(vitals.look(1.0).level)
         assert levels == [OK, OK, WARN, WARN, OK]
@@ -91,4 +91,4 @@ def test_a_queue_that_grows_for_some_seconds_is_a_warning(tmp_path: Path) -> Non
 def test_a_defect_is_an_error(tmp_path: Path) -> None:
     messages = watched("!wait. +!wait <- .wait(60000).", tmp_path, 1.5, lambda s: s.fail(KeyError("oh")))
     assert "bob: run" not in messages[0]
-    assert messages[-1]["bob: run"].message == "a defect of jacaros ended the run: KeyError: 'oh'"
+    assert messages[-1]["bob: run"].message == "internal error: KeyError: 'oh'"

@@ -1,4 +1,4 @@
-"""A graph with nobody else in it is told."""
+"""The warning about a graph without other nodes."""
 
 import asyncio
 from collections.abc import Callable
@@ -38,9 +38,9 @@ def told(contents: GraphContents | Exception, close: bool = False) -> list[str]:
 OWN = TopicInfo("/cmd_vel", ("geometry_msgs/msg/Twist",), (Endpoint("/agents"),))
 
 
-def test_nobody_else_is_told_once() -> None:
+def test_an_empty_graph_is_reported_once() -> None:
     [line] = told(GraphContents({"/cmd_vel": OWN}, {}, {}, ("/agents",)))
-    assert line.startswith("no other node is in the ROS 2 graph of domain 7. Is the robot running?")
+    assert line.startswith("no other node is in the ROS 2 graph of domain 7; check that the robot is running")
 
 
 @pytest.mark.parametrize(
@@ -53,7 +53,7 @@ def test_nobody_else_is_told_once() -> None:
     ],
     ids=["a node", "a publisher whose node is not known yet", "a subscription", "nothing is known"],
 )
-def test_somebody_or_no_knowledge_is_not_told(contents: GraphContents | Exception) -> None:
+def test_other_nodes_or_an_unknown_graph_are_not_reported(contents: GraphContents | Exception) -> None:
     assert told(contents) == []
 
 
@@ -69,7 +69,7 @@ class LateClock:
         return SimpleNamespace(cancel=lambda: None)
 
     async def ring(self, late: float) -> None:
-        """Ring the timer so many seconds late."""
+        """Fire the timer this number of seconds late."""
         if self._timer is not None:
             (when, callback), self._timer = self._timer, None
             self.elapsed = when + late
@@ -99,5 +99,5 @@ def test_a_busy_loop_gives_others_more_time_to_be_found(late: float, seconds: fl
     run(main, VirtualClock())
 
 
-def test_nothing_is_told_after_the_end() -> None:
+def test_nothing_is_reported_after_the_end() -> None:
     assert told(GraphContents({}, {}, {}, ("/agents",)), close=True) == []

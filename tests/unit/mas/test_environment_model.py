@@ -26,7 +26,7 @@ for _name in (*NAMES, "tick", "tock"):
 
 
 class Puppet(Artifact):
-    """Does what a script says."""
+    """Runs a script."""
 
     def init(self, script: list[list[object]]) -> None:
         self.do(script)
@@ -76,7 +76,7 @@ class Puppet(Artifact):
 
 
 class Program:
-    """A random program; what comes of each of its steps is compared with the model."""
+    """A random program. The outcome of each step is compared with the model."""
 
     def __init__(self, seed):
         self.random = random.Random(seed)
@@ -214,7 +214,7 @@ class Program:
         # No two ends at one time: their order would be a matter of taste.
         return ["until", "go"] if choice < 0.93 else ["sleep", 0.5 + self.random.random()]
 
-    # ---- what has come of them
+    # ---- outcomes
 
     def compare(self):
         for name in OBSERVERS:
@@ -286,6 +286,6 @@ def outcome_of(handle):
 
 
 @pytest.mark.parametrize("seed", range(8))
-def test_what_is_noticed_is_what_the_model_says(seed):
+def test_percepts_agree_with_the_model(seed):
     for each in range(3):
         jacaros.run(Program(100 * seed + each).run(40), clock="fast")

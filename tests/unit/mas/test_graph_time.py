@@ -1,4 +1,4 @@
-"""Whose time the nodes of a graph go by."""
+"""The warning about a simulator whose clock the run does not follow."""
 
 from collections.abc import Callable
 from types import SimpleNamespace
@@ -13,7 +13,7 @@ from jacaros.ros.errors import ParameterUnknown, ServiceUnavailable
 
 
 class Graph:
-    """A graph of ROS 1 whose master may keep ``use_sim_time``, and comes late."""
+    """A ROS 1 graph whose master may set ``use_sim_time``, and appears late."""
 
     ros_version = 1
     capabilities = frozenset({PARAMETERS})
@@ -45,7 +45,7 @@ class Graph:
 
 
 def told(graph: Any, clock_comes: bool = False) -> list[str]:
-    """What people are told about a graph whose master is found after a while."""
+    """The log for a graph whose master is found after a while."""
     lines: list[str] = []
     clock = VirtualClock()
 
@@ -67,7 +67,7 @@ def told(graph: Any, clock_comes: bool = False) -> list[str]:
 
 
 @pytest.mark.parametrize("clock_comes", [False, True])
-def test_a_run_in_real_time_is_told_once_of_nodes_in_a_simulators_time(clock_comes: bool) -> None:
+def test_a_simulators_clock_is_reported_once_in_a_run_in_real_time(clock_comes: bool) -> None:
     graph = Graph(True)
     (line,) = told(graph, clock_comes)
     assert "use_sim_time" in line
@@ -76,10 +76,10 @@ def test_a_run_in_real_time_is_told_once_of_nodes_in_a_simulators_time(clock_com
 
 
 @pytest.mark.parametrize("says", [False, ParameterUnknown("none"), ServiceUnavailable("gone")])
-def test_real_time_is_not_worth_a_word(says: bool | Exception) -> None:
+def test_real_time_causes_no_warning(says: bool | Exception) -> None:
     assert told(Graph(says)) == []
 
 
-def test_a_clock_alone_is_told() -> None:
+def test_a_clock_alone_is_reported() -> None:
     (line,) = told(Graph(ParameterUnknown("none")), clock_comes=True)
-    assert "a simulator gives the time on /clock" in line
+    assert "a simulator publishes its time on /clock" in line

@@ -8,7 +8,7 @@ from jacaros.mas.launch import Interrupted, Interruption
 
 
 async def _step() -> None:
-    """Stand for a coroutine that has been made and not been awaited yet."""
+    """A coroutine that has been created but not awaited yet."""
 
 
 def test_what_a_forced_end_interrupts_causes_no_warning() -> None:

@@ -1,4 +1,4 @@
-"""Artifacts come and go, properties change, agents focus and stop: the run keeps as many objects as before."""
+"""Artifacts are created and disposed, properties change, agents focus and stop: the number of objects stays constant."""
 
 import gc
 from pathlib import Path
@@ -96,7 +96,7 @@ def check_flat(folder: Path, program: str, few: int, many: int) -> None:
         assert number - max(objects_of_few[kind], 0) < (many - few) / 10, kind
 
 
-def test_artifacts_that_come_and_go_leave_nothing_behind(tmp_path: Path) -> None:
+def test_created_and_disposed_artifacts_leave_nothing_behind(tmp_path: Path) -> None:
     program = COMES_AND_GOES.replace("TEST", "?lit(_);")
     check_flat(tmp_path, program, 20, 520)
 
@@ -105,6 +105,6 @@ def test_updates_leave_nothing_behind(tmp_path: Path) -> None:
     check_flat(tmp_path, CHANGES, 20, 2020)
 
 
-def test_who_focuses_and_stops_leaves_nothing_behind(tmp_path: Path) -> None:
+def test_focusing_and_stopping_leaves_nothing_behind(tmp_path: Path) -> None:
     program = COMES_AND_GOES.replace("TEST", "stopFocus(Id); focus(Id); stopFocus(Id);")
     check_flat(tmp_path, program, 20, 520)

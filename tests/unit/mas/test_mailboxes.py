@@ -32,8 +32,8 @@ def test_messages_arrive_in_order() -> None:
     assert [text(message.content) for message in bob.messages] == ["one", "two", "three"]
 
 
-def test_nobody_gets_a_message_for_an_unknown_agent() -> None:
-    assert not Mailboxes(lambda name: None).deliver(said(atom("x"), "nobody"))
+def test_a_message_for_an_unknown_agent_is_not_delivered() -> None:
+    assert not Mailboxes(lambda name: None).deliver(said(atom("x"), "unknown"))
 
 
 def test_variables_are_renamed_apart() -> None:
@@ -45,7 +45,7 @@ def test_variables_are_renamed_apart() -> None:
     assert first is not variable
 
 
-def test_a_flat_content_is_handed_over_as_it_is() -> None:
+def test_a_flat_content_is_not_copied() -> None:
     bob = Box()
     message = SpeechAct("tell", "ann", "bob", structure("p", 1.0), 7, flat=True)
     Mailboxes({"bob": bob}.get).deliver(message)
@@ -72,7 +72,7 @@ def test_the_id_of_a_message_names_its_sender() -> None:
     assert SpeechAct("tell", "ann", "bob", atom("x"), "mid3").id == "mid3"
 
 
-def test_agents_are_listed_in_the_order_of_their_making() -> None:
+def test_agents_are_listed_in_the_order_of_creation() -> None:
     directory: Directory[int] = Directory()
     for number, name in enumerate(("c", "a", "b")):
         directory.add(name, number)
@@ -92,7 +92,7 @@ def test_a_taken_name_gets_a_number() -> None:
     assert directory.free_name("a") == "a_1"
     directory.add("a_1", 2)
     assert directory.free_name("a") == "a_2"
-    with pytest.raises(ValueError, match="duplicate agent name a"):
+    with pytest.raises(ValueError, match="duplicate agent name `a`"):
         directory.add("a", 3)
 
 

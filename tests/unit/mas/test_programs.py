@@ -35,7 +35,7 @@ def test_beliefs_and_goals_of_the_project_are_added(tmp_path: Path) -> None:
     assert names(program.goals) == ["first", "second", "g"]
 
 
-def test_the_errors_of_all_programs_are_told_together(tmp_path: Path) -> None:
+def test_the_errors_of_all_programs_are_reported_together(tmp_path: Path) -> None:
     specs = []
     for name in ("a", "b"):
         (tmp_path / f"{name}.asl").write_text("+!g <- .", encoding="utf-8")

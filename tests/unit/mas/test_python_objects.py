@@ -79,11 +79,11 @@ def test_arrays_have_items_of_their_type(tmp_path: Path) -> None:
         "[1,2]",
         "2",
         "[1,[x]]",
-        "internal_action: 0.5 cannot be an item of int[]",
+        "internal_action: expected items of int[], found 0.5",
     ]
 
 
-def test_an_agent_asks_where_it_is(tmp_path: Path) -> None:
+def test_an_agent_lists_its_workspaces(tmp_path: Path) -> None:
     body = """createWorkspace(lab); joinWorkspace(lab, L); cartago.current_wsps(All); .length(All, N);
         .print(N); if (.member(L, All)) { .print("lab is among them") }"""
     assert lines(tmp_path, body) == ["2", "lab is among them"]
@@ -92,24 +92,27 @@ def test_an_agent_asks_where_it_is(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("body", "message"),
     [
-        ('cartago.new_obj("shapes.Cube", [], _)', "unknown class shapes.Cube: "),
-        ('cartago.new_obj("no.such.Thing", [], _)', "unknown class no.such.Thing: ModuleNotFoundError"),
-        ('cartago.new_obj("java.util.ArrayList", [], _)', "unknown class java.util.ArrayList: "),
+        ('cartago.new_obj("shapes.Cube", [], _)', "unknown class `shapes.Cube`: "),
+        ('cartago.new_obj("no.such.Thing", [], _)', "unknown class `no.such.Thing`: ModuleNotFoundError"),
+        ('cartago.new_obj("java.util.ArrayList", [], _)', "unknown class `java.util.ArrayList`: "),
         ("cartago.new_obj(3, [], _)", "expected the name of a class, found 3"),
         ('cartago.new_obj("shapes.Square", 3, _)', "expected a list of arguments, found 3"),
-        ('cartago.new_obj("shapes.Square", [_], _)', "an argument is an unbound variable"),
+        ('cartago.new_obj("shapes.Square", [_], _)', "expected ground arguments, found an unbound variable"),
         ('cartago.new_obj("shapes.Square", [], _)', "shapes.Square(...): TypeError"),
-        ('cartago.invoke_obj("shapes.Square", fly)', "class shapes.Square has no method fly"),
-        ('cartago.invoke_obj("shapes.Square", kind(1))', "kind of class shapes.Square cannot be called"),
+        ('cartago.invoke_obj("shapes.Square", fly)', "unknown method `fly` of class shapes.Square"),
+        (
+            'cartago.invoke_obj("shapes.Square", kind(1))',
+            "expected a function as kind of class shapes.Square, found str",
+        ),
         ('cartago.invoke_obj("shapes.Square", leave)', "leave of class shapes.Square: SystemExit: 3"),
         ("cartago.invoke_obj(4, bit_length)", "expected an object or the name of a class, found 4"),
         ('cartago.invoke_obj("math", 3)', "expected a call such as append(3), found 3"),
         ("cartago.array_to_list(x, _)", "expected an array, found x"),
         ("cartago.new_array(int, [], _)", 'expected a type such as "int[]", found int'),
-        ('cartago.new_obj("broken.Thing", [], _)', "unknown class broken.Thing: ModuleUnreadable"),
+        ('cartago.new_obj("broken.Thing", [], _)', "unknown class `broken.Thing`: ModuleUnreadable"),
     ],
 )
-def test_what_cannot_be_done_fails_as_an_internal_action(tmp_path: Path, body: str, message: str) -> None:
+def test_errors_fail_the_internal_action(tmp_path: Path, body: str, message: str) -> None:
     (line,) = lines(tmp_path, body, broken="1 / 0\n")
     assert line.startswith(f"internal_action: {message}")
 

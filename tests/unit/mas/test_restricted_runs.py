@@ -1,4 +1,4 @@
-"""Runs in which agents take no plans from others, use no files and make no Python objects."""
+"""Runs in which agents accept no plans from others, use no files and create no Python objects."""
 
 from pathlib import Path
 

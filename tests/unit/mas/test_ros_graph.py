@@ -19,7 +19,7 @@ def graph(clock: VirtualClock, own: str | Path | None = None, **options: Any) ->
     return RosGraph(RunOptions(**options), clock, "my system", own, lambda text: None)
 
 
-def test_nothing_is_made_until_it_is_asked_for() -> None:
+def test_nothing_is_created_before_its_first_use() -> None:
     clock = VirtualClock()
 
     async def main() -> None:
@@ -36,7 +36,7 @@ def test_nothing_is_made_until_it_is_asked_for() -> None:
     run(main, clock)
 
 
-def test_the_robots_of_the_world_are_heard_over_topics() -> None:
+def test_the_robots_of_the_world_publish_topics() -> None:
     clock = VirtualClock()
     heard: list[float] = []
 
@@ -82,7 +82,7 @@ def test_the_seed_of_the_run_is_that_of_the_world() -> None:
     run(main, clock)
 
 
-def test_a_wrong_world_is_told_at_the_start() -> None:
+def test_an_invalid_world_is_reported_at_the_start() -> None:
     clock = VirtualClock()
 
     async def main() -> None:
@@ -92,7 +92,7 @@ def test_a_wrong_world_is_told_at_the_start() -> None:
     run(main, clock)
 
 
-def test_a_missing_library_is_told_at_the_start(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_missing_library_is_reported_at_the_start(monkeypatch: pytest.MonkeyPatch) -> None:
     def missing(*_: object, **__: object) -> None:
         raise BackendUnavailable("no rclpy")
 
@@ -131,7 +131,7 @@ class Elsewhere:
         return SimpleNamespace(close=lambda: setattr(self, "listening", None))
 
 
-def test_a_simulator_that_is_not_followed_is_told_once(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_simulator_that_is_not_followed_is_reported_once(monkeypatch: pytest.MonkeyPatch) -> None:
     backend, lines = Elsewhere(), list[str]()
     monkeypatch.setattr("jacaros.ros.open.open_backend", lambda *_, **__: backend)
 
@@ -150,7 +150,7 @@ def test_a_simulator_that_is_not_followed_is_told_once(monkeypatch: pytest.Monke
     assert "run with --clock ros" in lines[0]
 
 
-def test_on_a_real_graph_the_projects_own_world_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_on_a_real_graph_the_projects_own_world_is_not_created(monkeypatch: pytest.MonkeyPatch) -> None:
     backend = Elsewhere()
     monkeypatch.setattr("jacaros.ros.open.open_backend", lambda *_, **__: backend)
     clock = VirtualClock()
@@ -168,7 +168,7 @@ def test_on_a_real_graph_the_projects_own_world_is_left_out(monkeypatch: pytest.
 
 
 @pytest.mark.parametrize(("asked", "kept"), [(False, 2000), (True, 3000)])
-def test_what_happens_in_the_world_is_kept_on_request_only(asked: bool, kept: int) -> None:
+def test_the_ground_truth_is_kept_only_on_request(asked: bool, kept: int) -> None:
     clock = VirtualClock()
 
     async def main() -> None:
@@ -185,7 +185,7 @@ def test_what_happens_in_the_world_is_kept_on_request_only(asked: bool, kept: in
     run(main, clock)
 
 
-def test_a_real_graph_has_no_use_for_the_world_of_the_project(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_real_graph_ignores_the_world_of_the_project(monkeypatch: pytest.MonkeyPatch) -> None:
     clock = VirtualClock()
     monkeypatch.setattr("jacaros.ros.open.open_backend", lambda _, *args, **kw: _open("memory", *args, **kw))
 

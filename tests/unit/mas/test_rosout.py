@@ -34,7 +34,7 @@ class WithoutLog(Node):
     """A node of a graph that has no log."""
 
     def rosout(self, level: str, text: str) -> None:
-        raise CapabilityMissing("there is no /rosout")
+        raise CapabilityMissing("/rosout is missing")
 
 
 def console(node: Any) -> tuple[RosoutConsole, Written]:
@@ -59,7 +59,7 @@ def test_prints_and_logs_go_to_both_with_the_levels_of_ros() -> None:
     assert len(written.lines) == 4
 
 
-def test_lines_about_the_connection_stay_here() -> None:
+def test_lines_about_the_connection_are_not_published() -> None:
     node = Node()
     both, written = console(node)
     both.log("[ros] the master is lost")
@@ -76,12 +76,12 @@ def test_before_the_graph_is_joined_and_while_it_is_lost_nothing_is_sent() -> No
     assert (node.told, written.lines, more.lines) == ([], [("bob", "early")], [("bob", "lost")])
 
 
-def test_a_graph_without_a_log_is_told_once() -> None:
+def test_a_graph_without_a_log_is_reported_once() -> None:
     both, written = console(WithoutLog())
     both.print("bob", "one")
     both.print("bob", "two")
     assert written.lines == [
         ("bob", "one"),
-        ("warning", "[ros] nothing is written to /rosout: there is no /rosout"),
+        ("warning", "[ros] cannot write to /rosout: /rosout is missing"),
         ("bob", "two"),
     ]

@@ -12,7 +12,7 @@ from jacaros.mas.options import RunOptions
 from jacaros.testing import TrialOptions, run_project
 
 
-def test_the_defaults_go_together() -> None:
+def test_the_default_options_are_valid() -> None:
     RunOptions().check()
 
 
@@ -37,19 +37,19 @@ def test_the_defaults_go_together() -> None:
         (RunOptions(remap={"odom": "/a b"}), "'/a b' is no ROS name"),
     ],
 )
-def test_what_cannot_go_together_is_refused(options: RunOptions, text: str) -> None:
+def test_options_that_exclude_each_other_are_refused(options: RunOptions, text: str) -> None:
     with pytest.raises(UsageError, match=text):
         options.check()
 
 
-def test_an_address_that_goes_with_its_graph_is_taken() -> None:
+def test_an_address_for_its_kind_of_graph_is_accepted() -> None:
     RunOptions(
         ros="ros2", domain_id=0, node_name="agents", namespace="robot_1", remap={"odom": "/odom"}
     ).check()
     RunOptions(ros="ros1", master="http://127.0.0.1:11311", ros_clock=True).check()
 
 
-def test_lines_and_diagnostics_go_to_real_graphs_unless_told_otherwise() -> None:
+def test_logs_and_diagnostics_go_to_real_graphs_by_default() -> None:
     assert not RunOptions().wants_rosout
     assert not RunOptions().wants_diagnostics
     assert RunOptions(ros="ros2").wants_rosout
@@ -72,7 +72,7 @@ def test_an_option_that_does_not_exist_is_refused() -> None:
         run_project("nothing.asl", sed=1)
 
 
-def test_tests_run_on_the_virtual_clock_with_a_seed_unless_told_otherwise() -> None:
+def test_tests_run_on_the_virtual_clock_with_a_seed_by_default() -> None:
     assert (TrialOptions().fast, TrialOptions().seed) == (True, 0)
     assert (TrialOptions(fast=False).fast, TrialOptions(world="empty").world) == (False, "empty")
 

@@ -1,4 +1,4 @@
-"""Turns of the agents."""
+"""The scheduler: turns of the agents."""
 
 import asyncio
 import socket
@@ -56,7 +56,7 @@ def test_an_agent_is_queued_once() -> None:
     assert log == ["a"]
 
 
-def test_who_becomes_ready_in_a_turn_comes_behind_those_who_wait() -> None:
+def test_an_agent_that_becomes_ready_in_a_turn_queues_behind_waiting_ones() -> None:
     log: list[str] = []
     clock = VirtualClock()
     late = Worker("late", 1, log)
@@ -96,7 +96,7 @@ def test_callbacks_of_the_loop_have_their_turn_among_busy_agents() -> None:
     assert seen == [Scheduler.CYCLES_PER_ROUND * turns for turns in (1, 2, 3)]
 
 
-def test_endless_cycles_let_timers_and_virtual_time_go_on() -> None:
+def test_timers_and_virtual_time_advance_during_endless_cycles() -> None:
     clock = VirtualClock()
     endless = Worker("a", 10**9, [])
 
@@ -111,7 +111,7 @@ def test_endless_cycles_let_timers_and_virtual_time_go_on() -> None:
     assert 10**9 - endless.cycles >= 10 * VirtualClock.CYCLES_PER_MILLISECOND
 
 
-def test_short_turns_without_end_move_virtual_time_too() -> None:
+def test_virtual_time_advances_during_endless_short_turns() -> None:
     clock = VirtualClock()
 
     class Chatter(Worker):
@@ -130,7 +130,7 @@ def test_short_turns_without_end_move_virtual_time_too() -> None:
     assert clock.elapsed >= 0.002
 
 
-def test_idleness_is_told_when_the_last_agent_is_done() -> None:
+def test_idleness_is_reported_when_the_last_agent_is_done() -> None:
     clock = VirtualClock()
     told: list[float] = []
 
@@ -163,7 +163,7 @@ def test_what_escapes_from_an_agent_ends_all_turns() -> None:
     assert log == []
 
 
-def test_nobody_becomes_ready_after_the_stop() -> None:
+def test_no_agent_becomes_ready_after_the_stop() -> None:
     clock = VirtualClock()
     log: list[str] = []
 
@@ -177,7 +177,7 @@ def test_nobody_becomes_ready_after_the_stop() -> None:
     assert log == []
 
 
-def test_in_a_hurry_the_ready_agents_have_their_turns_at_once() -> None:
+def test_hurry_gives_ready_agents_their_turns_immediately() -> None:
     log: list[str] = []
     idle: list[int] = []
     clock = VirtualClock()
@@ -196,7 +196,7 @@ def test_in_a_hurry_the_ready_agents_have_their_turns_at_once() -> None:
     run(main, clock)
 
 
-def test_nobody_has_a_turn_within_the_turn_of_another() -> None:
+def test_no_agent_has_a_turn_within_the_turn_of_another() -> None:
     log: list[str] = []
     clock = VirtualClock()
 
@@ -290,7 +290,7 @@ def test_after_long_cycles_turns_become_full_again() -> None:
     assert [fuel for _, fuel in bench.turns] == [50, 25, 12, 6, 3, 1, 1, 2, 4, 8, 16, 32, 50]
 
 
-def test_what_came_in_by_a_socket_is_read_before_the_next_round_of_turns() -> None:
+def test_sockets_are_read_before_the_next_round_of_turns() -> None:
     order: list[str] = []
 
     async def main() -> None:

@@ -1,4 +1,4 @@
-"""Whole runs on virtual time: beginning, end, agents that come and go."""
+"""Whole runs on virtual time: beginning, end, creation and end of agents."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -16,7 +16,7 @@ Project = Callable[..., Path]
 
 @pytest.fixture
 def project(tmp_path: Path) -> Project:
-    """Writes files into a folder and gives the path of the first."""
+    """Write files into a folder. Return the path of the first one."""
 
     def write(**files: str) -> Path:
         paths = []
@@ -47,18 +47,18 @@ def test_a_stop_can_be_announced(project: Project) -> None:
     assert result.seconds == pytest.approx(2.0)
 
 
-def test_an_idle_run_ends_when_it_is_to(project: Project) -> None:
+def test_an_idle_run_ends_on_request(project: Project) -> None:
     result = run_project(project(a_asl="!go. +!go <- .wait(500); .print(done)."), until_idle=True)
     assert result.lines == ["[a] done"]
     assert result.exit_code == 0
     assert result.seconds == pytest.approx(0.5)
 
 
-def test_a_run_without_goals_is_idle_at_once(project: Project) -> None:
+def test_a_run_without_goals_is_idle_immediately(project: Project) -> None:
     assert run_project(project(a_asl="p(1)."), until_idle=True).exit_code == 0
 
 
-def test_waiting_for_an_event_that_nobody_brings_is_idle(project: Project) -> None:
+def test_waiting_for_an_event_that_never_happens_is_idle(project: Project) -> None:
     result = run_project(project(a_asl='!go. +!go <- .wait("+never"); .print(late).'), until_idle=True)
     assert result.lines == []
 
@@ -69,7 +69,7 @@ def test_a_run_ends_after_its_time(project: Project) -> None:
     assert result.exit_code == 0
 
 
-def test_an_endless_plan_cannot_hold_up_the_end(project: Project) -> None:
+def test_an_endless_plan_does_not_delay_the_end(project: Project) -> None:
     result = run_project(project(a_asl="!go. +!go <- !go."), seconds=0.002)
     assert result.exit_code == 0
     assert result.seconds == pytest.approx(0.002, abs=1e-5)
@@ -103,14 +103,14 @@ def test_goals_and_beliefs_of_the_project_come_first(project: Project) -> None:
     assert run_project(file, until_idle=True).lines[0].startswith("[a] first")
 
 
-def test_agents_are_made_and_killed_by_agents(project: Project) -> None:
+def test_agents_create_and_kill_agents(project: Project) -> None:
     file = project(
         a_asl="""
         !go.
         +!go <- .create_agent(helper, "h.asl"); .create_agent(h); .wait(100);
                 .all_names(L); .print(L); .kill_agent(helper); .all_names(M); .print(M);
                 !missing; .stopMAS.
-        +!missing <- .create_agent(nobody).
+        +!missing <- .create_agent(missing).
         -!missing <- .print(none).
         """,
         h_asl="!hello. +!hello <- .my_name(N); .print(N); .wait(500); .print(late).",
@@ -119,7 +119,7 @@ def test_agents_are_made_and_killed_by_agents(project: Project) -> None:
     assert result.of("helper") == ["helper"]
     assert result.of("h") == ["h"]
     assert result.of("a")[-1] == "none"
-    assert any("program not found: nobody.asl" in line for line in result.errors)
+    assert any("program not found: missing.asl" in line for line in result.errors)
 
 
 def test_a_wrong_program_is_refused_before_anything_runs(project: Project) -> None:
@@ -155,7 +155,7 @@ def test_a_defect_ends_the_run(project: Project) -> None:
         run_project(file, when_started=break_it)
 
 
-def test_the_graph_is_left_in_order_even_when_the_end_of_an_agent_goes_wrong(
+def test_the_graph_is_left_in_order_even_if_the_end_of_an_agent_fails(
     project: Project, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Robots are stopped when the graph is left."""
@@ -180,7 +180,7 @@ def test_the_clock_of_the_run_is_seen_by_agents(project: Project) -> None:
     assert VirtualClock().now() == 1577836800.0
 
 
-def test_undeclared_files_are_told(tmp_path: Path) -> None:
+def test_undeclared_files_are_reported(tmp_path: Path) -> None:
     result = run_project(tmp_path / "none.asl")
     assert result.exit_code == 1
     assert "file not found: " in result.errors[0]

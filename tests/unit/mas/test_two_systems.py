@@ -1,4 +1,4 @@
-"""Two systems in one process, on one loop or in two threads: each has what is its own."""
+"""Two systems in one process, on one loop or in two threads: each with its own state."""
 
 import asyncio
 import sys

@@ -126,7 +126,7 @@ def test_percepts_come_go_and_flash() -> None:
     agent.run()
     assert agent.prints == ["open(1)", "bump", "closed(1)"]
     assert agent.beliefs == []
-    with pytest.raises(ValueError, match="a percept has no variables"):
+    with pytest.raises(ValueError, match="a percept must be ground"):
         agent.perceive("door(_)")
 
 

@@ -1,4 +1,4 @@
-"""What a parameter takes: from its Python annotation to a check that converts plain values, with words for people."""
+"""From a parameter's Python annotation to a check that converts plain values and describes what it expects."""
 
 import collections.abc
 import enum
@@ -14,7 +14,7 @@ from jacaros.env.values import Atom, Out, Structure, equal, text
 
 
 def kind_of(annotation: Any) -> Kind:
-    """The kind of values that a parameter with *annotation* takes; one that says nothing takes any input."""
+    """Return the kind of values that a parameter with *annotation* accepts. An unknown annotation accepts any input."""
     simple = _SIMPLE.get(annotation) if _hashable(annotation) else None
     if simple is not None:
         return simple
@@ -42,7 +42,7 @@ def _hashable(annotation: Any) -> bool:
 
 
 def _unwrapped(annotation: Any) -> Any:
-    """What stands behind new types, annotated types and aliases."""
+    """Resolve new types, annotated types and aliases."""
     while True:
         if isinstance(annotation, typing.NewType):
             annotation = annotation.__supertype__
@@ -57,12 +57,12 @@ def _unwrapped(annotation: Any) -> Any:
 
 
 def _is_alias(annotation: Any) -> bool:
-    # By name: Python 3.11 has none of its own, only those of typing_extensions.
+    # By name: Python 3.11 has only the aliases of typing_extensions.
     return type(annotation).__name__ == "TypeAliasType"
 
 
 def _alias_of(annotation: Any) -> Any:
-    """What an alias with parameters means, such as numpy's ``NDArray[float64]``."""
+    """Resolve an alias with parameters, such as numpy's ``NDArray[float64]``."""
     alias = typing.get_origin(annotation)
     given = dict(zip(alias.__type_params__, typing.get_args(annotation), strict=False))
     value = alias.__value__
@@ -106,7 +106,7 @@ def _real(argument: object) -> object:
 
 
 def _text(argument: object) -> object:
-    """A text; an atom is given as one, so that what is shown does not depend on how its caller wrote it."""
+    """Accept a string. An atom becomes one, so that output does not depend on how the caller wrote it."""
     if not isinstance(argument, str):
         raise Unsuitable
     return str(argument) if type(argument) is not str else argument
@@ -123,7 +123,7 @@ def _choice(choices: tuple[object, ...]) -> Kind:
 
 
 def _member(kind: type[enum.Enum]) -> Kind:
-    """A member of an enumeration, by its name, in any case of letters, or by its value."""
+    """Accept a member of an enumeration, by its name in any case, or by its value."""
     members = list(kind)
     by_name = {member.name.lower(): member for member in members}
 
@@ -164,7 +164,7 @@ def _element(kind: Kind, index: int, item: object) -> object:
 
 
 def _tuple(members: tuple[Any, ...]) -> Kind:
-    """A tuple of certain members from a list of that length; ``tuple[T, ...]`` from one of any length."""
+    """Accept a list of this length as a tuple of these members; ``tuple[T, ...]`` accepts any length."""
     if not members or members[-1] is Ellipsis:
         return _list_like(tuple)(members[:1])
     kinds = [kind_of(member) for member in members]
@@ -173,7 +173,7 @@ def _tuple(members: tuple[Any, ...]) -> Kind:
         if not isinstance(argument, list):
             raise Unsuitable
         if len(argument) != len(kinds):
-            raise Unsuitable(f"it has {len(argument)}")
+            raise Unsuitable(f"it has {len(argument)} elements")
         return tuple(
             _element(kind, i, item) for i, (kind, item) in enumerate(zip(kinds, argument, strict=True))
         )
@@ -218,7 +218,7 @@ def _part(what: str, kind: Kind, item: object, key: object) -> Any:
 
 
 def _of_numpy(kind: Any, name: str) -> bool:
-    """True for a class of numpy, which whoever wrote the annotation has loaded."""
+    """Return whether it is a class of numpy, which the author of the annotation has imported."""
     numpy = sys.modules.get("numpy")
     wanted = getattr(numpy, name, None)
     return isinstance(wanted, type) and isinstance(kind, type) and issubclass(kind, wanted)

@@ -1,4 +1,4 @@
-"""``self.value("path").append(x)``: changes a copy that nobody has, and no property."""
+"""Find ``self.value("path").append(x)``, which changes only a copy, not the property."""
 
 import ast
 import inspect
@@ -12,15 +12,15 @@ _CHANGING: Final = frozenset(
         *("update", "setdefault", "popitem"),
     }
 )
-"""Methods of lists and dictionaries that change them."""
+"""Mutating methods of lists and dictionaries."""
 
 
 def changed_copies(artifact_type: type) -> Iterator[str]:
-    """The methods of a class that change what ``self.value`` has just given, with the call and its line."""
+    """Return the methods of a class that change the copy that ``self.value`` returned, with the call and its line."""
     for member in vars(artifact_type).values():
         function = getattr(member, "plain", member)
         code = getattr(function, "__code__", None)
-        # Source texts are read only for those few methods that use such names.
+        # Only methods that use such names have their source read.
         if code is not None and "value" in code.co_names and not _CHANGING.isdisjoint(code.co_names):
             yield from _in_method(function)
 
@@ -29,10 +29,10 @@ def _in_method(function: Callable[..., Any]) -> Iterator[str]:
     try:
         lines, first = inspect.getsourcelines(function)
         tree = ast.parse(textwrap.dedent("".join(lines)))
-    except (OSError, SyntaxError, TypeError):  # made at run time, or its file has gone
+    except (OSError, SyntaxError, TypeError):  # created at run time, or its file is gone
         return
     for node in ast.walk(tree):
-        # `last = self.value("path").pop()` looks at the copy; a statement has no use for it.
+        # `last = self.value("path").pop()` uses the copy; a statement does not.
         if isinstance(node, ast.Expr) and isinstance(node.value, ast.Call) and _changes_copy(node.value.func):
             yield f"{function.__qualname__} (line {first + node.lineno - 1}): {ast.unparse(node.value)}"
 

@@ -1,4 +1,4 @@
-"""One operation as its artifact type declares it, made from a marked method or from a function."""
+"""The declaration of an operation, made from a marked method or from a function."""
 
 import inspect
 from collections.abc import Callable
@@ -6,13 +6,13 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-from jacaros.env.errors import InvalidArtifact, spelling_hint
+from jacaros.env.errors import InvalidArtifact, suggestion
 from jacaros.env.kernel.signature import Signature, signature_of
 from jacaros.env.operation import Mark, WhenPreempted
 from jacaros.env.resources.resource import Use, read_uses
 
 FOR_ONE_ARTIFACT = 1_000_000
-"""Depth of operations that one artifact defines for itself: they replace those of all its classes."""
+"""Depth of operations that an artifact defines itself: they override those of all its classes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,19 +20,19 @@ class DeclaredOperation:
     """One operation of an artifact type.
 
     Attributes:
-        name: what its callers call it.
-        kind: `OPERATION` (for agents), `LINK` (for other artifacts) or `INTERNAL` (for itself).
+        name: its name for callers.
+        kind: `OPERATION` (for agents), `LINK` (for other artifacts) or `INTERNAL`.
         function: takes the artifact and the arguments.
-        source: what the author wrote, for messages and the manual.
+        source: the user-defined function, for messages and the manual.
         signature: its parameters.
-        guard: takes the same as `function`; the operation waits while it is false.
-        pausable: True when it obeys a pause.
-        threaded: True when it runs in a worker thread.
-        coroutine: True when it runs as a task: it may have several steps, or a thread.
-        common: True when every artifact has it.
-        depth: depth of its class in the hierarchy; a deeper class replaces what is above it.
+        guard: takes the same as `function`. The operation waits while it is false.
+        pausable: whether it obeys a pause.
+        threaded: whether it runs in a worker thread.
+        coroutine: whether it runs as a task, because it may have several steps or a thread.
+        common: whether every artifact has it.
+        depth: depth of its class in the hierarchy. A deeper class overrides those above it.
         uses: resources that it holds while it runs, without the name of the robot.
-        when_preempted: what it does when these are taken away.
+        when_preempted: what it does when they are taken away.
     """
 
     name: str
@@ -53,19 +53,19 @@ class DeclaredOperation:
 def declare_method(
     mark: Mark, method: str, function: Callable[..., Any], owner: type, depth: int
 ) -> DeclaredOperation:
-    """Make the declaration of the operation *function*, which is *method* of the class *owner*.
+    """Declare *function*, the method *method* of the class *owner*, as an operation.
 
     Raises:
-        InvalidArtifact: a threaded operation is a coroutine, agents cannot give one of its parameters, or
-            its guard does not suit.
+        InvalidArtifact: a threaded operation is a coroutine, agents cannot pass one of its parameters, or its guard
+            does not fit.
     """
     guard = None
     if mark.guard is not None:
         guard = getattr(owner, mark.guard, None)
         if not callable(guard):
             methods = [name for name in dir(owner) if not name.startswith("_")]
-            help = spelling_hint(mark.guard, methods)
-            raise InvalidArtifact(f"{function.__qualname__}: the guard {mark.guard} is not a method{help}")
+            help = suggestion(mark.guard, methods)
+            raise InvalidArtifact(f"{function.__qualname__}: unknown guard method {mark.guard}{help}")
     signature = signature_of(function, skip_first=True)
     if guard is not None:
         guard = _suited(guard, signature_of(guard, skip_first=True), signature, function)
@@ -75,7 +75,7 @@ def declare_method(
 def declare_function(
     mark: Mark, name: str, function: Callable[..., Any], guard: Callable[..., Any] | None
 ) -> DeclaredOperation:
-    """Make the declaration of an operation of one artifact from a function that does not take it.
+    """Declare a function, which does not take the artifact, as an operation of one artifact.
 
     Raises:
         InvalidArtifact: as for `declare_method`.
@@ -92,7 +92,7 @@ def declare_function(
     if guard is not None:
         suited = _suited(check, signature_of(guard, skip_first=False), signature, function)
     source = function
-    while isinstance(source, partial):  # its own docstring says nothing
+    while isinstance(source, partial):  # the docstring of a partial is that of the class
         source = source.func
     return _declare(mark, name, call, source, signature, suited, FOR_ONE_ARTIFACT)
 
@@ -108,7 +108,7 @@ def _declare(
 ) -> DeclaredOperation:
     coroutine = inspect.iscoroutinefunction(source)
     if mark.threaded and coroutine:
-        raise InvalidArtifact(f"{name_of(source)} runs in a thread: make it a plain def, without async")
+        raise InvalidArtifact(f"{name_of(source)} runs in a thread, so it cannot be async; write a plain def")
     uses, when_preempted = _uses(mark, source)
     return DeclaredOperation(
         name,
@@ -128,7 +128,7 @@ def _declare(
 
 
 def _uses(mark: Mark, source: Callable[..., Any]) -> tuple[tuple[Use, ...], WhenPreempted]:
-    """What an operation uses, and what it does when it is preempted."""
+    """Return what an operation uses, and what it does when it is preempted."""
     try:
         uses = read_uses(mark.uses)
     except ValueError as wrong:
@@ -138,13 +138,13 @@ def _uses(mark: Mark, source: Callable[..., Any]) -> tuple[tuple[Use, ...], When
         return uses, "pause" if mark.pausable else "finish"
     if wanted not in ("pause", "cancel", "finish"):
         raise InvalidArtifact(
-            f"{name_of(source)}: when_preempted is {wanted!r}: write pause, cancel or finish"
+            f"{name_of(source)}: expected pause, cancel or finish as when_preempted, found {wanted!r}"
         )
     if wanted == "pause" and not mark.pausable:
         raise InvalidArtifact(f'{name_of(source)}: when_preempted="pause" needs pausable=True')
     if wanted == "cancel" and mark.threaded:
         raise InvalidArtifact(
-            f'{name_of(source)} runs in a thread, which cannot be cancelled: write when_preempted="finish"'
+            f'{name_of(source)} runs in a thread, which cannot be cancelled; write when_preempted="finish"'
         )
     return uses, wanted
 
@@ -152,19 +152,19 @@ def _uses(mark: Mark, source: Callable[..., Any]) -> tuple[tuple[Use, ...], When
 def _suited(
     guard: Callable[..., object], takes: Signature, wanted: Signature, function: Callable[..., Any]
 ) -> Callable[..., object]:
-    """A guard without parameters is for any arguments; else it must take those of the operation."""
+    """Check a guard. It takes the parameters of the operation, or none."""
     if inspect.iscoroutinefunction(guard):
-        raise InvalidArtifact(f"{name_of(function)}: its guard must be a plain def")
+        raise InvalidArtifact(f"{name_of(function)}: expected a plain def as guard, found an async def")
     if not takes.parameters and takes.rest is None:
         return lambda artifact, *_: guard(artifact)
     if not all(map(takes.takes, wanted.arities)) or (wanted.rest is not None and takes.rest is None):
         raise InvalidArtifact(
-            f"{name_of(function)}: its guard takes ({takes}); it must take the same as the operation, "
-            f"({wanted}), or nothing"
+            f"{name_of(function)}: expected a guard with the parameters of the operation ({wanted}), or none; "
+            f"found ({takes})"
         )
     return guard
 
 
 def name_of(function: Callable[..., Any]) -> str:
-    """What a function is called in messages."""
+    """Return the name of a function for messages."""
     return str(getattr(function, "__qualname__", function))

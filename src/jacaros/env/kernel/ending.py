@@ -1,4 +1,4 @@
-"""How an artifact gives back what it holds, when the last of its operations has ended."""
+"""Release what an artifact holds, when the last of its operations has ended."""
 
 import asyncio
 from collections.abc import Callable
@@ -7,12 +7,12 @@ from jacaros.env.kernel.faults import is_interruption
 
 
 class Ending:
-    """What is called at the end of one artifact, once.
+    """The callbacks for the end of one artifact, called once.
 
     Attributes:
-        hook: called first, when the artifact was initialised.
+        hook: called first, if the artifact was initialised.
         cleanups: called after that, the last one first.
-        over: True when everything has been called.
+        over: whether all have been called.
     """
 
     def __init__(self) -> None:
@@ -22,7 +22,7 @@ class Ending:
         self._over: asyncio.Future[None] | None = None
 
     def run(self, initialised: bool, complain: Callable[[str, BaseException], None]) -> None:
-        """Call everything; *complain* is told what one of them raises."""
+        """Call all callbacks. *complain* gets the exceptions they raise."""
         if self.over:
             return
         self.over = True
@@ -33,7 +33,7 @@ class Ending:
             except BaseException as error:
                 if is_interruption(error):
                     raise
-                complain("could not be disposed properly:", error)
+                complain("error while disposing:", error)
         if self._over is not None and not self._over.done():
             self._over.set_result(None)
 
@@ -42,4 +42,4 @@ class Ending:
         if not self.over:
             if self._over is None:
                 self._over = asyncio.get_running_loop().create_future()
-            await asyncio.shield(self._over)  # who stops waiting must not end the waiting of others
+            await asyncio.shield(self._over)  # cancelling one waiting task must not cancel the others

@@ -1,4 +1,4 @@
-"""External sessions: threads and tasks from elsewhere that work in an artifact as an operation does."""
+"""External sessions: exclusive access to an artifact for threads and tasks outside of its operations."""
 
 import asyncio
 import threading
@@ -18,11 +18,11 @@ from jacaros.env.operation import EXTERNAL, OperationOutcome, OperationRequest
 from jacaros.trace import Cause
 
 PATIENCE = 0.2
-"""Seconds after which a waiting thread looks whether the loop is still there."""
+"""Seconds after which a waiting thread checks whether the event loop still exists."""
 
 
 class ExternalSession:
-    """A turn in an artifact for code that is no operation; see `Artifact.external_session`."""
+    """A turn in an artifact for code outside of its operations. See `Artifact.external_session`."""
 
     def __init__(self, steps: Steps, cause: Cause | None) -> None:
         self._steps, self._cause = steps, cause
@@ -61,20 +61,20 @@ class ExternalSession:
     def __enter__(self) -> None:
         if not self._steps.setting.elsewhere():
             raise InvalidArtifact(
-                f"artifact {self._steps.id.name}: 'with' is for other threads; in a task write 'async with', in a "
-                "callback self.start(...)"
+                f"artifact {self._steps.id.name}: `with` is for other threads; in a task, use `async with`; in a callback, "
+                "use self.start(...)"
             )
         if self._steps.inside():
             raise InvalidArtifact(f"artifact {self._steps.id.name}: this is within an operation already")
         self._thread = threading.get_ident()
-        self._wait(self._entered, self._steps.setting.hand_over(self._arrive))
+        self._wait(self._entered, self._steps.setting.call_on_loop(self._arrive))
         if self._refusal is not None:
             raise _failure(self._refusal)
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._wait(self._ended, self._steps.setting.hand_over(partial(self._leave, error)))
+        self._wait(self._ended, self._steps.setting.call_on_loop(partial(self._leave, error)))
 
     def _wait(self, event: threading.Event, alive: bool) -> None:
         loop = self._steps.setting.loop
@@ -90,7 +90,7 @@ class ExternalSession:
             self._steps.turns.enter(self._new_execution(self._hold, threaded=True), None)
 
     async def _hold(self, execution: OperationExecution) -> BaseException | None:
-        """Keep the turn until the thread leaves; gives what ended it."""
+        """Keep the turn until the thread leaves. Return the exception that ended it, or None."""
         loop = asyncio.get_running_loop()
         self._left = loop.create_future()
         execution.thread = self._thread
@@ -106,7 +106,7 @@ class ExternalSession:
             self._left.set_result(error)
 
     def _told(self, outcome: OperationOutcome) -> None:
-        """Take the outcome: it is refused when it had not begun."""
+        """Handle the outcome: a refusal, if it had not begun."""
         if not self._entered.is_set():
             self._refusal = outcome
             self._entered.set()

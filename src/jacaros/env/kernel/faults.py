@@ -1,6 +1,7 @@
-"""What fails an operation: exceptions of an artifact's code, and the failed outcomes that the kernel itself makes.
+"""Failures of operations: exceptions in an artifact's code, and failed outcomes that the kernel itself creates.
 
-Of exceptions it says which are the author's, and puts them into words; an outcome has a message and a reason term.
+An exception is attributed to the artifact's author or not, and described in words. An outcome has a message and a
+reason term.
 """
 
 import signal
@@ -21,14 +22,14 @@ _SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP", "SIGBREAK", "SIGALRM", "SIGILL")
 
 
 def is_interruption(error: BaseException) -> bool:
-    """True for what a signal handler raised in the middle of an artifact's code; all else is the code's own.
+    """Return whether a signal handler raised this exception in the middle of an artifact's code.
 
-    An artifact that raises ``SystemExit`` or ``KeyboardInterrupt`` by itself ends its operation, not the process.
+    An artifact that raises ``SystemExit`` or ``KeyboardInterrupt`` itself fails its operation; the process continues.
     """
     if isinstance(error, Exception):
         return False
     handlers = [signal.getsignal(getattr(signal, name)) for name in _SIGNALS if hasattr(signal, name)]
-    # The handler of Python itself is no Python code, so no trace shows it.
+    # Python's own handler is not Python code, so it does not appear in the traceback.
     if isinstance(error, KeyboardInterrupt) and handlers[0] is signal.default_int_handler:
         return True
     codes = {_code(handler) for handler in handlers} - {None}
@@ -42,15 +43,15 @@ def _code(handler: Any) -> CodeType | None:
 
 
 def text_of(error: object) -> str:
-    """What *error* says of itself, also when its ``__str__`` is broken."""
+    """Return the text of *error*, even if its ``__str__`` raises."""
     try:
         return str(error)
     except Exception as broken:
-        return f"(its text cannot be had: {type(broken).__name__})"
+        return f"(its __str__ raised {type(broken).__name__})"
 
 
-def told(error: BaseException) -> str:
-    """An exception in words: its class, and what it says."""
+def error_text(error: BaseException) -> str:
+    """Return the class and text of an exception."""
     said = text_of(error)
     return f"{type(error).__name__}: {said}" if said else type(error).__name__
 
@@ -59,43 +60,43 @@ _CALLERS = {OPERATION: "agents", LINK: "other artifacts only", INTERNAL: "the ar
 
 
 def key(request: OperationRequest) -> str:
-    """Name and number of arguments, such as ``inc/1``."""
+    """Return name and arity, such as ``inc/1``."""
     return f"{request.operation}/{len(request.arguments)}"
 
 
 def unknown_operation(request: OperationRequest, kind: str, interface: Interface) -> OperationOutcome:
-    """The artifact has no operation of that name and number of arguments for that caller."""
+    """Return the failure for an unknown operation, number of arguments, or kind of caller."""
     name, arity, artifact = request.operation, len(request.arguments), request.artifact
     for other in (OPERATION, LINK, INTERNAL):
         if other != kind and interface.table(other).find(name, arity) is not None:
-            help = f"; its {other} of that name is for {_CALLERS[other]}"
+            help = f"; its {other} of this name is for {_CALLERS[other]}"
             break
     else:
         help = interface.table(kind).explain(name)
-    message = f"artifact {artifact.name} ({artifact.type_name}) has no {kind} {key(request)}{help}"
+    message = f"unknown {kind} `{key(request)}` of artifact {artifact.name} ({artifact.type_name}){help}"
     return OperationOutcome(False, message, Structure("unknown_operation", (artifact, name)))
 
 
 def wrong_arguments(request: OperationRequest, wrong: WrongArguments) -> OperationOutcome:
-    """An argument is not of the kind that the operation wants."""
+    """Return the failure for an argument of the wrong kind."""
     message = f"operation {key(request)} of artifact {request.artifact.name}: {wrong}"
     return OperationOutcome(False, message, Structure("wrong_op_arguments", (request.artifact, key(request))))
 
 
 def not_available(artifact: ArtifactId) -> OperationOutcome:
-    """The artifact is there no more."""
-    message = f"artifact {artifact.path} is not available: it has been disposed"
+    """Return the failure for a disposed artifact."""
+    message = f"artifact {artifact.path} has been disposed"
     return OperationOutcome(False, message, Structure("artifact_not_available", (artifact.name,)))
 
 
 def disposed(request: OperationRequest) -> OperationOutcome:
-    """The artifact went away while the operation was waiting or running."""
+    """Return the failure of an operation whose artifact was disposed while it waited or ran."""
     message = f"artifact {request.artifact.path} was disposed before {key(request)} ended"
     return OperationOutcome(False, message, Structure("artifact_disposed", (request.artifact.name,)))
 
 
 def timed_out(request: OperationRequest, seconds: float) -> OperationOutcome:
-    """The operation did not end in the time that its caller gave it."""
+    """Return the failure of an operation that exceeded its time limit."""
     milliseconds = round(seconds * 1000, 3)
     shown = f"{milliseconds:g} ms" if milliseconds < 1000 else f"{seconds:g} s"
     message = f"operation {key(request)} of artifact {request.artifact.name} did not end within {shown}"
@@ -103,12 +104,12 @@ def timed_out(request: OperationRequest, seconds: float) -> OperationOutcome:
 
 
 def without_resource(request: OperationRequest, reason: Structure | Atom) -> str:
-    """Words for an operation that cannot have what it uses, or has lost it."""
+    """Return the message for an operation that cannot have a resource, or has lost it."""
     said = {
-        "preempted": "a more urgent claim took {} away",
+        "preempted": "a more urgent claim preempted it at {}",
         "resource_busy": "{} is in use",
-        "deadlock": "it waited for {} in a circle with others",
-        "resource_exceeded": "it asks for more units of {} than there are",
+        "deadlock": "its wait for {} is part of a deadlock",
+        "resource_exceeded": "it claims more units of {} than its capacity",
     }
     functor = reason.functor if isinstance(reason, Structure) else str(reason)
     name = reason.arguments[0] if isinstance(reason, Structure) else ""
@@ -117,19 +118,19 @@ def without_resource(request: OperationRequest, reason: Structure | Atom) -> str
 
 
 def failed(request: OperationRequest, error: BaseException) -> OperationOutcome:
-    """The code of the operation raised *error*."""
+    """Return the failure of an operation whose code raised *error*."""
     if isinstance(error, OperationFailed):
-        # A class of the author's own need not have called the constructor.
+        # A user-defined subclass need not have called the constructor.
         message = getattr(error, "message", None)
         reason = getattr(error, "reason", None)
         return OperationOutcome(False, message if isinstance(message, str) else text_of(error), reason)
     functor = "internal_error" if isinstance(error, InternalError) else "operation_error"
-    message = told_in(error, request)
+    message = error_text_in(error, request)
     return OperationOutcome(False, message, Structure(functor, (key(request),)))
 
 
-def told_in(error: BaseException, request: OperationRequest) -> str:
-    """An exception in words, and the operation in which it was raised."""
+def error_text_in(error: BaseException, request: OperationRequest) -> str:
+    """Return the class and text of an exception, and the operation that raised it."""
     where = f"in operation {key(request)} of {request.artifact.name}"
     said = text_of(error)
     return f"{type(error).__name__} {where}: {said}" if said else f"{type(error).__name__} {where}"

@@ -1,4 +1,4 @@
-"""What one operation holds of the resources that it uses, and how it gives way to a more urgent claim."""
+"""The resources that one operation holds, and how it yields to a more urgent claim."""
 
 from collections.abc import Callable
 from typing import Protocol
@@ -14,7 +14,7 @@ Stop = Callable[[Structure | Atom], None]
 
 
 class Operation(Protocol):
-    """The operation, as what it holds sees it."""
+    """The operation, as its claim sees it."""
 
     request: OperationRequest
 
@@ -24,32 +24,32 @@ class Operation(Protocol):
 
     @property
     def waits_for_others(self) -> bool:
-        """Whether it does nothing itself, and waits for operations that it has asked for."""
+        """Whether it only waits for operations that it has called."""
 
     @property
     def suspended(self) -> bool:
         """Whether its caller has paused it."""
 
     def adapt(self) -> None:
-        """Pause or continue, as what it holds has changed."""
+        """Pause or continue, after a change of its claim."""
 
 
 class Holding:
     """The claim of one operation.
 
-    It may be entered and left several times.  While it is entered and not granted, the operation is paused.
+    It may be entered and left several times. While it is entered and not granted, the operation is paused.
 
     Args:
-        operation: that uses something.
-        arbiter: of its environment.
-        uses: what it uses.
-        when_preempted: what it does when a more urgent claim takes it away.
+        operation: the operation that uses resources.
+        arbiter: arbiter of its environment.
+        uses: the resources.
+        when_preempted: what it does when a more urgent claim takes them away.
         stop: fails the operation.
 
     Attributes:
-        claim: at the arbiter.
-        entered: it has been asked for, and not been given back.
-        resting: the operation waits for the end of its pause: nothing moves.
+        claim: the claim at the arbiter.
+        entered: whether the claim has been made and not released.
+        resting: whether the operation waits for the end of its pause, so that nothing moves.
     """
 
     def __init__(
@@ -73,24 +73,24 @@ class Holding:
 
     @property
     def barred(self) -> bool:
-        """Whether the operation has asked for what it uses, and must not go on without."""
+        """Whether the operation has claimed its resources, and must not continue without them."""
         return self.entered and self.claim.state is not State.HELD
 
     @property
     def holds(self) -> bool:
-        """Whether nobody else may have it; also while the operation gives way."""
+        """Whether no other claim can have the resources. Also true while the operation yields."""
         return self.claim.holds
 
     def watch(self, callback: Callable[[], None]) -> Callable[[], None]:
-        """Call *callback* whenever the claim is granted later or preempted, or its caller pauses or resumes the operation.
+        """Call *callback* whenever the claim is granted or preempted, or the caller pauses or resumes the operation.
 
-        What this gives ends that.
+        Return a function that ends this.
         """
         self._watchers.append(callback)
         return lambda: self._watchers.remove(callback)
 
     def enter(self) -> None:
-        """Ask for what the operation uses, if that has not been done."""
+        """Claim the resources, unless they are claimed."""
         if self.entered:
             return
         self.entered = self._entering = True
@@ -100,7 +100,7 @@ class Holding:
         self._operation.adapt()
 
     def leave(self) -> None:
-        """Give it back, or the place in the order."""
+        """Release the resources, or the place in the queue."""
         self.entered = False
         self._arbiter.leave(self.claim)
         self._tell(None)
@@ -109,20 +109,20 @@ class Holding:
     # ---- the caller pauses and resumes the operation
 
     def suspended(self) -> None:
-        """The caller has paused the operation: others have its turn, as soon as nothing moves."""
+        """The caller has paused the operation: others may have its turn, as soon as nothing moves."""
         if self.entered and (self.resting or self.claim.state is State.WAITING or not self._operation.active):
             self._arbiter.leave(self.claim)
         self._tell(None)
         self._changed()
 
     def resumed(self) -> None:
-        """The caller has ended the pause: the operation asks again for what it has given back."""
+        """The caller has resumed the operation: it claims again what it has released."""
         if self.entered and self.claim.state is State.OUT:
             self._arbiter.enter(self.claim)
         self._changed()
 
     def rest(self) -> None:
-        """Nothing moves: the operation gives way."""
+        """Nothing moves: the operation yields."""
         if self._operation.suspended:
             self._arbiter.leave(self.claim)
         else:
@@ -145,7 +145,7 @@ class Holding:
             self._changed()
 
     def preempted(self, claim: Claim, resource: str) -> None:
-        """Give way: at once what has not begun, after braking what runs."""
+        """Yield: immediately before the operation has begun, after braking while it runs."""
         if not self._operation.active:
             self._operation.adapt()
             self._arbiter.gave_way(claim)
@@ -165,7 +165,7 @@ class Holding:
         self._stop(reason)
 
     def _tell(self, resource: str | None) -> None:
-        """Tell the caller that the operation is preempted, or no longer."""
+        """Report to the caller that the operation is preempted, or no longer."""
         if self._told is not (resource is not None):
             self._told = resource is not None
             self._operation.request.on_preempted(resource)

@@ -1,17 +1,17 @@
-"""What an artifact type offers: its operations by kind, worked out once when the class is made."""
+"""The operations of an artifact type by kind, computed once when the class is created."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import chain
 from typing import Any
 
-from jacaros.env.errors import InvalidArtifact, spelling_hint
+from jacaros.env.errors import InvalidArtifact, suggestion
 from jacaros.env.kernel.declaration import DeclaredOperation, declare_method, name_of
 from jacaros.env.operation import INIT, LINK, OPERATION, Mark, marks_of
 
 
 class OperationTable:
-    """Operations of one kind, found by name and number of arguments."""
+    """Operations of one kind, by name and number of arguments."""
 
     __slots__ = ("_exact", "_variable")
 
@@ -20,7 +20,7 @@ class OperationTable:
         self._variable: dict[str, DeclaredOperation] = {}
 
     def add(self, declared: DeclaredOperation) -> None:
-        """Add an operation; one declared deeper in the class hierarchy replaces those it overlaps.
+        """Add an operation. One that is declared deeper in the class hierarchy overrides those it overlaps.
 
         Raises:
             InvalidArtifact: another method of the same class takes the same number of arguments.
@@ -34,7 +34,7 @@ class OperationTable:
             self._exact[declared.name, arity] = declared
 
     def find(self, name: str, arity: int) -> DeclaredOperation | None:
-        """The operation for a call; one for exactly so many arguments wins over ``*args``."""
+        """Return the operation for a call. An exact number of arguments has precedence over ``*args``."""
         found = self._exact.get((name, arity))
         if found is not None:
             return found
@@ -42,13 +42,13 @@ class OperationTable:
         return found if found is not None and found.signature.takes(arity) else None
 
     def remove(self, name: str) -> None:
-        """Take away all operations called *name*."""
+        """Remove all operations called *name*."""
         self._variable.pop(name, None)
         for key in [key for key in self._exact if key[0] == name]:
             del self._exact[key]
 
     def copy(self) -> "OperationTable":
-        """A table that can be changed by itself."""
+        """Return a table that can be changed independently."""
         other = OperationTable()
         other._exact.update(self._exact)
         other._variable.update(self._variable)
@@ -59,25 +59,25 @@ class OperationTable:
         return iter({id(each): each for each in listed if not each.common}.values())
 
     def keys(self) -> list[str]:
-        """Names with numbers of arguments, such as ``inc/1`` and ``sum/any``, without what every artifact has."""
+        """Return names and arities, such as ``inc/1`` and ``sum/any``, without operations that every artifact has."""
         exact = [f"{name}/{arity}" for (name, arity), each in self._exact.items() if not each.common]
         return exact + [f"{name}/any" for name in self._variable]
 
     def explain(self, name: str) -> str:
-        """Say what there is instead of an operation *name* that takes other numbers of arguments, or none."""
+        """Return what exists instead of an operation *name*: other arities, or all operations."""
         keys = self.keys()
         same = [key for key in keys if key.rpartition("/")[0] == name]
         if same:
-            return f"; there is {', '.join(same)}"
-        offer = f" (it offers {', '.join(keys)})" if keys else " (it offers none)"
-        return offer + spelling_hint(name, [key.rpartition("/")[0] for key in keys])
+            return f"; it has {', '.join(same)}"
+        offer = f" (it has {', '.join(keys)})" if keys else " (it has none)"
+        return offer + suggestion(name, [key.rpartition("/")[0] for key in keys])
 
 
 def _check_overlap(present: DeclaredOperation | None, new: DeclaredOperation, arity: str) -> None:
     if present is not None and present.depth == new.depth and present.function is not new.function:
         raise InvalidArtifact(
             f"{name_of(present.source)} and {name_of(new.source)} are both "
-            f"{new.kind} {new.name} with {arity} arguments; it would be unclear which one runs"
+            f"{new.kind} {new.name} with {arity} arguments; rename one of them"
         )
 
 
@@ -86,10 +86,10 @@ class Interface:
     """All operations of an artifact type, or of one artifact that defines more of its own.
 
     Attributes:
-        operations: those for agents.
-        links: those for other artifacts.
-        internals: those it starts itself.
-        inits: those of which one runs when it is made, all called ``init``.
+        operations: operations for agents.
+        links: operations for other artifacts.
+        internals: operations that it starts itself.
+        inits: the methods ``init``, of which one is called at creation.
     """
 
     operations: OperationTable
@@ -98,7 +98,7 @@ class Interface:
     inits: OperationTable
 
     def table(self, kind: str) -> OperationTable:
-        """The table of operations of one kind."""
+        """Return the table of operations of one kind."""
         if kind == INIT:
             return self.inits
         if kind == OPERATION:
@@ -106,7 +106,7 @@ class Interface:
         return self.links if kind == LINK else self.internals
 
     def own(self, operation: str | Callable[..., object], arity: int) -> DeclaredOperation | None:
-        """The operation that an artifact starts itself: by name, or by its method."""
+        """Return the operation that an artifact starts itself, by name or by method."""
         if isinstance(operation, str):
             found = self.internals.find(operation, arity)
             return found if found is not None else self.operations.find(operation, arity)
@@ -120,23 +120,23 @@ class Interface:
         return None
 
     def unknown_annotations(self) -> Iterator[tuple[str, str, str]]:
-        """Operation, parameter and text of the annotations that name nothing."""
+        """Return operation, parameter and text of the annotations that cannot be resolved."""
         for declared in chain(self.operations, self.links, self.internals, self.inits):
             for parameter, written in declared.signature.unknown.items():
                 yield name_of(declared.source), parameter, written
 
     def copy(self) -> "Interface":
-        """An interface that can be changed by itself."""
+        """Return an interface that can be changed independently."""
         return Interface(self.operations.copy(), self.links.copy(), self.internals.copy(), self.inits)
 
 
 def interface_of(artifact_type: type) -> Interface:
-    """Read the interface of an artifact class from the marks on its methods.
+    """Return the interface of an artifact class, from the marks on its methods.
 
-    A method that is overridden without a decorator stays an operation, as methods of Python do.
+    A method that is overridden without a decorator remains an operation, like any Python method.
 
     Raises:
-        InvalidArtifact: a declaration cannot work; the message names the method.
+        InvalidArtifact: a declaration is invalid. The message names the method.
     """
     marks: dict[str, tuple[int, tuple[Mark, ...]]] = {}
     for depth, each in enumerate(reversed(artifact_type.__mro__)):
@@ -155,7 +155,7 @@ def interface_of(artifact_type: type) -> Interface:
 
 
 def _unwatched(function: Callable[..., Any]) -> Callable[..., Any]:
-    """The author's own function, see `jacaros.env.kernel.unawaited.watch_operations`."""
+    """Return the user-defined function. See `jacaros.env.kernel.unawaited.watch_operations`."""
     plain: Callable[..., Any] = getattr(function, "plain", function)
     return plain
 

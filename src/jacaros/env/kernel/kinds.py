@@ -1,6 +1,6 @@
-"""Kinds of values that parameters take.
+"""Kinds of values that parameters accept.
 
-For a parameter that is a dataclass or a named tuple agents give a structure, such as ``pose(1,2)``.
+For a parameter that is a dataclass or a named tuple, agents pass a structure, such as ``pose(1,2)``.
 """
 
 import dataclasses
@@ -11,21 +11,21 @@ from typing import Any, NamedTuple
 from jacaros.env.values import Atom, Out, Structure, functor_of, text
 
 Accept = Callable[[Any], object]
-"""Takes an argument and gives what the operation receives; raises `Unsuitable`."""
+"""Converts an argument for the operation. Raises `Unsuitable`."""
 
 LONGEST = 120
-"""Characters of an argument that a message shows."""
+"""Maximum number of characters of an argument in a message."""
 
 
 class Unsuitable(Exception):
-    """An argument is not of the kind that a parameter takes; the text, if any, says which part of it is not."""
+    """An argument is not of the kind that a parameter accepts. The text, if any, says which part of it is not."""
 
 
 class Kind(NamedTuple):
     """A kind of values.
 
     Attributes:
-        expected: what it is, for people.
+        expected: its description, for messages.
         accept: checks and converts an argument.
     """
 
@@ -43,7 +43,7 @@ ANYTHING = Kind("any value", _input)
 
 
 def instance_of(kind: type, expected: str) -> Kind:
-    """The instances of a class, which are taken as they are."""
+    """Accept instances of a class, unconverted."""
 
     def accept(argument: object) -> object:
         if isinstance(argument, kind):
@@ -54,7 +54,7 @@ def instance_of(kind: type, expected: str) -> Kind:
 
 
 def alternatives(kinds: Sequence[Kind]) -> Kind:
-    """Any of several kinds: the first that takes the argument as it is wins over one that would convert it."""
+    """Accept any of several kinds. One that needs no conversion has precedence."""
 
     def accept(argument: object) -> object:
         converted: list[object] = []
@@ -76,13 +76,13 @@ def alternatives(kinds: Sequence[Kind]) -> Kind:
 
 
 def shown(argument: object) -> str:
-    """An argument as agents write it, shortened."""
+    """Return an argument as agents write it, shortened."""
     written = "an unbound variable" if isinstance(argument, Out) else text(argument, quoted=True)
     return written if len(written) <= LONGEST else f"{written[:LONGEST]}..."
 
 
 def got(item: object, unsuitable: Unsuitable) -> str:
-    """Say of a part what it is, or which part of it is wrong."""
+    """Return what a part is, or which part of it is wrong."""
     deeper = str(unsuitable)
     return f"is {shown(item)}" + (f": {deeper}" if deeper else "")
 
@@ -91,9 +91,9 @@ class Field(NamedTuple):
     """A field of a record.
 
     Attributes:
-        name: as in Python.
-        annotation: what it takes.
-        optional: True when it has a default value.
+        name: its Python name.
+        annotation: its annotation.
+        optional: whether it has a default value.
     """
 
     name: str
@@ -102,9 +102,9 @@ class Field(NamedTuple):
 
 
 def fields_of(kind: type) -> list[Field] | None:
-    """The fields that the constructor of a dataclass or named tuple takes; None for other classes.
+    """Return the fields that the constructor of a dataclass or named tuple takes; None for other classes.
 
-    A class with ``__record__ = False`` says that it is more than its fields: no structure stands for it.
+    A class with ``__record__ = False`` has more state than its fields, so no structure can represent it.
     """
     if getattr(kind, "__record__", True) is False:
         return None
@@ -130,12 +130,12 @@ def fields_of(kind: type) -> list[Field] | None:
 def _hints(kind: type) -> dict[str, Any]:
     try:
         return typing.get_type_hints(kind)
-    except Exception:  # an annotation that cannot be resolved takes anything
+    except Exception:  # an annotation that cannot be resolved accepts any value
         return {}
 
 
 def record(kind: type, fields: list[Field], kind_of: Callable[[Any], Kind]) -> Kind:
-    """The kind of structures that become a *kind*."""
+    """Accept structures that become a *kind*."""
     functor = functor_of(kind)
     kinds = [(field, kind_of(field.annotation)) for field in fields]
     fewest = sum(not field.optional for field in fields)
@@ -145,7 +145,7 @@ def record(kind: type, fields: list[Field], kind_of: Callable[[Any], Kind]) -> K
             return argument
         given = _arguments(argument, functor)
         if not fewest <= len(given) <= len(kinds):
-            raise Unsuitable(f"it has {len(given)} of them")
+            raise Unsuitable(f"it has {len(given)} arguments")
         values = {
             field.name: _field(field, wanted, item)
             for (field, wanted), item in zip(kinds, given, strict=False)

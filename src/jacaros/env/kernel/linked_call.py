@@ -1,4 +1,4 @@
-"""Calling the linked operations behind an out port, and waiting for all of them."""
+"""Call the linked operations behind an out port, and wait for all of them."""
 
 import asyncio
 from collections.abc import Awaitable, Callable, Iterable
@@ -19,12 +19,12 @@ async def call_all(
     arguments: tuple[object, ...],
     execution: OperationExecution,
 ) -> None:
-    """Call *operation* of all *targets* at once on behalf of *execution*, and wait for all.
+    """Call *operation* of all *targets* on behalf of *execution*, and wait for all of them.
 
-    Cancelling *execution* meanwhile cancels them, pausing it pauses them.
+    Cancelling or pausing *execution* meanwhile cancels or pauses them.
 
     Raises:
-        OperationFailed: one of them failed; message and reason are those of the first in the given order.
+        OperationFailed: one of them failed, with the message and reason of the first one in the given order.
     """
     listed = tuple(targets)
     outcomes: list[OperationOutcome | None] = [None] * len(listed)

@@ -1,4 +1,4 @@
-"""What observers see of one artifact: its committed properties and its signals."""
+"""What observers see of one artifact: committed properties and signals."""
 
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -10,7 +10,7 @@ from jacaros.env.property import ObservableProperty, PropertyChanges, PropertySt
 from jacaros.trace import Cause
 
 _Telling = tuple[Iterator[Observer], str | None, Observation, Observation]
-"""Who is still to be told, the only one to hear of the signals (None for all), what that one sees, and what others see."""
+"""The observers to notify, the only addressee of the signals (None for all), its observation, and that of the others."""
 _NOTHING: Any = None
 _NOBODY: _Telling = iter(()), None, _NOTHING, _NOTHING
 
@@ -19,9 +19,9 @@ class Publication:
     """The observable side of one artifact.
 
     Attributes:
-        properties: the properties, with those of the step in progress.
-        observers: who focuses the artifact, in the order of focusing.
-        coming: names of properties whose new values wait for the turn of the artifact.
+        properties: the properties, including changes of the step in progress.
+        observers: the observers that focus the artifact, in the order of focusing.
+        coming: names of properties whose new values wait for the artifact's turn.
     """
 
     __slots__ = (
@@ -46,23 +46,23 @@ class Publication:
 
     @property
     def observers(self) -> tuple[Observer, ...]:
-        """Who focuses the artifact, in the order of focusing."""
+        """The observers that focus the artifact, in the order of focusing."""
         return tuple(self._observers)
 
     def committed(self) -> tuple[ObservableProperty, ...]:
-        """The properties as observers know them."""
+        """Return the properties as observers know them."""
         return self._frozen if self._frozen is not None else self.properties.committed()
 
     def freeze(self) -> None:
-        """From now on a worker thread changes the properties: observers see them as they are now."""
+        """Show observers the current state while a worker thread changes the properties."""
         self._frozen = self.properties.committed()
 
     def thaw(self) -> None:
-        """The worker thread is done."""
+        """End `freeze`: the worker thread has ended."""
         self._frozen = None
 
     def add(self, observer: Observer) -> None:
-        """Let *observer* receive what is published, beginning with all properties; once is enough."""
+        """Add an observer. It receives what is published, beginning with all properties. Adding it again has no effect."""
         if observer not in self._observers:
             self._observers[observer] = None
             self._note_slow()
@@ -70,7 +70,7 @@ class Publication:
             self._show(observer, added=self.committed())
 
     def remove(self, observer: Observer) -> None:
-        """Let *observer* receive nothing more, after the removal of all properties."""
+        """Remove an observer. The last observation removes all properties."""
         self._tell()
         if observer in self._observers:
             del self._observers[observer]
@@ -83,16 +83,16 @@ class Publication:
             self._setting.listener.focused(self._artifact, observer.agent, on)
 
     def has_untaken(self, name: str) -> bool:
-        """Whether properties called *name* will change, or an observer has still to take up what it was told about them."""
+        """Return whether properties called *name* will change, or an observer has not processed an earlier change."""
         if name in self.coming:
             return True
-        for is_untaken in self._untaken:  # noqa: SIM110 - asked with every message of a sensor: no generator for that
+        for is_untaken in self._untaken:  # noqa: SIM110 - called for every sensor message: a generator would be slower
             if is_untaken(name):
                 return True
         return False
 
     def _note_slow(self) -> None:
-        # Asking an object for a protocol costs more than a whole step, and sensors ask with every message.
+        # Checking a protocol at run time costs more than a whole step, and sensors ask with every message.
         self._untaken = tuple(each.has_untaken for each in self._observers if isinstance(each, SlowObserver))
 
     def close(self) -> None:
@@ -116,8 +116,8 @@ class Publication:
 
         Args:
             parent: what led to it.
-            signals: what is signalled now.
-            addressee: the only agent that receives the signals, None for all; all receive the changes.
+            signals: signals to send.
+            addressee: the only agent that receives the signals. None for all. All observers receive the changes.
         """
         changes = self.properties.commit()
         if not (signals or changes.changed or changes.added or changes.removed):
@@ -137,10 +137,10 @@ class Publication:
         self._tell()
 
     def _tell(self) -> None:
-        """Tell the observers that have not been told yet what is being published.
+        """Notify the observers that have not been notified of the current publication.
 
-        What one observer does of it may end the focus of others: they are told before that, so that each sees all
-        things in their order.
+        If an observer's reaction ends the focus of others, they are notified before that, so each observer sees
+        everything in order.
         """
         untold, addressee, complete, others = self._telling
         if addressee is None:

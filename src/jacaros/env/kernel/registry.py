@@ -1,4 +1,4 @@
-"""All artifacts of an environment, whatever their workspace, and the links between them."""
+"""All artifacts of an environment, in any workspace, and the links between them."""
 
 import asyncio
 import threading
@@ -11,20 +11,20 @@ from jacaros.env.kernel.interface import Interface
 from jacaros.env.kernel.steps import Steps
 
 Promise = tuple[Interface, Callable[[], Steps]]
-"""What an artifact that has not been made yet will offer, and what makes it."""
+"""The operations of an artifact that does not exist yet, and the function that creates it."""
 OutPort = tuple[ArtifactId, str]
 """An artifact and the name of one of its out ports."""
 THREADS = 2.0
-"""Seconds that operations in threads have to come to their end when the environment is closed."""
+"""Seconds to wait for operations in threads when the environment is closed."""
 
 
 class Registry:
-    """Finds the artifact behind an id, and the artifacts behind an out port.
+    """Finds the artifact with an id, and the artifacts that are linked to an out port.
 
-    An artifact may be promised: it has its id, and is made when somebody first wants more than its operations.
+    An artifact may be promised: it has its id, and is created when more than its operations is needed.
 
     Attributes:
-        when_disposed: called with the id of an artifact that is gone, when all who observed it have been told.
+        when_disposed: called with the id of a disposed artifact, after its observers have been notified.
     """
 
     def __init__(self) -> None:
@@ -40,25 +40,25 @@ class Registry:
         self.when_disposed: list[Callable[[ArtifactId], None]] = []
 
     def next_number(self) -> int:
-        """A number for a new artifact."""
+        """Return the number for a new artifact."""
         self._last_number += 1
         return self._last_number
 
     def add(self, steps: Steps, forget: Callable[[ArtifactId], None]) -> None:
-        """Make an artifact known; *forget* is called when it is removed."""
+        """Add an artifact. *forget* is called when it is removed."""
         self._steps[steps.id] = steps
         self._forget[steps.id] = forget
 
     def promise(self, artifact_id: ArtifactId, interface: Interface, make: Callable[[], Steps]) -> None:
-        """Make an artifact known that *make* will make and `add`."""
+        """Add an artifact that *make* will create and `add`."""
         self._promises[artifact_id] = (interface, make)
 
     def withdraw(self, artifact_id: ArtifactId) -> bool:
-        """Take a promise back; False when the artifact has been made, or there is none."""
+        """Remove a promise. Return False if the artifact has been created, or there is no promise."""
         return self._promises.pop(artifact_id, None) is not None
 
     def find(self, artifact_id: ArtifactId) -> Steps | None:
-        """The artifact with that id, None when it is gone."""
+        """Return the artifact with this id, or None if it is gone."""
         found = self._steps.get(artifact_id)
         if found is None and artifact_id in self._promises:
             _, make = self._promises.pop(artifact_id)
@@ -66,18 +66,18 @@ class Registry:
         return found
 
     def made(self, artifact_id: ArtifactId) -> Steps | None:
-        """The artifact with that id; None when it is gone, or promised and not made yet."""
+        """Return the artifact with this id, or None if it is gone or only promised."""
         return self._steps.get(artifact_id)
 
     def interface(self, artifact_id: ArtifactId) -> Interface | None:
-        """The operations of the artifact with that id, None when it is gone."""
+        """Return the operations of the artifact with this id, or None if it is gone."""
         if artifact_id in self._promises:
             return self._promises[artifact_id][0]
         found = self._steps.get(artifact_id)
         return found.interface if found is not None else None
 
     def dispose(self, steps: Steps) -> None:
-        """Forget an artifact and the links from and to it, and end its operations."""
+        """Remove an artifact and all links from and to it, and end its operations."""
         steps.publish_last()
         if steps.id in self._steps:
             self._remove(steps.id)
@@ -87,11 +87,11 @@ class Registry:
             callback(steps.id)
 
     async def ended(self) -> None:
-        """Wait until all disposed artifacts have given back everything; for threads `THREADS` seconds, all together."""
+        """Wait until all disposed artifacts have released everything; for threads, at most `THREADS` seconds in total."""
         if self._threads_left:
             self._leave_threads()
         elif self._limit is None and any(steps.threads for steps in self._ending):
-            # On the wall clock: virtual time stands still while a thread runs.
+            # On the wall clock: virtual time does not advance while a thread runs.
             loop = asyncio.get_running_loop()
             self._limit = threading.Timer(THREADS, partial(_call_on, loop, self._leave_threads))
             self._limit.daemon = True
@@ -102,7 +102,7 @@ class Registry:
     def _leave_threads(self) -> None:
         self._threads_left = True
         for steps in self._ending:
-            steps.leave_threads_behind(THREADS)
+            steps.abandon_threads(THREADS)
 
     def _remove(self, artifact_id: ArtifactId) -> None:
         del self._steps[artifact_id]
@@ -128,7 +128,7 @@ class Registry:
             del self._linked[artifact_id]
 
     def link(self, from_id: ArtifactId, port: str, to_id: ArtifactId) -> None:
-        """Put *to_id* behind *port* of *from_id*, after those that are there; once is enough."""
+        """Link *port* of *from_id* to *to_id*, after the present links. Linking again has no effect."""
         out = (from_id, port)
         self._links.setdefault(out, {})[to_id] = None
         for end in (from_id, to_id):
@@ -140,5 +140,5 @@ class Registry:
 
 
 def _call_on(loop: asyncio.AbstractEventLoop, callback: Callable[[], None]) -> None:
-    with suppress(RuntimeError):  # the loop has been closed
+    with suppress(RuntimeError):  # the event loop has been closed
         loop.call_soon_threadsafe(callback)

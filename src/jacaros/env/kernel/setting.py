@@ -1,4 +1,4 @@
-"""What every artifact of an environment is given: time, the log, and who is told of defects."""
+"""What all artifacts of an environment share: clock, log, and the handling of internal errors."""
 
 import asyncio
 import sys
@@ -16,24 +16,24 @@ from jacaros.trace import Cause, Tracer
 
 
 def log_to_stderr(text: str) -> None:
-    """Write *text* as a line on the standard error output."""
+    """Write *text* as a line to standard error."""
     print(text, file=sys.stderr)
 
 
 @dataclass(slots=True)
 class Setting:
-    """The surroundings of the artifacts of one environment.
+    """What the artifacts of one environment share.
 
     Attributes:
-        clock: where they take time from.
-        resources: what the host lends to artifacts, such as ``ros`` and ``console``, by name.
-        log: takes a line for people, such as ``[lamp] on``.
-        tracer: told of every cause, None while nobody watches.
-        listener: a `jacaros.env.listener.EnvironmentListener`, None while nobody watches.
-        told: what authors have been told once.
-        arbiter: decides who has what operations and plans use.
-        loop: where the operations run, None before the first one.
-        on_internal_error: told of defects of JaCaROS itself; None lets them escape.
+        clock: clock of the run.
+        resources: services of the host for artifacts, such as ``ros`` and ``console``, by name.
+        log: takes a line of the log, such as ``[lamp] on``.
+        tracer: receives every cause. None if no tracer is set.
+        listener: a `jacaros.env.listener.EnvironmentListener`, or None.
+        told: advice to authors that has been logged once.
+        arbiter: assigns resources to operations and plans.
+        loop: event loop of the operations. None before the first one.
+        on_internal_error: called with defects of JaCaROS itself. None lets them propagate.
     """
 
     clock: Clock
@@ -51,18 +51,18 @@ class Setting:
         self.arbiter = Arbiter(self.clock, lambda text: self.log(f"warning: {text}"))
 
     def know_loop(self) -> None:
-        """Learn from the caller which loop runs the operations."""
+        """Remember the running event loop as that of the operations."""
         if self.loop is None:
             with suppress(RuntimeError):
                 self.loop = asyncio.get_running_loop()
                 self._loop_thread = threading.get_ident()
 
     def elsewhere(self) -> bool:
-        """True when called from another thread than the loop's."""
+        """Return whether the caller is in another thread than that of the event loop."""
         return self.loop is not None and self._loop_thread != threading.get_ident()
 
-    def hand_over(self, callback: Callable[[], object]) -> bool:
-        """Call *callback* on the loop, from another thread; False when the loop has ended."""
+    def call_on_loop(self, callback: Callable[[], object]) -> bool:
+        """Call *callback* on the event loop, from another thread. Return False if the loop has ended."""
         if self.loop is not None:
             with suppress(RuntimeError):
                 self.loop.call_soon_threadsafe(callback)
@@ -70,17 +70,17 @@ class Setting:
         return False
 
     def log_error(self, who: str, what: str, error: BaseException) -> None:
-        """Log that *what* went wrong in *who*, with the trace of *error* below the kernel."""
+        """Log that *what* failed in *who*, with the traceback of *error* below the kernel."""
         self.log(f"[{who}] {what}")
         frames = error.__traceback__.tb_next if error.__traceback__ is not None else None
         for line in "".join(traceback.format_exception(type(error), error, frames)).splitlines():
             self.log(f"[{who}]   {line}")
 
     def report(self, error: BaseException) -> None:
-        """Tell of a defect of JaCaROS itself.
+        """Report a defect of JaCaROS itself.
 
         Raises:
-            InternalError: nobody is there to be told.
+            InternalError: `on_internal_error` is not set.
         """
         if self.on_internal_error is not None:
             self.on_internal_error(error)
@@ -90,5 +90,5 @@ class Setting:
             raise InternalError(f"{type(error).__name__}: {error}") from error
 
     def trace(self, kind: str, what: str, parent: Cause | None, about: object = None) -> Cause | None:
-        """The next link after *parent*; *parent* itself while nobody watches."""
+        """Return the next cause after *parent*; *parent* itself if no tracer is set."""
         return parent if self.tracer is None else self.tracer.link(kind, what, parent, about)

@@ -1,4 +1,4 @@
-"""The parameters of an operation: how many arguments it takes, of which kinds, and which are outputs."""
+"""The parameters of an operation: the number of arguments, their kinds, and the outputs."""
 
 import inspect
 import typing
@@ -15,21 +15,21 @@ from jacaros.env.values import Atom, Out, Structure
 
 _ANY_OUTPUT = kind_of(Out).expected
 _NOTHING = object()
-"""What an annotation is that names nothing."""
+"""Marks an annotation that cannot be resolved."""
 
 
 class WrongArguments(Exception):
-    """The arguments of a call do not fit; the text names parameter, value and expected kind."""
+    """The arguments of a call do not match. The text names parameter, value and expected kind."""
 
 
 class Parameter(NamedTuple):
     """One parameter of an operation.
 
     Attributes:
-        name: as in Python.
-        expected: the kind of value it takes, for people.
-        output: True when the operation leaves a result there.
-        optional: True when it has a default value.
+        name: its Python name.
+        expected: the kind of value it accepts, for messages.
+        output: whether the operation stores a result there.
+        optional: whether it has a default value.
         accept: checks and converts an argument.
     """
 
@@ -41,12 +41,12 @@ class Parameter(NamedTuple):
 
 
 class Signature:
-    """The parameters of one operation, worked out once when its class is made.
+    """The parameters of one operation, computed once when its class is created.
 
     Attributes:
-        parameters: those with a place of their own.
-        rest: stands for any number of further arguments (``*args``); None when there are no more.
-        unknown: annotations that name nothing, by parameter: it accepts anything.
+        parameters: the positional parameters.
+        rest: accepts any number of further arguments (``*args``). None without.
+        unknown: annotations that cannot be resolved, by parameter. Such a parameter accepts any value.
         fewest: least number of arguments.
     """
 
@@ -64,18 +64,18 @@ class Signature:
 
     @property
     def arities(self) -> range:
-        """The numbers of arguments that it takes without the help of `rest`."""
+        """The numbers of arguments that it accepts without `rest`."""
         return range(self.fewest, len(self.parameters) + 1)
 
     def takes(self, count: int) -> bool:
-        """True when it can be called with *count* arguments."""
+        """Return whether it can be called with *count* arguments."""
         return self.fewest <= count and (self.rest is not None or count <= len(self.parameters))
 
     def bind(self, arguments: tuple[object, ...]) -> tuple[object, ...]:
-        """Check *arguments* (their number is right) and convert them to what the operation receives.
+        """Check *arguments*, whose number is right, and convert them.
 
         Raises:
-            WrongArguments: one is not of the kind that is wanted.
+            WrongArguments: one is not of the expected kind.
         """
         if not arguments:
             return arguments
@@ -92,10 +92,10 @@ class Signature:
             parameter = self._parameter(position)
             part = f": {unsuitable}" if str(unsuitable) else ""
             if isinstance(arguments[position], Out) and not parameter.output:
-                part += f"; to give a result, annotate it: `{parameter.name}: Out`"
+                part += f"; for an output, annotate the parameter: `{parameter.name}: Out`"
             raise WrongArguments(
-                f"parameter {parameter.name} (number {position + 1}) wants {parameter.expected}, "
-                f"got {shown(arguments[position])}{part}"
+                f"argument {position + 1} ({parameter.name}): expected {parameter.expected}, "
+                f"found {shown(arguments[position])}{part}"
             ) from None
         return tuple(bound)
 
@@ -111,7 +111,7 @@ class Signature:
 
 
 def _shown(parameter: Parameter) -> str:
-    """A parameter for people; of outputs mostly nothing is known but their name."""
+    """Return a parameter as text. Of most outputs only the name is known."""
     if not parameter.output:
         return f"{parameter.name}: {parameter.expected}" + (" (optional)" if parameter.optional else "")
     unknown = parameter.expected == _ANY_OUTPUT
@@ -119,15 +119,15 @@ def _shown(parameter: Parameter) -> str:
 
 
 def signature_of(function: Callable[..., object], skip_first: bool) -> Signature:
-    """Read the signature of an operation from its Python function.
+    """Return the signature of an operation from its Python function.
 
     Raises:
-        InvalidArtifact: it has parameters that agents cannot give (keyword-only or ``**``), or no ``self``.
+        InvalidArtifact: it has parameters that agents cannot pass (keyword-only or ``**``), or no ``self``.
     """
     listed = list(inspect.signature(function).parameters.values())
     if skip_first:
         if not listed:
-            raise InvalidArtifact(f"{function.__qualname__}: its first parameter must be self")
+            raise InvalidArtifact(f"{function.__qualname__}: expected self as first parameter")
         if listed[0].kind is not inspect.Parameter.VAR_POSITIONAL:
             del listed[0]
     kinds, unknown = _annotations(function)
@@ -135,7 +135,7 @@ def signature_of(function: Callable[..., object], skip_first: bool) -> Signature
     for each in listed:
         if each.kind in (each.KEYWORD_ONLY, each.VAR_KEYWORD):
             raise InvalidArtifact(
-                f"{function.__qualname__}: agents cannot give the keyword parameter {each.name}"
+                f"{function.__qualname__}: agents cannot pass the keyword parameter {each.name}"
             )
         annotation = kinds.get(each.name, object)
         if each.kind is each.VAR_POSITIONAL:
@@ -146,7 +146,7 @@ def signature_of(function: Callable[..., object], skip_first: bool) -> Signature
 
 
 def _annotations(function: Callable[..., object]) -> tuple[dict[str, Any], dict[str, str]]:
-    """The annotations, with those written as text resolved; and those that cannot be, which accept anything."""
+    """Return the annotations, resolved if they are strings; and those that cannot be resolved, which accept any value."""
     while isinstance(function, partial):
         function = function.func
     if not inspect.isroutine(function):
@@ -165,11 +165,11 @@ def _annotations(function: Callable[..., object]) -> tuple[dict[str, Any], dict[
 
 
 def written_annotations(function: Callable[..., object]) -> dict[str, Any]:
-    """The annotations of a function as they are written; those that cannot be resolved are texts."""
+    """Return the annotations of a function as written. Those that cannot be resolved are strings."""
     try:
         return dict(function.__annotations__)
     except NameError:
-        # From Python 3.14 on they are resolved when they are asked for.
+        # Since Python 3.14, they are resolved on access.
         library = import_module("annotationlib")
         found: dict[str, Any] = library.get_annotations(function, format=library.Format.STRING)
         return found
@@ -179,7 +179,7 @@ def _resolved(kind: Any, names: dict[str, Any]) -> Any:
     if not isinstance(kind, str):
         return _known(kind)
     try:
-        return _known(eval(kind, names))  # it is the author's own code
+        return _known(eval(kind, names))  # user-defined code, which runs anyway
     except Exception:
         return _known(names.get(kind.rpartition(".")[2], _NOTHING))
 

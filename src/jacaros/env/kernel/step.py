@@ -1,4 +1,4 @@
-"""The step in progress of one artifact: what it may do, and how it is published or undone."""
+"""The step in progress of one artifact: what it may do, and how it is published or rolled back."""
 
 import asyncio
 import inspect
@@ -23,15 +23,15 @@ T = TypeVar("T")
 
 
 class StepInProgress(ABC):
-    """The step that one artifact makes now, if any.
+    """The current step of one artifact, if any.
 
     Attributes:
         id: the artifact.
-        setting: its surroundings.
-        clock: where its operations take time from.
+        setting: what it shares with other artifacts.
+        clock: clock of its operations.
         publication: its observable side.
-        turns: whose turn it is.
-        disposed: True when it takes no more operations.
+        turns: the queue for its turn.
+        disposed: whether it accepts no more operations.
     """
 
     def __init__(self, artifact_id: ArtifactId, setting: Setting) -> None:
@@ -45,18 +45,18 @@ class StepInProgress(ABC):
 
     @abstractmethod
     def _begin(self, execution: OperationExecution, error: BaseException | None) -> None:
-        """Let an operation begin, or fail with the *error* of its guard: it has the turn."""
+        """Begin an operation, or fail it with the *error* of its guard. It has the turn."""
 
     @abstractmethod
     def _guard(self, execution: OperationExecution) -> Guard | None:
-        """What must be true before an operation begins."""
+        """Return the condition for an operation to begin."""
 
     @abstractmethod
     def _claim(self, execution: OperationExecution) -> None:
-        """Ask for what an operation uses."""
+        """Claim the resources of an operation."""
 
     def inside(self) -> bool:
-        """True when called by the operation that has the turn, or by its guard."""
+        """Return whether the caller is the operation that has the turn, or its guard."""
         holder = self.turns.holder
         if holder is None or holder.task is None or self.turns.asking:
             return holder is not None
@@ -68,30 +68,30 @@ class StepInProgress(ABC):
             return False
 
     def current(self, wanted: str, name: str = "", changes: bool = True) -> OperationExecution:
-        """The operation that makes a step now.
+        """Return the operation whose step is in progress.
 
         Args:
-            wanted: what the caller is about to do, for the message.
-            name: and to what.
-            changes: whether that changes something, which a guard must not.
+            wanted: what the caller is about to do, for messages.
+            name: the name it concerns.
+            changes: whether this changes anything, which a guard must not.
 
         Raises:
-            InvalidArtifact: the caller is not within a step, such as in a callback, or is a guard.
+            InvalidArtifact: the caller is not within a step, for example in a callback, or is a guard.
         """
         if changes and self.turns.asking:
             raise InvalidArtifact(
-                f"artifact {self.id.name}: {wanted} {name} is not possible within a guard; a guard only looks"
+                f"artifact {self.id.name}: {wanted} {name} is not possible within a guard, which must not change anything"
             )
         holder = self.turns.holder
         if holder is not None and self.inside():
             return holder
         raise InvalidArtifact(
             f"artifact {self.id.name}: {wanted} {name} is only possible within an operation; from a callback, "
-            "another task or thread use self.start(...) to run an internal operation, or self.external_session()"
+            "another task or a thread, run an internal operation with self.start(...), or use self.external_session()"
         )
 
     def commit(self) -> None:
-        """Publish what the step has changed so far; operations that it started may begin."""
+        """Publish the changes of the step so far. Operations that it started may begin."""
         if self._delayed:
             self._publish_delayed()
         if self.publication.properties.changing:
@@ -120,7 +120,7 @@ class StepInProgress(ABC):
         self._delayed.clear()
 
     def signal(self, name: str, arguments: tuple[object, ...], addressee: str | None) -> None:
-        """Publish a signal, together with what the step has changed so far."""
+        """Send a signal, together with the changes of the step so far."""
         holder = self.current("the signal", name)
         check_name(name)
         signal = Signal(name, tuple(map(plain, arguments)))
@@ -131,17 +131,15 @@ class StepInProgress(ABC):
         self.commit()
 
     def boundary(self, wanted: str) -> OperationExecution:
-        """End the step of the coroutine that calls this; it still has the turn."""
+        """End the step of the calling coroutine, which still has the turn."""
         execution = self.current(wanted)
         if execution.task is None:
-            raise InvalidArtifact(
-                f"artifact {self.id.name}: {wanted} needs an operation that is an async def"
-            )
+            raise InvalidArtifact(f"artifact {self.id.name}: {wanted} is only possible in an async def")
         self.commit()
         return execution
 
     async def leave(self, awaitable: Awaitable[T], wanted: str) -> T:
-        """Await something while others have their turn: the end of one step and the beginning of another."""
+        """Await something while others may have the turn: end one step and begin another."""
         try:
             execution = self.boundary(wanted)
         except InvalidArtifact:
@@ -160,21 +158,21 @@ class StepInProgress(ABC):
         return result
 
     async def until(self, guard: Guard) -> None:
-        """Go on as soon as *guard* is true; it is evaluated now and whenever a step has ended."""
+        """Continue as soon as *guard* is true. It is evaluated now and after every step."""
         execution = self.boundary("waiting for a condition")
         if not callable(guard):
             raise InvalidArtifact(
-                f"artifact {self.id.name}: until wants a function, such as a method or lambda: ..., not {guard!r}"
+                f"artifact {self.id.name}: expected a function in until, such as a method or lambda: ..., found {guard!r}"
             )
         if not self.turns.ask(guard):
             if self.disposed:
-                # Nobody else is there to make it true: only the operation that disposed its own artifact goes on.
+                # Nothing else can make it true: only the operation that disposed its own artifact continues.
                 gone = faults.disposed(execution.request)
                 raise OperationFailed(gone.message or "", gone.reason)
             await self.turns.release_until(execution, guard)
 
     async def pause_point(self, on_pause: Callable[[], None] | None) -> float:
-        """Wait while the operation is paused; gives the seconds that it has been paused since last asked."""
+        """Wait while the operation is paused. Return the seconds that it has been paused since the last call."""
         execution = self.current("a pause point")
         while execution.paused:
             if on_pause is not None:

@@ -1,7 +1,8 @@
 """The operations of one artifact, step by step: begin, commit or roll back, end, cancel, dispose.
 
-A step is a stretch of an operation between two step boundaries: it is published or undone as a whole.
-Nothing here knows what an artifact looks like to its author (`Artifact`) or where it lives (`Workspace`).
+A step is the part of an operation between two step boundaries. It is published or rolled back as a whole.
+
+This module does not depend on what an artifact looks like to its author (`Artifact`) or on its workspace (`Workspace`).
 """
 
 import asyncio
@@ -41,20 +42,20 @@ from jacaros.trace import CURRENT, Cause
 
 V = TypeVar("V")
 TELLING = "tell"
-"""What people are told has failed when new values of properties are wrong."""
+"""Name of the operation in messages about invalid values from sensors."""
 PATIENCE = 20.0
-"""Seconds that the operations of a disposed artifact have to come to their end, as in CArtAgO."""
+"""Seconds in which the operations of a disposed artifact must end, as in CArtAgO."""
 
 
 class Steps(StepInProgress):
     """Runs the operations of one artifact.
 
     Attributes:
-        interface: what it offers; its own copy once it has defined operations of its own.
+        interface: its operations. Its own copy once it has defined operations itself.
         ports: names of its out ports.
-        initialised: True once ``init`` has succeeded.
-        abandon: called when the making of the artifact was dropped.
-        ending: what is called when the last of its operations has ended.
+        initialised: whether ``init`` has succeeded.
+        abandon: called if the creation of the artifact was cancelled.
+        ending: callbacks for when the last of its operations has ended.
     """
 
     def __init__(
@@ -76,12 +77,12 @@ class Steps(StepInProgress):
 
     @property
     def over(self) -> bool:
-        """True when the last operation has ended and everything has been given back."""
+        """Whether the last operation has ended and everything has been released."""
         return self.ending.over
 
     @property
     def artifact(self) -> object:
-        """The artifact itself, for those who watch it."""
+        """The artifact itself, for observers of the environment."""
         return self._artifact
 
     @property
@@ -89,10 +90,10 @@ class Steps(StepInProgress):
         """The class of the artifact."""
         return type(self._artifact)
 
-    # ---- operations come
+    # ---- operations arrive
 
     def execute(self, request: OperationRequest, kind: str) -> OperationExecution:
-        """Run an operation of *kind*: a plain ``def`` of a free artifact has ended when this returns."""
+        """Run an operation of *kind*. A plain ``def`` of a free artifact has ended when this returns."""
         table = self.interface.links if kind == LINK else self.interface.operations
         declared = table.find(request.operation, len(request.arguments))
         if declared is None:
@@ -116,20 +117,20 @@ class Steps(StepInProgress):
         return execution
 
     def refuse(self, request: OperationRequest, outcome: OperationOutcome) -> OperationExecution:
-        """Tell at once that the request failed."""
+        """Fail a request immediately."""
         refused = OperationExecution(None, request)
         self._tell(refused, outcome)
         return refused
 
     def start(self, declared: DeclaredOperation, request: OperationRequest) -> OperationExecution | None:
-        """Start an operation of the artifact's own; None when that is done elsewhere, or not at all.
+        """Start an internal operation. Return None if it is started elsewhere, or not at all.
 
-        From within a step it begins after that step, and not at all when the step is rolled back; from
-        outside, such as from a callback, as soon as the artifact is free.
+        From within a step it begins after that step, and not at all if the step is rolled back. From outside, such as
+        from a callback, it begins as soon as the artifact is free.
         """
         inside = self.inside()
         if not inside and self.setting.elsewhere():
-            self.setting.hand_over(partial(self.start, declared, request))
+            self.setting.call_on_loop(partial(self.start, declared, request))
             return None
         if request.cause is None and inside and self.turns.holder is not None:
             request.cause = self.turns.holder.cause
@@ -146,13 +147,13 @@ class Steps(StepInProgress):
     def tell(
         self, show: Callable[[str, V], None], told: Iterable[tuple[str, V]], cause: Cause | None
     ) -> bool:
-        """Make a step that only changes properties; False when it cannot be made now, and nothing was done.
+        """Make a step that only changes properties. Return False, without any change, if that is not possible now.
 
-        This is the way of sensors, and the hottest there is, so no operation is made for it.  It cannot be made while
-        somebody has the turn or waits for it, nor from another thread.
+        This is the path of sensor messages, the most frequent one, so it creates no operation. It is not possible while
+        an operation has the turn or waits for it, or from another thread.
 
         Args:
-            show: gives the property of a name its new values; a plain function.
+            show: a plain function that assigns new values to the property with a name.
             told: names and values.
             cause: what led to it.
         """
@@ -181,7 +182,7 @@ class Steps(StepInProgress):
         return True
 
     def initialise(self, declared: DeclaredOperation, request: OperationRequest) -> OperationExecution:
-        """Run the ``init`` of the artifact as its first operation; the number of arguments is right."""
+        """Run the ``init`` of the artifact as its first operation. The number of arguments is right."""
         self.setting.know_loop()
         try:
             arguments = declared.signature.bind(request.arguments)
@@ -192,7 +193,7 @@ class Steps(StepInProgress):
         return execution
 
     async def enter_task(self, execution: OperationExecution) -> None:
-        """Give the running task, which is not one of ours, the turn.
+        """Give the turn to the running task, which is not an operation.
 
         Raises:
             OperationFailed: the artifact was disposed meanwhile.
@@ -209,13 +210,13 @@ class Steps(StepInProgress):
             raise OperationFailed(execution.verdict.message or "", execution.verdict.reason)
 
     def leave_task(self, execution: OperationExecution, error: BaseException | None) -> None:
-        """End what `enter_task` began; with an *error* it is undone."""
+        """End what `enter_task` began. With an *error*, it is rolled back."""
         self._end(execution, error)
 
-    # ---- what operations use
+    # ---- resources of operations
 
     def used(self) -> tuple[Use, ...]:
-        """What the operations of the artifact use, with the name of its robot."""
+        """Return the resources that the operations of the artifact use, with the name of its robot."""
         tables = (self.interface.operations, self.interface.links)
         declared = [use for table in tables for each in table for use in each.uses]
         declared += read_uses(getattr(self._artifact, "further_uses", ()))
@@ -226,7 +227,7 @@ class Steps(StepInProgress):
         return scoped(uses, scope if isinstance(scope, str) else "")
 
     def hold(self, execution: OperationExecution, uses: tuple[Use, ...]) -> Holding:
-        """Let an operation say itself when it uses something; it has to enter and to leave."""
+        """Return a claim that an operation enters and leaves itself."""
         declared = execution.declared
         mode = "finish" if declared is None else declared.when_preempted
         stop = partial(self._lose, execution)
@@ -234,12 +235,12 @@ class Steps(StepInProgress):
         return execution.holding
 
     def _claim(self, execution: OperationExecution) -> None:
-        """Ask for what an operation uses; it begins when it has that."""
+        """Claim the resources of an operation, which begins when they are granted."""
         if execution.declared is not None and execution.declared.uses:
             self.hold(execution, execution.declared.uses).enter()
 
     def _lose(self, execution: OperationExecution, reason: Structure | Atom) -> None:
-        """Fail an operation that cannot have what it uses, or has lost it."""
+        """Fail an operation that cannot have a resource, or has lost it."""
         message = faults.without_resource(execution.request, reason)
         outcome = OperationOutcome(False, message, reason)
         if execution.active or execution in self.turns.waiting_to_begin():
@@ -310,7 +311,7 @@ class Steps(StepInProgress):
             if not execution.stopped and task is not None and not task.cancelling():
                 error = cancelled
         except GeneratorExit as raised:
-            if _thrown_away(execution):
+            if _is_abandoned(execution):
                 raise
             error = raised
         except BaseException as raised:
@@ -325,7 +326,7 @@ class Steps(StepInProgress):
         self._end(execution, error)
 
     async def _call(self, execution: OperationExecution) -> BaseException | None:
-        """Run the code of a coroutine, or of a thread; what a thread raised is given, not raised."""
+        """Run the code of a coroutine or of a thread. Return what a thread raised, instead of raising it."""
         declared = execution.declared
         assert declared is not None
         if not declared.threaded:
@@ -347,16 +348,16 @@ class Steps(StepInProgress):
             self.publication.thaw()
 
     def _refuse_result(self, declared: DeclaredOperation, result: object) -> None:
-        """Tell the author of an operation that nobody gets what it returns."""
+        """Report an operation whose return value is lost."""
         name = declared.function.__qualname__
         if inspect.iscoroutine(result):
             result.close()
-            raise InvalidArtifact(f"{name} gave a coroutine: write async def")
+            raise InvalidArtifact(f"{name} returned a coroutine; write async def")
         if declared not in self.setting.told:
             self.setting.told.add(declared)
             self.setting.log(
-                f"[{self.id.name}] what {name} returns is lost: an operation gives its results to parameters "
-                "annotated Out, as in `def ask(self, answer: Out)` with `answer.set(3)`"
+                f"[{self.id.name}] the return value of {name} is lost: return results in parameters annotated Out, as in "
+                "`def ask(self, answer: Out)` with `answer.set(3)`"
             )
 
     def _end(self, execution: OperationExecution, error: BaseException | None) -> None:
@@ -407,31 +408,31 @@ class Steps(StepInProgress):
             self.setting.report(error)
 
     def _note(self, execution: OperationExecution, error: BaseException) -> None:
-        """Log what nobody else would see, or what its author must see."""
+        """Log an error that is not reported elsewhere, or that its author must see."""
         key = faults.key(execution.request)
         if isinstance(error, InternalError) or execution.request.operation == EXTERNAL:
             return
         if not isinstance(error, OperationFailed):
-            self.setting.log_error(self.id.name, f"error in operation {key}, its step is undone:", error)
+            self.setting.log_error(self.id.name, f"error in operation {key}; its step is rolled back:", error)
         elif execution.request.on_done is ignore_outcome or execution.stopped:
             self.setting.log(f"[{self.id.name}] operation {key} failed: {error.message}")
 
-    # ---- operations go
+    # ---- operations leave
 
     def reconsider(self) -> None:
-        """See whether somebody who waits may go on now."""
+        """Check whether a waiting operation can continue."""
         self.turns.reconsider()
 
     def pending(self) -> tuple[OperationExecution, ...]:
-        """The operations that run or wait, in no particular order of their ends."""
+        """Return the operations that run or wait, in no particular order."""
         return (*self._running, *self.turns.waiting_to_begin())
 
     def complain(self, what: str, error: BaseException) -> None:
-        """Log an error of the artifact's code that harms nobody."""
+        """Log an error of the artifact's code that does not fail an operation."""
         self.setting.log_error(self.id.name, what, error)
 
     def cancel(self, execution: OperationExecution) -> None:
-        """End *execution* without an outcome; see `OperationExecution.cancel`."""
+        """End *execution* without an outcome. See `OperationExecution.cancel`."""
         if execution.ended or execution.stopped:
             return
         execution.cancelled = True
@@ -451,21 +452,21 @@ class Steps(StepInProgress):
         if task is None or declared is None or declared.threaded or not execution.begun:
             return
         if declared.kind == EXTERNAL:
-            return  # the task is somebody else's
+            return  # the task is not an operation's
         if asyncio.current_task() is not task and self.turns.holder is execution:
             self._roll_back()
         task.cancel()
 
     def publish_last(self) -> None:
-        """Publish what the operation has changed that is about to dispose its own artifact, while all still know it."""
+        """Publish the changes of an operation that is about to dispose its own artifact, while it still exists."""
         if not self.disposed and self.turns.holder is not None and self.inside():
-            self.disposed = True  # what the step has started does not begin any more
+            self.disposed = True  # operations that the step started must not begin
             self.commit()
 
     def dispose(self) -> None:
-        """Take no more operations, leave the observers, and end all operations.
+        """Refuse new operations, remove the observers, and end all operations.
 
-        Only the operation that disposes its own artifact goes on; all others fail.
+        Only the operation that disposes its own artifact continues. All others fail.
         """
         self.disposed = True
         survivor = self.turns.holder if self.inside() else None
@@ -481,9 +482,9 @@ class Steps(StepInProgress):
             self._stop(execution, faults.timed_out(execution.request, seconds))
 
     def _stop(self, execution: OperationExecution, outcome: OperationOutcome) -> None:
-        """End an operation from outside; its caller is told *outcome* when it has ended.
+        """End an operation from outside. Its caller gets *outcome* when it has ended.
 
-        Nobody can end a thread: its caller is told at once.
+        A thread cannot be ended, so its caller gets the outcome immediately.
         """
         execution.verdict = outcome
         if self.turns.withdraw(execution):
@@ -494,7 +495,7 @@ class Steps(StepInProgress):
             self._interrupt(execution)
 
     async def closed(self) -> None:
-        """Wait until the disposed artifact has given back everything; what does not end is left behind in the end."""
+        """Wait until the disposed artifact has released everything. Operations that do not end in time are abandoned."""
         if self.over:
             return
         limit = self.clock.call_later(PATIENCE, partial(self._leave_behind, self._running, PATIENCE))
@@ -505,11 +506,11 @@ class Steps(StepInProgress):
 
     @property
     def threads(self) -> list[OperationExecution]:
-        """The operations under way that a thread runs."""
+        """Return the operations that run in a thread."""
         return [each for each in self._running if each.declared is not None and each.declared.threaded]
 
-    def leave_threads_behind(self, seconds: float) -> None:
-        """Wait no longer for threads of the disposed artifact, after *seconds*."""
+    def abandon_threads(self, seconds: float) -> None:
+        """Stop waiting for threads of the disposed artifact, after *seconds*."""
         if self.threads:
             self._leave_behind(self.threads, seconds)
 
@@ -526,19 +527,19 @@ class Steps(StepInProgress):
                 and execution.declared is not None
                 and execution.declared.kind != EXTERNAL
             ):
-                self._throw_away(execution.task)
+                self._abandon_task(execution.task)
             self._running.pop(execution, None)
         if not self._running:
             self.ending.run(self.initialised, self.complain)
 
-    def _throw_away(self, task: "asyncio.Task[None]") -> None:
-        """End a task that takes no cancellation: the end of the loop would wait for it for ever."""
+    def _abandon_task(self, task: "asyncio.Task[None]") -> None:
+        """End a task that ignores its cancellation. Otherwise the end of the event loop would wait for it forever."""
         try:
             task.get_coro().close()
         except BaseException as error:
             if is_interruption(error):
                 raise
-            self.complain("an operation that was left behind goes on:", error)
+            self.complain("an abandoned operation is still running:", error)
             return
         task.add_done_callback(lambda over: over.cancelled() or over.exception())
         task.cancel()
@@ -548,8 +549,8 @@ class Steps(StepInProgress):
             self.ending.run(self.initialised, self.complain)
 
 
-def _thrown_away(execution: OperationExecution) -> bool:
-    """True when the coroutine of *execution* is closed with the loop, and does not run any more."""
+def _is_abandoned(execution: OperationExecution) -> bool:
+    """Return whether the coroutine of *execution* is closed with the event loop, and does not run again."""
     try:
         return asyncio.current_task() is not execution.task
     except RuntimeError:

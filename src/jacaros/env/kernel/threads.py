@@ -1,4 +1,4 @@
-"""Running the code of an operation in a worker thread."""
+"""Run the code of an operation in a worker thread."""
 
 import inspect
 import threading
@@ -9,9 +9,9 @@ from jacaros.env.execution import OperationExecution
 
 
 def in_thread(execution: OperationExecution, work: Callable[[], object]) -> BaseException | None:
-    """Do *work* in this thread and give what it raised, None when it went well.
+    """Run *work* in this thread. Return what it raised, or None.
 
-    It is given, not raised: a future does not take every exception (``StopIteration``).
+    It is returned, because a future does not accept every exception (``StopIteration``).
     """
     execution.thread = threading.get_ident()
     try:
@@ -19,7 +19,7 @@ def in_thread(execution: OperationExecution, work: Callable[[], object]) -> Base
         if inspect.iscoroutine(result):
             result.close()
             raise InvalidArtifact(
-                f"{execution.request.operation} gave a coroutine, which a thread cannot run"
+                f"{execution.request.operation} returned a coroutine, which a thread cannot run"
             )
     except BaseException as error:
         return error

@@ -1,4 +1,4 @@
-"""Whose turn it is to make a step in an artifact: first come first served, guards permitting."""
+"""The queue for the turn of an artifact: first come, first served, if guards permit."""
 
 import asyncio
 import inspect
@@ -16,10 +16,10 @@ class Place:
     """A place in the queue.
 
     Attributes:
-        execution: who waits.
-        guard: must be true before the turn is given, None when nothing must.
-        granted: set when the turn is given to a coroutine that goes on; None for one that begins.
-        error: what the guard raised; who waits is to deal with it.
+        execution: the waiting operation.
+        guard: must be true before the turn is given. None without a guard.
+        granted: set when a coroutine that continues gets the turn. None for an operation that begins.
+        error: what the guard raised. The waiting operation handles it.
     """
 
     __slots__ = ("error", "execution", "granted", "guard")
@@ -34,13 +34,13 @@ class Place:
 class TurnQueue:
     """Gives the turn of one artifact to one execution at a time.
 
-    Guards are evaluated when an operation arrives and again whenever a step has ended.
+    Guards are evaluated when an operation arrives, and again after every step.
 
     Attributes:
-        holder: who has the turn, None while the artifact is free.
-        asking: True while a guard is evaluated, which must not change anything.
-        places: of those who wait.
-        serving: True while the turn is being given to somebody, or ended.
+        holder: the execution that has the turn. None while the artifact is free.
+        asking: whether a guard is being evaluated, which must not change anything.
+        places: the queue.
+        serving: whether the turn is being given or ended.
     """
 
     __slots__ = ("_begin", "_changed", "asking", "holder", "places", "serving")
@@ -54,12 +54,12 @@ class TurnQueue:
         self.serving = False
 
     def enter(self, execution: OperationExecution, guard: Guard | None) -> None:
-        """Let an operation begin as soon as its turn comes, which may be at once."""
+        """Begin an operation as soon as it has the turn, possibly immediately."""
         if self.holder is not None or self.serving or execution.paused:
             self.places.append(Place(execution, guard))
             return
         self.serving = True
-        self._changed = False  # who waits while the artifact is free has been asked since the last change
+        self._changed = False  # the guards of waiting operations have been evaluated since the last change
         try:
             if guard is None:
                 self.holder = execution
@@ -86,8 +86,8 @@ class TurnQueue:
     async def retake(self, execution: OperationExecution) -> None:
         """Wait until *execution* has the turn again.
 
-        Also when it is cancelled while waiting: it then waits on, in front of all others, so that its
-        ``finally`` runs as a step like any other, and the cancellation goes on after that.
+        If it is cancelled while waiting, it continues to wait, before all others, so that its ``finally`` runs as an
+        ordinary step. The cancellation then continues.
         """
         if self.holder is None:
             self.holder = execution
@@ -97,7 +97,7 @@ class TurnQueue:
         await self._granted(place)
 
     async def release_until(self, execution: OperationExecution, guard: Guard) -> None:
-        """Give up the turn of *execution*, and wait until it has it again with *guard* true."""
+        """Release the turn of *execution*, and wait until it has it again with *guard* true."""
         place = Place(execution, guard, asyncio.get_running_loop().create_future())
         self.places.append(place)
         self.release()
@@ -128,7 +128,7 @@ class TurnQueue:
                 continue
 
     def release(self) -> None:
-        """End a step: give the turn to who may have it now."""
+        """End a step and give the turn to the next operation."""
         self.holder = None
         self.reconsider()
 
@@ -138,7 +138,7 @@ class TurnQueue:
         execution: OperationExecution,
         outcome: OperationOutcome,
     ) -> None:
-        """End the last step of *execution*: *tell* comes before anybody else has a turn."""
+        """End the last step of *execution*. *tell* is called before another operation has the turn."""
         self.holder = None
         self._changed = True
         if self.serving:
@@ -152,12 +152,12 @@ class TurnQueue:
             self.serve()
 
     def reconsider(self) -> None:
-        """Evaluate the guards again, because something has changed."""
+        """Evaluate the guards again, after a change."""
         self._changed = True
         self.serve()
 
     def serve(self) -> None:
-        """Give the turn to all who may have it, one after the other."""
+        """Give the turn to all waiting operations that may have it, in order."""
         if self.serving:
             return
         self.serving = True
@@ -171,7 +171,7 @@ class TurnQueue:
             self.serving = False
 
     def withdraw(self, execution: OperationExecution) -> bool:
-        """Forget an operation that has not begun; False when it is not waiting to begin."""
+        """Remove an operation that has not begun. Return False if it is not waiting to begin."""
         for place in self.places:
             if place.execution is execution and place.granted is None:
                 self.places.remove(place)
@@ -179,7 +179,7 @@ class TurnQueue:
         return False
 
     def waiting_to_begin(self) -> list[OperationExecution]:
-        """The operations that wait for their first turn, in their order."""
+        """Return the operations that wait for their first turn, in order."""
         return [place.execution for place in self.places if place.granted is None]
 
     def _next(self) -> Place | None:
@@ -217,7 +217,7 @@ class TurnQueue:
             self.asking = False
         if inspect.iscoroutine(answer):
             answer.close()
-            raise InvalidArtifact("a guard must be a plain def that is true or false, not async")
+            raise InvalidArtifact("expected a plain def as guard, found an async def")
         return bool(answer)
 
     def _give(self, place: Place) -> None:

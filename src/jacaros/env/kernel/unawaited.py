@@ -1,4 +1,4 @@
-"""Step boundaries without ``await``: nothing happens then, and Python itself only mutters about it."""
+"""Detect step boundaries without ``await``, which have no effect and cause only a vague warning of Python."""
 
 import inspect
 import sys
@@ -13,11 +13,11 @@ F = TypeVar("F", bound=Callable[..., Coroutine[Any, Any, Any]])
 
 
 class AskedFor:
-    """One step boundary that an operation has asked for.
+    """A step boundary that an operation has called.
 
     Attributes:
-        coroutine: what is to be awaited.
-        name: of the method.
+        coroutine: the coroutine to be awaited.
+        name: name of the method.
         place: file and line of the call.
     """
 
@@ -28,30 +28,30 @@ class AskedFor:
 
     @property
     def is_forgotten(self) -> bool:
-        """True as long as nobody has awaited it."""
+        """Return whether it has not been awaited."""
         return inspect.getcoroutinestate(self.coroutine) == inspect.CORO_CREATED
 
 
 class Asking(Protocol):
-    """An operation that may ask for step boundaries (`jacaros.env.execution.OperationExecution`)."""
+    """An operation that may call step boundaries (`jacaros.env.execution.OperationExecution`)."""
 
     asked_for: Sequence[AskedFor]
 
 
 def step_boundary(method: F) -> F:
-    """Have an operation that calls *method*, a coroutine of an artifact, and does not await it, fail when it ends."""
+    """Fail an operation that calls *method*, a coroutine of an artifact, and ends without awaiting it."""
 
     @wraps(method)
     def asking(artifact: Any, *arguments: Any, **options: Any) -> Coroutine[Any, Any, Any]:
         coroutine = method(artifact, *arguments, **options)
         steps = getattr(
             artifact, "_steps", None
-        )  # a test may call a method of an artifact that is in no workspace
+        )  # a test may call a method of an artifact outside of a workspace
         execution: Asking | None = steps.turns.holder if steps is not None else None
         if execution is not None:
             caller = sys._getframe(1)
             asked = AskedFor(coroutine, method.__name__, (caller.f_code.co_filename, caller.f_lineno))
-            # Several may wait for their await, as in asyncio.gather(self.sleep(1), self.until(guard)).
+            # Several may be pending, as in asyncio.gather(self.sleep(1), self.until(guard)).
             execution.asked_for = [*(each for each in execution.asked_for if each.is_forgotten), asked]
         return coroutine
 
@@ -59,9 +59,9 @@ def step_boundary(method: F) -> F:
 
 
 def watch_operations(artifact_type: type) -> None:
-    """Have calls of the operations that a class declares itself watched in the same way, when its methods make them.
+    """Watch calls of a class's own operations in the same way, when its methods make them.
 
-    The kernel runs the plain functions, which its interface has by now.
+    The kernel runs the original functions, which its interface already contains.
     """
     for attribute, member in list(vars(artifact_type).items()):
         if marks_of(member) and inspect.iscoroutinefunction(member):
@@ -71,7 +71,7 @@ def watch_operations(artifact_type: type) -> None:
 
 
 def forgotten(execution: Asking) -> InvalidArtifact | None:
-    """What to tell of an operation that has ended with a step boundary not awaited."""
+    """Return the error for an operation that has ended without awaiting a step boundary, or None."""
     left = [each for each in execution.asked_for if each.is_forgotten]
     for each in left:
         each.coroutine.close()
@@ -79,5 +79,5 @@ def forgotten(execution: Asking) -> InvalidArtifact | None:
         return None
     name, (file, line) = left[0].name, left[0].place
     return InvalidArtifact(
-        f"self.{name}(...) does nothing without await: write `await self.{name}(...)`, in an async def ({file}:{line})"
+        f"self.{name}(...) has no effect without await; write `await self.{name}(...)` in an async def ({file}:{line})"
     )

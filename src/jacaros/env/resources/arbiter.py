@@ -1,16 +1,17 @@
-"""Who has which resource: the most urgent claim, and of equals the earliest.
+"""Assigns resources to claims: the most urgent claim first, among equals the earliest.
 
-A claim is granted all that it asks for, or nothing.  The rules:
+A claim is granted everything it asks for, or nothing. The rules:
 
-* A claim waits behind those before it in the order that want one of its resources, and while others hold too much.
-* A more urgent claim preempts: holders that are less urgent are asked to give way, the least urgent and newest first, and
-  only when that is enough.  A holder keeps what it holds until it has given way (a robot brakes), then it waits again.
-* A claim within others (an operation of a plan that holds the resource) is granted only while these are, and what they
-  hold does not stand in its way.  It waits behind those before it only while holders give way to them.
-* A claim of an atomic plan preempts other plans of its agent, however urgent: they make no step before it ends.  They wait
-  again until it has ended.
-* A holder that cannot give way inherits the urgency of what it blocks.
-* A claim that waits rises by 1 for each `PATIENCE`; that moves it forward in the order and protects what it gets by that,
+* A claim waits behind earlier claims in the queue that want one of its resources, and while others hold too much.
+* A more urgent claim preempts: less urgent holders are asked to yield, the least urgent and newest first, and only if that
+  is sufficient. A holder keeps its resources until it has yielded (a robot brakes). Then it waits again.
+* A nested claim (an operation of a plan that holds the resource) is granted only while the outer claims are, and what they
+  hold does not block it. It waits behind earlier claims only while holders yield to them.
+* A claim of an atomic plan preempts other plans of its agent, however urgent: they make no step before it ends, and wait
+  again until then.
+* A holder that cannot yield inherits the urgency of the claims it blocks.
+* The urgency of a waiting claim rises by 1 for each `PATIENCE`. That moves it forward in the queue and protects what it
+gets,
   but takes nothing away from a holder.
 """
 
@@ -23,9 +24,9 @@ from jacaros.env.resources.resource import Use, local_name
 from jacaros.env.values import Atom, Structure
 
 PATIENCE = 30.0
-"""Seconds of waiting after each of which a claim rises."""
+"""Seconds of waiting after each of which the urgency of a claim rises."""
 REPORTED = 300.0
-"""Seconds of waiting that are reported: charging for a minute is not starvation."""
+"""Seconds of waiting that cause a warning. Charging for a minute is not starvation."""
 
 
 class Arbiter:
@@ -33,7 +34,7 @@ class Arbiter:
 
     Args:
         clock: measures how long claims wait.
-        warn: takes a line for people.
+        warn: takes a warning.
     """
 
     def __init__(self, clock: Clock, warn: Callable[[str], None] = lambda text: None) -> None:
@@ -45,10 +46,10 @@ class Arbiter:
         self._settling = self._again = False
         self._timer: Timer | None = None
 
-    # ---- what there is
+    # ---- state
 
     def declare(self, uses: Iterable[Use]) -> None:
-        """Take note of capacities; of several for one resource the least counts."""
+        """Register capacities. For several of one resource, the least one counts."""
         for each in uses:
             if each.capacity is not None:
                 self._capacities[each.name] = min(
@@ -56,21 +57,21 @@ class Arbiter:
                 )
 
     def capacity(self, name: str) -> int:
-        """Number of units of a resource; 1 unless declared."""
+        """Return the number of units of a resource: 1 unless declared."""
         return self._capacities.get(name, 1)
 
     def holders(self, name: str) -> tuple[Claim, ...]:
-        """Who holds a resource."""
+        """Return the claims that hold a resource."""
         return tuple(self._holders.get(name, ()))
 
     def waiting(self) -> tuple[Claim, ...]:
-        """Who waits, the first in the order first."""
+        """Return the waiting claims, in the order of the queue."""
         return tuple(self._in_order())
 
-    # ---- claims come and go
+    # ---- claims
 
     def enter(self, claim: Claim) -> bool:
-        """Ask for what a claim uses; False when its claimant is told later."""
+        """Make a claim. Return False if it is not granted immediately; its claimant is notified later."""
         if claim.state is State.OUT:
             self.declare(claim.uses)
             self._arrivals += 1
@@ -80,14 +81,14 @@ class Arbiter:
         return claim.state is State.HELD
 
     def gave_way(self, claim: Claim) -> None:
-        """A claim that was asked to give way has done so: it waits to have it all again."""
+        """Report that a claim has yielded. It waits to be granted again."""
         if claim.state is State.YIELDING:
             self._let_go(claim)
             self._wait(claim)
             self._settle()
 
     def leave(self, claim: Claim) -> None:
-        """Give back what a claim holds, or its place in the order; again is harmless."""
+        """Release a claim, or its place in the queue. Releasing it again has no effect."""
         if claim.state is State.OUT:
             return
         if claim.state is State.WAITING:
@@ -110,10 +111,10 @@ class Arbiter:
             if not held:
                 del self._holders[use.name]
 
-    # ---- who is next
+    # ---- the next claim
 
     def _settle(self) -> None:
-        """Grant, preempt and refuse until nothing changes; claimants may call the arbiter meanwhile."""
+        """Grant, preempt and refuse until nothing changes. Claimants may call the arbiter meanwhile."""
         self._again = True
         if self._settling:
             return
@@ -128,7 +129,7 @@ class Arbiter:
         self._set_timer()
 
     def _change_one(self) -> bool:
-        """Change the state of one claim; False when all are as they should be."""
+        """Change the state of one claim. Return False if no claim needs a change."""
         self._inherit()
         reserved: set[str] = set()
         coming: set[str] = set()
@@ -148,7 +149,7 @@ class Arbiter:
             if not blockers and not ahead:
                 self._grant(claim)
                 return True
-            # What others give up goes to those ahead first.
+            # What others release goes to earlier claims first.
             if (not ahead and self._preempt(claim, blockers)) or self._refuse(claim, blockers, ahead):
                 return True
             reserved |= wanted
@@ -169,11 +170,11 @@ class Arbiter:
         claim.claimant.granted(claim)
 
     def _preempt(self, claim: Claim, blockers: list[tuple[Claim, str]]) -> bool:
-        """Ask one holder to give way; False when there is none to be asked."""
+        """Ask one holder to yield. Return False if no holder can be asked."""
         chosen = self._chosen(claim, blockers)
         stays = not _all_go(chosen)
         for holder, resource in chosen:
-            # A claim within others would be granted again at once as long as one stays, and asked again.
+            # A nested claim would be granted again immediately, and asked again, as long as an outer one holds.
             if holder.state is State.HELD and holder.claimant.can_yield and not (stays and holder.within):
                 holder.state = State.YIELDING
                 holder.claimant.preempted(holder, resource)
@@ -181,12 +182,12 @@ class Arbiter:
         return False
 
     def _chosen(self, claim: Claim, blockers: list[tuple[Claim, str]]) -> list[tuple[Claim, str]]:
-        """The holders that have to go for a claim; none when those that may be asked are not enough."""
+        """Return the holders that must yield to a claim. Empty if those that may be asked are not sufficient."""
         chosen: list[tuple[Claim, str]] = []
         going: set[Claim] = set()
         for use in claim.uses:
             mine = [each for each in blockers if each[1] == use.name]
-            # Whoever gives way already is not asked in vain.
+            # A holder that is yielding has been asked already.
             mine.sort(key=lambda each: (each[0].state is State.HELD, self._rank(each[0]), -each[0].order))
             for holder, name in mine:
                 if self._lack(claim, use, going) <= 0:
@@ -206,7 +207,7 @@ class Arbiter:
         return claim.base > rank or (_takes(claim) and claim.base == rank)
 
     def _refuse(self, claim: Claim, blockers: list[tuple[Claim, str]], ahead: bool) -> bool:
-        """Refuse a claim that does not want to wait, unless holders give way to it already."""
+        """Refuse a claim that must not wait, unless holders are yielding to it."""
         if claim.policy != "refuse" or not claim.fresh:
             return False
         if not ahead and self._chosen(claim, blockers):
@@ -216,7 +217,7 @@ class Arbiter:
         return True
 
     def _break_deadlock(self) -> bool:
-        """Fail one claim of a circle of those that wait for each other; False without a circle."""
+        """Fail one claim of a deadlock. Return False without a deadlock."""
         found = victim_of(self._waiting, self._waits_for, self._rank)
         if found is None:
             return False
@@ -230,10 +231,10 @@ class Arbiter:
         claim.state = State.OUT
         claim.claimant.refused(claim, reason)
 
-    # ---- what stands in the way
+    # ---- blocking claims
 
     def _blockers(self, claim: Claim) -> list[tuple[Claim, str]]:
-        """The holders of which some must go before a claim can be granted, each with the resource."""
+        """Return the holders, some of which must yield before a claim can be granted, each with the resource."""
         return [
             (holder, use.name)
             for use in claim.uses
@@ -245,7 +246,7 @@ class Arbiter:
         return ((holder, name) for holder, name in self._blockers(claim) if holder.state is State.HELD)
 
     def _others(self, claim: Claim, use: Use) -> list[Claim]:
-        """The holders that a use does not go together with as it likes."""
+        """Return the holders that are not compatible with a use."""
         return [
             each
             for each in self._holders.get(use.name, ())
@@ -255,7 +256,7 @@ class Arbiter:
         ]
 
     def _lack(self, claim: Claim, use: Use, without: Collection[Claim] = ()) -> int:
-        """Units that others have to give back before a claim can have what it uses."""
+        """Return the units that others must release before a claim can have its use."""
         others = [each for each in self._others(claim, use) if each not in without]
         taken = _taken(use.name, others)
         if use.shared or any(_use_of(holder, use.name).shared for holder in others):
@@ -263,14 +264,14 @@ class Arbiter:
         return taken + use.units - self.capacity(use.name)
 
     def _exceeded(self, claim: Claim) -> str | None:
-        """The resource of which a claim asks for more than there is."""
+        """Return the resource of which a claim wants more than the capacity, or None."""
         names = (u.name for u in claim.uses if not u.shared and u.units > self.capacity(u.name))
         return next(names, None)
 
     # ---- urgency
 
     def _rank(self, claim: Claim) -> int:
-        """Urgency by which a claim is in order and is protected."""
+        """Return the urgency that decides the place of a claim in the queue and its protection."""
         return max(claim.base, claim.urgency + int(self._has_waited(claim) / PATIENCE))
 
     def _has_waited(self, claim: Claim) -> float:
@@ -279,7 +280,7 @@ class Arbiter:
         return claim.waited
 
     def _inherit(self) -> None:
-        """Lend the urgency of those who wait to the holders that cannot give way to them."""
+        """Lend the urgency of waiting claims to holders that cannot yield to them."""
         claims = self._all()
         for each in claims:
             each.inherited = 0
@@ -301,10 +302,10 @@ class Arbiter:
         held = (each for holders in self._holders.values() for each in holders)
         return list(dict.fromkeys((*held, *self._waiting)))
 
-    # ---- patience
+    # ---- ageing
 
     def _set_timer(self) -> None:
-        """Be called when the next claim has waited too long, as long as that changes something."""
+        """Schedule a call when the next claim has waited too long, if that changes anything."""
         if self._timer is not None:
             self._timer.cancel()
             self._timer = None
@@ -332,12 +333,12 @@ class Arbiter:
 
 
 def _takes(claim: Claim) -> bool:
-    """Whether a claim takes from an equal: only until it has had its turn, or two would take for ever."""
+    """Return whether a claim takes from an equal: only until its first grant, or two claims would take forever."""
     return claim.policy == "take" and claim.fresh
 
 
 def _all_go(chosen: list[tuple[Claim, str]]) -> bool:
-    """Whether all give way already, or do when they are asked."""
+    """Return whether all are yielding, or will when asked."""
     return all(each.state is State.YIELDING or each.claimant.can_yield for each, _ in chosen)
 
 
@@ -346,7 +347,7 @@ def _use_of(claim: Claim, name: str) -> Use:
 
 
 def _taken(name: str, holders: Sequence[Claim]) -> int:
-    """Units that holders take together: those within another one use its units first."""
+    """Return the units that holders have in total. Nested claims use the units of the outer claim first."""
     total = 0
     for holder in holders:
         if not any(outer in holders for outer in holder.within):

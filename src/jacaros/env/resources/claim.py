@@ -1,4 +1,4 @@
-"""One claim to resources, from asking to giving back."""
+"""One claim of resources, from request to release."""
 
 from enum import StrEnum
 from typing import Literal, Protocol
@@ -7,13 +7,13 @@ from jacaros.env.resources.resource import Use
 from jacaros.env.values import Atom, Structure
 
 Policy = Literal["wait", "refuse", "take"]
-"""What a claim does that is not granted at once: it waits; it fails; it takes the resource from an equal, too."""
+"""What a claim does if it is not granted immediately: wait, fail, or take the resource, also from an equal."""
 
 POLICIES: tuple[Policy, ...] = ("wait", "refuse", "take")
 
 
 class State(StrEnum):
-    """Where a claim is."""
+    """The state of a claim."""
 
     OUT = "out"
     WAITING = "waiting"
@@ -22,43 +22,43 @@ class State(StrEnum):
 
 
 class Claimant(Protocol):
-    """Who is told what becomes of a claim.  Each method may call the arbiter."""
+    """Receives the events of a claim. Each method may call the arbiter."""
 
     @property
     def can_yield(self) -> bool:
-        """Whether it can give way now."""
+        """Return whether it can yield now."""
 
     def granted(self, claim: "Claim") -> None:
-        """It holds what it asked for, for the first time or again."""
+        """It holds its resources, for the first time or again."""
 
     def preempted(self, claim: "Claim", resource: str) -> None:
-        """A more urgent claim wants *resource*: give way, and call `Arbiter.gave_way` when that is done."""
+        """A more urgent claim wants *resource*: yield, and then call `Arbiter.gave_way`."""
 
     def refused(self, claim: "Claim", reason: Structure | Atom) -> None:
-        """The claim failed; it is out."""
+        """The claim failed and is removed."""
 
 
 class Claim:
     """A claim of one plan or operation.
 
     Args:
-        uses: what it asks for, all of it or nothing.
-        who: the claimant, for people.
-        claimant: is told what becomes of it.
-        urgency: of the plan or operation.
-        policy: what it does when it is not granted at once.
-        within: claims that it is a part of, outermost first; what these hold does not stand in its way.
-        plan_of: the agent for whose plan it is; empty for an operation, which ends without a further step of a plan.
-        blocks: the agent whose other plans make no step until this claim has been given back: that of an atomic plan.
+        uses: the resources; all or nothing.
+        who: the claimant, for messages.
+        claimant: receives the events of the claim.
+        urgency: urgency of the plan or operation.
+        policy: what it does if it is not granted immediately.
+        within: the outer claims, outermost first. What they hold does not block this one.
+        plan_of: the agent whose plan it is for. Empty for an operation, which ends without a further step of a plan.
+        blocks: the agent whose other plans make no step until this claim is released: that of an atomic plan.
 
     Attributes:
-        state: where it is.
-        fresh: it has not been granted yet.
-        order: its place among those of equal urgency; the earlier goes first.
-        inherited: urgency of the most urgent claim that it blocks and cannot give way to.
-        waited: seconds that it has waited before the present wait.
-        since: when the present wait began.
-        warned: its long wait has been reported.
+        state: its state.
+        fresh: whether it has not been granted yet.
+        order: its place among claims of equal urgency. The earlier one goes first.
+        inherited: urgency of the most urgent claim that it blocks and cannot yield to.
+        waited: seconds that it waited before the current wait.
+        since: begin of the current wait.
+        warned: whether its long wait has been logged.
     """
 
     __slots__ = (
@@ -104,12 +104,12 @@ class Claim:
 
     @property
     def holds(self) -> bool:
-        """Whether nobody else may have what it asked for."""
+        """Whether no other claim can have its resources."""
         return self.state is State.HELD or self.state is State.YIELDING
 
     @property
     def base(self) -> int:
-        """The urgency by which it takes resources away."""
+        """The urgency with which it preempts."""
         return max(self.urgency, self.inherited)
 
     def __repr__(self) -> str:

@@ -1,4 +1,4 @@
-"""Deadlocks: claims that wait for each other in a circle, each for what another one holds."""
+"""Deadlocks: claims that wait for each other in a cycle."""
 
 from collections.abc import Callable, Iterable, Sequence
 
@@ -11,10 +11,10 @@ WaitsFor = Callable[[Claim], Iterable[tuple[Claim, str]]]
 def victim_of(
     waiting: Sequence[Claim], waits_for: WaitsFor, rank: Callable[[Claim], int]
 ) -> tuple[Claim, str] | None:
-    """The claim that should fail so that a circle ends, and the resource that it waits for; None without a circle.
+    """Return the claim that should fail to break a deadlock, and the resource it waits for; None without a deadlock.
 
-    It is the least urgent one, and of equals the newest.  What counts is the outermost claim: a plan that holds one
-    resource and waits for another one is one party.
+    It is the least urgent one, among equals the newest. The outermost claim counts: a plan that holds one resource and
+    waits for another one is one party.
     """
     edges: dict[Claim, list[tuple[Claim, Claim, str]]] = {}
     for claim in waiting:
@@ -35,7 +35,7 @@ def victim_of(
 
 
 def _reaches(edges: dict[Claim, list[tuple[Claim, Claim, str]]], start: Claim, goal: Claim) -> bool:
-    """Whether one party waits, directly or not, for another one."""
+    """Return whether one party waits for another, directly or indirectly."""
     seen: set[Claim] = set()
     left = [start]
     while left:

@@ -1,4 +1,4 @@
-"""What an operation or a plan uses, as data: ``wheels``, ``lift(2)`` (two may use it) or ``map(shared)`` (readers)."""
+"""The resources that an operation or plan uses: ``wheels``, ``lift(2)`` (two units) or ``map(shared)`` (readers)."""
 
 import re
 from collections.abc import Iterable, Sequence
@@ -12,13 +12,13 @@ WHEELS = "wheels"
 
 @dataclass(frozen=True, slots=True)
 class Use:
-    """One resource that a claim asks for.
+    """The use of one resource by a claim.
 
     Attributes:
-        name: of the resource; that of one robot has the robot's name in front, such as ``/robot_0/wheels``.
-        capacity: number of units that there are; None: as declared elsewhere, 1 if nowhere.
-        shared: any number of shared uses go together, and none with another use.
-        units: number of units that are asked for.
+        name: name of the resource. One of a robot begins with the robot's name, such as ``/robot_0/wheels``.
+        capacity: number of units that exist. None: as declared elsewhere, or 1.
+        shared: any number of shared uses are compatible, but none with another use.
+        units: number of units that are claimed.
     """
 
     name: str
@@ -32,26 +32,26 @@ class Use:
 
 
 def read_use(text: str) -> Use:
-    """Read one use, such as ``lift(2)``.
+    """Parse one use, such as ``lift(2)``.
 
     Raises:
-        ValueError: *text* is not a use; says what to write.
+        ValueError: *text* is not a use. The message says what to write.
     """
     found = _WRITTEN.fullmatch(text.strip())
     if found is None:
-        raise ValueError(f"`{text}` is not a resource: write a name, name(2) or name(shared)")
+        raise ValueError(f"invalid resource `{text}`; write name, name(2) or name(shared)")
     name, inner = found.groups()
     if inner == "shared":
         return Use(name, shared=True)
     if inner is None:
         return Use(name)
     if int(inner) < 1:
-        raise ValueError(f"`{text}` has no units: the capacity of a resource is 1 or more")
+        raise ValueError(f"invalid resource `{text}`: the capacity must be at least 1")
     return Use(name, int(inner))
 
 
 def read_uses(written: str | Use | Iterable[str | Use]) -> tuple[Use, ...]:
-    """Read the uses of a declaration: one, or several.
+    """Parse the uses of a declaration: one, or several.
 
     Raises:
         ValueError: one of them is not a use.
@@ -61,7 +61,7 @@ def read_uses(written: str | Use | Iterable[str | Use]) -> tuple[Use, ...]:
 
 
 def together(uses: Iterable[Use]) -> tuple[Use, ...]:
-    """One use for each resource: what is named twice asks for two units."""
+    """Merge uses of the same resource. A resource that is named twice needs two units."""
     found: dict[str, Use] = {}
     for each in uses:
         known = found.get(each.name)
@@ -79,10 +79,10 @@ def together(uses: Iterable[Use]) -> tuple[Use, ...]:
 
 
 def scoped(uses: Sequence[Use], scope: str) -> tuple[Use, ...]:
-    """The same resources of one robot; *scope* is its name, empty for what the whole run shares."""
+    """Return the resources of one robot. *scope* is its name, empty for resources of the whole run."""
     return tuple(replace(each, name=f"{scope}/{each.name}") for each in uses) if scope else tuple(uses)
 
 
 def local_name(name: str) -> str:
-    """The name of a resource without that of its robot."""
+    """Return the name of a resource without that of its robot."""
     return name.rpartition("/")[2]

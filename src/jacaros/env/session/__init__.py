@@ -1,1 +1,1 @@
-"""Working sessions: how scripts, behaviour trees and agents in Python use the environment."""
+"""Working sessions: how scripts, behaviour trees and Python agents use the environment."""

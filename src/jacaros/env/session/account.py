@@ -1,36 +1,37 @@
-"""How a session tells what it waits for, and what it is at."""
+"""Ports through which a session reports what it is waiting for and executing."""
 
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from typing import Protocol
 
 Observer = Callable[[str, str, object, str], None]
-"""Takes the state of something that is pursued (``executing``, ``achieved``, ``failed``, ``dropped``), its text, an object
-that is the same for all news of it, and of a failure the reason as people read it."""
+"""Takes the state of an operation or goal (``executing``, ``achieved``, ``failed``, ``dropped``), its text, an object that
+identifies it, and the reason of a failure as text.
+"""
 
 
 class Account(Protocol):
-    """Keeps account of what a session waits for, so that a run knows when nothing more will happen."""
+    """Counts what a session waits for, so that a run can detect idleness."""
 
     def begin(self) -> None:
-        """An operation is under way."""
+        """An operation has begun."""
 
     def end(self) -> None:
-        """It has ended."""
+        """An operation has ended."""
 
     def waiting(self) -> AbstractContextManager[None]:
-        """Surrounds a wait that somebody else has to end, such as for a signal."""
+        """Context of a wait that something else must end, such as for a signal."""
 
 
 class NoAccount:
-    """Keeps no account."""
+    """Counts nothing."""
 
     def begin(self) -> None:
-        """Nothing."""
+        """Do nothing."""
 
     def end(self) -> None:
-        """Nothing."""
+        """Do nothing."""
 
     def waiting(self) -> AbstractContextManager[None]:
-        """Nothing."""
+        """Do nothing."""
         return nullcontext()

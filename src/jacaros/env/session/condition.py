@@ -1,4 +1,4 @@
-"""Conditions that somebody waits for, evaluated whenever something has changed."""
+"""Conditions that tasks wait for, evaluated after every change."""
 
 import asyncio
 from collections.abc import Callable
@@ -18,10 +18,10 @@ class Conditions:
     async def wait(
         self, condition: Callable[[], T], clock: Clock | None = None, timeout: float | None = None
     ) -> T:
-        """Wait until *condition* is true, at most *timeout* seconds; gives its value.
+        """Wait until *condition* is true, at most *timeout* seconds. Return its value.
 
         Raises:
-            TimeoutError: the time is over.
+            TimeoutError: the time limit has passed.
         """
         true: asyncio.Future[T] = asyncio.get_running_loop().create_future()
         self._waiting[true] = condition
@@ -37,7 +37,7 @@ class Conditions:
                 timer.cancel()
 
     def evaluate(self) -> None:
-        """Let those go on whose condition is true, or raises something."""
+        """Wake the tasks whose condition is true or raises."""
         for future, condition in tuple(self._waiting.items()):
             if future.done():
                 continue
@@ -50,7 +50,7 @@ class Conditions:
                     future.set_result(value)
 
     def close(self, error: Exception) -> None:
-        """Let all go on with *error*."""
+        """Wake all tasks with *error*."""
         for future in tuple(self._waiting):
             _fail(future, error)
 

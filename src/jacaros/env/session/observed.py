@@ -1,9 +1,9 @@
-"""What one observer knows of the artifacts that it focuses: the latest values of their properties."""
+"""What one observer knows of the artifacts that it focuses: the current values of their properties."""
 
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
-from jacaros.env.errors import UnknownProperty, spelling_hint
+from jacaros.env.errors import UnknownProperty, suggestion
 from jacaros.env.ids import ArtifactId
 from jacaros.env.observation import Observation
 from jacaros.env.property import ObservableProperty
@@ -14,10 +14,10 @@ class ObservedProperty(NamedTuple):
     """A property of a focused artifact, as it is now.
 
     Attributes:
-        name: of the property.
-        values: plain values of its own.
-        artifact: which one has it.
-        annotations: what the artifact says about it.
+        name: name of the property.
+        values: plain values, a copy.
+        artifact: the artifact that has it.
+        annotations: annotations that the artifact has added.
     """
 
     name: str
@@ -27,13 +27,13 @@ class ObservedProperty(NamedTuple):
 
 
 class PropertyChange(NamedTuple):
-    """What happened to one property.
+    """A change of one property.
 
     Attributes:
-        name: of the property.
-        before: its values until now, None when it is new (also because the artifact is newly focused).
-        now: its values from now on, None when it is gone (also because the focus or the artifact ended).
-        artifact: which one has it.
+        name: name of the property.
+        before: previous values. None if it is new, or its artifact newly focused.
+        now: new values. None if it has been removed, or the focus or artifact has ended.
+        artifact: the artifact that has it.
     """
 
     name: str
@@ -43,11 +43,11 @@ class PropertyChange(NamedTuple):
 
 
 class Observed:
-    """An observer that keeps the properties of what it focuses.
+    """An observer that keeps the properties of the artifacts it focuses.
 
     Args:
-        agent: the name that it observes under.
-        tell: called with every observation, after it was taken in.
+        agent: its name.
+        tell: called with every observation, after it has been processed.
     """
 
     def __init__(self, agent: str, tell: Callable[[Observation], None]) -> None:
@@ -58,7 +58,7 @@ class Observed:
 
     @property
     def agent(self) -> str:
-        """The name that it observes under."""
+        """Its name."""
         return self._agent
 
     @property
@@ -67,7 +67,7 @@ class Observed:
         return tuple(artifact for artifact in self._properties if artifact not in self._gone)
 
     def begin(self, artifact: ArtifactId) -> None:
-        """Get ready for an artifact; its properties come as its first observation."""
+        """Prepare for an artifact. Its properties arrive as its first observation."""
         self._properties.setdefault(artifact, {})
 
     def end(self, artifact: ArtifactId) -> None:
@@ -76,14 +76,14 @@ class Observed:
         self._gone.discard(artifact)
 
     def gone(self, artifact: ArtifactId) -> None:
-        """Be told that an artifact has been disposed: it takes its properties back next, if it has any."""
+        """Note that an artifact has been disposed. The observation that removes its properties follows, if it has any."""
         if self._properties.get(artifact):
             self._gone.add(artifact)
         else:
             self.end(artifact)
 
     def observe(self, observation: Observation) -> None:
-        """Take in what an artifact publishes."""
+        """Process an observation."""
         held = self._properties.get(observation.artifact)
         if held is None:
             return
@@ -100,11 +100,11 @@ class Observed:
     def find(
         self, name: str, template: tuple[object, ...] = (), artifact: ArtifactId | None = None
     ) -> Iterator[ObservedProperty]:
-        """The properties called *name*: those of the artifact focused first come first, among them the oldest.
+        """Iterate over the properties called *name*: those of the artifact focused first come first, among them the oldest.
 
         Args:
-            template: as many values as the property has, None for any value; empty fits every property.
-            artifact: None for all that are focused.
+            template: as many values as the property has, None for any value. Empty matches every property.
+            artifact: None for all focused artifacts.
         """
         template = tuple(map(plain, template))
         for owner, held in self._properties.items():
@@ -115,19 +115,19 @@ class Observed:
                     yield _observed(owner, each)
 
     def unknown(self, name: str, artifact: ArtifactId | None) -> UnknownProperty:
-        """What to raise when there is no property called *name*."""
+        """Return the error for an unknown property."""
         owners = [artifact] if artifact is not None else list(self._properties)
         known = {each.name: None for owner in owners for each in self._properties.get(owner, {}).values()}
         if not owners or (artifact is not None and artifact not in self._properties):
             why = "no artifact is focused" if artifact is None else f"artifact {artifact.name} is not focused"
         else:
             which = ", ".join(owner.name for owner in owners)
-            why = f"what is focused ({which}) has {', '.join(known) if known else 'none'}"
-        return UnknownProperty(f"no observable property {name} is known: {why}{spelling_hint(name, known)}")
+            why = f"the focused artifacts ({which}) have {', '.join(known) if known else 'none'}"
+        return UnknownProperty(f"unknown observable property `{name}`: {why}{suggestion(name, known)}")
 
 
 def changes_of(observation: Observation) -> Iterator[PropertyChange]:
-    """What happened to the properties, one by one, in the order of agents' events."""
+    """Iterate over the property changes of an observation, in the order of agents' events."""
     artifact = observation.artifact
     for old, new in observation.changed:
         yield PropertyChange(new.name, _copy(old.values), _copy(new.values), artifact)
@@ -142,7 +142,7 @@ def _observed(artifact: ArtifactId, found: ObservableProperty) -> ObservedProper
 
 
 def _copy(values: tuple[object, ...]) -> tuple[object, ...]:
-    """Values that share no list or dictionary with those of the artifact."""
+    """Return values that share no list or dictionary with those of the artifact."""
     return tuple(map(plain, values))
 
 

@@ -1,4 +1,4 @@
-"""An operation that a session has asked for, from its beginning to its end."""
+"""An operation that a session has requested, from begin to end."""
 
 import asyncio
 from collections.abc import Callable, Generator, Sequence
@@ -11,19 +11,19 @@ from jacaros.env.values import Atom, Out
 
 
 class SessionOperation:
-    """The handle of an operation; it can be awaited, by several tasks too.
+    """The handle of an operation. It can be awaited, also by several tasks.
 
-    It ends once: the operation succeeded or failed, its time was over, or it was cancelled.  A task that is
-    cancelled while it awaits the operation cancels the operation, as with the tasks of asyncio.
+    It ends once: it succeeds, fails, exceeds its time limit or is cancelled. As with asyncio's tasks, cancelling a task
+    that awaits the operation cancels the operation.
 
     Args:
         operation: name of the operation.
-        arguments: what it is given.
-        complain: told of callbacks that raise.
+        arguments: its arguments.
+        complain: called when a callback raises.
 
     Attributes:
         operation: name of the operation.
-        outcome: what came of it, None while it is under way.
+        outcome: its outcome. None while it runs.
     """
 
     def __init__(
@@ -39,18 +39,18 @@ class SessionOperation:
 
     @property
     def done(self) -> bool:
-        """True when it has ended."""
+        """Whether it has ended."""
         return self.outcome is not None
 
     @property
     def result(self) -> Any:
-        """The values of the `Out` arguments: None without any, the value of the one, a tuple of several.
+        """Return the values of the `Out` arguments: None without any, the value of a single one, a tuple of several.
 
-        None stands for a value that the operation has not set.
+        An output that the operation has not set is None.
 
         Raises:
-            OperationFailed: it failed, its time was over, or it was cancelled.
-            asyncio.InvalidStateError: it is under way.
+            OperationFailed: it failed, exceeded its time limit, or was cancelled.
+            asyncio.InvalidStateError: it has not ended.
         """
         if self.outcome is None:
             raise asyncio.InvalidStateError(f"operation {self.operation} has not ended")
@@ -60,24 +60,24 @@ class SessionOperation:
         return values if len(values) > 1 else values[0] if values else None
 
     def cancel(self) -> None:
-        """End it, with the reason ``cancelled``: its ``finally`` runs, a motion ends; nothing if it has ended."""
+        """End it with the reason ``cancelled``: its ``finally`` blocks run, a motion ends. No effect after its end."""
         if not self.done:
             if self._execution is not None:
                 self._execution.cancel()
             self.end(OperationOutcome(False, f"operation {self.operation} was cancelled", Atom("cancelled")))
 
     def pause(self) -> None:
-        """Ask it to rest, which it does if it is pausable."""
+        """Pause it, if it is pausable."""
         if self._execution is not None and not self.done:
             self._execution.pause()
 
     def resume(self) -> None:
-        """Let it go on after `pause`."""
+        """Let it continue after `pause`."""
         if self._execution is not None and not self.done:
             self._execution.resume()
 
     def on_end(self, callback: "Callable[[SessionOperation], object]") -> None:
-        """Call *callback* with this handle at the end, at once if that is past; it should return soon."""
+        """Call *callback* with this handle at the end, immediately if it has ended. The callback should return soon."""
         if self.done:
             self._call(callback)
         else:
@@ -94,15 +94,15 @@ class SessionOperation:
                 raise
         return self.result
 
-    # ---- for the session
+    # ---- called by the session
 
     def began(self, execution: UnderWay) -> None:
-        """Be told what carries it out."""
+        """Set the execution."""
         if not self.done:
             self._execution = execution
 
     def end(self, outcome: OperationOutcome) -> None:
-        """Be told what came of it; what comes later is not heard any more."""
+        """Set the outcome. Later outcomes are ignored."""
         if self.done:
             return
         self.outcome = outcome
@@ -118,7 +118,7 @@ class SessionOperation:
         try:
             callback(self)
         except Exception as error:
-            self._complain(f"a callback at the end of operation {self.operation} failed:", error)
+            self._complain(f"an on_end callback of operation {self.operation} raised:", error)
 
     def __repr__(self) -> str:
         state = "under way" if self.outcome is None else "succeeded" if self.outcome.ok else "failed"

@@ -20,12 +20,12 @@ _REQUIRED: Any = object()
 
 
 class Perceiving:
-    """Properties and signals of focused artifacts: the half of a `Session` that looks.
+    """Properties and signals of focused artifacts: the observing half of a `Session`.
 
     Args:
-        environment: what is perceived.
-        name: who perceives.
-        account: told what is waited for.
+        environment: the environment.
+        name: name of the session.
+        account: counts waits.
     """
 
     def __init__(self, environment: Environment, name: str, account: Account | None) -> None:
@@ -33,7 +33,7 @@ class Perceiving:
         self.name = name
         self._account: Account = account if account is not None else NoAccount()
         self._observed = Observed(name, self._tell)
-        # In the order of their making, so that a run is repeatable; who reads one keeps it alive.
+        # In the order of creation, so that a run is reproducible. A stream lives as long as its reader.
         self._streams: list[ref[SignalStream]] = []
         self._conditions = Conditions()
         self._on_change: list[Callable[[PropertyChange], object]] = []
@@ -42,7 +42,7 @@ class Perceiving:
 
     @property
     def clock(self) -> Clock:
-        """Where the environment takes time from."""
+        """The clock of the environment."""
         return self.environment.clock
 
     @property
@@ -51,7 +51,7 @@ class Perceiving:
         return self._observed.focused
 
     def lookup(self, name: str) -> ArtifactId:
-        """Find an artifact by name or path."""
+        """Return an artifact by name or path."""
         raise NotImplementedError
 
     def value(
@@ -61,13 +61,13 @@ class Perceiving:
         artifact: ArtifactId | str | None = None,
         default: Any = _REQUIRED,
     ) -> Any:
-        """A value of the first property called *name* of the focused artifacts.
+        """Return a value of the first property called *name* of the focused artifacts.
 
         Args:
-            name: of the property; those of the artifact focused first come first, among them the oldest.
-            index: which of its values.
-            artifact: only of this one.
-            default: given when there is no such property.
+            name: name of the property. Those of the artifact focused first come first, among them the oldest.
+            index: index of the value, from 0.
+            artifact: only properties of this artifact.
+            default: returned if there is no such property.
 
         Raises:
             UnknownProperty: there is no such property, and no default.
@@ -80,7 +80,7 @@ class Perceiving:
         return found.values[index]
 
     def values(self, name: str, artifact: ArtifactId | str | None = None) -> tuple[Any, ...]:
-        """All values of the first property called *name* of the focused artifacts; see `value`.
+        """Return all values of the first property called *name* of the focused artifacts. See `value`.
 
         Raises:
             UnknownProperty: there is no such property.
@@ -91,13 +91,13 @@ class Perceiving:
         return found.values
 
     def has_property(self, name: str, *values: object, artifact: ArtifactId | str | None = None) -> bool:
-        """True when a focused artifact has a property called *name*, with *values* (None for any) if given."""
+        """Return whether a focused artifact has a property called *name*, with *values* (None for any) if given."""
         return next(self._find(name, values, artifact), None) is not None
 
     def properties(
         self, name: str, *values: object, artifact: ArtifactId | str | None = None
     ) -> tuple[ObservedProperty, ...]:
-        """All properties called *name* of the focused artifacts, with *values* (None for any) if given."""
+        """Return all properties called *name* of the focused artifacts, with *values* (None for any) if given."""
         return tuple(self._find(name, values, artifact))
 
     def _find(
@@ -112,13 +112,13 @@ class Perceiving:
         return artifact
 
     def signals(self, name: str | None = None, artifact: ArtifactId | str | None = None) -> SignalStream:
-        """The signals of the focused artifacts from now on, to be read with ``async for``.
+        """Return a stream of the signals of the focused artifacts from now on, for ``async for``.
 
-        None is lost between two turns of the loop.  It ends when it, or the session, is closed.
+        No signal is lost between two turns of the event loop. The stream ends when it, or the session, is closed.
 
         Args:
             name: only signals of this name.
-            artifact: only those of this one.
+            artifact: only signals of this artifact.
         """
         self._check()
         stream = SignalStream(name, self._narrowed(artifact), self._account.waiting)
@@ -126,32 +126,32 @@ class Perceiving:
         return stream
 
     def on_change(self, callback: Callable[[PropertyChange], object]) -> Callable[[], None]:
-        """Call *callback* with every change of a property of the focused artifacts; gives what ends that.
+        """Call *callback* with every change of a property of the focused artifacts. Return a function that ends this.
 
-        The session shows all that was published together already.  It is called within the step of the
+        By then, the session shows everything that was published together. The callback runs within the step of the
         artifact, so it should return soon.
         """
         return _enter(self._on_change, callback)
 
     def on_signal(self, callback: Callable[[ReceivedSignal], object]) -> Callable[[], None]:
-        """Call *callback* with every signal of the focused artifacts; gives what ends that; see `on_change`."""
+        """Call *callback* with every signal of the focused artifacts. Return a function that ends this. See `on_change`."""
         return _enter(self._on_signal, callback)
 
     async def until(self, condition: Callable[[], T], timeout: float | None = None) -> T:
         """Wait until *condition* is true.
 
-        It is evaluated now, and whenever a focused artifact has published something: also what is true for
-        one step only is not missed.
+        It is evaluated now, and whenever a focused artifact publishes something, so a condition that holds for only one
+        step is not missed.
 
         Args:
-            condition: a function without arguments; what it raises is raised here.
-            timeout: seconds to wait at most.
+            condition: a function without arguments. An exception in it is raised here.
+            timeout: time limit in seconds.
 
         Returns:
-            The true value.
+            The value of the condition.
 
         Raises:
-            TimeoutError: the time is over.
+            TimeoutError: the time limit has passed.
             WorkspaceError: the session was closed.
         """
         self._check()
@@ -173,11 +173,11 @@ class Perceiving:
             for stream in self._read_streams():
                 stream.put(signal)
             for on_signal in tuple(self._on_signal):
-                self._call(on_signal, signal, "a callback for signals failed:")
+                self._call(on_signal, signal, "an on_signal callback raised:")
         if self._on_change:
             for change in changes_of(observation):
                 for on_change in tuple(self._on_change):
-                    self._call(on_change, change, "a callback for changes failed:")
+                    self._call(on_change, change, "an on_change callback raised:")
         self._conditions.evaluate()
 
     def _read_streams(self) -> list[SignalStream]:
@@ -190,7 +190,7 @@ class Perceiving:
             self._complain(what, error)
 
     def _complain(self, what: str, error: Exception) -> None:
-        """Tell people that the session's own code failed, where nobody else can be told."""
+        """Log that the session's own code failed, where no caller can receive the exception."""
         self.environment.log_error(self.name, what, error)
 
     def _end_perceiving(self) -> None:

@@ -1,4 +1,4 @@
-"""A working session: how anybody uses the environment, be it a script, a behaviour tree, or an agent in Python."""
+"""Working sessions, for scripts, behaviour trees and Python agents."""
 
 import asyncio
 from collections.abc import Callable, Sequence
@@ -8,7 +8,7 @@ from typing import Any
 
 from jacaros.env.artifact import Artifact
 from jacaros.env.environment import Environment
-from jacaros.env.errors import OperationFailed, UnknownArtifact, WorkspaceError, spelling_hint
+from jacaros.env.errors import OperationFailed, UnknownArtifact, WorkspaceError, suggestion
 from jacaros.env.ids import ArtifactId, resolve_path
 from jacaros.env.lookup import artifact_named, chosen_artifact
 from jacaros.env.operation import OperationOutcome, OperationRequest
@@ -21,24 +21,23 @@ from jacaros.env.values import Atom, Out, Structure, plain, text
 
 
 class Session(Perceiving):
-    """A working session in an environment, CArtAgO's word: it joins workspaces, focuses artifacts and acts.
+    """A working session in an environment (CArtAgO's term): it joins workspaces, focuses artifacts and acts.
 
-    It is for the event loop of the environment, and takes plain values (see `jacaros.env.values`).  An
-    artifact can be given as its id or by its name, which is looked for in the joined workspaces, or as a path.
-    With ``with`` it is closed at the end.
+    It must be used on the event loop of the environment, and takes plain values (see `jacaros.env.values`). An artifact
+    is given as its id, its name (looked up in the joined workspaces) or its path. As a context manager, it is closed at
+    the end.
 
     Args:
-        environment: where it works.
-        name: who works; it counts as creator of artifacts, as caller of operations, and as addressee of
-            signals, beside those of agents.
-        home: full path of the workspace that it begins in.
-        account: told what it waits for.
+        environment: the environment.
+        name: its name as creator of artifacts, caller of operations and addressee of signals.
+        home: full path of the workspace that it joins first.
+        account: counts waits.
 
     Attributes:
-        observer: told of the operations that begin from now on, or None.
+        observer: receives the operations that begin from now on, or None.
 
     Raises:
-        UnknownWorkspace: there is none at *home*.
+        UnknownWorkspace: the workspace *home* does not exist.
     """
 
     def __init__(
@@ -54,29 +53,29 @@ class Session(Perceiving):
 
     @property
     def joined(self) -> tuple[str, ...]:
-        """Full paths of the joined workspaces, in the order of joining; the current one comes last."""
+        """Full paths of the joined workspaces, in the order of joining. The current one comes last."""
         return self._workspaces.joined
 
     def join(self, path: str) -> str:
-        """Join a workspace, and make it the current one; joining again does the latter only.
+        """Join a workspace and make it the current one. Joining again only makes it the current one.
 
         Args:
-            path: full, or from the current workspace.
+            path: full, or relative to the current workspace.
 
         Returns:
             The full path.
 
         Raises:
-            UnknownWorkspace: there is none.
+            UnknownWorkspace: the workspace does not exist.
         """
         self._check()
         return self._workspaces.join(path).path
 
     def quit(self, workspace: str) -> None:
-        """Leave a workspace, given by path or name, and stop to focus what is in it.
+        """Leave a workspace, given by path or name, and stop focusing its artifacts.
 
         Raises:
-            OperationFailed: it was not joined; reason ``workspace_not_joined(Name)``.
+            OperationFailed: it is not joined; reason ``workspace_not_joined(Name)``.
         """
         left = self._workspaces.quit(workspace)
         for artifact in self.focused:
@@ -87,16 +86,16 @@ class Session(Perceiving):
             stop_watching()
 
     def create_workspace(self, path: str) -> str:
-        """Make a workspace; it is not joined.
+        """Create a workspace without joining it.
 
         Args:
-            path: full, or from the current workspace.
+            path: full, or relative to the current workspace.
 
         Returns:
             The full path.
 
         Raises:
-            OperationFailed: it is there already, or the workspace above it is not.
+            OperationFailed: it already exists, or its parent workspace does not.
         """
         self._check()
         return self.environment.create_workspace(resolve_path(self._workspaces.current.path, path)).path
@@ -106,12 +105,12 @@ class Session(Perceiving):
     async def make_artifact(
         self, name: str, artifact_type: str | type[Artifact], arguments: Sequence[object] = ()
     ) -> ArtifactId:
-        """Make an artifact, and wait until its ``init`` has ended.
+        """Create an artifact, and wait until its ``init`` has ended.
 
         Args:
-            name: in the current workspace, or a path.
-            artifact_type: the class or the name of one.
-            arguments: for ``init``.
+            name: its name in the current workspace, or a path.
+            artifact_type: the class, or the name of a type.
+            arguments: arguments of ``init``.
 
         Raises:
             OperationFailed: see `Workspace.make_artifact`.
@@ -127,10 +126,10 @@ class Session(Perceiving):
             self._account.end()
 
     def lookup(self, name: str) -> ArtifactId:
-        """Find an artifact by name, in the joined workspaces, or by path.
+        """Return an artifact by name, in the joined workspaces, or by path.
 
         Raises:
-            OperationFailed: there is none; reason ``artifact_not_available(Name)``.
+            OperationFailed: it does not exist; reason ``artifact_not_available(Name)``.
         """
         if "/" in name:
             workspace, name = self._workspaces.place(name)
@@ -138,19 +137,19 @@ class Session(Perceiving):
         return artifact_named(self._workspaces.in_order(), name)
 
     def dispose_artifact(self, artifact: ArtifactId | str) -> None:
-        """End an artifact; see `Workspace.dispose_artifact`.
+        """Dispose an artifact. See `Workspace.dispose_artifact`.
 
         Raises:
-            OperationFailed: there is none, or its workspace was not joined.
+            OperationFailed: it does not exist, or its workspace is not joined.
         """
         found = self._artifact(artifact)
         self._workspaces.of(found).dispose_artifact(found)
 
     def link_artifacts(self, source: ArtifactId | str, port: str, target: ArtifactId | str) -> None:
-        """Put *target* behind an out port of *source*; see `Workspace.link`.
+        """Link an out port of *source* to *target*. See `Workspace.link`.
 
         Raises:
-            OperationFailed: an artifact or the port is not there.
+            OperationFailed: an artifact or the port does not exist.
         """
         found = self._artifact(source)
         self._workspaces.of(found).link(found, port, self._artifact(target))
@@ -162,12 +161,12 @@ class Session(Perceiving):
     # ---- focus
 
     def focus(self, artifact: ArtifactId | str) -> ArtifactId:
-        """Perceive an artifact from now on; its properties are there when this returns.
+        """Focus an artifact. Its properties are available when this returns.
 
         Focusing again has no effect.
 
         Raises:
-            OperationFailed: there is none, or its workspace was not joined.
+            OperationFailed: it does not exist, or its workspace is not joined.
         """
         found = self._artifact(artifact)
         workspace = self._workspaces.of(found)
@@ -190,10 +189,10 @@ class Session(Perceiving):
             self._observed.gone(artifact)
 
     async def focus_when_available(self, name: str) -> ArtifactId:
-        """Wait until there is an artifact of that name in the current workspace (or at a path), and focus it.
+        """Wait until an artifact of this name exists in the current workspace (or at a path), and focus it.
 
         Raises:
-            OperationFailed: its workspace is not there, or was not joined.
+            OperationFailed: its workspace does not exist, or is not joined.
         """
         self._check()
         workspace, plain_name = self._workspaces.place(name)
@@ -204,9 +203,7 @@ class Session(Perceiving):
 
         def look(artifact: ArtifactId, is_there: bool) -> None:
             if is_there and artifact.name == plain_name and not found.done():
-                with suppress(
-                    UnknownArtifact
-                ):  # somebody has disposed it at once: the next one is waited for
+                with suppress(UnknownArtifact):  # it has been disposed immediately: wait for the next one
                     found.set_result(self.focus(artifact))
 
         stop = workspace.watch(look)
@@ -217,10 +214,10 @@ class Session(Perceiving):
             stop()
 
     def stop_focus(self, artifact: ArtifactId | str) -> None:
-        """Perceive an artifact no more; without effect when it is not focused.
+        """Stop focusing an artifact. Without effect if it is not focused.
 
         Raises:
-            OperationFailed: there is none of that name.
+            OperationFailed: no artifact has this name.
         """
         if isinstance(artifact, str):
             named = [each for each in self.focused if artifact in (each.name, each.path)]
@@ -243,25 +240,26 @@ class Session(Perceiving):
         timeout: float | None = None,
         urgency: int = 0,
     ) -> Any:
-        """Do an operation, and wait for its end.
+        """Run an operation, and wait for its end.
 
-        When the task that waits is cancelled, so is the operation.
+        Cancelling the waiting task cancels the operation.
 
         Args:
             operation: name of the operation.
-            arguments: values, and `Out` objects where results are wanted.
-            artifact: which one is to do it.  Without it, the joined workspaces are gone through (the current
-                one, home, the others); where several artifacts offer the operation, one made by this session
-                comes before one that it focuses, and that before others.
+            arguments: values, and `Out` objects for results.
+            artifact: the artifact. Default: searched in the joined workspaces (the current one, home, the others). Of
+                several artifacts that offer the operation, one that this session created is preferred, then one that it
+                focuses.
             workspace: path or name of the workspace of the artifact.
-            timeout: seconds that it may take; then it fails with ``operation_timeout(Operation,Milliseconds)``.
-            urgency: decides who gets the resources that it uses, such as the wheels of a robot; the greater one first.
+            timeout: time limit in seconds. Afterwards the operation fails with
+                ``operation_timeout(Operation,Milliseconds)``.
+            urgency: decides who gets the resources that it uses, such as the wheels of a robot. The greater one wins.
 
         Returns:
-            The values of the `Out` arguments: None without any, the value of the one, a tuple of several.
+            The values of the `Out` arguments: None without any, the value of a single one, a tuple of several.
 
         Raises:
-            OperationFailed: with the message and the reason.
+            OperationFailed: with message and reason.
         """
         return await self.begin(
             operation, *arguments, artifact=artifact, workspace=workspace, timeout=timeout, urgency=urgency
@@ -276,15 +274,15 @@ class Session(Perceiving):
         timeout: float | None = None,
         urgency: int = 0,
     ) -> SessionOperation:
-        """Begin an operation; the arguments are those of `act`.
+        """Begin an operation. The arguments are those of `act`.
 
         Returns:
-            Its handle.  An operation that cannot begin, such as one that nobody offers, has failed already.
+            Its handle. An operation that cannot begin, for example because no artifact offers it, has failed already.
         """
         self._check()
         if any(each is Out for each in arguments):
             raise WorkspaceError(
-                f"an argument of {operation} is the class Out: write Out() where a result is wanted"
+                f"expected an Out object as argument of {operation}, found the class Out; write Out()"
             )
         given = tuple(map(plain, arguments))
         handle = SessionOperation(operation, given, self._complain)
@@ -304,7 +302,7 @@ class Session(Perceiving):
         return handle
 
     def cancel_operations(self) -> None:
-        """Cancel all operations under way."""
+        """Cancel all running operations."""
         for handle in tuple(self._under_way):
             handle.cancel()
 
@@ -337,7 +335,7 @@ class Session(Perceiving):
         self, operation: str, arity: int, artifact: ArtifactId | str | None, workspace: str | None
     ) -> ArtifactId:
         if artifact is None and workspace is None:
-            # Nearly always it is the only one of the current workspace.
+            # The common case: the only one in the current workspace.
             candidates = self._workspaces.current.providers(operation, arity)
             if len(candidates) == 1:
                 return candidates[0]
@@ -360,7 +358,7 @@ class Session(Perceiving):
     # ---- the end
 
     def close(self) -> None:
-        """Cancel the operations under way, stop to focus, and end the streams of signals; once is enough."""
+        """Cancel the running operations, stop focusing, and end the streams of signals. Closing again has no effect."""
         if self._closed:
             return
         self._closed = True
@@ -382,7 +380,7 @@ class Session(Perceiving):
 
 
 def _offer(places: Sequence[Workspace], operation: str) -> str:
-    """What there is of that name, with another number of arguments; or of a name that may have been meant."""
+    """Return the operations of this name with other arities, or a suggestion of a similar name."""
     names: set[str] = set()
     for place in places:
         for artifact in place.artifacts():
@@ -391,4 +389,4 @@ def _offer(places: Sequence[Workspace], operation: str) -> str:
             same = [key for key in offers if key.rpartition("/")[0] == operation]
             if same:
                 return f"; {artifact.name} has {', '.join(same)}"
-    return spelling_hint(operation, sorted(names))
+    return suggestion(operation, sorted(names))

@@ -1,4 +1,4 @@
-"""Signals as a stream that can be read with ``async for``."""
+"""Signals as a stream for ``async for``."""
 
 import asyncio
 from collections import deque
@@ -13,9 +13,9 @@ class ReceivedSignal(NamedTuple):
     """A signal that an observer received.
 
     Attributes:
-        name: of the signal.
+        name: name of the signal.
         arguments: plain values.
-        artifact: where it comes from.
+        artifact: the source.
     """
 
     name: str
@@ -24,14 +24,14 @@ class ReceivedSignal(NamedTuple):
 
 
 class SignalStream:
-    """The signals of focused artifacts from now on, in their order; none is lost while nobody reads.
+    """The signals of focused artifacts from now on, in order. Signals are kept until they are read.
 
-    It ends (``async for`` is over) when it or its session is closed, after the signals that came before.
+    The stream ends when it or its session is closed, after the signals that arrived before.
 
     Args:
-        name: only signals of this name, None for all.
-        artifact: only those of this artifact, None for all.
-        waiting: surrounds each wait.
+        name: only signals of this name. None for all.
+        artifact: only signals of this artifact. None for all.
+        waiting: context of each wait.
     """
 
     def __init__(
@@ -46,7 +46,7 @@ class SignalStream:
         self._closed = False
 
     def put(self, signal: ReceivedSignal) -> None:
-        """Take a signal in, if it is of those that are wanted."""
+        """Add a signal, if it matches."""
         if self._closed or self._name not in (None, signal.name):
             return
         if self._artifact is not None and signal.artifact is not self._artifact:
@@ -55,7 +55,7 @@ class SignalStream:
         self._news.set()
 
     def close(self) -> None:
-        """Take nothing in any more."""
+        """End the stream."""
         self._closed = True
         self._news.set()
 

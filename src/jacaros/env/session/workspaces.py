@@ -1,4 +1,4 @@
-"""The workspaces that a session has joined, and those in which it looks for things."""
+"""The workspaces that a session has joined, and the order of lookup."""
 
 from jacaros.env.environment import Environment
 from jacaros.env.errors import OperationFailed
@@ -9,14 +9,14 @@ from jacaros.env.values import Structure
 
 
 class SessionWorkspaces:
-    """The joined workspaces; the one joined last is the current one.
+    """The joined workspaces. The one joined last is the current one.
 
     Args:
-        environment: holds the workspaces.
+        environment: contains the workspaces.
         home: full path of the first one.
 
     Raises:
-        UnknownWorkspace: there is none at *home*.
+        UnknownWorkspace: the workspace *home* does not exist.
     """
 
     def __init__(self, environment: Environment, home: str) -> None:
@@ -26,23 +26,23 @@ class SessionWorkspaces:
 
     @property
     def joined(self) -> tuple[str, ...]:
-        """Full paths, in the order of joining; the current one comes last."""
+        """Full paths, in the order of joining. The current one comes last."""
         return tuple(self._joined)
 
     @property
     def current(self) -> Workspace:
-        """The one joined last; home when none is left."""
+        """The one joined last, or home if none is left."""
         return next(reversed(self._joined.values()), self._home)
 
     def in_order(self) -> tuple[Workspace, ...]:
-        """Where things are looked for: the current one, home, then the others in the order of joining."""
+        """Return the workspaces in the order of lookup: the current one, home, then the others in the order of joining."""
         return tuple(in_order(self._joined, self.current, self._home))
 
     def join(self, path: str) -> Workspace:
-        """Make the workspace at *path*, which starts from the current one, the current one.
+        """Make the workspace at *path*, relative to the current one, the current one.
 
         Raises:
-            UnknownWorkspace: there is none.
+            UnknownWorkspace: the workspace does not exist.
         """
         workspace = self._environment.workspace(resolve_path(self.current.path, path))
         self._joined.pop(workspace.path, None)
@@ -53,17 +53,17 @@ class SessionWorkspaces:
         """Leave a joined workspace.
 
         Raises:
-            OperationFailed: it was not joined.
+            OperationFailed: it is not joined.
         """
         workspace = self.named(name)
         del self._joined[workspace.path]
         return workspace
 
     def named(self, name: str) -> Workspace:
-        """The joined workspace with that path or plain name.
+        """Return the joined workspace with this path or name.
 
         Raises:
-            OperationFailed: it was not joined.
+            OperationFailed: it is not joined.
         """
         found = joined_workspace(self._environment, self._joined, self.current, self._home, name)
         if found is None:
@@ -71,10 +71,10 @@ class SessionWorkspaces:
         return found
 
     def of(self, artifact: ArtifactId) -> Workspace:
-        """The joined workspace of an artifact.
+        """Return the joined workspace of an artifact.
 
         Raises:
-            OperationFailed: it was not joined.
+            OperationFailed: it is not joined.
         """
         workspace = self._joined.get(artifact.workspace)
         if workspace is None:
@@ -82,10 +82,10 @@ class SessionWorkspaces:
         return workspace
 
     def place(self, path: str) -> tuple[Workspace, str]:
-        """The workspace and the plain name meant by the name or path of an artifact.
+        """Return the workspace and the plain name that the name or path of an artifact means.
 
         Raises:
-            UnknownWorkspace: there is no workspace of that path.
+            UnknownWorkspace: the workspace does not exist.
         """
         if "/" not in path:
             return self.current, path

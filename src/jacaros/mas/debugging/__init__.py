@@ -1,4 +1,4 @@
-"""Stop a running system to look at it: pause, step, speed, breakpoints, and reload of changed programs."""
+"""Debug a running system: pause, step, speed, breakpoints, and reload of changed programs."""
 
 from jacaros.mas.debugging.breakpoints import Breakpoint
 from jacaros.mas.debugging.debugger import Debugger, DebugState, Step

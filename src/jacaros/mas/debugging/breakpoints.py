@@ -1,4 +1,4 @@
-"""Breakpoints: where a debugger stops a run, before an event is handled or before a step is made."""
+"""Breakpoints: where a debugger stops a run, before an event is handled or a step is run."""
 
 from collections.abc import Mapping
 from typing import Any, Protocol
@@ -21,24 +21,24 @@ from jacaros.terms.values import annotations_of, functor_of
 
 
 class Breakpoint(Protocol):
-    """Where a run stops."""
+    """A condition for stopping a run."""
 
     @property
     def text(self) -> str:
-        """What it is, such as ``patrol.asl:14``; no two breakpoints of a debugger have the same text."""
+        """Its text, such as ``patrol.asl:14``, unique among the breakpoints of a debugger."""
 
     def data(self) -> dict[str, Any]:
-        """Plain data that describes it, as `breakpoint_at` takes it."""
+        """Return plain data that describes it, for `breakpoint_at`."""
 
     def meets_event(self, agent: Circumstance, event: Event) -> bool:
-        """Whether the run stops before *agent* selects a plan for *event*."""
+        """Return whether the run stops before *agent* selects a plan for *event*."""
 
     def meets_step(self, agent: Circumstance, intention: Intention) -> bool:
-        """Whether the run stops before *agent* makes the next step of *intention*."""
+        """Return whether the run stops before *agent* runs the next step of *intention*."""
 
 
 class LineBreakpoint:
-    """Stops before the first step on a line of a program, or on the line where a plan begins before its first step.
+    """Stops before the first step on a line of a program. On the line where a plan begins, it stops before its first step.
 
     Args:
         file: name of the file as in diagnostics, or the end of it, such as ``patrol.asl``.
@@ -50,16 +50,16 @@ class LineBreakpoint:
         self.text = f"{file}:{line}"
 
     def data(self) -> dict[str, Any]:
-        """Plain data that describes it."""
+        """Return plain data that describes it."""
         return {"line": {"file": self.file, "line": self.line}}
 
     def meets_event(self, agent: Circumstance, event: Event) -> bool:
-        """False: lines have steps."""
+        """Return False: only steps are on lines."""
         del agent, event
         return False
 
     def meets_step(self, agent: Circumstance, intention: Intention) -> bool:
-        """Whether the step is the first one on the line, of those of its plan."""
+        """Return whether it is the first step of its plan on the line."""
         del agent
         frame: Frame = intention.frames[-1]
         plan: Plan = frame[PLAN]
@@ -68,7 +68,7 @@ class LineBreakpoint:
         )
 
     def is_in(self, file: str) -> bool:
-        """Whether a file is meant."""
+        """Return whether it is in this file."""
         return file == self.file or file.endswith(f"/{self.file}")
 
 
@@ -76,8 +76,8 @@ class PlanBreakpoint:
     """Stops before the first step of a plan.
 
     Args:
-        label: of the plan; plans without one are called ``p__N``.
-        agent: name of the agent; None for all.
+        label: label of the plan. Plans without one are called ``p__N``.
+        agent: name of the agent. None for all.
     """
 
     def __init__(self, label: str, agent: str | None = None) -> None:
@@ -85,16 +85,16 @@ class PlanBreakpoint:
         self.text = f"@{self.label}" + (f" of {agent}" if agent is not None else "")
 
     def data(self) -> dict[str, Any]:
-        """Plain data that describes it."""
+        """Return plain data that describes it."""
         return {"plan": {"plan": self.label, "agent": self.agent}}
 
     def meets_event(self, agent: Circumstance, event: Event) -> bool:
-        """False: it is not known yet which plan is taken."""
+        """Return False: the plan has not been selected yet."""
         del agent, event
         return False
 
     def meets_step(self, agent: Circumstance, intention: Intention) -> bool:
-        """Whether it is the first step of the plan."""
+        """Return whether it is the first step of the plan."""
         frame: Frame = intention.frames[-1]
         return (
             self.agent in (None, agent.name)
@@ -108,7 +108,7 @@ class EventBreakpoint:
 
     Args:
         pattern: a trigger, such as ``+low``, ``+!go(_)`` or ``-battery(0)[source(percept)]``.
-        agent: name of the agent; None for all.
+        agent: name of the agent. None for all.
 
     Raises:
         AslError: the pattern is not a trigger.
@@ -123,23 +123,25 @@ class EventBreakpoint:
         self._pattern = lower_value(node.literal, names.__getitem__)
         self._functor = functor_of(self._pattern)
         if self._functor is None:
-            raise UsageError(f"the event {pattern} is a variable; name what happens, such as +!go(_)")
+            raise UsageError(
+                f"expected an event, found the variable `{pattern}`; write an event such as `+!go(_)`"
+            )
         self.agent = agent
         self.text = pattern + (f" of {agent}" if agent is not None else "")
 
     def data(self) -> dict[str, Any]:
-        """Plain data that describes it."""
+        """Return plain data that describes it."""
         return {"event": self.pattern, "agent": self.agent}
 
     def meets_event(self, agent: Circumstance, event: Event) -> bool:
-        """Whether the event unifies with the pattern; those without a plan are noted when they come about."""
+        """Return whether the event unifies with the pattern. Events without a plan are noted when they occur."""
         goal = event[EVENT_GOAL]
         return (goal[0].kind != "" or agent.may_handle(goal[0])) and self.fits(
             agent, goal, event[EVENT_ANNOTATIONS]
         )
 
     def fits(self, agent: Circumstance, goal: Goal, annotations: EventAnnotations) -> bool:
-        """Whether a goal, belief change or signal of an agent unifies with the pattern."""
+        """Return whether a goal, belief change or signal of an agent unifies with the pattern."""
         kind = goal[0]
         if kind.operator != self._operator or kind.kind != self._kind or kind.functor is not self._functor:
             return False
@@ -153,13 +155,13 @@ class EventBreakpoint:
             undo(trail, 0)
 
     def meets_step(self, agent: Circumstance, intention: Intention) -> bool:
-        """False: the event has been handled."""
+        """Return False: the event has been handled."""
         del agent, intention
         return False
 
 
 class ConditionBreakpoint:
-    """Stops when a condition of an agent becomes true; it is tested before each of the agent's events and steps.
+    """Stops when a condition of an agent becomes true. It is evaluated before each of the agent's events and steps.
 
     Args:
         condition: such as ``battery(B) & B < 20``.
@@ -177,46 +179,46 @@ class ConditionBreakpoint:
         self._held: bool | None = None
 
     def data(self) -> dict[str, Any]:
-        """Plain data that describes it."""
+        """Return plain data that describes it."""
         return {"condition": self.condition, "agent": self.agent}
 
     def becomes_true(self, agent: Circumstance) -> bool:
-        """Whether the condition holds, and did not at the last test; at the first test, false."""
+        """Return whether the condition holds, and did not at the last evaluation. At the first one, return False."""
         if agent.name != self.agent:
             return False
         before, self._held = self._held, self._condition.holds(agent)
         return self._held and before is False
 
     def meets_event(self, agent: Circumstance, event: Event) -> bool:
-        """Whether the condition has become true."""
+        """Return whether the condition has become true."""
         del event
         return self.becomes_true(agent)
 
     def meets_step(self, agent: Circumstance, intention: Intention) -> bool:
-        """Whether the condition has become true."""
+        """Return whether the condition has become true."""
         del intention
         return self.becomes_true(agent)
 
 
 def is_at_first_step(frame: Frame) -> bool:
-    """Whether nothing of the plan of a frame has been done."""
+    """Return whether no step of the plan of a frame has run."""
     return frame[STEP] is frame[PLAN].first
 
 
 def step_line(info: StepInfo | None) -> int:
-    """The line of a step; 0 when it is not known."""
+    """Return the line of a step; 0 if it is unknown."""
     return info.node.span.line if info is not None and info.node.span is not None else 0
 
 
 def first_line(frame: Frame) -> int:
-    """The line of the next step when it is the first one on that line of its plan, else 0: a line stops a run once."""
+    """Return the line of the next step if it is the first one of its plan on that line, else 0: a line stops a run once."""
     step: Any = frame[STEP]
     info: StepInfo | None = getattr(step, "info", None)
     line = step_line(info)
     if not line:
         return 0
     steps: dict[str, StepInfo] = getattr(step, "steps", frame[PLAN].steps)
-    # A loop has one step for its beginning and one for its rounds; both have its place.
+    # A loop has one step for its beginning and one for its rounds, at the same location.
     first = min((each for each in steps.values() if step_line(each) == line), key=_column)
     return line if first is info else 0
 
@@ -226,7 +228,7 @@ def _column(info: StepInfo) -> int:
 
 
 def head_lines(plan: Plan) -> range:
-    """The lines from the beginning of a plan to the line before its first step; the whole plan without steps."""
+    """Return the lines from the beginning of a plan to the line before its first step; the whole plan without steps."""
     span, body = plan.node.span, plan.node.body
     if span is None:
         return range(0)
@@ -236,7 +238,7 @@ def head_lines(plan: Plan) -> range:
 
 
 def lines_that_stop(plan: Plan) -> set[int]:
-    """The lines of a plan, and of the plans inside it, where a `LineBreakpoint` can stop a run."""
+    """Return the lines of a plan, and of nested plans, where a `LineBreakpoint` can stop a run."""
     found = set(head_lines(plan))
     for body in nodes_in(nodes.Body, plan.node.body):
         found.update(step.span.line for step in body.steps if step.span is not None)
@@ -246,16 +248,16 @@ def lines_that_stop(plan: Plan) -> set[int]:
 
 
 def breakpoint_at(at: Mapping[str, Any]) -> Breakpoint:
-    """The breakpoint that data describes.
+    """Return the breakpoint for data.
 
     Args:
         at: ``{"line": {"file": F, "line": N}}``, ``{"plan": {"plan": LABEL, "agent": A}}``,
-            ``{"event": TRIGGER, "agent": A}`` or ``{"condition": CONDITION, "agent": A}``; the agent of plans and events
-            may be left out.
+            ``{"event": TRIGGER, "agent": A}`` or ``{"condition": CONDITION, "agent": A}``. The agent of plans and events is
+            optional.
 
     Raises:
-        AslError: a trigger or condition is wrong.
-        UsageError: the data describes no breakpoint.
+        AslError: a trigger or condition has errors.
+        UsageError: the data does not describe a breakpoint.
     """
     agent = at.get("agent")
     try:
@@ -268,7 +270,7 @@ def breakpoint_at(at: Mapping[str, Any]) -> Breakpoint:
             return EventBreakpoint(str(at["event"]), agent)
         if "condition" in at:
             if agent is None:
-                raise UsageError("a condition needs the name of an agent")
+                raise UsageError("expected the name of an agent for a condition")
             return ConditionBreakpoint(str(at["condition"]), str(agent))
     except (KeyError, TypeError, ValueError, AttributeError) as wrong:
         raise UsageError(f"invalid breakpoint: {dict(at)!r}") from wrong

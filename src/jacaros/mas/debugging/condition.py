@@ -1,4 +1,4 @@
-"""A condition about an agent that is tested without effects, and without a search that never ends."""
+"""Conditions on an agent, evaluated without effects and with limited search."""
 
 from jacaros.asl import nodes
 from jacaros.asl.loader import parse_formula
@@ -25,8 +25,8 @@ class Condition:
         for call in nodes_in(nodes.InternalAction, self._formula):
             action = STANDARD.get(call.name)
             if action is not None and not action.repeatable:
-                raise UsageError(f"the condition {written} calls {call.name}, which may have effects")
+                raise UsageError(f"condition `{written}` calls `{call.name}`, which may have effects")
 
     def holds(self, agent: Circumstance) -> bool:
-        """Whether the formula holds now; False when it cannot be evaluated, or when the search takes too long."""
+        """Return whether the formula holds now; False if it cannot be evaluated, or the search takes too long."""
         return holds(agent, self._formula)

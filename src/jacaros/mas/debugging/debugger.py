@@ -1,4 +1,4 @@
-"""The debugger of a running system: it stops agents, timers and the embedded world together."""
+"""The debugger of a running system. It stops agents, timers and the embedded world together."""
 
 import asyncio
 from collections.abc import Callable, Mapping
@@ -14,6 +14,7 @@ from jacaros.bdi.state.triggers import Goal
 from jacaros.clock import Clock, WallClock, outside_run
 from jacaros.errors import UsageError
 from jacaros.mas.agent_host import AgentHost
+from jacaros.mas.agent_lifecycle import AgentLifecycle
 from jacaros.mas.debugging.breakpoints import (
     Breakpoint,
     ConditionBreakpoint,
@@ -27,29 +28,28 @@ from jacaros.mas.debugging.reload import reload_programs
 from jacaros.mas.debugging.unpaused import command_standstill, not_paused
 from jacaros.mas.directory import Directory
 from jacaros.mas.options import RunOptions
-from jacaros.mas.population import Population
 from jacaros.mas.ros_graph import RosGraph
 from jacaros.mas.scheduler import Runnable, Scheduler
 
 Step = Literal["cycle", "step", "event"]
-"""What a run is stepped by: a reasoning cycle, a plan step, or until the next event is handled."""
+"""The unit of stepping: a reasoning cycle, a plan step, or until the next event is handled."""
 
 STEPS = get_args(Step)
 
 
 @dataclass(frozen=True)
 class DebugState:
-    """What a debugger reports: the data of a ``debug`` record, see ``docs/reference/recordings.md``.
+    """The state of a debugger: the data of a ``debug`` record, see ``docs/reference/recordings.md``.
 
     Attributes:
         state: ``paused`` or ``running``.
-        why: why the run was paused, such as ``pause``, ``step`` or ``breakpoint patrol.asl:14``; empty while it runs.
-        speed: seconds of the run's clock in a second of real time; 0.0 for the virtual clock.
+        why: why the run was paused, such as ``pause``, ``step`` or ``breakpoint patrol.asl:14``. Empty while it runs.
+        speed: seconds of the run's clock per second of real time; 0.0 for the virtual clock.
         cannot: what a pause does not stop, in words.
-        agent: the agent that is held before an event or a step; empty when none is.
-        file, line: of the step before which it is held; empty and 0 when it is not a step.
-        intention: the number of its intention; 0 without one.
-        breakpoints: those that are set, as data that `Debugger.add_breakpoint` takes.
+        agent: the agent that is held before an event or a step. Empty without one.
+        file, line: location of the step before which it is held. Empty and 0 for an event.
+        intention: number of its intention; 0 without one.
+        breakpoints: the breakpoints, as data for `Debugger.add_breakpoint`.
     """
 
     state: Literal["paused", "running"]
@@ -63,7 +63,7 @@ class DebugState:
     breakpoints: tuple[Mapping[str, Any], ...] = ()
 
     def data(self) -> dict[str, Any]:
-        """Plain data for JSON."""
+        """Return plain data for JSON."""
         return {**asdict(self), "cannot": list(self.cannot), "breakpoints": list(self.breakpoints)}
 
 
@@ -71,21 +71,21 @@ Listener = Callable[[DebugState], None]
 
 
 class DebuggedSystem(Protocol):
-    """A running system as its debugger sees it (`jacaros.mas.system.System`)."""
+    """A running system, as its debugger sees it (`jacaros.mas.system.System`)."""
 
     clock: Clock
     options: RunOptions
     scheduler: Scheduler
     directory: Directory[AgentHost]
-    population: Population
+    lifecycle: AgentLifecycle
     ros: RosGraph
 
 
 class Debugger:
     """Pauses, steps and continues a run, and changes its speed and programs.
 
-    All methods are for the thread of the run's loop.  Several systems on one loop with the virtual clock share this clock:
-    a pause stops the time of all of them.
+    All methods must be called in the thread of the run's event loop. Several systems on one loop with the virtual clock
+    share this clock: a pause stops the time of all of them.
 
     Args:
         system: the system.
@@ -104,7 +104,7 @@ class Debugger:
         self._watches = False
         self._over = False
 
-    # ---- what is shown
+    # ---- state
 
     @property
     def paused(self) -> bool:
@@ -113,11 +113,11 @@ class Debugger:
 
     @property
     def state(self) -> DebugState:
-        """The newest state, as listeners got it."""
+        """The current state, as listeners received it."""
         return self._state
 
     def listen(self, listener: Listener) -> Callable[[], None]:
-        """Call *listener* with every new state; gives what ends that."""
+        """Call *listener* with every new state. Return a function that ends this."""
         self._listeners = (*self._listeners, listener)
 
         def end() -> None:
@@ -126,10 +126,10 @@ class Debugger:
         return end
 
     async def wait_until_paused(self, timeout: float | None = None) -> DebugState:
-        """Wait until the run is paused, by a breakpoint or otherwise; the state.
+        """Wait until the run is paused, by a breakpoint or otherwise. Return the state.
 
         Args:
-            timeout: seconds of real time; None to wait as long as it takes.  Not for the virtual clock.
+            timeout: time limit in seconds of real time. None: no limit. Not for the virtual clock.
 
         Raises:
             TimeoutError: it was not paused in time.
@@ -146,16 +146,16 @@ class Debugger:
     # ---- pause and continue
 
     def pause(self, why: str = "pause") -> None:
-        """Pause agents, timers and the embedded world; on a real graph, command zero velocity first.
+        """Pause agents, timers and the embedded world. On a real graph, command zero velocity first.
 
-        An agent in the middle of its turn is held before its next step.  No effect on a run that is paused or has ended.
+        An agent in the middle of its turn is held before its next step. No effect on a run that is paused or has ended.
         """
         if not self.paused and not self._over:
             self._hook()
             self._stop(DebugState("paused", why))
 
     def resume(self) -> None:
-        """Continue where the run was paused; no effect on a running one."""
+        """Continue where the run was paused. No effect on a running one."""
         if not self.paused:
             return
         self._change(DebugState("running"))
@@ -165,11 +165,11 @@ class Debugger:
     def step(self, what: Step = "step", agent: str | None = None) -> None:
         """Continue until the next reasoning cycle, plan step or event, and pause before it.
 
-        Time moves meanwhile, and other agents have their turns.
+        Meanwhile time advances, and other agents have their turns.
 
         Args:
             what: ``cycle``, ``step`` or ``event``.
-            agent: name of the agent to step; None for the one that is next.
+            agent: name of the agent to step. None for the one that is next.
 
         Raises:
             UsageError: *what* or *agent* is unknown.
@@ -177,7 +177,7 @@ class Debugger:
         if what not in STEPS:
             raise UsageError(f"unknown step `{what}`; expected {', '.join(STEPS)}")
         if agent is not None and self._system.directory.find(agent) is None:
-            raise UsageError(f"unknown agent: {agent}")
+            raise UsageError(f"unknown agent `{agent}`")
         self._hook()
         self._stepping = (what, agent)
         self._stepped_from = {
@@ -186,7 +186,7 @@ class Debugger:
         self.resume()
 
     def run_ended(self) -> None:
-        """Let the run end: what a pause holds would never end.  From now on, nothing pauses it."""
+        """Let the run end, because what a pause holds would never end. From now on, nothing pauses it."""
         self._over = True
         self._stepping = None
         self._breakpoints.clear()
@@ -196,14 +196,14 @@ class Debugger:
 
     @property
     def speed(self) -> float:
-        """Seconds of the run's clock in a second of real time; 0.0 for the virtual clock, which has no speed."""
+        """Seconds of the run's clock per second of real time; 0.0 for the virtual clock."""
         clock = self._system.clock
         return clock.speed if isinstance(clock, WallClock) else 0.0 if clock.virtual else 1.0
 
     @speed.setter
     def speed(self, factor: float) -> None:
         if not self.has_speed:
-            raise UsageError("only a run with --clock real and --ros memory has a speed")
+            raise UsageError("the speed can be set only with --clock real and --ros memory")
         if not 0.0 < factor < float("inf"):
             raise UsageError(f"expected a speed greater than 0, found {factor}")
         assert isinstance(self._system.clock, WallClock)
@@ -223,14 +223,14 @@ class Debugger:
         return list(self._breakpoints.values())
 
     def add_breakpoint(self, at: Breakpoint | Mapping[str, Any]) -> Breakpoint:
-        """Set a breakpoint, also for agents that come later.
+        """Set a breakpoint, also for future agents.
 
         Args:
             at: the breakpoint, or data that describes it (`jacaros.mas.debugging.breakpoints.breakpoint_at`).
 
         Raises:
-            AslError: a trigger or condition is wrong.
-            UsageError: the data describes no breakpoint, or a line without a step.
+            AslError: a trigger or condition has errors.
+            UsageError: the data does not describe a breakpoint, or the line has no step.
         """
         made = breakpoint_at(at) if isinstance(at, Mapping) else at
         if isinstance(made, LineBreakpoint):
@@ -245,7 +245,7 @@ class Debugger:
         return known
 
     def _refuse_useless(self, made: LineBreakpoint) -> None:
-        """Refuse a line where no plan has a step; a file that no agent runs may come later."""
+        """Reject a line without a step. A file that no agent runs may be used later."""
         plans = [plan for _, mind in self._minds() for plan in mind.library.plans if made.is_in(plan.file)]
         lines = {line for plan in plans for line in lines_that_stop(plan)}
         if lines and made.line not in lines:
@@ -254,11 +254,11 @@ class Debugger:
             raise UsageError(text if after is None else f"{text}; the next one is on line {after}")
 
     def remove_breakpoint(self, at: Breakpoint | Mapping[str, Any]) -> bool:
-        """Remove a breakpoint; False when it was not set.
+        """Remove a breakpoint. Return False if it was not set.
 
         Raises:
-            AslError: a trigger or condition is wrong.
-            UsageError: the data describes no breakpoint.
+            AslError: a trigger or condition has errors.
+            UsageError: the data does not describe a breakpoint.
         """
         made = breakpoint_at(at) if isinstance(at, Mapping) else at
         if self._breakpoints.pop(made.text, None) is None:
@@ -269,25 +269,25 @@ class Debugger:
     # ---- programs
 
     def reload(self) -> list[str]:
-        """Read the changed programs (``.asl``) again, and replace their plans and rules in the agents that run them.
+        """Read changed programs (``.asl``) again, and replace their plans and rules in the agents that run them.
 
-        Beliefs and intentions are kept.  An intention keeps its old plan until this plan ends.  Agents do not adopt new
+        Beliefs and intentions are kept. An intention keeps its old plan until this plan ends. Agents do not adopt new
         initial beliefs and goals.
 
         Returns:
-            what was replaced, and what could not be, one line each.
+            What was replaced, and what could not be, one line each.
 
         Raises:
-            AslError: a program is wrong; nothing has been replaced.
+            AslError: a program has errors; nothing has been replaced.
         """
-        lines = reload_programs(self._system.directory, self._system.population)
+        lines = reload_programs(self._system.directory, self._system.lifecycle)
         self._change(self._state)
         return lines
 
-    # ---- asked by minds, see `jacaros.bdi.state.circumstance.StepObserver`
+    # ---- called by minds, see `jacaros.bdi.state.circumstance.StepObserver`
 
     def holds_event(self, agent: Circumstance, event: Event) -> bool:
-        """Whether *agent* is held before it selects a plan for *event*."""
+        """Return whether *agent* is held before it selects a plan for *event*."""
         if self.paused:
             return True
         why = self._met(agent, lambda each: each.meets_event(agent, event)) or self._why_before(
@@ -296,11 +296,11 @@ class Debugger:
         return self._hold(agent, why, None)
 
     def holds_step(self, agent: Circumstance, intention: Intention) -> bool:
-        """Whether *agent* is held before it makes the next step of *intention*."""
+        """Return whether *agent* is held before it runs the next step of *intention*."""
         if self.paused:
             return True
         if not (self._breakpoints or self._stepping):
-            observe_steps(agent, None)  # from now on, the agent costs no more than without a debugger
+            observe_steps(agent, None)  # from now on, the agent is as fast as without a debugger
             return False
         why = self._met(agent, lambda each: each.meets_step(agent, intention))
         if not why and intention.frames[-1][STEP] is not None:
@@ -314,13 +314,13 @@ class Debugger:
                 self._noted.setdefault(agent.name, {})[each.text] = None
 
     def _met(self, agent: Circumstance, test: Callable[[Breakpoint], bool]) -> str:
-        # All are asked: conditions note at each test whether they hold.
+        # Evaluate all: conditions remember at each evaluation whether they hold.
         met = list(self._noted.pop(agent.name, ()))
         met += [each.text for each in self._breakpoints.values() if test(each)]
         return f"breakpoint {', '.join(met)}" if met else ""
 
     def _why_before(self, agent: Circumstance, what: Step) -> str:
-        """``step`` when the step that was asked for ends here."""
+        """Return ``step`` if the requested step ends here."""
         if self._stepping is None or self._stepping[1] not in (None, agent.name):
             return ""
         wanted = self._stepping[0]
@@ -363,7 +363,7 @@ class Debugger:
         return [(host, host.mind) for host in self._system.directory if isinstance(host.mind, Mind)]
 
     def _hook(self) -> None:
-        """Be asked by all agents, also by those that come later."""
+        """Observe all agents, including future ones."""
         self._system.scheduler.pauses = _Turns(self)
         for host, _ in self._minds():
             self._hook_agent(host)
@@ -384,7 +384,7 @@ class Debugger:
             observe_steps(mind, self)
 
     def turn_ended(self, agent: Circumstance) -> None:
-        """Test conditions also after a turn: a percept that no plan handles is followed by no step."""
+        """Evaluate conditions after a turn, too: a percept that no plan handles is followed by no step."""
         if self.paused:
             return
         why = self._met(
@@ -399,23 +399,23 @@ def _is_news(state: DebugState, found: "asyncio.Future[DebugState]") -> bool:
 
 
 class _Turns:
-    """What the scheduler asks about turns that the debugger may interrupt."""
+    """The scheduler's interface for turns that the debugger may interrupt."""
 
     def __init__(self, debugger: Debugger) -> None:
         self._debugger = debugger
 
     def cycles(self, agent: Runnable) -> int:
-        """The reasoning cycles that an agent has made."""
+        """Return the number of reasoning cycles of an agent so far."""
         mind = _mind_of(agent)
         return mind.counts.cycles if mind is not None else 0
 
     def is_held(self, agent: Runnable) -> bool:
-        """Whether an agent is held in the middle of a cycle."""
+        """Return whether an agent is held in the middle of a cycle."""
         mind = _mind_of(agent)
         return mind is not None and mind.held is not None
 
     def turn_ended(self, agent: Runnable) -> None:
-        """Have the debugger look at an agent after its turn."""
+        """Let the debugger check an agent after its turn."""
         mind = _mind_of(agent)
         if mind is not None:
             self._debugger.turn_ended(mind)

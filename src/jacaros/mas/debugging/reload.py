@@ -1,4 +1,4 @@
-"""Changed programs are read again, and replace those that agents run."""
+"""Reload changed programs, and replace those that agents run."""
 
 from collections.abc import Iterator
 
@@ -9,59 +9,59 @@ from jacaros.bdi.mind import Mind
 from jacaros.bdi.rules import deriving
 from jacaros.bdi.rules.reloading import outdated_plans, replace_plans, replace_rules
 from jacaros.mas.agent_host import AgentHost
+from jacaros.mas.agent_lifecycle import AgentLifecycle
 from jacaros.mas.directory import Directory
-from jacaros.mas.population import Population
 
 NOTHING = "no program has changed"
 
 
-def reload_programs(directory: Directory[AgentHost], population: Population) -> list[str]:
-    """Read the programs of all agents again, and replace plans and rules where a program has changed.
+def reload_programs(directory: Directory[AgentHost], lifecycle: AgentLifecycle) -> list[str]:
+    """Read the programs of all agents again, and replace plans and rules of changed programs.
 
     Returns:
-        what was replaced, and what could not be, one line each.
+        What was replaced, and what could not be, one line each.
 
     Raises:
-        AslError: a program is wrong; nothing has been replaced.
+        AslError: a program has errors; nothing has been replaced.
     """
     agents = [
         (host.mind, spec)
         for host in directory
         if isinstance(host.mind, Mind)
-        and (spec := population.spec(host.name)) is not None
+        and (spec := lifecycle.spec(host.name)) is not None
         and spec.source_path.suffix == ".asl"
         and not spec.is_python
     ]
-    programs = population.programs.read_again([spec for _, spec in agents])
+    programs = lifecycle.programs.read_again([spec for _, spec in agents])
     lines: list[str] = []
     for (mind, _), program in zip(agents, programs, strict=True):
         if _texts(program) != _texts(mind.program):
             lines += _report(mind, program)
-            _replace_soon(mind, program, population)
+            _replace_soon(mind, program, lifecycle)
     return lines or [NOTHING]
 
 
 def _texts(program: nodes.Program) -> set[tuple[str, str]]:
-    """Names and texts of the files of a program; what the project declares is not in a file."""
+    """Return names and texts of the files of a program. The project's declarations are not in a file."""
     clauses = (*program.plans, *program.beliefs, *program.goals, *program.derived, *program.histories)
     return {(clause.span.file.name, clause.span.file.text) for clause in clauses if clause.span is not None}
 
 
-def _replace_soon(mind: Mind, program: nodes.Program, population: Population) -> None:
-    """Replace the program, before the next step of an agent that has its turn now."""
+def _replace_soon(mind: Mind, program: nodes.Program, lifecycle: AgentLifecycle) -> None:
+    """Replace the program; before the next step of an agent that has its turn now."""
     if mind.running:
-        mind.do_soon(lambda _: _replace(mind, program, population))
+        mind.do_soon(lambda _: _replace(mind, program, lifecycle))
     else:
-        _replace(mind, program, population)
+        _replace(mind, program, lifecycle)
     mind.architecture.ready()
 
 
-def _replace(mind: Mind, program: nodes.Program, population: Population) -> None:
+def _replace(mind: Mind, program: nodes.Program, lifecycle: AgentLifecycle) -> None:
     mind.register_functions(program.functions)
     replace_rules(mind, mind.program.beliefs, program.beliefs)
     deriving.replace(mind, mind.program, program)
     mind.program = program
-    replace_plans(mind, population.plans_of(program))
+    replace_plans(mind, lifecycle.plans_of(program))
 
 
 def _report(mind: Mind, new: nodes.Program) -> list[str]:
@@ -69,7 +69,10 @@ def _report(mind: Mind, new: nodes.Program) -> list[str]:
     before, after = {shape(plan) for plan in old.plans}, {shape(plan) for plan in new.plans}
     gone = len(before - after)
     return [
-        f"{agent}: {gone} plan{'s' if gone != 1 else ''} gone, {len(after - before)} new, {len(before & after)} unchanged",
+        (
+            f"{agent}: {gone} plan{'s' if gone != 1 else ''} removed, {len(after - before)} new, "
+            f"{len(before & after)} unchanged"
+        ),
         *_declarations(agent, deriving.texts(old), deriving.texts(new)),
         *(
             f"{agent}: intention {number} continues with its old plan {_place(plan.node)}"
@@ -80,14 +83,14 @@ def _report(mind: Mind, new: nodes.Program) -> list[str]:
 
 
 def _declarations(agent: str, before: set[str], after: set[str]) -> Iterator[str]:
-    """What becomes of derived events and histories, if the program declares others than before."""
+    """Report changes of derived events and histories."""
     if before != after:
-        counts = f"{len(before - after)} gone, {len(after - before)} new, {len(before & after)} unchanged"
+        counts = f"{len(before - after)} removed, {len(after - before)} new, {len(before & after)} unchanged"
         yield f"{agent}: derived events and histories: {counts}"
 
 
 def _new_facts(old: nodes.Program, new: nodes.Program) -> Iterator[str]:
-    """The initial beliefs and goals that only the new program has; rules are replaced."""
+    """Return the initial beliefs and goals that only the new program has. Rules are replaced."""
     for what, before, after in (("belief", old.beliefs, new.beliefs), ("goal", old.goals, new.goals)):
         known = {shape(node) for node in before}
         for node in after:

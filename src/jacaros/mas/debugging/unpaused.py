@@ -12,7 +12,7 @@ from jacaros.ros.guarded import guarded_by
 def command_standstill(ros: RosGraph, options: RunOptions) -> None:
     """Command zero velocity to the robots that our artifacts drive on a real graph.
 
-    The embedded world is paused itself: its robots continue as if nothing had happened.
+    The embedded world is itself paused: its robots then continue as if nothing had happened.
     """
     if options.ros != "memory" and ros.joined is not None:
         guarded_by(ros.joined).stand_still()
@@ -21,7 +21,7 @@ def command_standstill(ros: RosGraph, options: RunOptions) -> None:
 def not_paused(
     directory: Directory[AgentHost], ros: RosGraph, options: RunOptions, clock: Clock
 ) -> tuple[str, ...]:
-    """What continues during a pause, one line each."""
+    """Return what continues during a pause, one line each."""
     lines = []
     if not clock.virtual:
         lines += [

@@ -1,10 +1,10 @@
-"""What Python code around a run is told.
+"""Errors for Python code around a run.
 
 JacarosError
-├── UnknownAgent        nobody of that name takes part
-├── AgentEnded          the agent has ended, so it cannot do what was asked
+├── UnknownAgent        no participant has this name
+├── AgentEnded          the agent has ended, so the call is not possible
 ├── RunEnded            the run has ended, or has not begun
-└── GoalFailed          a goal that was awaited failed, or was dropped
+└── GoalFailed          an awaited goal failed, or was dropped
 """
 
 from collections.abc import Iterable
@@ -13,16 +13,22 @@ from jacaros.errors import JacarosError
 
 
 class UnknownAgent(JacarosError):
-    """Nobody of that name takes part; the text has names that may have been meant."""
+    """No participant has this name. The text suggests similar names."""
 
     def __init__(self, name: str, known: Iterable[str]) -> None:
-        from difflib import get_close_matches  # here: only for a name that is not there
+        from difflib import get_close_matches  # here: only for an unknown name
 
         names = list(known)
         near = get_close_matches(name, names, n=3, cutoff=0.6)
         listed = ", ".join(names[:10]) + (", …" if len(names) > 10 else "")
-        help = f"did you mean {' or '.join(near)}?" if near else f"agents: {listed}" if names else ""
-        super().__init__(f"unknown agent {name}{'; ' * bool(help)}{help}")
+        help = (
+            f"did you mean {' or '.join(f'`{each}`' for each in near)}?"
+            if near
+            else f"agents: {listed}"
+            if names
+            else ""
+        )
+        super().__init__(f"unknown agent `{name}`{'; ' * bool(help)}{help}")
         self.name = name
 
 
@@ -35,11 +41,11 @@ class RunEnded(JacarosError):
 
 
 class GoalFailed(JacarosError):
-    """A goal that was awaited failed, and no plan took care of that; or it was dropped.
+    """An awaited goal failed without a plan for its failure, or was dropped.
 
     Attributes:
-        goal: as it was given.
-        message: what the failure says to people.
+        goal: the goal as it was given.
+        message: the message of the failure.
         reasons: its terms as plain values (see `jacaros.env.values`), such as ``error(no_relevant)``.
     """
 
@@ -48,7 +54,7 @@ class GoalFailed(JacarosError):
         self.goal, self.message, self.reasons = goal, message, reasons
 
     def reason(self, functor: str) -> object:
-        """The argument of the first reason with that functor (a tuple of several); None without one."""
+        """Return the argument of the first reason with this functor (a tuple of several), or None."""
         for term in self.reasons:
             if getattr(term, "functor", None) == functor:
                 arguments: tuple[object, ...] = term.arguments  # type: ignore[attr-defined]

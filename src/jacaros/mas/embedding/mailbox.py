@@ -1,4 +1,4 @@
-"""Mailboxes of Python code: participants that agents send messages to, and that send to agents."""
+"""Mailboxes of Python code: participants that exchange messages with agents."""
 
 import asyncio
 from collections.abc import Callable, Sequence
@@ -19,27 +19,27 @@ from jacaros.terms.unifier import Trail, undo, unify
 from jacaros.terms.values import Term, bare, is_list, list_items
 
 Send = Callable[[SpeechAct], bool]
-"""Delivers a message; False when there is no such receiver."""
+"""Delivers a message. Returns False if the receiver is unknown."""
 
 
 class Mailbox(Stream[Message]):
-    """A participant of the system that is neither agent nor artifact: it gets messages, and sends them.
+    """A participant that is neither an agent nor an artifact. It receives and sends messages.
 
-    ``async for message in mailbox`` goes through the messages as they come, `get` waits for one.  Answers to `ask` do not
-    come among them.
+    ``async for message in mailbox`` iterates over the messages as they arrive; `get` waits for one. Answers to `ask`
+    are not among them.
 
     Args:
-        name: under which agents know it.
+        name: its name for agents.
         send: delivers messages.
-        names: the names of all participants.
-        waits: of the run.
+        names: returns the names of all participants.
+        waits: waits of the run.
 
     Attributes:
-        name: under which agents know it.
+        name: its name for agents.
     """
 
     def __init__(self, name: str, send: Send, names: Callable[[], Sequence[str]], waits: Waits) -> None:
-        super().__init__(waits, f"no message came for {name}")
+        super().__init__(waits, f"no message for {name}")
         self.name = name
         self._send = send
         self._names = names
@@ -52,14 +52,14 @@ class Mailbox(Stream[Message]):
         """Send a message to an agent.
 
         Args:
-            receiver: its name.
+            receiver: name of the agent.
             performative: ``tell``, ``achieve``, ``askOne``, ``signal`` …
             content: a term in the syntax of the language, as text; or a plain value (see `jacaros.env.values`).
             reply_to: the message that this one answers.
 
         Raises:
-            UnknownAgent: nobody of that name takes part.
-            AslError: the text is no term.
+            UnknownAgent: no participant has this name.
+            AslError: the text is not a term.
         """
         self._say(receiver, performative, term_of(content), reply_to.id if reply_to is not None else None)
 
@@ -74,17 +74,17 @@ class Mailbox(Stream[Message]):
         """Ask an agent for one answer (``askOne``), and wait for it.
 
         Args:
-            receiver: its name.
-            literal: what is asked, such as ``battery(Level)``.
-            timeout: seconds of the run's clock.
+            receiver: name of the agent.
+            literal: the question, such as ``battery(Level)``.
+            timeout: time limit in seconds of the run's clock.
 
         Returns:
-            The values of the variables by name, as plain values; None when the agent does not know.
+            Plain values by variable name; None if the agent does not know.
 
         Raises:
-            UnknownAgent: nobody of that name takes part.
-            TimeoutError: no answer came in time.
-            RunEnded: the run ended before.
+            UnknownAgent: no participant has this name.
+            TimeoutError: no answer arrived in time.
+            RunEnded: the run ended first.
         """
         answers = await self._answers("askOne", receiver, literal, timeout)
         return answers[0] if answers else None
@@ -92,7 +92,7 @@ class Mailbox(Stream[Message]):
     async def ask_all(
         self, receiver: str, literal: str, timeout: float | None = None
     ) -> list[dict[str, Any]]:
-        """Ask an agent for all answers (``askAll``); as `ask`."""
+        """Ask an agent for all answers (``askAll``). See `ask`."""
         return await self._answers("askAll", receiver, literal, timeout)
 
     async def _answers(
@@ -117,7 +117,7 @@ class Mailbox(Stream[Message]):
         return [values for each in told if (values := _bindings(asked, names, each)) is not None]
 
     def receive(self, message: SpeechAct) -> None:
-        """Take a message in; for the run."""
+        """Receive a message. Called by the run."""
         waiting = self._asked.get(message.in_reply_to or "")
         if waiting is None:
             self.put(Message(message))
@@ -136,19 +136,19 @@ class PythonMailboxes:
         self.find: Callable[[str], Mailbox | None] = self._boxes.get
 
     def add(self, mailbox: Mailbox) -> None:
-        """Enter a mailbox."""
+        """Add a mailbox."""
         self._boxes[mailbox.name] = mailbox
 
     def names(self) -> Sequence[str]:
-        """Their names, in the order of their making."""
+        """Return their names, in the order of creation."""
         return tuple(self._boxes)
 
 
 def term_of(content: object) -> Term:
-    """The term that the content of a message is.
+    """Return the content of a message as a term.
 
     Raises:
-        AslError: a text that is no term.
+        AslError: the text is not a term.
     """
     if type(content) is str:
         return lower_value(parse_term(content))
@@ -156,7 +156,7 @@ def term_of(content: object) -> Term:
 
 
 def _bindings(asked: Term, names: Any, told: Term) -> dict[str, Any] | None:
-    """The values of the variables of a question in one answer; None when that is another literal."""
+    """Return the values of a question's variables in one answer; None if that is another literal."""
     trail = Trail()
     try:
         return values_of(names) if unify(bare(asked), bare(rename(told)), trail) else None
@@ -165,10 +165,10 @@ def _bindings(asked: Term, names: Any, told: Term) -> dict[str, Any] | None:
 
 
 def check_name(name: str) -> None:
-    """Refuse a name that agents could not write.
+    """Check the name of a participant.
 
     Raises:
         UsageError: it is empty.
     """
     if not name:
-        raise UsageError("a participant needs a name")
+        raise UsageError("the name of a participant must not be empty")

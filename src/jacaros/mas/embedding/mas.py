@@ -1,4 +1,4 @@
-"""Agents, artifacts and robots inside a Python program."""
+"""Agents, artifacts and robots in a Python program."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from jacaros.bdi.snapshot import restore
 from jacaros.errors import UsageError
+from jacaros.mas.agent_lifecycle import begin
 from jacaros.mas.deployment import AgentSpec, Deployment, FocusSpec
 from jacaros.mas.embedding.errors import UnknownAgent
 from jacaros.mas.embedding.run import EmbeddedRun
@@ -14,7 +15,6 @@ from jacaros.mas.embedding.running_agent import RunningAgent
 from jacaros.mas.embedding.stream import OnLog, OnPrint, PrintedLine, Stream
 from jacaros.mas.loading import load_deployment, mapped
 from jacaros.mas.options import RunOptions
-from jacaros.mas.population import begin
 
 if TYPE_CHECKING:
     from jacaros.env.artifact import Artifact
@@ -29,14 +29,14 @@ if TYPE_CHECKING:
     from jacaros.sim import World
 
 _PYTHON = "python"
-"""Who messages come from whose sender is not given."""
+"""Default sender of messages."""
 
 
 class Mas(EmbeddedRun):
     """A multi-agent system in a Python program.
 
-    It runs inside ``async with``, on the event loop that the program runs on: whenever the program awaits something, the
-    agents have their turns::
+    It runs inside ``async with``, on the event loop of the program. Whenever the program awaits something, the agents
+    have their turns::
 
         async def main() -> None:
             async with Mas(seed=1) as mas:
@@ -45,25 +45,25 @@ class Mas(EmbeddedRun):
 
         jacaros.run(main())
 
-    At the end of the block the run is ended, whatever has happened in it: operations are cancelled, robots stand still,
-    artifacts are disposed.  Everything is for the loop's own thread; another thread uses `asyncio.run_coroutine_threadsafe`
-    and ``loop.call_soon_threadsafe``.  Several systems can live on one loop; they share nothing but the clock.
+    The end of the block ends the run in any case: operations are cancelled, robots stop, and artifacts are disposed.
+    All methods must be called in the thread of the event loop. From another thread, use
+    `asyncio.run_coroutine_threadsafe` and ``loop.call_soon_threadsafe``. Several systems can share an event loop; they
+    share only the clock.
 
     Args:
-        project: a project file (``.mas2j``, ``.jcm``) or a program (``.asl``), or what one declares; an empty system
-            without.
-        options: how to run it; the clock is that of the event loop, or with ``ros_clock`` that of the ROS graph.
-        name: of an empty system.
-        folder: of an empty system: where programs, included files and Python modules are looked for; the current folder
-            unless given.
-        on_print: called with agent and text whenever an agent prints; the standard output gets ``[agent] text`` without.
-        on_log: called with a line for people and its level; the standard error output gets it without.
-        changes: single fields of `RunOptions` in place of those of *options*, such as ``seed=1, world="patrol"``.
+        project: a project file (``.mas2j``, ``.jcm``), a program (``.asl``), or a deployment. Default: an empty system.
+        options: run options. The clock is that of the event loop, or with ``ros_clock`` that of the ROS graph.
+        name: name of an empty system.
+        folder: folder of an empty system, in which programs, included files and Python modules are searched. Default: the
+            current folder.
+        on_print: called with agent and text whenever an agent prints. Default: print ``[agent] text`` to standard output.
+        on_log: called with text and level of each line of the log. Default: standard error.
+        changes: fields of `RunOptions` that override those of *options*, such as ``seed=1, world="patrol"``.
 
     Raises:
-        ProjectError: the project file or a mapping file is wrong.
+        ProjectError: the project file or a mapping file has errors.
         TypeError: `RunOptions` has no such field.
-        UsageError: options that cannot go together.
+        UsageError: options exclude each other.
     """
 
     def __init__(
@@ -100,28 +100,28 @@ class Mas(EmbeddedRun):
         belief_base: str | None = None,
         stored: Mapping[str, Any] | None = None,
     ) -> RunningAgent:
-        """Make an agent, and let it begin; it has its first turn when the caller awaits something.
+        """Create and start an agent. It has its first turn when the caller awaits something.
 
         Args:
-            name: of the agent; or all that is known of it, as project files declare it.
-            program: its program as text; or the path of a file (``.asl`` or ``.py``), the one called ``NAME.asl`` unless
-                given; or the class of an agent written in Python.
+            name: name of the agent; or its declaration, as in project files.
+            program: its program as text; the path of a file (``.asl`` or ``.py``); or the class of a Python agent.
+                Default: the file ``NAME.asl``.
             beliefs: further initial beliefs, as text, separated by commas.
-            goals: further initial goals, likewise.
+            goals: further initial goals, as text, separated by commas.
             join: workspaces that it joins, by path or name.
-            focus: artifacts that it focuses before its goals begin: names (looked for in all workspaces), paths or ids.
+            focus: artifacts that it focuses before its goals begin: names (searched in all workspaces), paths or ids.
             options: settings such as ``verbose`` and ``events``, as in project files.
             agent_class, architectures, belief_base: Python classes of the project, as in project files.
-            stored: what `RunningAgent.stored` returned for an agent with the same program, in this process or another one.
-                The agent continues where that one was: it adopts no initial beliefs and goals.  It perceives anew what it
-                focuses.  An action that was under way fails with ``env_failure_reason(interrupted)``.
+            stored: the result of `RunningAgent.stored` for an agent with the same program, in this process or another
+                one. The agent continues where that one was, so it adopts no initial beliefs and goals. It perceives
+                anew what it focuses. An action that was running fails with ``env_failure_reason(interrupted)``.
 
         Raises:
-            ValueError: *stored* has another format, or the program lacks a plan or belief that is used there.
-            AslError: the program is wrong; the text shows each mistake in its line.
-            UsageError: there is an agent of that name; the name is empty or has spaces or control characters; or the
-                caller is not in the thread of the run's loop.
-            OperationFailed: a workspace or an artifact is not there.
+            ValueError: *stored* has another format, or the program lacks a plan or belief that it uses.
+            AslError: the program has errors. The text shows each with its line.
+            UsageError: an agent has this name; the name is empty or has spaces or control characters; or the caller is
+                not in the thread of the event loop.
+            OperationFailed: a workspace or an artifact does not exist.
             RunEnded: the run has ended.
         """
         system = self._open
@@ -149,11 +149,11 @@ class Mas(EmbeddedRun):
                 f"invalid agent name {spec.name!r}: it must not be empty or have spaces or control characters"
             )
         if spec.name in system.directory.names():
-            raise UsageError(f"duplicate agent name {spec.name}")
+            raise UsageError(f"duplicate agent name `{spec.name}`")
         if spec.join or spec.focus:
             spec = _placed(spec, self._run_environment.environment)
-        tree = system.population.programs.load(spec, written)
-        host = system.population.add(spec, tree)
+        tree = system.lifecycle.programs.load(spec, written)
+        host = system.lifecycle.add(spec, tree)
         agent = self.agent(spec.name)
         if stored is None:
             begin(host, spec, tree)
@@ -170,16 +170,16 @@ class Mas(EmbeddedRun):
             return Path(f"<{name}>")  # as diagnostics show it
         wanted = str(program) if program is not None else f"{name}.asl"
         try:
-            return self._open.population.programs.find(wanted)
+            return self._open.lifecycle.programs.find(wanted)
         except FileNotFoundError:
-            folders = ", ".join(map(str, self._open.population.programs.folders))
-            raise UsageError(f"program not found: {wanted} in {folders}") from None
+            folders = ", ".join(map(str, self._open.lifecycle.programs.folders))
+            raise UsageError(f"program not found: {wanted}; expected in {folders}") from None
 
     def agent(self, name: str) -> RunningAgent:
-        """The agent of that name.
+        """Return the agent with this name.
 
         Raises:
-            UnknownAgent: there is none; the text has names that may have been meant.
+            UnknownAgent: it does not exist. The text suggests similar names.
         """
         system, waits = self._running
         host = system.directory.find(name)
@@ -187,12 +187,12 @@ class Mas(EmbeddedRun):
             raise UnknownAgent(name, [each.name for each in system.directory])
         known = self._agents.get(name)
         if known is None or known.ended:
-            known = self._agents[name] = RunningAgent(host, waits, system.population.end)
+            known = self._agents[name] = RunningAgent(host, waits, system.lifecycle.end)
         return known
 
     @property
     def agents(self) -> tuple[RunningAgent, ...]:
-        """All agents, in the order of their making."""
+        """All agents, in the order of creation."""
         return tuple(self.agent(host.name) for host in self._running[0].directory)
 
     # ---- messages and output
@@ -201,14 +201,14 @@ class Mas(EmbeddedRun):
         """Send a message to an agent: ``mas.send("bob", "achieve", "clean(kitchen)")``.
 
         Args:
-            receiver: its name.
+            receiver: name of the agent.
             performative: ``tell``, ``achieve``, ``untell``, ``signal`` …
             content: a term in the syntax of the language, as text; or a plain value (see `jacaros.env.values`).
-            sender: whom it is from, as the agent is told; answers reach a `mailbox` of that name, if there is one.
+            sender: name of the sender. Answers reach the `mailbox` with this name, if it exists.
 
         Raises:
-            UnknownAgent: nobody of that name takes part.
-            AslError: the text is no term.
+            UnknownAgent: no participant has this name.
+            AslError: the text is not a term.
         """
         from jacaros.mas.embedding.mailbox import Mailbox
 
@@ -219,10 +219,10 @@ class Mas(EmbeddedRun):
         )
 
     def mailbox(self, name: str) -> "Mailbox":
-        """The mailbox of Python code under that name, made when it is first asked for; agents can send to it then.
+        """Return the mailbox of Python code with this name. It is created on first use; then agents can send to it.
 
         Raises:
-            UsageError: there is an agent of that name.
+            UsageError: an agent has this name.
         """
         from jacaros.mas.embedding.mailbox import Mailbox, PythonMailboxes
 
@@ -233,16 +233,18 @@ class Mas(EmbeddedRun):
         known = self._mailboxes.find(name)
         if known is None:
             if name in system.directory.names():
-                raise UsageError(f"the name {name} belongs to an agent; give the mailbox another name")
+                raise UsageError(
+                    f"duplicate name `{name}`: an agent has it; choose another name for the mailbox"
+                )
             known = Mailbox(name, system.deliver, system.agent_names, waits)
             self._mailboxes.add(known)
         return known
 
     def output(self, agent: str | None = None) -> Stream[PrintedLine]:
-        """What agents print from now on, as an asynchronous iterator that ends with the run.
+        """Return the output of agents from now on, as an asynchronous iterator that ends with the run.
 
         Args:
-            agent: only what this one prints.
+            agent: only the output of this agent.
         """
         _, waits = self._running
         stream: Stream[PrintedLine] = Stream(waits, f"{agent or 'no agent'} printed nothing")
@@ -254,12 +256,12 @@ class Mas(EmbeddedRun):
         self._console.listen(put)
         return stream
 
-    def on_print(self, told: OnPrint) -> Callable[[], None]:
-        """Call *told* with agent and text of everything that is printed from now on; gives what ends that.
+    def on_print(self, callback: OnPrint) -> Callable[[], None]:
+        """Call *callback* with agent and text of all output from now on. Return a function that ends this.
 
-        It is called in the middle of the agent's step: it may note the line, and give beliefs, percepts and messages.
+        It is called in the middle of the agent's step: it may store the line, and add beliefs, percepts and messages.
         """
-        return self._console.listen(told)
+        return self._console.listen(callback)
 
     # ---- robots
 
@@ -270,9 +272,9 @@ class Mas(EmbeddedRun):
 
     @property
     def world(self) -> "World | None":
-        """The embedded robot world, which knows what truly happens (`jacaros.sim.World`); None on a real graph.
+        """The embedded robot world, with its ground truth (`jacaros.sim.World`); None on a real graph.
 
-        It is made when the first artifact asks for a robot, or this is first asked for.
+        It is created when the first artifact needs a robot, or on first use of this property.
         """
         system = self._running[0]
         if system.ros.world is None and self._options.ros == "memory" and system.exit_code is None:
@@ -291,17 +293,20 @@ class Mas(EmbeddedRun):
         return self._run_environment.environment
 
     def add_artifact_types(self, *types: "type[Artifact]") -> None:
-        """Let agents make artifacts of these classes, by their names; they come before all others of the name."""
+        """Let agents create artifacts of these classes, by class name.
+
+        They have precedence over others with the same name.
+        """
         self._run_environment.types.given.update({each.__name__: each for each in types})
 
     def create_workspace(self, path: str) -> str:
-        """Make a workspace; its full path.
+        """Create a workspace. Return its full path.
 
         Args:
-            path: full, or from ``/main``.
+            path: full, or relative to ``/main``.
 
         Raises:
-            OperationFailed: it is there already, or the workspace above it is not.
+            OperationFailed: it already exists, or its parent workspace does not.
         """
         full = path if path.startswith("/") else f"/main/{path}"
         return self.environment.create_workspace(full).path
@@ -314,31 +319,32 @@ class Mas(EmbeddedRun):
         *,
         workspace: str = "/main",
     ) -> "ArtifactId":
-        """Make an artifact, and wait until its ``init`` has ended.
+        """Create an artifact, and wait until its ``init`` has ended.
 
         Args:
             name: unique in the workspace.
-            artifact_type: the class, or the name of one: of the project, of JaCaROS, or given by `add_artifact_types`.
+            artifact_type: the class, or the name of a type: of the project, of JaCaROS, or added with `add_artifact_types`.
             arguments: plain values for ``init``.
-            workspace: where, by path or name.
+            workspace: its workspace, by path or name.
 
         Raises:
-            OperationFailed: it cannot be made; with message and reason.
+            OperationFailed: it cannot be created, with message and reason.
         """
         place = _workspace(self.environment, workspace)
         return await place.make_artifact(name, artifact_type, arguments)
 
     def session(self, name: str, workspace: str = "/main") -> "Session":
-        """A working session: Python code that uses artifacts itself, see `jacaros.env.session.session.Session`.
+        """Return a working session, with which Python code uses artifacts itself. See
+        `jacaros.env.session.session.Session`.
 
         It is closed at the end of the run at the latest.
 
         Args:
-            name: who works.
-            workspace: where it begins, by path or name.
+            name: name of the session.
+            workspace: the workspace that it joins first, by path or name.
 
         Raises:
-            OperationFailed: there is no such workspace.
+            OperationFailed: the workspace does not exist.
         """
         from jacaros.env.session.session import Session
         from jacaros.mas.embedding.session_account import SessionAccount
@@ -373,10 +379,10 @@ def _focus(wanted: "str | FocusSpec | ArtifactId") -> FocusSpec:
 
 
 def _placed(spec: AgentSpec, environment: "Environment") -> AgentSpec:
-    """The same agent with the full paths of what it joins and focuses.
+    """Return the declaration with full paths of what the agent joins and focuses.
 
     Raises:
-        OperationFailed: one is not there.
+        OperationFailed: a workspace or an artifact does not exist.
     """
     from jacaros.mas.environment import artifact_of, path_of
 

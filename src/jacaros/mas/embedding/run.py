@@ -1,4 +1,4 @@
-"""A multi-agent system inside a Python program: its beginning, its end, and its time."""
+"""A multi-agent system in a Python program: begin, end and clock."""
 
 import asyncio
 from collections.abc import Callable, Coroutine
@@ -22,16 +22,16 @@ if TYPE_CHECKING:
 
 
 class EmbeddedRun:
-    """The run of a system as long as a block of a Python program.
+    """The run of a system during a block of a Python program.
 
     Args:
-        deployment: what to run.
-        options: how; the clock is that of the event loop, or of the ROS graph.
+        deployment: the system.
+        options: run options. The clock is that of the event loop, or of the ROS graph.
         on_print: called with agent and text whenever an agent prints.
-        on_log: called with a line for people and its level.
+        on_log: called with text and level of each line of the log.
 
     Raises:
-        UsageError: options that cannot go together.
+        UsageError: options exclude each other.
     """
 
     def __init__(
@@ -46,10 +46,10 @@ class EmbeddedRun:
         self._at_end: list[Callable[[], None]] = []
 
     async def __aenter__(self) -> Self:
-        """Make what the project declares, and let its agents begin.
+        """Create what the project declares, and start its agents.
 
         Raises:
-            JacarosError: it cannot be started; the text tells what is wrong.
+            JacarosError: the system cannot start. The text says why.
         """
         if self._begun is not None:
             raise UsageError("this Mas has already run; create another one")
@@ -64,7 +64,7 @@ class EmbeddedRun:
         system = System(self._deployment, clock, self._console, options)
         waits = Waits(clock)
         self._begun = system, waits
-        system.population.when_ended = waits.agent_ended
+        system.lifecycle.when_ended = waits.agent_ended
         try:
             await system.start()
         except BaseException:
@@ -101,10 +101,10 @@ class EmbeddedRun:
 
     @property
     def system(self) -> System:
-        """The run itself, for what this class does not offer; it may change with every version.
+        """The run itself, for what this class does not offer. Its interface may change with every version.
 
         Raises:
-            RunEnded: it has not begun.
+            RunEnded: the run has not begun.
         """
         return self._running[0]
 
@@ -113,13 +113,13 @@ class EmbeddedRun:
     ) -> Explanation:
         """Answer a question about the run, such as ``stopped``, ``+alarm(_)`` or ``plan @low``.
 
-        The history begins with the first question, or with the run if the option ``explain`` is set or a program mentions
-        ``.why``.
+        The history begins with the first question, or with the run if the option ``explain`` is set or a program
+        mentions ``.why``.
 
         Args:
-            question: as `jacaros why` takes it.
-            at: seconds since the history began; the present moment without.
-            agent, robot: the only one that counts.
+            question: as for `jacaros why`.
+            at: seconds since the history began. Default: now.
+            agent, robot: restrict the answer to this agent or robot.
 
         Raises:
             UsageError: the question is not understood.
@@ -132,7 +132,7 @@ class EmbeddedRun:
         """The running system.
 
         Raises:
-            RunEnded: it does not run (any more).
+            RunEnded: it is not running.
         """
         system, _ = self._running
         if system.exit_code is not None:
@@ -140,11 +140,11 @@ class EmbeddedRun:
         return system
 
     def stop(self, exit_code: int = 0) -> None:
-        """End the run, as ``.stopMAS`` does; the block goes on, and no agent has another turn."""
+        """End the run, as ``.stopMAS`` does. The block continues, but no agent has another turn."""
         self._running[0].end(exit_code)
 
     async def ended(self) -> int:
-        """Wait until the run ends by itself (``.stopMAS``) or by `stop`; its exit code.
+        """Wait until the run ends (by ``.stopMAS`` or `stop`). Return its exit code.
 
         Raises:
             InternalError: a defect of JaCaROS ended it.
@@ -157,20 +157,20 @@ class EmbeddedRun:
 
     @property
     def exit_code(self) -> int | None:
-        """The exit code of the run; None while it goes on."""
+        """The exit code of the run; None while it is running."""
         return self._begun[0].exit_code if self._begun is not None else None
 
     async def until_idle(self, timeout: float | None = None) -> None:
-        """Wait until no agent has anything to do or to wait for, and no operation is under way.
+        """Wait until all agents are idle and no operation is running.
 
         Worlds, batteries and processes of artifacts do not count: they never end.
 
         Args:
-            timeout: seconds of the run's clock; None to wait as long as it takes.
+            timeout: time limit in seconds of the run's clock. None: no limit.
 
         Raises:
-            TimeoutError: they were still busy then.
-            RunEnded: the run ended before.
+            TimeoutError: agents were still busy after the time limit.
+            RunEnded: the run ended first.
         """
         system, waits = self._running
         idle: asyncio.Future[None] = asyncio.get_running_loop().create_future()
@@ -178,7 +178,7 @@ class EmbeddedRun:
         if system.scheduler.idle:
             system.idleness.look()
         try:
-            await waits.wait(idle, lambda: "the agents did not get idle", timeout)
+            await waits.wait(idle, lambda: "the agents did not become idle", timeout)
         finally:
             stop()
 
@@ -186,14 +186,14 @@ class EmbeddedRun:
 
     @property
     def debugger(self) -> "Debugger":
-        """What pauses and steps the run, and sets breakpoints."""
+        """Pauses and steps the run, and sets breakpoints."""
         return self._open.debugger
 
     def reload(self) -> list[str]:
-        """Read the changed programs again, and replace plans and rules, see `jacaros.mas.debugging.Debugger.reload`.
+        """Read changed programs again, and replace plans and rules. See `jacaros.mas.debugging.Debugger.reload`.
 
         Raises:
-            AslError: a program is wrong; nothing has been replaced.
+            AslError: a program has errors; nothing has been replaced.
         """
         return self._open.debugger.reload()
 
@@ -205,7 +205,7 @@ class EmbeddedRun:
         return self._running[0].clock
 
     async def sleep(self, seconds: float) -> None:
-        """Wait for so many seconds of the run's clock."""
+        """Wait for this number of seconds of the run's clock."""
         await self.clock.sleep(seconds)
 
     def __repr__(self) -> str:
@@ -220,23 +220,24 @@ T = TypeVar("T")
 
 
 def run(main: Coroutine[Any, Any, T], *, clock: Literal["real", "fast"] = "real") -> T:
-    """Run a coroutine to its end, as `asyncio.run` does, on a loop with a clock of its own; what it returns.
+    """Run a coroutine to its end, as `asyncio.run` does, on an event loop with its own clock. Return its result.
 
     Args:
         main: the coroutine, such as ``main()``.
-        clock: ``real`` for the time of day; ``fast`` for the virtual clock, on which time jumps to the next timer as soon
-            as everybody waits.  On that one ``asyncio.sleep`` and time-outs take no real time either.
+        clock: ``real`` for real time; ``fast`` for the virtual clock, which jumps to the next timer as soon as all tasks
+            wait. Then ``asyncio.sleep`` and time limits take no real time either.
 
     Raises:
-        UsageError: a loop runs already, as in a notebook: ``await`` the coroutine there; or there is no such clock.
+        UsageError: an event loop is already running, as in a notebook (``await`` the coroutine there); or the clock is
+            unknown.
     """
     chosen: Clock
     try:
         if clock not in ("real", "fast"):
-            raise UsageError(f"unknown clock {clock!r}; expected 'real' or 'fast'")
+            raise UsageError(f"unknown clock `{clock}`; expected `real` or `fast`")
         if _is_running():
             raise UsageError(
-                "an event loop is already running (a notebook?): await the coroutine instead of calling jacaros.run"
+                "an event loop is already running (a notebook?); await the coroutine instead of calling jacaros.run"
             )
     except UsageError:
         main.close()

@@ -1,4 +1,4 @@
-"""An agent of a running system, as Python code around it sees it."""
+"""An agent of a running system, for the Python code around it."""
 
 import asyncio
 from collections.abc import Callable, Generator
@@ -25,7 +25,7 @@ from jacaros.terms.values import Functor, String, Term, bare, deref
 
 
 class PursuedGoal:
-    """A goal that somebody outside has given."""
+    """A goal that was given from outside."""
 
     def __init__(self, written: str, watched: WatchedGoal) -> None:
         self._written, self._watched = written, watched
@@ -37,7 +37,7 @@ class PursuedGoal:
 
     @property
     def failed(self) -> bool:
-        """Whether it failed, and no plan took care of that."""
+        """Whether it failed without a plan for its failure."""
         return self._watched.failed
 
     @property
@@ -50,7 +50,7 @@ class PursuedGoal:
 
     @property
     def reasons(self) -> list[Term]:
-        """The terms that tell why it failed."""
+        """The reason terms of its failure."""
         reason = self._watched.reason
         return list(reason.terms) if reason is not None else []
 
@@ -60,19 +60,19 @@ class PursuedGoal:
 
 
 _RUN_TIME = "<run time>"
-"""The place of goals that no program has written."""
+"""File name of goals that are not part of a program."""
 
 
 class RunningAgent(OpenMind):
-    """An agent of a running system: given beliefs, percepts and goals, asked, and waited for.
+    """An agent of a running system. It can be given beliefs, percepts and goals, queried, and awaited.
 
     Args:
-        host: what runs it.
-        waits: of the run.
+        host: its host.
+        waits: waits of the run.
         end: ends the agent.
 
     Attributes:
-        name: of the agent.
+        name: name of the agent.
     """
 
     def __init__(self, host: AgentHost, waits: Waits, end: Callable[[AgentHost], None]) -> None:
@@ -87,17 +87,15 @@ class RunningAgent(OpenMind):
 
         Raises:
             RunEnded: the run has ended.
-            AgentEnded: the agent has.
-            UsageError: it is written in Python, so it has no beliefs and goals.
+            AgentEnded: the agent has ended.
+            UsageError: it is a Python agent, which has no beliefs and goals.
         """
         mind = self._host.mind
         self._waits.check()
         if self.ended:
             raise AgentEnded(f"agent {self.name} has ended")
         if not isinstance(mind, Mind):
-            raise UsageError(
-                f"agent {self.name} is written in Python: it has no beliefs and goals of the language"
-            )
+            raise UsageError(f"agent {self.name} is a Python agent, which has no beliefs and goals")
         return mind
 
     @property
@@ -106,40 +104,40 @@ class RunningAgent(OpenMind):
         return self._host.ended
 
     def receive(self, sender: str, performative: str, content: str) -> None:
-        """Let it receive a message as if *sender* had sent it: ``bob.receive("boss", "achieve", "clean(kitchen)")``.
+        """Deliver a message to it as if *sender* had sent it: ``bob.receive("boss", "achieve", "clean(kitchen)")``.
 
         Raises:
-            AslError: the content is no term.
+            AslError: the content is not a term.
         """
         mind = self.mind
         term = lower_value(parse_term(content))
         self._host.receive(SpeechAct(performative, sender, self.name, term, mind.next_message_id()))
 
     def achieve(self, goal: str) -> "Goal":
-        """Give it a goal, with an intention of its own; ``await`` what this gives to wait until it is achieved.
+        """Give it a goal, with an intention of its own. Await the returned goal to wait until it is achieved.
 
         Raises:
-            AslError: it is no literal.
+            AslError: it is not a literal.
         """
         return Goal(goal, self.mind, self._waits, lambda: self.ended)
 
     async def until(self, formula: str, timeout: float | None = None) -> dict[str, Any]:
         """Wait until a formula holds for the agent, such as ``count(X) & X > 2``.
 
-        It is looked at whenever the agent has something to do, as by ``.wait(Formula)``.
+        It is evaluated whenever the agent has something to do, as by ``.wait(Formula)``.
 
         Args:
-            formula: in the language; rules of the program and internal actions may be used.
-            timeout: seconds of the run's clock; None to wait as long as it takes.
+            formula: in the language. It may use rules of the program and internal actions.
+            timeout: time limit in seconds of the run's clock. None: no limit.
 
         Returns:
-            The values of its variables by name, as plain values.
+            Plain values by variable name.
 
         Raises:
-            AslError: it is no formula.
-            TimeoutError: it did not hold in time; the text tells related beliefs.
-            AgentEnded: the agent ended before.
-            RunEnded: the run ended before.
+            AslError: it is not a formula.
+            TimeoutError: it did not hold in time. The text shows related beliefs.
+            AgentEnded: the agent ended first.
+            RunEnded: the run ended first.
         """
         mind = self.mind
         if not mind.running and (found := self.ask(formula)) is not None:
@@ -160,24 +158,24 @@ class RunningAgent(OpenMind):
             for each in (self._host.mind.beliefs.literals() if isinstance(self._host.mind, Mind) else ())
             if any(symbol.name in mentioned for symbol in _functors(each))
         ]
-        told = f"it believes {', '.join(believed[:5])}" if believed else "it believes nothing of the kind"
-        return f"{formula} did not hold for agent {self.name} ({told})"
+        related = f"it believes {', '.join(believed[:5])}" if believed else "it has no related belief"
+        return f"{formula} did not hold for agent {self.name} ({related})"
 
     def stored(self) -> dict[str, Any]:
-        """Return everything that the agent holds, as data for JSON; `Mas.add_agent` with ``stored=`` continues it.
+        """Return the complete state of the agent as JSON data. `Mas.add_agent` with ``stored=`` continues from it.
 
         Raises:
-            NotStorable: the agent waits for a coroutine, a term holds a Python object, or Python code awaits a goal or
+            NotStorable: the agent waits for a coroutine, a term contains a Python object, or Python code awaits a goal or
                 condition of the agent.
             UsageError: the agent is in the middle of a step.
         """
         mind = self.mind
         if mind.running:
-            raise UsageError(f"agent {self.name} is in the middle of a step: store it between two turns")
+            raise UsageError(f"agent {self.name} is in the middle of a step; store it between two turns")
         return stored(mind)
 
     def kill(self) -> None:
-        """End the agent: its operations are cancelled, the others go on."""
+        """Kill the agent: its operations are cancelled, other agents continue."""
         if not self.ended:
             self._end(self._host)
 
@@ -186,7 +184,7 @@ class RunningAgent(OpenMind):
 
 
 class _Awaited(ConditionObserver):
-    """A condition that Python code waits for, among those that the agent looks at (`Circumstance.waits.conditions`)."""
+    """A condition that Python code waits for, among those that the agent evaluates (`Circumstance.waits.conditions`)."""
 
     def __init__(self, mind: Mind, formula: str) -> None:
         self.future: asyncio.Future[dict[str, Any]] = asyncio.get_running_loop().create_future()
@@ -209,7 +207,7 @@ class _Awaited(ConditionObserver):
         finally:
             undo(self._mind.trail, mark)
 
-    # What the agent asks and tells of a wait.
+    # The agent's interface to a wait.
 
     @property
     def ended(self) -> bool:
@@ -228,10 +226,10 @@ class _Awaited(ConditionObserver):
 
 
 class Goal(PursuedGoal):
-    """A goal that Python code has given to a running agent; it can be awaited.
+    """A goal that Python code has given to a running agent. It can be awaited.
 
-    ``await goal`` ends when it is achieved, and raises `GoalFailed` when it failed and no plan took care of that, or when
-    it was dropped.  A goal that nobody awaits is pursued all the same; when it fails, people are told, as of every goal.
+    ``await goal`` ends when the goal is achieved, and raises `GoalFailed` if it failed without a plan for its failure,
+    or was dropped. A goal that is not awaited is pursued, too. Its failure is logged, like that of every goal.
     """
 
     def __init__(self, written: str, mind: Mind, waits: Waits, agent_ended: Callable[[], bool]) -> None:
@@ -246,19 +244,19 @@ class Goal(PursuedGoal):
         """Wait until it is achieved.
 
         Args:
-            timeout: seconds of the run's clock, after which this raises; the goal is still pursued then, see `drop`.
+            timeout: time limit in seconds of the run's clock. After it, the goal is still pursued; see `drop`.
 
         Raises:
-            GoalFailed: it failed, and no plan took care of that; or it was dropped.
+            GoalFailed: it failed without a plan for its failure, or was dropped.
             TimeoutError: it was not achieved in time.
-            AgentEnded: the agent ended before.
-            RunEnded: the run ended before.
+            AgentEnded: the agent ended first.
+            RunEnded: the run ended first.
         """
         self._awaited = True
         future: asyncio.Future[None] = asyncio.get_running_loop().create_future()
         dropped = _Dropped(self, future)
         if not self._watched.ended and self._agent_ended():
-            await asyncio.sleep(0)  # a run that has ended says so one turn later
+            await asyncio.sleep(0)  # the end of a run is reported one turn later
             self._waits.check()
             if self.state != "dropped":
                 raise AgentEnded(f"{self._not_achieved()}: agent {self._mind.name} has ended")
@@ -278,7 +276,7 @@ class Goal(PursuedGoal):
         return self.wait().__await__()
 
     def drop(self) -> None:
-        """Take the goal back: the intentions that pursue it are dropped, their operations cancelled."""
+        """Drop the goal: its intentions are dropped, and their operations cancelled."""
         for intention in self._watched.intentions():
             goals.drop_intention(self._mind, intention)
         self._news()
@@ -289,7 +287,7 @@ class Goal(PursuedGoal):
             if not future.done():
                 future.set_result(None)
         if self.failed and not self._awaited:
-            # A task that is to await it may be about to begin.
+            # A task that will await it may be about to begin.
             asyncio.get_running_loop().call_soon(self._tell_failure)
 
     def _tell_failure(self) -> None:
@@ -320,7 +318,7 @@ class Goal(PursuedGoal):
 
 
 class _Dropped(ConditionObserver):
-    """Ends the wait for a goal when the goal is dropped; it stands among the conditions that the agent looks at."""
+    """Ends the wait for a goal when the goal is dropped. It is one of the conditions that the agent evaluates."""
 
     def __init__(self, goal: Goal, future: asyncio.Future[None]) -> None:
         self._goal, self._future = goal, future
@@ -345,7 +343,7 @@ def _is_message(term: Term) -> bool:
 
 
 def _functors(term: Any) -> list[Functor]:
-    """All functors of a term, those of what a formula is made of too."""
+    """Return all functors of a term, including those inside a formula."""
     term = bare(deref(term))
     if term.__class__ is Functor:
         return [term]

@@ -1,4 +1,4 @@
-"""What sessions of Python code mean for whether a run is idle."""
+"""How sessions of Python code count for the idleness of a run."""
 
 from contextlib import AbstractContextManager, nullcontext
 
@@ -6,25 +6,25 @@ from jacaros.mas.idleness import Activity, Idleness
 
 
 class SessionAccount:
-    """Counts the operations of sessions as things that are under way: the `jacaros.env.session.account.Account` of a run.
+    """Counts the running operations of sessions: the `jacaros.env.session.account.Account` of a run.
 
     Args:
-        activity: of the run.
-        idleness: of the run.
+        activity: counts what the agents wait for.
+        idleness: detects when the run is idle.
     """
 
     def __init__(self, activity: Activity, idleness: Idleness) -> None:
         self._activity, self._idleness = activity, idleness
 
     def begin(self) -> None:
-        """An operation is under way."""
+        """An operation has begun."""
         self._activity.begin()
 
     def end(self) -> None:
-        """It has ended."""
+        """An operation has ended."""
         self._activity.end()
         self._idleness.look()
 
     def waiting(self) -> AbstractContextManager[None]:
-        """Nothing: what Python code waits for is no business of the agents."""
+        """Do nothing: waits of Python code do not concern the agents."""
         return nullcontext()

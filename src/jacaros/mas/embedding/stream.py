@@ -1,4 +1,4 @@
-"""What comes one after the other and is kept until somebody takes it: what agents print, what people are told, messages."""
+"""Streams of output, log lines and messages, which are kept until they are read."""
 
 import asyncio
 from collections import deque
@@ -14,11 +14,11 @@ T = TypeVar("T")
 
 
 class Stream(Generic[T]):
-    """An asynchronous iterator over what comes; it ends with the run, when everything that came has been taken.
+    """An asynchronous iterator over items as they arrive. It ends with the run, once all items have been read.
 
     Args:
-        waits: of the run.
-        what: what is missing while nothing has come, for errors.
+        waits: waits of the run.
+        what: what is missing while there is no item, for errors.
     """
 
     def __init__(self, waits: Waits, what: str) -> None:
@@ -28,7 +28,7 @@ class Stream(Generic[T]):
         self._waiting: deque[asyncio.Future[None]] = deque()
 
     def put(self, item: T) -> None:
-        """Let something come; it is for whoever asks first."""
+        """Add an item, for the first waiting reader."""
         self._items.append(item)
         self._wake()
 
@@ -40,14 +40,14 @@ class Stream(Generic[T]):
                 return
 
     async def get(self, timeout: float | None = None) -> T:
-        """The next one; waits until it comes.
+        """Return the next item, waiting until it arrives.
 
         Args:
-            timeout: seconds of the run's clock; None to wait as long as it takes.
+            timeout: time limit in seconds of the run's clock. None: no limit.
 
         Raises:
-            TimeoutError: nothing came in time.
-            RunEnded: nothing will come any more.
+            TimeoutError: no item arrived in time.
+            RunEnded: the run has ended, so no item will arrive.
         """
         while not self._items:
             arrived: asyncio.Future[None] = asyncio.get_running_loop().create_future()
@@ -61,7 +61,7 @@ class Stream(Generic[T]):
         return self._items.popleft()
 
     def take(self) -> list[T]:
-        """All that has come and was not taken yet, without waiting."""
+        """Return all items that have not been read yet, without waiting."""
         taken = list(self._items)
         self._items.clear()
         return taken
@@ -83,10 +83,10 @@ class Stream(Generic[T]):
 
 
 class PrintedLine(NamedTuple):
-    """A line that an agent printed.
+    """A line of an agent's output.
 
     Attributes:
-        agent: its name.
+        agent: name of the agent.
         text: the line, without the name.
     """
 
@@ -98,51 +98,51 @@ class PrintedLine(NamedTuple):
 
 
 OnPrint = Callable[[str, str], None]
-"""Called with the name of an agent and what it prints."""
+"""Called with the name of an agent and its output."""
 
 OnLog = Callable[[str, str], None]
-"""Called with a line for people and its level: ``debug``, ``info``, ``warning`` or ``error``."""
+"""Called with a line of the log and its level: ``debug``, ``info``, ``warning`` or ``error``."""
 
 
 class PrintedConsole:
     """The console of an embedded system.
 
     Args:
-        on_print: shows what agents print; on the standard output, as ``[agent] text``, unless given.
-        on_log: tells people; on the standard error output unless given.
+        on_print: prints the output of agents. Default: print ``[agent] text`` to standard output.
+        on_log: logs lines. Default: standard error.
     """
 
     def __init__(self, on_print: OnPrint | None, on_log: OnLog | None) -> None:
-        # Finds the standard outputs at the time of writing: tests and notebooks put others in their place.
+        # Looks up the standard streams on each write: tests and notebooks replace them.
         self._standard = StandardConsole()
         self._on_print = on_print or self._standard.print
         self._on_log = on_log or self._standard.log
         self._listeners: list[OnPrint] = []
 
-    def listen(self, told: OnPrint) -> Callable[[], None]:
-        """Tell *told* what is printed from now on, too; gives what ends that."""
-        self._listeners.append(told)
-        return lambda: self._listeners.remove(told) if told in self._listeners else None
+    def listen(self, callback: OnPrint) -> Callable[[], None]:
+        """Also call *callback* with all output from now on. Return a function that ends this."""
+        self._listeners.append(callback)
+        return lambda: self._listeners.remove(callback) if callback in self._listeners else None
 
     def print(self, agent: str, text: str) -> None:
-        """Show a line of an agent's output."""
-        for told in (self._on_print, *self._listeners):
+        """Print a line of an agent's output."""
+        for callback in (self._on_print, *self._listeners):
             try:
-                told(agent, text)
+                callback(agent, text)
             except Exception as error:
                 self.log(
-                    f"error: an output callback failed: {said(error)}{place_of_fault(error)}",
+                    f"error: an on_print callback raised {said(error)}{place_of_fault(error)}",
                     "error",
                 )
 
     def log(self, text: str, level: str = "info") -> None:
-        """Tell people about what happens."""
+        """Log a line."""
         try:
             self._on_log(text, level)
         except Exception as error:
             self._standard.log(text, level)
             self._standard.log(
-                f"error: a callback for logs failed: {said(error)}{place_of_fault(error)}", "error"
+                f"error: an on_log callback raised {said(error)}{place_of_fault(error)}", "error"
             )
 
     def close(self) -> None:

@@ -1,4 +1,4 @@
-"""What Python code waits for in a run: each wait ends with what it is for, with its time, its agent or the run."""
+"""Waits of Python code in a run. Each ends with its result, its time limit, its agent or the run."""
 
 import asyncio
 import threading
@@ -13,10 +13,10 @@ T = TypeVar("T")
 
 
 class Waits:
-    """The waits of one run; made in the thread of its loop, the only one that may use the run.
+    """The waits of one run, created in the thread of its event loop, the only one that may use the run.
 
     Args:
-        clock: of the run; time-outs are counted on it.
+        clock: clock of the run, for time limits.
     """
 
     def __init__(self, clock: Clock) -> None:
@@ -35,15 +35,15 @@ class Waits:
         """Wait for *future*.
 
         Args:
-            future: set by whoever brings it.
-            missing: says what is still missing, for the text of an error.
-            timeout: seconds of the run's clock; None to wait as long as it takes.
-            agent: the agent without which it cannot come.
+            future: the result.
+            missing: returns what is missing, for the text of an error.
+            timeout: time limit in seconds of the run's clock. None: no limit.
+            agent: the agent without which the result cannot arrive.
 
         Raises:
-            TimeoutError: it did not come in time.
-            AgentEnded: the agent ended before.
-            RunEnded: the run ended before.
+            TimeoutError: the result did not arrive in time.
+            AgentEnded: the agent ended first.
+            RunEnded: the run ended first.
         """
         if self._over is not None:
             raise RunEnded(f"{missing()}: {self._over}")
@@ -60,19 +60,19 @@ class Waits:
                 timer.cancel()
 
     def check_thread(self) -> None:
-        """Check that the caller is in the thread of the run's loop.
+        """Check that the caller is in the thread of the run's event loop.
 
         Raises:
-            UsageError: it is in another one, where it would race with the agents.
+            UsageError: it is in another thread, where it would race with the agents.
         """
         if threading.current_thread() is not self._thread:
             raise UsageError(
                 f"called in thread {threading.current_thread().name!r}, but the run belongs to thread "
-                f"{self._thread.name!r}; from other threads use loop.call_soon_threadsafe(function) of its loop"
+                f"{self._thread.name!r}; from other threads, use loop.call_soon_threadsafe(function)"
             )
 
     def check(self) -> None:
-        """Check that the run continues and that the caller is in its thread.
+        """Check that the run has not ended, and that the caller is in its thread.
 
         Raises:
             RunEnded: it has ended.
@@ -83,19 +83,19 @@ class Waits:
             raise RunEnded(self._over)
 
     def agent_ended(self, name: str) -> None:
-        """An agent has ended: who waits for it waits in vain."""
+        """End the waits for an agent that has ended."""
         for future, (agent, missing) in tuple(self._open.items()):
             if agent == name:
                 _fail(future, AgentEnded(f"{missing()}: agent {name} has ended"))
 
     def stuck(self) -> bool:
-        """Nothing more will happen: who waits for something waits in vain.  Whether anybody did."""
+        """End all waits, because all agents are idle. Return whether there were any."""
         for future, (_, missing) in tuple(self._open.items()):
-            _fail(future, TimeoutError(f"{missing()}, and nothing more will happen: all agents wait"))
+            _fail(future, TimeoutError(f"{missing()}, and never will: all agents are idle"))
         return bool(self._open)
 
     def run_ended(self, how: str) -> None:
-        """The run has ended: so have all waits."""
+        """End all waits, because the run has ended."""
         self._over = how
         for future, (_, missing) in tuple(self._open.items()):
             _fail(future, RunEnded(f"{missing()}: {how}"))

@@ -1,1 +1,1 @@
-"""What happened in a run: observers of a running system, the records they make, and answers to questions about them."""
+"""The history of a run: observers, records, and answers to questions."""

@@ -1,4 +1,4 @@
-"""What last changed a belief."""
+"""Answers about the last change of a belief."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -10,7 +10,7 @@ from jacaros.mas.history.past import Data, Past, of_agent
 from jacaros.mas.history.patterns import Pattern, name_of
 
 MOST_CHANGES = 5
-"""Earlier changes that an answer lists."""
+"""Number of earlier changes that an answer lists."""
 
 
 def explain_belief(past: Past, question: str, about: str, agent: str = "") -> Explanation:
@@ -29,7 +29,7 @@ def explain_belief(past: Past, question: str, about: str, agent: str = "") -> Ex
 
 
 def _step(past: Past, t: float, change: Data) -> Iterator[Fact]:
-    """The step of a plan that changed a belief."""
+    """Return the step of a plan that changed a belief."""
     file, line = str(change.get("file") or ""), int(change.get("line") or 0)
     if file:
         written = source_line(past, file, line)
@@ -37,7 +37,7 @@ def _step(past: Past, t: float, change: Data) -> Iterator[Fact]:
         number = change.get("intention")
         yield Fact("act", f"{step}{f' of intention {number}' if number else ''} did it", t, "", file, line)
     elif not change.get("cause"):
-        yield Fact("note", "it is an initial belief, or came from outside of the plans")
+        yield Fact("note", "it is an initial belief, or was added from outside of the plans")
 
 
 def _before(changes: list[tuple[float, Data]]) -> Iterator[Fact]:

@@ -1,4 +1,4 @@
-"""Why an event or a goal was handled as it was, or was not handled at all."""
+"""Answers about events and goals: how they were handled, and why."""
 
 from collections.abc import Iterator
 
@@ -10,11 +10,11 @@ from jacaros.mas.history.past import Data, Past, of_agent
 from jacaros.mas.history.patterns import Pattern, name_of, unsigned
 
 MOST_PLANS = 8
-"""Plans that an answer names."""
+"""Maximum number of plans in an answer."""
 
 
 def explain_event(past: Past, question: str, about: str, agent: str = "") -> Explanation:
-    """Explain the last event that fits *about*, such as ``+alarm(_)`` or ``!go(dock)``."""
+    """Explain the last event that matches *about*, such as ``+alarm(_)`` or ``!go(dock)``."""
     pattern = Pattern(about)
     found = [
         each for each in of_agent(past.deliberations, agent) if pattern.fits(str(each[1].get("trigger", "")))
@@ -27,7 +27,7 @@ def explain_event(past: Past, question: str, about: str, agent: str = "") -> Exp
 
 
 def explain_deliberation(past: Past, question: str, t: float, deliberation: Data) -> Explanation:
-    """Explain one event that was handled."""
+    """Explain one handled event."""
     facts = tuple(candidates(past, deliberation))
     return Explanation(question, _headline(past, t, deliberation), t, facts, chain(past, deliberation["id"]))
 
@@ -45,7 +45,7 @@ def _headline(past: Past, t: float, deliberation: Data) -> str:
 
 
 def unexamined(past: Past, deliberation: Data) -> list[Data]:
-    """The plans for an event that a busy agent left out of its record."""
+    """Return the plans for an event that a busy agent did not record."""
     agent, trigger = str(deliberation["agent"]), str(deliberation["trigger"])
     if deliberation.get("chosen") is not None:
         return []
@@ -64,7 +64,7 @@ def _is_for(trigger: str, event: str) -> bool:
 
 
 def candidates(past: Past, deliberation: Data) -> Iterator[Fact]:
-    """The relevant plans of an event in their order, each with the reason why it was not taken."""
+    """Return the relevant plans of an event in order, each with the reason why it was not chosen."""
     agent = str(deliberation["agent"])
     options = list(deliberation.get("options") or ())
     unknown = (
@@ -79,14 +79,14 @@ def candidates(past: Past, deliberation: Data) -> Iterator[Fact]:
         why = (
             "its annotations do not match"
             if is_annotated
-            else "did not apply; not examined, since the agent was busy"
+            else "did not apply; not examined, because the agent was busy"
         )
         yield _candidate(plan, why)
     chosen = past.plan(agent, deliberation.get("chosen"))
     if chosen:
         yield _candidate(chosen, "chosen")
     for number in list(deliberation.get("untried") or ())[:MOST_PLANS]:
-        yield _candidate(past.plan(agent, number), "not tried, since the chosen plan comes before it")
+        yield _candidate(past.plan(agent, number), "not tried, because the chosen plan comes before it")
     left = len(options) - MOST_PLANS
     if left > 0:
         yield Fact("note", f"{left} more plans do not apply")
@@ -97,7 +97,7 @@ def _candidate(plan: Data, what: str) -> Fact:
 
 
 def _outcome(past: Past, t: float, deliberation: Data) -> Iterator[Fact]:
-    """How the goal of an event ended."""
+    """Return the outcome of the goal of an event."""
     goal = unsigned(str(deliberation["trigger"]))
     if not goal.startswith("!"):
         return
@@ -146,19 +146,19 @@ def _changes(past: Past, pattern: Pattern, agent: str) -> list[tuple[float, Data
 
 
 def _hints(past: Past, pattern: Pattern, agent: str) -> Iterator[Fact]:
-    """What may have been meant by an event that never happened, and who would handle it."""
+    """Suggest what an event that never happened may mean, and which plans would handle it."""
     rule = next(
         (rule for rules in past.rules.values() for rule in rules if name_of(rule) == pattern.name), None
     )
     if rule is not None and not pattern.kind:
-        yield Fact("note", f"`{pattern.name}` is the conclusion of a rule; conclusions cause no events")
+        yield Fact("note", f"`{pattern.name}` is the conclusion of a rule; rules cause no events")
     yield from _near_plans(past, pattern, agent)
     near = close_matches(pattern.name, sorted(known_names(past) - {pattern.name}), 0.75)
     if near:
         yield Fact("note", f"did you mean `{near[0]}`?")
     seen = sorted({shown(data.get("trigger")) for _, data in past.deliberations if _is_near(data, pattern)})
     if seen:
-        yield Fact("note", f"events of that name: {', '.join(f'`{each}`' for each in seen[:MOST_PLANS])}")
+        yield Fact("note", f"events with this name: {', '.join(f'`{each}`' for each in seen[:MOST_PLANS])}")
 
 
 def _is_near(data: Data, pattern: Pattern) -> bool:
@@ -166,16 +166,16 @@ def _is_near(data: Data, pattern: Pattern) -> bool:
 
 
 def _near_plans(past: Past, pattern: Pattern, agent: str) -> Iterator[Fact]:
-    """The plans with the name of an event that are not for it."""
+    """Return the plans with the name of an event that do not handle it."""
     for name, plan in past.plans(agent):
         trigger = str(plan.get("trigger", ""))
         if name_of(trigger) == pattern.name:
-            how = "waits for it" if pattern.fits(trigger) else "is not for it: another trigger"
+            how = "waits for it" if pattern.fits(trigger) else "does not match: another trigger"
             yield Fact("plan", f"`{plan_text(plan)}` {how}", None, name, *place_of(plan))
 
 
 def known_names(past: Past) -> set[str]:
-    """Names of events, goals and beliefs that there were or that plans are for."""
+    """Return the names of all events, goals and beliefs that occurred or that plans handle."""
     names = {name_of(str(data.get("trigger", ""))) for _, data in past.deliberations}
     names |= {name_of(str(data.get("belief", ""))) for _, data in past.beliefs}
     names |= {name_of(str(data.get("goal", ""))) for _, data in past.goals}

@@ -1,4 +1,4 @@
-"""Why a robot stopped, and what led to a command or an operation."""
+"""Answers about robots: why one stopped, and what led to a command or an operation."""
 
 import re
 from collections.abc import Iterator
@@ -17,11 +17,11 @@ from jacaros.mas.history.past import Data, Past
 
 _NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e-?\d+)?\b")
 MOST_FACTS = 8
-"""Facts beside the chain that an answer names."""
+"""Maximum number of facts in an answer, besides the chain."""
 
 
 def explain_stop(past: Past, question: str, agent: str = "", robot: str = "") -> Explanation:
-    """Explain why a robot stopped: the first command to stand still after the last one to move."""
+    """Explain why a robot stopped: the first stop command after the last motion command."""
     commands = _commands(past, robot)
     if not commands:
         return _by_operation(past, question, agent, robot) or _no_command(past, question, robot)
@@ -45,8 +45,8 @@ def explain_stop(past: Past, question: str, agent: str = "", robot: str = "") ->
     facts = [*_ended_operation(past, t, link), *events, *goals, *_world(past, t, robot)]
     because = chain(past, link["id"])
     if handled and own_goals:
-        # An operation that is paused or cancelled publishes its last command for its own plan, or in the turn of the
-        # message that made its agent suspend or drop it; the reason is in the plan that did so.
+        # A paused or cancelled operation publishes its last command for its own plan, or in the turn of the message
+        # that made its agent suspend or drop it. The reason is in the plan that did so.
         own = (fact for fact in because[:2] if fact.kind in ("command", "operation"))
         because = (
             *own,
@@ -58,7 +58,7 @@ def explain_stop(past: Past, question: str, agent: str = "", robot: str = "") ->
 
 
 def _by_operation(past: Past, question: str, agent: str, robot: str) -> Explanation | None:
-    """Explain the end of the last operation of an artifact of a robot, where other nodes send the commands."""
+    """Explain the end of the last operation of a robot's artifact, if other nodes send the commands."""
     ended = [
         (each.ended, number, each)
         for number, each in past.operations.items()
@@ -82,7 +82,7 @@ def _drives(past: Past, artifact: str, robot: str) -> bool:
 
 
 def explain_command(past: Past, question: str, about: str = "", robot: str = "") -> Explanation:
-    """Explain the last command, on the topic *about* if it is given."""
+    """Explain the last command, on the topic *about* if given."""
     commands = [each for each in _commands(past, robot) if about in str(each[1].get("what", ""))]
     if not commands:
         return _no_command(past, question, robot, about)
@@ -91,7 +91,7 @@ def explain_command(past: Past, question: str, about: str = "", robot: str = "")
 
 
 def explain_operation(past: Past, question: str, about: str = "", agent: str = "") -> Explanation:
-    """Explain the last operation, of the name *about* if it is given."""
+    """Explain the last operation, with the name *about* if given."""
     found = [
         (number, each)
         for number, each in past.operations.items()
@@ -103,7 +103,7 @@ def explain_operation(past: Past, question: str, about: str = "", agent: str = "
         names = sorted(
             {str(each.data.get("operation", "")).partition("(")[0] for each in past.operations.values()}
         )
-        known = (Fact("note", f"there were {', '.join(names[:MOST_FACTS])}"),) if names else ()
+        known = (Fact("note", f"known operations: {', '.join(names[:MOST_FACTS])}"),) if names else ()
         return Explanation(question, f"no operation{named} began until {seconds(past.end)}", None, known)
     number, last = found[-1]
     end = f", {last.outcome} at {seconds(last.ended)}" if last.ended is not None else ", still running"
@@ -124,7 +124,7 @@ def _commands(past: Past, robot: str) -> list[Command]:
 
 
 def _is_of(past: Past, link: Data, robot: str) -> bool:
-    """Whether a command is for a robot, by its topic or by the artifact that drives the robot."""
+    """Return whether a command is for a robot, by its topic or by the artifact that drives the robot."""
     if not robot or robot in re.split(r"\W+", str(link.get("topic") or link.get("what", ""))):
         return True
     artifacts = {str(each.get("artifact") or "") for _, each in past.chain(link["id"])}
@@ -132,7 +132,7 @@ def _is_of(past: Past, link: Data, robot: str) -> bool:
 
 
 def _stop_of(commands: list[Command]) -> Command | None:
-    """The first command to stand still after the last one to move; None if the last command is to move."""
+    """Return the first stop command after the last motion command; None if the last command is a motion."""
     stop: Command | None = None
     for each in reversed(commands):
         if not _stands(each[1]):
@@ -142,13 +142,13 @@ def _stop_of(commands: list[Command]) -> Command | None:
 
 
 def _stands(link: Data) -> bool:
-    """Whether a command is to stand still: all of its numbers are zero.  One without numbers may be."""
+    """Return whether a command stops the robot: all of its numbers are zero. One without numbers may."""
     what = str(link.get("what", "")).removeprefix(str(link.get("topic") or ""))
     return all(float(number) == 0.0 for number in _NUMBER.findall(what))
 
 
 def _ended_operation(past: Past, t: float, command: Data) -> Iterator[Fact]:
-    """How the operation that published a command at *t* ended, if it ended then."""
+    """Return how the operation that published a command at *t* ended, if it ended then."""
     for _, link in past.chain(command["id"]):
         operation = past.operations.get(link["id"])
         if operation is not None and operation.ended is not None and operation.ended <= t + AT_ONCE:
@@ -159,7 +159,7 @@ def _ended_operation(past: Past, t: float, command: Data) -> Iterator[Fact]:
 
 
 def _world(past: Past, t: float, robot: str) -> Iterator[Fact]:
-    """What the world did to the robot at that time."""
+    """Return what the world did to the robot at that time."""
     for at, event, data in past.world:
         if abs(at - t) <= AT_ONCE and robot in ("", data.get("robot")):
             yield Fact("note", f"{data.get('robot')}: {event} at {seconds(at)}", at)

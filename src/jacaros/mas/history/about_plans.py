@@ -1,4 +1,4 @@
-"""Why a plan was chosen, and why it was not."""
+"""Answers about plans: why one was chosen, or not."""
 
 from collections.abc import Iterator
 from pathlib import PurePath
@@ -10,7 +10,7 @@ from jacaros.mas.history.explanation import Explanation, Fact, seconds
 from jacaros.mas.history.past import Data, Past, of_agent
 
 MOST_NAMES = 8
-"""Plans that the error of an unknown one lists."""
+"""Maximum number of plans that the error for an unknown one lists."""
 CHOSEN, REFUSED, UNTRIED = "chosen", "refused", "untried"
 
 
@@ -18,13 +18,13 @@ def explain_plan(past: Past, question: str, about: str, agent: str = "") -> Expl
     """Explain when a plan was chosen, and why it was not.
 
     Args:
-        past: what happened.
+        past: the records.
         question: as it was asked.
         about: ``@label``, ``file.asl:line`` or the trigger of the plan.
-        agent: whose plan it is; the first agent that has it if empty.
+        agent: agent of the plan. Default: the first agent that has it.
 
     Raises:
-        UsageError: there is no such plan.
+        UsageError: the plan does not exist.
     """
     found = _find(past, about, agent)
     if len({plan["id"] for _, plan in found}) > 1:
@@ -48,7 +48,7 @@ def explain_plan(past: Past, question: str, about: str, agent: str = "") -> Expl
 
 
 def _considered(past: Past, agent: str, plan: Data) -> list[tuple[float, Data, str]]:
-    """The events that a plan was relevant for, each with what became of the plan."""
+    """Return the events that a plan was relevant for, each with how the plan was treated."""
     return [
         (t, data, how) for t, data in of_agent(past.deliberations, agent) for how in _parts(data, plan["id"])
     ]
@@ -59,7 +59,7 @@ def _what_happened(how: str) -> str:
 
 
 def _parts(deliberation: Data, number: object) -> Iterator[str]:
-    """What became of a plan when an event was handled."""
+    """Return how a plan was treated when an event was handled."""
     if deliberation.get("chosen") == number:
         yield CHOSEN
     elif any(option.get("plan") == number for option in deliberation.get("options") or ()):
@@ -99,7 +99,7 @@ def _times(count: int) -> str:
 
 
 def _find(past: Past, about: str, agent: str) -> list[tuple[str, Data]]:
-    """The plans that *about* may mean, each with its agent; at least one."""
+    """Return the plans that *about* may mean, each with its agent; at least one."""
     plans = list(past.plans(agent))
     for is_it in (_has_label, _is_at, _has_trigger):
         found = [each for each in plans if is_it(each[1], about)]
@@ -109,7 +109,7 @@ def _find(past: Past, about: str, agent: str) -> list[tuple[str, Data]]:
         {plan_name(plan) if is_written(str(plan.get("label") or "")) else _at(plan) for _, plan in plans}
     )
     more = ", ..." if len(names) > MOST_NAMES else ""
-    listed = f"there are {', '.join(names[:MOST_NAMES])}{more}" if names else "the recording has no plans"
+    listed = f"known plans: {', '.join(names[:MOST_NAMES])}{more}" if names else "the recording has no plans"
     raise UsageError(f"error: unknown plan: `{about}`\n  = help: {listed}")
 
 
@@ -123,7 +123,7 @@ def _has_label(plan: Data, about: str) -> bool:
 
 
 def _is_at(plan: Data, about: str) -> bool:
-    """Whether a place is in a plan; the file can be named without its folders."""
+    """Return whether a location is in a plan. The file may be named without its folders."""
     file, _, line = about.rpartition(":")
     if not line.isdigit() or not file:
         return False

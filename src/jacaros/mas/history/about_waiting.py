@@ -1,4 +1,4 @@
-"""What agents wait for, and why nothing happens."""
+"""Answers about what agents wait for, and why nothing happens."""
 
 from collections.abc import Iterator
 from itertools import islice
@@ -8,9 +8,9 @@ from jacaros.mas.history.explanation import Explanation, Fact, seconds
 from jacaros.mas.history.past import Data, Past
 
 MOST_GOALS = 5
-"""Goals of a stack that are named."""
+"""Maximum number of goals of a stack in an answer."""
 MOST_INTENTIONS = 20
-"""Intentions that an answer names."""
+"""Maximum number of intentions in an answer."""
 
 
 def explain_waiting(past: Past, question: str, agent: str = "") -> Explanation:
@@ -42,7 +42,7 @@ def _intentions(past: Past, agent: str) -> Iterator[Fact]:
 
 
 def _short(goals: list[str]) -> list[str]:
-    """Goals for people; of a deep stack only the first and the last ones."""
+    """Shorten a deep stack to its first and last goals."""
     return goals if len(goals) <= MOST_GOALS else [*goals[:2], "...", *goals[-2:]]
 
 
@@ -58,7 +58,7 @@ def _state(data: Data) -> str:
 
 
 def explain_idleness(past: Past, question: str, agent: str = "") -> Explanation:
-    """Explain why nothing happens: the run ended or is paused, goals were lost, or everything waits."""
+    """Explain why nothing happens: the run has ended or is paused, goals were lost, or everything waits."""
     last = _last_event(past, agent)
     facts = [
         *_ends(past, agent),
@@ -77,7 +77,7 @@ def _why_idle(past: Past, agent: str, last: tuple[float, Data] | None) -> str:
         return f"the run is paused: {past.debug.get('why') or 'on request'}"
     running = [each for each in _open(past, agent) if each[1][1].get("state") == "runs"]
     if running:
-        return f"something happens: {len(running)} intentions run at {seconds(past.end)}"
+        return f"the run is active: {len(running)} intentions run at {seconds(past.end)}"
     if _open(past, agent):
         return f"every open intention of {agent or 'all agents'} waits at {seconds(past.end)}"
     when = "" if last is None else f"; the last event was `{shown(last[1]['trigger'])}` at {seconds(last[0])}"
@@ -96,7 +96,7 @@ def _ends(past: Past, agent: str) -> Iterator[Fact]:
 
 
 def _lost(past: Past, agent: str) -> Iterator[Fact]:
-    """The last failure of each agent that was not recovered."""
+    """Return the last failure of each agent that was not recovered."""
     lost: dict[object, tuple[float, Data]] = {}
     for t, data in past.goals:
         if data.get("state") == "failed":
@@ -110,7 +110,7 @@ def _lost(past: Past, agent: str) -> Iterator[Fact]:
 
 
 def _silence(past: Past, last: tuple[float, Data] | None) -> Iterator[Fact]:
-    """The last event, if no plan was chosen for it."""
+    """Return the last event, if no plan was chosen for it."""
     if last is not None and last[1].get("chosen") is None:
         yield Fact(
             "event",

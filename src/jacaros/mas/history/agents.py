@@ -1,4 +1,4 @@
-"""Observes the agents of a run as they come and go: what they do, why, and the messages between them."""
+"""Observe the agents of a run: their minds, and the messages between them."""
 
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, Protocol
@@ -34,8 +34,8 @@ class AgentRecords:
 
     Args:
         system: the run.
-        links: makes the links of chains.
-        t: tells when something was.
+        links: creates the links of causal chains.
+        t: returns times.
         tell: takes the kind of a record and its data.
     """
 
@@ -50,7 +50,7 @@ class AgentRecords:
         self._ends: dict[str, Callable[[], None]] = {}
 
     def start(self) -> Callable[[], None]:
-        """Observe all agents, also those that come later; gives what ends that."""
+        """Observe all agents, including future ones. Return a function that ends this."""
         for host in self._system.directory:
             self._began(host)
         end_watch = self._system.directory.watch(self._changed)
@@ -73,7 +73,7 @@ class AgentRecords:
         self._looks.look()
 
     def run_ended(self) -> None:
-        """Record what the agents were at, and that goals that are open are dropped."""
+        """Record the final state of the agents. Open goals are dropped."""
         self._looks.look()
         self._goals.drop()
 
@@ -131,7 +131,7 @@ class AgentRecords:
 
 
 def observe_turns(host: AgentHost, had_turn: Callable[[], None]) -> Callable[[], None]:
-    """Call *had_turn* after each turn of an agent; gives what ends that."""
+    """Call *had_turn* after each turn of an agent. Return a function that ends this."""
     run = host.run
 
     def observed(fuel: int) -> bool:

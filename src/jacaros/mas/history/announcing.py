@@ -1,5 +1,6 @@
-"""Explanations while a run continues: each time an event of interest is handled, or a goal of interest fails; and at its
-end, of events that never happened."""
+"""Explanations during a run: whenever an event of interest is handled or a goal of interest fails, and at the end of
+the run for events that never happened.
+"""
 
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
@@ -15,12 +16,12 @@ class Announcer:
     """Explains events as they are handled.
 
     Args:
-        history: of the run; it is observed by whoever made it.
-        events: those of interest, such as ``+alarm(_)`` or ``!go(dock)``.
+        history: history of the run. The caller starts its observation.
+        events: events of interest, such as ``+alarm(_)`` or ``!go(dock)``.
         tell: takes each explanation as text.
 
     Raises:
-        UsageError: one of the events is not an event, a goal or a belief.
+        UsageError: one of them is not an event, a goal or a belief.
     """
 
     def __init__(self, history: History, events: Sequence[str], tell: Callable[[str], None]) -> None:
@@ -66,11 +67,11 @@ _READERS: Mapping[str, Callable[[Mapping[str, Any]], str]] = {
     "belief": lambda data: f"{data['op']}{data['belief']}",
     "goal": lambda data: str(data["goal"]) if data["state"] == "failed" else "",
 }
-"""What happened by a record, as a trigger, of each event that is explained."""
+"""Functions that return the trigger of an explained event, by kind of record."""
 
 
 def _has_plan(past: Past, change: Mapping[str, Any]) -> bool:
-    """Whether a plan may be for a change of beliefs: then the event is explained when it is handled."""
+    """Return whether a plan may handle a belief change. Then the event is explained when it is handled."""
     name = name_of(str(change["belief"]))
     triggers = (str(plan.get("trigger", "")) for _, plan in past.plans(str(change["agent"])))
     return any(each.startswith(change["op"]) and name_of(each) in (name, "") for each in triggers)

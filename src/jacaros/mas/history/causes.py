@@ -1,4 +1,4 @@
-"""Records of causes: those that led to something, of all that arise."""
+"""Records of causes. Only causes that led to something are recorded."""
 
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -8,27 +8,28 @@ from jacaros.mas.history.values import call_text, limited, message_text, request
 from jacaros.trace import Cause, Tracer
 
 _GENERATION = 4096
-"""Causes that are remembered at least until something needs them, and at most twice as many."""
+"""Number of causes that are kept at least, until something needs them; at most twice as many."""
 COMMAND_PERIOD = 2.0
-"""Seconds between two records of commands that one operation sends to one topic; the last one is recorded, too, and the
-first one to stand still."""
+"""Seconds between two recorded commands of one operation on one topic. The last command, and the first one that stops
+the robot, are recorded, too.
+"""
 RECORDED = ("event", "message")
-"""Links that have records of their own, deliberations and messages; what led to them is recorded with these."""
+"""Links with records of their own: deliberations and messages. Their causes are recorded with these."""
 LARGE = 4096
-"""Elements of the field ``data`` from which on a message, such as an image, is not remembered."""
+"""Number of elements in the field ``data`` from which on a message, such as an image, is not kept."""
 
 Tell = Callable[[str, Mapping[str, Any]], None]
 
 
 Link = tuple[Cause, float, Any]
-"""A cause, when it arose (by the clock, which continues during a pause on a real graph), and what it is about."""
+"""A cause, its time (by the clock, which continues during a pause on a real graph), and its subject."""
 
 
 class _Received(Cause):
-    """A message as a cause, with the message behind its fields.
+    """A message as a cause, with the message in its fields.
 
-    Most messages lead to nothing.  To keep them anywhere, even 64, makes a run a tenth slower: new messages then need new
-    memory.  So a message lives as long as its cause.
+    Most messages have no effect. Keeping even 64 of them makes a run 10 % slower, because new messages then need new
+    memory. So a message lives as long as its cause.
     """
 
     __slots__ = ()
@@ -39,13 +40,13 @@ class Traffic:
 
     Attributes:
         topic: absolute name.
-        count: how many there were; who reads it may set it back.
-        outgoing: whether we send them.
-        heard: takes each message, None when nobody wants them.
-        kept: whether messages are small enough to be remembered.
-        moves, plain: whether messages are velocities, and whether geometry_msgs/Twist and not TwistStamped.
-        parent, at, stands: of the command recorded last: what led to it (an id), when, and whether it was to stand still.
-        held: the newest command that was not recorded: what led to it, when (`elapsed` of the clock), and the message.
+        count: number of messages. A reader may reset it.
+        outgoing: whether our node sends them.
+        heard: takes each message, or None.
+        kept: whether messages are small enough to be kept.
+        moves, plain: whether messages are velocities, and whether they are geometry_msgs/Twist instead of TwistStamped.
+        parent, at, stands: of the last recorded command: its cause (an id), its time, and whether it was a stop.
+        held: the newest command that was not recorded: its cause, time (`elapsed` of the clock), and message.
     """
 
     __slots__ = (
@@ -73,16 +74,16 @@ class Traffic:
 
 
 class CauseRecords:
-    """Numbers the causes of a run, and records chains: each link once, as soon as something needs it.
+    """Numbers the causes of a run, and records causal chains: each link once, as soon as something needs it.
 
-    What needs a chain is an act, a command, and whatever calls `need`.  See ``docs/reference/recordings.md`` for the
-    fields of the record ``cause``.
+    Actions and commands need a chain, and callers of `need`. See ``docs/reference/recordings.md`` for the fields of the
+    record ``cause``.
 
     Args:
-        clock: of the run.
+        clock: clock of the run.
         beginning: seconds of the clock from which ``at`` counts.
         tell: takes the kind of a record and its data.
-        find_listener: gives what takes the messages of a topic that we receive, from one of them; None for nothing.
+        find_listener: returns a listener for the messages of a topic, given one of them; or None.
 
     Attributes:
         received, sent: the messages of our node by topic.
@@ -102,14 +103,14 @@ class CauseRecords:
         self.sent: dict[str, Traffic] = {}
         self.with_effect: Callable[[float, str, Any], None] | None = None
         self._last = 0
-        # Two generations: the older one is dropped as a whole, which costs nothing for each cause.
+        # Two generations: the older one is dropped as a whole, at no cost per cause.
         self._young: dict[int, Link] = {}
         self._old: dict[int, Link] = {}
         self._samples: set[int] = set()
-        """Messages that have led to something: each is remembered, or recorded, once."""
+        """Messages that have led to something. Each is kept, or recorded, once."""
 
     def listen_to(self, trace: Callable[[Tracer | None], None]) -> Callable[[], None]:
-        """Be the tracer of a system, which *trace* sets; gives what ends it."""
+        """Trace a system through *trace*. Return a function that ends this."""
         trace(self)
 
         def end() -> None:
@@ -119,7 +120,7 @@ class CauseRecords:
         return end
 
     def link(self, kind: str, what: str, parent: Cause | None = None, about: Any = None) -> Cause:
-        """Make the next link of a chain, see `jacaros.trace.Tracer`."""
+        """Create the next link of a chain. See `jacaros.trace.Tracer`."""
         self._last = number = self._last + 1
         made = Cause(number, 0 if parent is None else parent.id, kind, what)
         if kind in RECORDED:
@@ -134,8 +135,8 @@ class CauseRecords:
         return made
 
     def received_message(self, topic: str, message: Any) -> Cause:
-        """Make the first link of a chain, see `jacaros.trace.Tracer`."""
-        # Called for each message of each sensor: most of what a recording costs would be here.
+        """Create the first link of a chain. See `jacaros.trace.Tracer`."""
+        # Called for each sensor message: most of the cost of a recording would be here.
         try:
             traffic = self.received[topic]
         except KeyError:
@@ -148,17 +149,20 @@ class CauseRecords:
         return tuple.__new__(_Received, (number, 0, "sample", topic, kept))
 
     def _keep_sample(self, cause: Cause) -> None:
-        """Remember a message that has led to something, until something needs it."""
+        """Keep a message that has led to something, until something needs it."""
         if cause.id not in self._samples:
             if len(self._samples) > _GENERATION:
                 self._samples.clear()
             self._samples.add(cause.id)
             link: tuple[Any, ...] = tuple(cause)
-            # What a message leads to comes in the same pass of the loop.
+            # The effects of a message occur in the same pass of the event loop.
             self._young[cause.id] = Cause(*link[:4]), self._clock.now(), link[4]
 
     def sent_message(self, topic: str, message: Any, parent: Cause | None) -> None:
-        """Make the last link of a chain, see `jacaros.trace.Tracer`; of many of one operation, one now and then."""
+        """Create the last link of a chain, see `jacaros.trace.Tracer`.
+
+        Frequent commands of one operation are thinned out.
+        """
         try:
             traffic = self.sent[topic]
         except KeyError:
@@ -176,7 +180,7 @@ class CauseRecords:
             traffic.held = parent, now, message
             return
         if traffic.held is not None and traffic.parent != parent.id:
-            self._record_command(traffic, *traffic.held)  # the last one of the operation before
+            self._record_command(traffic, *traffic.held)  # the last command of the previous operation
         traffic.stands = stands
         self._record_command(traffic, parent, now, message)
 
@@ -189,7 +193,7 @@ class CauseRecords:
         self._record((made, moment, message if traffic.kept else None))
 
     def need(self, cause: Cause) -> None:
-        """Record a cause and what led to it, as far as that is not recorded yet and still remembered."""
+        """Record a cause and its own causes, as far as they are not recorded yet and still known."""
         if isinstance(cause, _Received):
             self._keep_sample(cause)
         number = cause.id
@@ -216,7 +220,7 @@ class CauseRecords:
         return traffic
 
     def flush(self, all_of_them: bool = False) -> None:
-        """Record the last command of each topic that was held back long enough; to be called a few times a second."""
+        """Record the last command of each topic that was held back long enough. Call it a few times a second."""
         now = self._clock.elapsed
         for traffic in self.sent.values():
             if traffic.held is not None and (all_of_them or now - traffic.at >= COMMAND_PERIOD):

@@ -1,4 +1,4 @@
-"""Chains of causes as lines of an answer: command, operation, step of a plan, event, percept, message."""
+"""Causal chains as lines of an answer: command, operation, step of a plan, event, percept, message."""
 
 import re
 from collections.abc import Iterator
@@ -11,15 +11,15 @@ from jacaros.mas.history.words import named
 _OF_PERCEPTS = re.compile(r"\[artifact_id\([^\]]*source\(percept\)[^\]]*\]")
 
 LONGEST_CHAIN = 40
-"""Links that are shown; of a longer chain the ones next to the effect and the first one."""
+"""Maximum number of links shown. Of a longer chain, those next to the effect and the first one."""
 
 
 LONGEST_SAMPLE = 100
-"""Characters of a message that are shown."""
+"""Maximum number of characters of a message."""
 
 
 def chain(past: Past, number: Any) -> tuple[Fact, ...]:
-    """The links from one back to the beginning, as facts."""
+    """Return the links from one back to the beginning, as facts."""
     links = [fact for t, data in past.chain(number) for fact in _facts(past, t, data)]
     if len(links) > LONGEST_CHAIN:
         left = len(links) - LONGEST_CHAIN
@@ -86,39 +86,39 @@ _MAKERS = {
 
 
 def message_text(message: Data) -> str:
-    """A message between agents for people."""
+    """Return a message between agents as text."""
     return f"{message['from']} to {message['to']}: {message['performative']} {message['content']}"
 
 
 def plan_name(plan: Data) -> str:
-    """A plan for people: label, or trigger, with its context."""
+    """Return a plan as text: label, or trigger, with its context."""
     label = str(plan.get("label") or "")
     return f"@{label}" if is_written(label) else f"`{plan_text(plan)}`"
 
 
 def is_written(label: str) -> bool:
-    """Whether a label was written in the program; others are numbered by the system."""
+    """Return whether a label is from the program. Others are generated."""
     return bool(label) and not label.startswith("p__")
 
 
 def plan_text(plan: Data) -> str:
-    """Trigger and context of a plan."""
+    """Return trigger and context of a plan."""
     context = plan.get("context")
     return shown(f"{plan.get('trigger', '?')}{f' : {context}' if context else ''}")
 
 
 def shown(text: Any) -> str:
-    """A recorded text with `_` for unnamed variables and without the annotations that every percept has."""
+    """Return a recorded text with `_` for unnamed variables, and without the annotations that all percepts have."""
     return _OF_PERCEPTS.sub("[source(percept)]", named(str(text)))
 
 
 def place_of(plan: Data) -> tuple[str, int]:
-    """File and line of a plan."""
+    """Return file and line of a plan."""
     return str(plan.get("file") or ""), int(plan.get("line") or 0)
 
 
 def source_line(past: Past, file: str, line: int) -> str:
-    """The code of a line of a program, without the arrow before it and the sign behind it; empty if it is unknown."""
+    """Return the code of a line of a program, without surrounding punctuation; empty if it is unknown."""
     lines = past.sources.get(file, [])
     if not 0 < line <= len(lines):
         return ""

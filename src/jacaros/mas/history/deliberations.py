@@ -1,4 +1,4 @@
-"""Records of deliberations: which plan an agent took for an event, and why none of those before it."""
+"""Records of deliberations: the plan that an agent chose for an event, and why it rejected those before it."""
 
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple, Protocol
@@ -14,29 +14,29 @@ from jacaros.mas.history.words import shown_event
 from jacaros.trace import Cause, Tracer
 
 PER_SECOND = 10
-"""Contexts of one agent that are examined in a second of the run's clock; each costs some 50 microseconds."""
+"""Maximum number of contexts of one agent that are examined per second of the run's clock, at about 50 µs each."""
 IN_ALL = 100
-"""The same for all agents of a run."""
+"""The same limit for all agents of a run."""
 MOST_OPTIONS = 12
-"""Plans of one deliberation that are examined."""
+"""Maximum number of plans of one deliberation that are examined."""
 
 Tell = Callable[[str, Mapping[str, Any]], None]
 
 
 class Links(Tracer, Protocol):
-    """Makes the links of chains, and records them (`jacaros.mas.history.causes.CauseRecords`)."""
+    """Creates the links of causal chains, and records them (`jacaros.mas.history.causes.CauseRecords`)."""
 
     def need(self, cause: Cause) -> None:
         """Record a link and those that led to it."""
 
 
 class _Reason(NamedTuple):
-    """What led to the plan of a frame.
+    """The cause of the plan of a frame.
 
     Attributes:
-        depth: number of frames before it was put on the stack, or replaced the top of it (tail call).
-        frame: of the plan.
-        link: of the deliberation that took it.
+        depth: number of frames below it when it was pushed, or replaced the top of the stack (tail call).
+        frame: frame of the plan.
+        link: link of the deliberation that chose it.
     """
 
     depth: int
@@ -44,16 +44,16 @@ class _Reason(NamedTuple):
     link: Cause
 
     def is_on(self, frames: list[Frame]) -> bool:
-        """Whether the frame is still on a stack."""
+        """Return whether the frame is still on a stack."""
         return any(each is self.frame for each in frames[max(0, self.depth - 1) : self.depth + 1])
 
 
 class Allowance:
-    """Allows something so often in a second of the run's clock.
+    """Limits how often something happens per second of the run's clock.
 
     Args:
-        t: seconds of the run's clock.
-        most: how often.
+        t: returns seconds of the run's clock.
+        most: the limit.
     """
 
     def __init__(self, t: Callable[[], float], most: int) -> None:
@@ -61,7 +61,7 @@ class Allowance:
         self._second, self._taken = -1, 0
 
     def take(self) -> bool:
-        """Whether it is allowed once more."""
+        """Return whether it is allowed once more."""
         second = int(self._t())
         if second != self._second:
             self._second, self._taken = second, 0
@@ -70,14 +70,14 @@ class Allowance:
 
 
 class DeliberationRecords:
-    """Records the deliberations of one agent, and keeps what led to the plans on its stacks.
+    """Records the deliberations of one agent, and keeps the causes of the plans on its stacks.
 
     Args:
-        mind: of the agent.
-        numbers: of its plans.
-        links: makes the links.
-        t: seconds of the run's clock.
-        in_all: allows contexts of all agents to be examined.
+        mind: mind of the agent.
+        numbers: numbers of its plans.
+        links: creates links.
+        t: returns seconds of the run's clock.
+        in_all: limits the contexts of all agents that are examined.
         tell: takes the kind of a record and its data.
     """
 
@@ -93,16 +93,16 @@ class DeliberationRecords:
         self._mind, self._numbers, self._links, self._tell = mind, numbers, links, tell
         self._in_all = in_all
         self._reasons: dict[int, list[_Reason]] = {}
-        """By intention, what led to the plans on its stack, the lowest first."""
+        """By intention, the causes of the plans on its stack, the lowest first."""
         self._candidates: dict[Trigger, list[Plan]] = {}
         self._allowance = Allowance(t, PER_SECOND)
 
     def plans_changed(self) -> None:
-        """Look for candidates anew."""
+        """Compute the candidates again."""
         self._candidates.clear()
 
     def cause_of(self, intention: Intention) -> Cause | None:
-        """Return what led to the plan on top of an intention."""
+        """Return the cause of the plan on top of an intention."""
         reasons = self._reasons.get(intention.id)
         while reasons and not reasons[-1].is_on(intention.frames):
             reasons.pop()
@@ -116,10 +116,10 @@ class DeliberationRecords:
         frame: Frame | None,
         cause: Cause | None,
     ) -> Cause | None:
-        """Record a deliberation, see `jacaros.bdi.state.observing.MindObserver`."""
+        """Record a deliberation. See `jacaros.bdi.state.observing.MindObserver`."""
         plans = self._plans_for(goal[0])
         if not plans and frame is None and not goal[0].kind:
-            return cause  # nobody asked for this event
+            return cause  # no plan is relevant for this event
         parent = self.cause_of(intention) if intention is not None else cause
         trigger = shown_event(goal)
         link = self._links.link("event", trigger, parent)
@@ -164,6 +164,6 @@ class DeliberationRecords:
         return options
 
     def forget(self) -> None:
-        """Forget the stacks of intentions that are over."""
+        """Forget the stacks of finished intentions."""
         for number in [number for number in self._reasons if number not in self._mind.alive]:
             del self._reasons[number]

@@ -1,4 +1,4 @@
-"""Records of the environment: artifacts, who focuses them, properties, signals and operations."""
+"""Records of the environment: artifacts, focus, properties, signals and operations."""
 
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
@@ -14,19 +14,19 @@ from jacaros.env.workspace import Workspace
 from jacaros.mas.history.values import call_text, json_values, limited, output_texts, request_text
 
 PERIOD = 0.5
-"""Seconds between two records of one property that changes all the time; the newest value is recorded in the end."""
+"""Seconds between two records of a property that changes continuously. The last value is always recorded."""
 
 Tell = Callable[[str, Mapping[str, Any]], None]
 _Key = tuple[ArtifactId, int]
 
 
 class EnvironmentRecords:
-    """Listens to an environment, and makes records of what happens in it.
+    """Observes an environment and records its events.
 
     Args:
-        clock: of the run.
+        clock: clock of the run.
         tell: takes the kind of a record and its data.
-        robot_of: finds the robot that an artifact drives or senses; None: no robot.
+        robot_of: returns the robot that an artifact drives or senses, or None.
     """
 
     def __init__(self, clock: Clock, tell: Tell, robot_of: Callable[[object], str | None]) -> None:
@@ -34,13 +34,13 @@ class EnvironmentRecords:
         self._environment: Environment | None = None
         self._known: set[ArtifactId] = set()
         self._recorded: dict[_Key, float] = {}
-        """When each property was recorded last."""
+        """Time of the last record of each property."""
         self._held: dict[_Key, tuple[ObservableProperty, int | None]] = {}
         """Values that came too soon after the last record, and their causes."""
         self._running: dict[OperationExecution, dict[str, Any]] = {}
 
     def observe(self, environment: Environment) -> None:
-        """Listen to *environment*, and record what is there already."""
+        """Observe *environment*, and record its current state."""
         self._environment = environment
         environment.listener = self
         for workspace in environment.workspaces():
@@ -49,16 +49,16 @@ class EnvironmentRecords:
                     self.artifact(artifact, True)
 
     def end(self) -> None:
-        """Listen no longer; the newest values that were held back are recorded."""
+        """Stop observing, and record the newest values that were held back."""
         self.flush(all_of_them=True)
         if self._environment is not None:
             self._environment.listener = None
             self._environment = None
 
-    # ---- what the environment calls
+    # ---- called by the environment
 
     def artifact(self, artifact: ArtifactId, present: bool) -> None:
-        """Record that an artifact is made or disposed."""
+        """Record that an artifact is created or disposed."""
         made = self._environment.artifact(artifact) if present and self._environment is not None else None
         self._tell(
             "artifact",
@@ -88,7 +88,7 @@ class EnvironmentRecords:
                 self._property(artifact, each, None)
 
     def focused(self, artifact: ArtifactId, agent: str, on: bool) -> None:
-        """Record that an agent focuses an artifact, or no longer does."""
+        """Record that an agent focuses an artifact, or stops focusing it."""
         if artifact in self._known:
             self._tell("focus", {"agent": agent, "artifact": artifact.path, "on": on})
 
@@ -96,7 +96,7 @@ class EnvironmentRecords:
         """Record new values and signals."""
         artifact, cause = observation.artifact, observation.cause
         if artifact not in self._known:
-            return  # it stands for an agent, or is being made: its properties are recorded after that
+            return  # it represents an agent, or is being created: its properties are recorded afterwards
         number = cause.id if cause is not None else None
         for signal in observation.signals:
             written = call_text(signal.name, signal.arguments)
@@ -125,7 +125,7 @@ class EnvironmentRecords:
         self._tell("operation", {**data, "state": "began"})
 
     def ended(self, execution: OperationExecution, outcome: OperationOutcome | None) -> None:
-        """Record how an operation ended; one that was cancelled has failed."""
+        """Record how an operation ended. A cancelled one has failed."""
         data = self._running.pop(execution, None)
         if data is None:
             return
@@ -143,7 +143,7 @@ class EnvironmentRecords:
 
     def _property(self, artifact: ArtifactId, new: ObservableProperty, cause: int | None) -> None:
         key, now = (artifact, new.key), self._clock.elapsed
-        # Not made into a record yet: most values of a sensor are replaced before anybody reads them.
+        # Not recorded yet: most values of a sensor are replaced before they are read.
         if now - self._recorded.get(key, -PERIOD) < PERIOD:
             self._held[key] = (new, cause)
             return
@@ -170,7 +170,7 @@ class EnvironmentRecords:
         self._tell("property", data)
 
     def flush(self, all_of_them: bool = False) -> None:
-        """Record the newest values that were held back for `PERIOD` seconds; to be called a few times a second."""
+        """Record the newest values that were held back for `PERIOD` seconds. Call it a few times a second."""
         now = self._clock.elapsed
         for key, held in list(self._held.items()):
             if all_of_them or now - self._recorded.get(key, -PERIOD) >= PERIOD:
@@ -178,11 +178,10 @@ class EnvironmentRecords:
 
 
 def robot_finder(robots: Callable[[], Mapping[str, str]]) -> Callable[[object], str | None]:
-    """Make a function that finds the robot of an artifact by the ROS names under which it works.
+    """Return a function that finds the robot of an artifact by the ROS names it uses.
 
     Args:
-        robots: gives the names of the known robots by what stands before their topics, such as ``/robot_0``; empty for
-            the only robot.
+        robots: returns the names of known robots by topic prefix, such as ``/robot_0``; empty for the only robot.
     """
 
     def robot_of(artifact: object) -> str | None:
@@ -201,6 +200,6 @@ _NOT_OF_A_ROBOT = ("map", "door", "fault")
 
 
 def _has_robot_topics(artifact: object) -> bool:
-    """Whether an artifact without a robot's name uses topics or services of the only robot."""
+    """Return whether an artifact without a robot's name uses topics or services of the only robot."""
     names: Iterable[str] = getattr(artifact, "ros_names", ())
     return any(not name.lstrip("/").startswith(_NOT_OF_A_ROBOT) for name in names)

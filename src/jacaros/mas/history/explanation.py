@@ -1,4 +1,4 @@
-"""The answer to a question about a run: plain data, with a text for people."""
+"""The answer to a question about a run, as plain data and as text."""
 
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass
@@ -10,12 +10,12 @@ class Fact:
     """One line of an answer.
 
     Attributes:
-        kind: what it is about: ``command``, ``operation``, ``act``, ``event``, ``property``, ``signal``, ``sample``,
+        kind: ``command``, ``operation``, ``act``, ``event``, ``property``, ``signal``, ``sample``,
             ``message``, ``plan``, ``goal``, ``intention``, ``belief`` or ``note``.
-        text: for people.
-        t: seconds since the run began, None if the fact has no time.
-        agent: whose it is; empty for facts of the environment.
-        file, line: where in a program, ``""`` and 0 if unknown.
+        text: the text.
+        t: seconds since the run began, or None.
+        agent: agent it concerns; empty for facts of the environment.
+        file, line: location in a program; ``""`` and 0 if unknown.
     """
 
     kind: str
@@ -31,7 +31,7 @@ class Fact:
         return f"{self.file}:{self.line}" if self.file and self.line else self.file
 
     def written(self) -> str:
-        """The text with agent and place."""
+        """Return the text with agent and location."""
         agent = f"{self.agent}: " if self.agent else ""
         return f"{agent}{self.text}{f' ({self.place})' if self.place else ''}"
 
@@ -43,9 +43,9 @@ class Explanation:
     Attributes:
         question: as it was asked.
         answer: the answer in one line.
-        t: seconds since the run began of what was asked for, None if it never happened.
-        facts: what the answer rests on, such as each candidate plan with the conjunct that failed.
-        because: the chain of causes, from the effect back to its beginning.
+        t: seconds since the run began; None if it never happened.
+        facts: the evidence, such as each candidate plan with the conjunct that failed.
+        because: the causal chain, from the effect back to its beginning.
     """
 
     question: str
@@ -55,13 +55,13 @@ class Explanation:
     because: tuple[Fact, ...] = ()
 
     def text(self) -> str:
-        """The answer as lines: its facts, then the chain of causes with times."""
+        """Return the answer as lines: its facts, then the causal chain with times."""
         return "\n".join(
             (self.answer, *(f"  {each.written()}" for each in self.facts), *_chain(self.because))
         )
 
     def data(self) -> dict[str, Any]:
-        """The answer as dictionaries, lists, texts and numbers, ready for JSON."""
+        """Return the answer as JSON data."""
         return asdict(self)
 
 
@@ -78,5 +78,5 @@ def _time(t: float | None) -> str:
 
 
 def seconds(t: float) -> str:
-    """A time for people, such as ``12.300 s``."""
+    """Return a time as text, such as ``12.300 s``."""
     return f"{t:.3f} s"

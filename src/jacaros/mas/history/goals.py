@@ -1,4 +1,4 @@
-"""Records of the agents' goals: each change once, and goals by numbers of their own."""
+"""Records of the agents' goals: each change once, with unique numbers."""
 
 from collections.abc import Callable
 from functools import partial
@@ -21,9 +21,9 @@ _AT_WORK = ("pursued", "resumed")
 
 
 class _Goal:
-    """An open goal; *settled* is the goal when it holds no variables, so that its text stays as it is."""
+    """An open goal. *settled* is the goal if it has no variables, so its text does not change."""
 
-    # Not a dataclass, which takes a millisecond to make.
+    # Not a dataclass, whose creation takes a millisecond.
     __slots__ = ("intention", "number", "settled", "state", "text")
 
     def __init__(self, number: int) -> None:
@@ -33,29 +33,28 @@ class _Goal:
 
 
 class GoalRecords:
-    """Records the goals of minds, and the work of agents written in Python.
+    """Records the goals of minds, and the work of Python agents.
 
-    Goals are numbered in the order in which they begin: the numbers are the same in each run with one seed.
+    Goals are numbered in the order in which they begin, so the numbers are the same in each run with the same seed.
 
     Args:
         tell: takes ``agent``, ``goal``, ``state`` (``pursued``, ``suspended``, ``resumed``, ``achieved``, ``failed``,
             ``dropped``, ``recovered``: a plan for its failure has ended, ``replaced``: by the last goal of its plan, a tail
             call), ``id``, counted from 1, ``intention``, the number of the stack of goals that it is on, and of a failure
-            ``why``.  A goal that failed and has a plan for its failure is pursued again under its number.  For an agent
-            written in Python the goals are its ``run``, its operations and the behaviours of its trees that run; all of
-            them are on one stack.
+            ``why``. A goal that failed and has a plan for its failure is pursued again under its number. For a Python
+            agent, the goals are its ``run``, its operations and the running behaviours of its trees, all on one stack.
     """
 
     def __init__(self, tell: Tell) -> None:
         self._tell = tell
         self._numbers = count(1)
         self._goals: dict[tuple[str, int], _Goal] = {}
-        """The open ones, by agent and the mind's number."""
+        """Open goals, by agent and the mind's number."""
         self._newest: dict[str, int] = {}
-        """By agent, the largest number of the mind's so far."""
+        """By agent, the largest number of the mind so far."""
 
     def listen(self, host: AgentHost) -> None:
-        """Hear of the goals of an agent from now on."""
+        """Observe the goals of an agent from now on."""
         if isinstance(host.mind, Mind):
             observe_goals(host.mind, partial(self, host.name))
             return
@@ -65,7 +64,7 @@ class GoalRecords:
             host.observe(_Work(self, host.name))
 
     def __call__(self, agent: str, state: str, goal: Goal, which: int, intention: int, why: str = "") -> None:
-        """Be told by a mind, see `jacaros.bdi.rules.meta_events.observe_goals`."""
+        """Record a change reported by a mind. See `jacaros.bdi.rules.meta_events.observe_goals`."""
         if goal[0].kind != "!" or state == "waiting":
             return
         known = self._goals.get((agent, which))
@@ -78,7 +77,7 @@ class GoalRecords:
             known.settled = goal
 
     def take(self, agent: str, state: str, goal: str, which: int, intention: int, why: str = "") -> None:
-        """Take what is told of anything that an agent pursues."""
+        """Record a change of anything that an agent pursues."""
         known = self._goals.get((agent, which))
         if state == "finished":
             if known is None:
@@ -86,12 +85,12 @@ class GoalRecords:
             if known.state == "failed":
                 del self._goals[agent, which]
                 return
-            state = "dropped"  # its intention is over, and nobody has told anything else of it
+            state = "dropped"  # its intention has ended without another report
         if state not in _OPEN and state not in _OVER and state != "failed":
             return
         shown = _OPEN.get(state, state)
         if known is None:
-            # What is told of a goal that is over is no news, nor is the end of one that nobody saw begin.
+            # Ignore reports about finished goals, and the end of goals whose begin was not observed.
             if state not in _OPEN and (state != "failed" or which <= self._newest.get(agent, 0)):
                 return
             known = self._goals[agent, which] = _Goal(next(self._numbers))
@@ -111,14 +110,14 @@ class GoalRecords:
             del self._goals[agent, which]
 
     def drop(self, agent: str | None = None) -> None:
-        """Record that the goals of an agent are dropped that are still open; those of all agents if none is named."""
+        """Record that the open goals of an agent, or of all agents, are dropped."""
         for (pursuer, which), goal in list(self._goals.items()):
             if agent in (None, pursuer):
                 self.take(pursuer, "finished", goal.text, which, goal.intention)
 
 
 class _Work:
-    """Numbers what one agent written in Python works at."""
+    """Numbers what one Python agent works on."""
 
     def __init__(self, news: GoalRecords, agent: str) -> None:
         self._news, self._agent = news, agent
@@ -126,7 +125,7 @@ class _Work:
         self._at_work: dict[object, int] = {}
 
     def __call__(self, state: str, text: str, which: object, why: str) -> None:
-        """Be told by the agent, see `jacaros.env.session.account.Observer`."""
+        """Record a change reported by the agent. See `jacaros.env.session.account.Observer`."""
         if state == "executing":
             self._at_work[which] = next(self._numbers)
         number = self._at_work.get(which)

@@ -1,4 +1,4 @@
-"""Records of the ROS graph around our node: its topics, who is at them, and how often ours carry a message."""
+"""Records of the ROS graph around our node: its topics, their nodes, and rates of our messages."""
 
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -9,9 +9,9 @@ from jacaros.ros.errors import RosError
 from jacaros.ros.graph import GraphContents
 
 PERIOD = 3.0
-"""Seconds between two looks at a graph that changes."""
+"""Seconds between two checks of a changing graph."""
 _CHANGED = 0.5
-"""Share by which a rate must change to be recorded again."""
+"""Relative change of a rate that causes a new record."""
 _MOST_TOPICS = 300
 
 Tell = Callable[[str, Mapping[str, Any]], None]
@@ -25,7 +25,7 @@ class GraphRecords:
         messages: counts the messages of our node.
 
     Attributes:
-        pause: seconds until the next look; longer while nothing changes.
+        pause: seconds until the next check; longer while nothing changes.
     """
 
     def __init__(self, tell: Tell, messages: CauseRecords) -> None:
@@ -34,10 +34,10 @@ class GraphRecords:
         self.pause = PERIOD
 
     async def look(self, backend: Backend, seconds: float) -> None:
-        """Look at the graph, *seconds* after the last look."""
+        """Check the graph, *seconds* after the last check."""
         try:
             contents = await backend.contents()
-        except RosError:  # the graph may be gone for a while
+        except RosError:  # the graph may be unreachable for a while
             return
         counts = self._counts(backend)
         topics = self._topics(contents, counts, seconds, backend.node_name)
@@ -49,13 +49,13 @@ class GraphRecords:
             self._tell("graph", {"node": backend.node_name, "topics": topics})
 
     def _counts(self, backend: Backend) -> dict[tuple[str, str], float]:
-        """The messages since the last time, by topic and direction."""
+        """Return the number of messages since the last call, by topic and direction."""
         counts: dict[tuple[str, str], float] = {}
         for traffic in self._messages.sent.values():
             counts[traffic.topic, "out"] = traffic.count
             traffic.count = 0
         for traffic in self._messages.received.values():
-            # Each of our subscriptions, such as an artifact's and the page's, has counted the same messages.
+            # All our subscriptions to a topic, such as an artifact's and the page's, count the same messages.
             counts[traffic.topic, "in"] = traffic.count / max(1, backend.receivers(traffic.topic))
             traffic.count = 0
         return counts

@@ -1,4 +1,4 @@
-"""The history of a run: what happens in its agents and around them, as records of plain data."""
+"""The history of a run: the events of its agents and their environment, as records of plain data."""
 
 from collections import deque
 from collections.abc import Callable, Mapping
@@ -9,7 +9,7 @@ from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.deployment import Deployment
 from jacaros.mas.directory import Directory
 from jacaros.mas.history.agents import AgentRecords, PopulatedSystem
-from jacaros.mas.history.surroundings import SurroundedSystem, Surroundings
+from jacaros.mas.history.run_environment import RunEnvironmentRecords, SituatedSystem
 from jacaros.mas.options import RunOptions
 from jacaros.mas.ros_graph import RosGraph
 from jacaros.version import VERSION
@@ -19,16 +19,16 @@ if TYPE_CHECKING:
     from jacaros.sim.world import World
 
 KEPT = 50_000
-"""Records that are kept; older ones are forgotten."""
+"""Number of records that are kept. Older ones are dropped."""
 
 
 class Happening(NamedTuple):
     """One record.
 
     Attributes:
-        t: seconds of the run's clock since the history's `History.beginning`.
+        t: seconds of the run's clock since `History.beginning`.
         event: its kind, see ``docs/reference/recordings.md``.
-        data: plain JSON data; nobody changes it.
+        data: plain JSON data, which must not be changed.
     """
 
     t: float
@@ -37,7 +37,7 @@ class Happening(NamedTuple):
 
 
 Listener = Callable[[float, str, Mapping[str, Any]], None]
-"""Takes ``t``, ``event`` and ``data`` of a record, see `Happening`."""
+"""Called with ``t``, ``event`` and ``data`` of a record. See `Happening`."""
 
 _LASTING: Mapping[str, tuple[str, ...]] = {
     "run": (),
@@ -46,11 +46,11 @@ _LASTING: Mapping[str, tuple[str, ...]] = {
     "program": ("agent",),
     "artifact": ("artifact",),
 }
-"""Records that describe what is there: the newest of each is kept while it is there, by these fields of it."""
+"""Records that describe a state: the newest of each is kept while the state lasts, identified by these fields."""
 
 
-class ObservedSystem(SurroundedSystem, PopulatedSystem, Protocol):
-    """A running system as its history sees it (`jacaros.mas.system.System`)."""
+class ObservedSystem(SituatedSystem, PopulatedSystem, Protocol):
+    """A running system, as its history sees it (`jacaros.mas.system.System`)."""
 
     clock: Clock
     directory: Directory[AgentHost]
@@ -60,7 +60,7 @@ class ObservedSystem(SurroundedSystem, PopulatedSystem, Protocol):
 
 
 def run_data(system: ObservedSystem) -> dict[str, Any]:
-    """Return what a run is, for the record ``run``."""
+    """Return the data of the record ``run``."""
     clock, options = system.clock, system.options
     return {
         "name": system.deployment.name,
@@ -72,16 +72,16 @@ def run_data(system: ObservedSystem) -> dict[str, Any]:
 
 
 class History:
-    """Observes a running system from `start` to `stop`, keeps records of what happens, and passes them to listeners.
+    """Observes a running system from `start` to `stop`, keeps records of its events, and passes them to listeners.
 
-    It costs nothing while it is not started.  A run is the same with and without it.
+    It costs nothing until it is started. A run is the same with and without it.
 
     Args:
-        system: the system; it has been started before `start` is called.
+        system: the system, started before `start` is called.
         kept: number of records that are kept.
 
     Attributes:
-        beginning: the time of the run's clock from which ``t`` counts.
+        beginning: time of the run's clock from which ``t`` counts.
         events: the newest records, oldest first.
     """
 
@@ -98,7 +98,7 @@ class History:
         self._agents: AgentRecords | None = None
 
     def listen(self, listener: Listener) -> Callable[[], None]:
-        """Have *listener* called with every record from now on; gives what ends that."""
+        """Call *listener* with every record from now on. Return a function that ends this."""
         self._listeners = (*self._listeners, listener)
 
         def end() -> None:
@@ -107,8 +107,11 @@ class History:
         return end
 
     def listen_to_messages(self, listener: Callable[[float, str, Any], None]) -> Callable[[], None]:
-        """Have *listener* called with time, topic and message of ROS of each message that has an effect, such as a belief
-        change that a plan handles, or an effect of an operation: a command; gives what ends that."""
+        """Call *listener* with time, topic and ROS message of each message that has an effect. Return a function that
+        ends this.
+
+        Effects are, for example, a belief change that a plan handles, or a command of an operation.
+        """
         self._message_listeners = (*self._message_listeners, listener)
 
         def end() -> None:
@@ -121,41 +124,41 @@ class History:
             listener(t, topic, message)
 
     def start(self) -> None:
-        """Begin to observe; each `start` needs a `stop`, and the last `stop` ends the observation."""
+        """Begin to observe. Each `start` needs a `stop`, and the last `stop` ends the observation."""
         self._starts += 1
         if self._starts > 1:
             return
         self.record("run", run_data(self._system))
-        self.surroundings = Surroundings(self._system, self.beginning, self.record)
-        self.surroundings.causes.with_effect = self._hear_message
-        self._agents = AgentRecords(self._system, self.surroundings.causes, self.t, self.record)
-        self._ends += [self.surroundings.start(), self._agents.start(), self._observe_world()]
+        self.environment_records = RunEnvironmentRecords(self._system, self.beginning, self.record)
+        self.environment_records.causes.with_effect = self._hear_message
+        self._agents = AgentRecords(self._system, self.environment_records.causes, self.t, self.record)
+        self._ends += [self.environment_records.start(), self._agents.start(), self._observe_world()]
 
     def stop(self) -> None:
-        """End the observation, unless somebody else has started it, too; what was recorded is kept."""
+        """End the observation, unless it was started several times. The records are kept."""
         self._starts = max(0, self._starts - 1)
         if not self._starts:
             while self._ends:
                 self._ends.pop()()
 
     def look(self) -> None:
-        """Record what the agents are at now: while the run is paused, no timer does it."""
+        """Record the current state of the agents: while the run is paused, no timer does so."""
         if self._starts and self._agents is not None:
             self._agents.look()
 
     def run_ended(self, code: int) -> None:
-        """Take note of the end of the run: goals that are open are dropped."""
+        """Record the end of the run. Open goals are dropped."""
         if self._starts and self._agents is not None:
             self._agents.run_ended()
             self.record("ended", {"code": code})
 
     def t(self, moment: float | None = None) -> float:
-        """Seconds from the beginning to a moment of the run's clock, or to now, to the millisecond."""
+        """Return the seconds from the beginning to a moment of the run's clock, or to now, with millisecond precision."""
         return round((self._system.clock.now() if moment is None else moment) - self.beginning, 3)
 
     def record(self, event: str, data: Mapping[str, Any]) -> None:
         """Keep a record of something that happened now, and pass it to the listeners."""
-        # As `t`, without a further call: most of a recording's records come here.
+        # As `t`, but inlined: most records of a recording are made here.
         t = round((self._system.clock.now() - self.beginning) * 1e3) / 1e3
         events = self.events
         if len(events) == self._kept:
@@ -177,7 +180,9 @@ class History:
             self._lasting[event, *key] = forgotten
 
     def all(self) -> list[Happening]:
-        """The records a newcomer needs: what describes agents, programs and artifacts, and the newest `events`."""
+        """Return the records that a new listener needs: those that describe agents, programs and artifacts, and the
+        newest `events`.
+        """
         return [*self._lasting.values(), *self.events]
 
     def _observe_world(self) -> Callable[[], None]:
@@ -195,5 +200,5 @@ class History:
         return end
 
     def _hear_world(self, record: "Record") -> None:
-        if record["event"] != "battery":  # each percent of each robot, which frames have, too
+        if record["event"] != "battery":  # each percent of each robot, which is also in the frames
             self.record(record["event"], {"robot": record["robot"], **record["data"]})

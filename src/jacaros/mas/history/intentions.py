@@ -1,4 +1,4 @@
-"""Records of intentions: at most ten times a second what has changed in those of agents that had a turn."""
+"""Records of intentions: changes in those of agents that had a turn, at most ten times a second."""
 
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple, Protocol
@@ -15,34 +15,36 @@ from jacaros.mas.history.words import shown
 from jacaros.trace import Cause
 
 PERIOD = 0.1
-"""Seconds of the run's clock between two looks at an agent."""
+"""Seconds of the run's clock between two checks of an agent."""
 MOST = 100
-"""Intentions of one agent that are looked at."""
+"""Maximum number of intentions of one agent that are checked."""
 MOST_AGENTS = 50
-"""Agents that are looked at in one period; of thousands that are busy, each has its turn later."""
+"""Maximum number of agents that are checked per period. Of thousands of busy agents, some are checked later."""
 
 Tell = Callable[[str, Mapping[str, Any]], None]
 
 
 class Moments(Protocol):
-    """Tells when something was."""
+    """Returns times."""
 
     def __call__(self, moment: float | None = None) -> float:
-        """Seconds from the beginning of the run to a moment of its clock, or to now, to the millisecond."""
+        """Return the seconds from the beginning of the run to a moment of its clock, or to now, with millisecond
+        precision.
+        """
 
 
 class Looking(Protocol):
-    """Looks at one agent."""
+    """Checks one agent."""
 
     def look(self) -> None:
         """Record what has changed."""
 
 
 class Looks:
-    """Looks at agents that had a turn, `PERIOD` seconds after the first of them had it.
+    """Checks agents that had a turn, `PERIOD` seconds after the first of them had it.
 
     Args:
-        clock: of the run.
+        clock: clock of the run.
     """
 
     def __init__(self, clock: Clock) -> None:
@@ -51,13 +53,13 @@ class Looks:
         self._timer: Timer | None = None
 
     def soon(self, agent: Looking) -> None:
-        """Look at an agent soon."""
+        """Check an agent soon."""
         self._due.append(agent)
         if self._timer is None:
             self._timer = self._clock.call_later(PERIOD, self.look)
 
     def look(self) -> None:
-        """Look now at the agents that are due."""
+        """Check the agents that are due now."""
         self.stop()
         due, self._due = self._due[:MOST_AGENTS], self._due[MOST_AGENTS:]
         if self._due:
@@ -66,14 +68,14 @@ class Looks:
             agent.look()
 
     def stop(self) -> None:
-        """Look no more until an agent has a turn."""
+        """Stop checking until an agent has a turn."""
         if self._timer is not None:
             self._timer.cancel()
             self._timer = None
 
 
 class _Seen(NamedTuple):
-    """What was recorded of an intention: its stack, its step, and what it waits for; compared by identity."""
+    """What was recorded of an intention: its stack, step and wait, compared by identity."""
 
     depth: int
     frame: Frame
@@ -82,7 +84,7 @@ class _Seen(NamedTuple):
     suspended: object
 
     def is_still(self, intention: Intention) -> bool:
-        """Whether nothing of it has changed."""
+        """Return whether nothing of it has changed."""
         frames = intention.frames
         return (
             self.depth == len(frames)
@@ -94,15 +96,15 @@ class _Seen(NamedTuple):
 
 
 class IntentionRecords:
-    """Records the intentions of one agent that last: those that begin and end between two looks are left out.
+    """Records the longer intentions of one agent. Those that begin and end between two checks are left out.
 
     Args:
-        mind: of the agent.
-        numbers: of its plans.
-        cause: what led to the step that an intention is at.
-        t: tells when something was.
+        mind: mind of the agent.
+        numbers: numbers of its plans.
+        cause: returns the cause of an intention's current step.
+        t: returns times.
         tell: takes the kind of a record and its data.
-        looks: looks at the agent when it had a turn.
+        looks: checks the agent after its turns.
     """
 
     def __init__(
@@ -121,13 +123,13 @@ class IntentionRecords:
         self._is_due = False
 
     def had_turn(self) -> None:
-        """Have a look at the agent soon."""
+        """Schedule a check of the agent."""
         if not self._is_due:
             self._is_due = True
             self._looks.soon(self)
 
     def look(self) -> None:
-        """Record the intentions that have changed since the last look, and those that are over."""
+        """Record the intentions that have changed since the last check, and those that have ended."""
         self._is_due = False
         alive = self._mind.alive
         for number in [number for number in self._seen if number not in alive]:

@@ -1,4 +1,4 @@
-"""The events that interrupted what a robot did: handled just before it stopped."""
+"""Events that interrupted a robot's motion: handled just before it stopped."""
 
 import re
 from collections.abc import Iterator
@@ -9,24 +9,24 @@ from jacaros.mas.history.past import Data, Past
 from jacaros.mas.history.questions import literal_at
 
 AT_ONCE = 0.2
-"""Seconds before a stop in which events and changes of goals are named with it."""
+"""Events and changes of goals within this number of seconds before a stop are reported with it."""
 LATEST = 0.7
-"""Seconds after which a stop is recorded at the latest: of the commands of one operation only two a second are."""
+"""Maximum delay in seconds of a recorded stop: only two commands of an operation are recorded per second."""
 _INTERRUPTS = re.compile(r"(\.)(?=(?:suspend|drop_\w+|fail_goal|succeed_goal)\b)|(?<=[\[, ])(?=needs\()")
-"""Steps that interrupt what a robot does, and goals that take its wheels from less urgent ones."""
+"""Steps that interrupt a robot's motion, and goals that take its wheels from less urgent ones."""
 
 Command = tuple[float, Data]
-"""When a message was published, and its link."""
+"""The time of a published message, and its link."""
 
 
 def goals_interrupted(past: Past, stop: Command, agent: str = "", only_own: bool = False) -> list[Fact]:
-    """The goals that were suspended or ended just before a stop, one line for each intention.
+    """Return the goals that were suspended or ended just before a stop, one line for each intention.
 
     Args:
-        past: what happened.
+        past: the records.
         stop: the command.
-        agent: the only one that counts; all agents if empty.
-        only_own: if an action led to the command, only the goals of its intention count.
+        agent: only goals of this agent; empty for all.
+        only_own: if an action led to the command, only goals of its intention count.
     """
     t, link = stop
     own = {
@@ -53,7 +53,7 @@ def _interrupted(goals: list[tuple[float, Data]]) -> Fact:
 
 
 def events_before(past: Past, stop: Command, agent: str = "") -> list[tuple[float, Data]]:
-    """The events of beliefs that agents handled just before a stop; those of the same message, if there are any."""
+    """Return the belief events that agents handled just before a stop; those of the same message, if there are any."""
     t, link = stop
     events = [
         (at, data)
@@ -70,7 +70,7 @@ def _is_of(deliberation: Data, agent: str) -> bool:
 
 
 def event_fact(past: Past, t: float, deliberation: Data) -> Fact:
-    """An event that was handled, with its plan."""
+    """Return a handled event with its plan."""
     agent = str(deliberation["agent"])
     plan = past.plan(agent, deliberation["chosen"])
     handled = f"{shown(deliberation['trigger'])} handled at {seconds(t)} with {plan_name(plan)}"
@@ -78,7 +78,9 @@ def event_fact(past: Past, t: float, deliberation: Data) -> Fact:
 
 
 def interrupting_step(past: Past, deliberation: Data) -> Iterator[Fact]:
-    """The step of a chosen plan that suspends or drops intentions, or takes resources from them, if it has exactly one."""
+    """Return the step of a chosen plan that suspends or drops intentions, or takes resources from them, if there is
+    exactly one.
+    """
     agent = str(deliberation["agent"])
     plan = past.plan(agent, deliberation["chosen"])
     file, first = place_of(plan)

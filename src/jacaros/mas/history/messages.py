@@ -1,4 +1,4 @@
-"""Records of the messages between agents."""
+"""Records of messages between agents."""
 
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -8,15 +8,15 @@ from jacaros.mas.history.words import shown
 from jacaros.trace import Cause, Tracer
 
 KEPT = 5_000
-"""Messages that are remembered until they are read or answered."""
+"""Number of messages that are kept until they are read or answered."""
 
 
 class MessageRecords:
     """Records each message when it is sent, and when it is read.
 
     Args:
-        links: makes the links of chains.
-        cause: what led to what the agent of a name is doing.
+        links: creates the links of causal chains.
+        cause: returns the cause of what the agent with a name is doing.
         tell: takes the kind of a record and its data.
     """
 
@@ -30,7 +30,7 @@ class MessageRecords:
         self._known: dict[str, Cause] = {}
 
     def sent(self, message: SpeechAct) -> None:
-        """Record a message that was delivered."""
+        """Record a delivered message."""
         told = f"{message.sender} -> {message.receiver} {message.performative} {shown(message.content)}"
         link = self._links.link("message", told, self._cause(message.sender))
         self._known[message.id] = link
@@ -39,7 +39,7 @@ class MessageRecords:
         self._record(message, link, "sent")
 
     def read(self, message: SpeechAct) -> Cause | None:
-        """Record that a message is read; gives its link, None if nobody saw it sent."""
+        """Record that a message is read. Return its link, or None if its sending was not observed."""
         link = self._known.get(message.id)
         if link is not None:
             self._record(message, link, "read")

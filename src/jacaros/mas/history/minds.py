@@ -1,4 +1,4 @@
-"""What the mind of one agent does and why: its plans, beliefs, messages and intentions."""
+"""Records of one mind: its plans, beliefs, messages and intentions, with their causes."""
 
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
@@ -21,7 +21,7 @@ from jacaros.terms.values import Annotated, Functor, Term, atom
 from jacaros.trace import Cause
 
 MOST_BELIEFS = 1000
-"""Beliefs of one agent that are recorded when its observation begins."""
+"""Maximum number of beliefs of one agent that are recorded when its observation begins."""
 
 Annotations = tuple[Term, ...]
 _NOTHING = atom("nothing")
@@ -32,10 +32,10 @@ class Records(NamedTuple):
 
     Attributes:
         tell: takes the kind of a record and its data.
-        t: tells when something was.
-        links: makes the links of chains.
-        examinations: allows contexts of plans to be examined.
-        programs, messages, looks: record programs and messages, look at intentions.
+        t: returns times.
+        links: creates the links of causal chains.
+        examinations: limits the contexts of plans that are examined.
+        programs, messages, looks: record programs and messages, check intentions.
     """
 
     tell: Callable[[str, Mapping[str, Any]], None]
@@ -48,7 +48,7 @@ class Records(NamedTuple):
 
 
 class MindRecords:
-    """Records one mind; it is its `jacaros.bdi.state.observing.MindObserver`.
+    """Records one mind. It is the mind's `jacaros.bdi.state.observing.MindObserver`.
 
     Args:
         mind: the mind.
@@ -69,23 +69,23 @@ class MindRecords:
         self._told: dict[int, tuple[Annotations, str]] = {}
         """The texts of annotations, which many beliefs share."""
         self._facts: dict[int, tuple[tuple[Term, ...], str]] = {}
-        """The texts of beliefs that were added, until they are deleted."""
+        """The texts of added beliefs, until they are deleted."""
         self._plans_changed = False
         self._record_beliefs()
         observe_mind(mind, self)
 
     def end(self) -> None:
-        """Observe no more."""
+        """Stop observing."""
         observe_mind(self._mind, None)
 
     def had_turn(self) -> None:
-        """Take note that the mind made cycles."""
+        """Schedule a check after a turn."""
         if self._plans_changed:
             self._plans_changed = False
             self._records.programs.record(self._mind, self._numbers)
         self.intentions.had_turn()
 
-    # ---- what the mind tells
+    # ---- called by the mind
 
     def selected(
         self,
@@ -99,12 +99,12 @@ class MindRecords:
         return self._deliberations.selected(goal, annotations, intention, frame, cause)
 
     def cause(self) -> Cause | None:
-        """Return what led to the step, or the message, that the mind is at."""
+        """Return the cause of the step, or message, that the mind is processing."""
         current = self._mind.current
         return self._message if current is None else self._deliberations.cause_of(current)
 
     def place(self, intention: Intention) -> Mapping[str, Any]:
-        """Return plan, file and line of the step that an intention is at."""
+        """Return plan, file and line of an intention's current step."""
         return place_of(intention, self._numbers)
 
     def changed(
@@ -130,18 +130,18 @@ class MindRecords:
         self._records.tell("belief", record)
 
     def reads(self, message: SpeechAct | None) -> None:
-        """Record a message that is read; what it leads to is because of it."""
+        """Record a message that is read. It is the cause of its effects."""
         self._message = None if message is None else self._records.messages.read(message)
 
     def plans_changed(self) -> None:
-        """Record the program anew at the end of the turn."""
+        """Record the program again at the end of the turn."""
         self._deliberations.plans_changed()
         self._plans_changed = True
 
     # ---- beliefs
 
     def _record_beliefs(self) -> None:
-        """Record what is believed already."""
+        """Record present beliefs."""
         left = MOST_BELIEFS
         for symbol, table in list(self._mind.beliefs.items()):
             for entry, annotations in table.entries()[: max(0, left)]:

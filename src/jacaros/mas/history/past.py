@@ -1,4 +1,4 @@
-"""What happened in a run until a moment: records, found by what they are about."""
+"""The records of a run until a moment, indexed by what they concern."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
@@ -17,11 +17,11 @@ class Operation:
     """An operation of an artifact, and how it ended.
 
     Attributes:
-        data: of its beginning.
+        data: data of its beginning.
         began, ended: seconds; *ended* is None while it runs.
         outcome: ``done``, ``failed``, or empty while it runs.
-        reason: of a failure.
-        last: the data of its end; empty while it runs.
+        reason: reason of its failure.
+        last: data of its end; empty while it runs.
     """
 
     data: Data
@@ -49,9 +49,9 @@ class Past:
         artifacts: the newest record of each by path.
         sources: texts of the programs by file.
         world: events of robots and the world, as (t, event, data), the oldest first.
-        robots: their names, as far as records name them.
+        robots: names of robots that appear in records.
         debug: the newest record of the debugger.
-        exit_code: of the run, None if it had not ended.
+        exit_code: exit code of the run; None if it had not ended.
     """
 
     end: float = 0.0
@@ -76,7 +76,7 @@ class Past:
 
     @classmethod
     def of(cls, records: Iterable[Record], until: float | None = None) -> "Past":
-        """Read records.  Those later than *until* (seconds), of unknown kinds or not well formed are left out."""
+        """Read records. Those after *until* (seconds), of unknown kinds or malformed are skipped."""
         past = cls()
         for t, event, data in records:
             if until is not None and t > until:
@@ -93,18 +93,18 @@ class Past:
         return past
 
     def plan(self, agent: str, plan: Any) -> Data:
-        """A plan of an agent; empty if it is unknown."""
+        """Return a plan of an agent; empty if it is unknown."""
         return self.programs.get(agent, {}).get(plan, {})
 
     def plans(self, agent: str = "") -> Iterator[tuple[str, Data]]:
-        """All plans, each with its agent; those of one agent if *agent* is given."""
+        """Iterate over all plans with their agents, or the plans of *agent*."""
         for name, plans in self.programs.items():
             if agent in ("", name):
                 for each in plans.values():
                     yield name, each
 
     def chain(self, number: Any) -> Iterator[tuple[float, Data]]:
-        """The links from one back to the beginning of its chain."""
+        """Iterate over the links from one back to the beginning of its chain."""
         seen = set()
         while number in self.links and number not in seen:
             seen.add(number)
@@ -113,14 +113,14 @@ class Past:
 
 
 def of_agent(records: Iterable[tuple[float, Data]], agent: str) -> Iterator[tuple[float, Data]]:
-    """The records of one agent; all if *agent* is empty."""
+    """Return the records of one agent; all if *agent* is empty."""
     return (each for each in records if agent in ("", each[1].get("agent")))
 
 
 def _take_cause(past: Past, t: float, data: Data) -> None:
     known = past.links.get(data["id"])
     at = t if data.get("at") is None else data["at"]
-    # What a deliberation or an operation says of itself tells more than its link.
+    # The record of a deliberation or an operation has more details than its link.
     past.links[data["id"]] = (at, data) if known is None else (at, {**data, **known[1]})
 
 
@@ -170,7 +170,7 @@ def _take_source(past: Past, _: float, data: Data) -> None:
 
 
 def _take_artifact(past: Past, _: float, data: Data) -> None:
-    # The record of an artifact that is disposed names no robot.
+    # The record of a disposed artifact has no robot.
     robot = data.get("robot") or past.artifacts.get(data["artifact"], {}).get("robot")
     past.artifacts[data["artifact"]] = {**data, "robot": robot}
     if robot:
@@ -208,4 +208,4 @@ _TAKERS: dict[str, Callable[[Past, float, Data], None]] = {
     "property": lambda past, t, data: past.properties.append((t, data)),
 }
 _SEEN_OFTEN = frozenset({"laser", "path", "believed"})
-"""Records that name a robot and are no events."""
+"""Records that name a robot but are not events."""

@@ -1,4 +1,4 @@
-"""Literals of questions, such as ``+alarm(_)`` or ``!go(dock)``, compared with recorded texts."""
+"""Literals in questions, such as ``+alarm(_)`` or ``!go(dock)``, matched against recorded texts."""
 
 import re
 
@@ -16,16 +16,16 @@ _NAME = re.compile(r"~?\s*(?:\w+::)?(?:'[^']*'|[\w.]+)")
 
 
 class Pattern:
-    """An event, goal or belief that a question names.
+    """An event, goal or belief in a question.
 
     Attributes:
-        sign: ``+``, ``-``, ``^``, or empty: any.
+        sign: ``+``, ``-``, ``^``, or empty for any.
         kind: ``!``, ``?``, or empty for a belief.
-        written: the literal as it was written.
-        name: of the literal.
+        written: the literal as written.
+        name: name of the literal.
 
     Args:
-        text: sign, kind and literal.  A literal without brackets fits any arguments; variables fit anything.
+        text: sign, kind and literal. A literal without brackets matches any arguments; variables match anything.
 
     Raises:
         UsageError: it is not an event, a goal or a belief.
@@ -37,12 +37,13 @@ class Pattern:
         self.name, term = _name(self.written), _term(self.written)
         if term is None:
             raise UsageError(
-                f"error: not an event, a goal or a belief: `{text}`\n  = help: such as `+alarm(_)` or `!go(dock)`"
+                f"error: expected an event, a goal or a belief, found `{text}`\n"
+                "  = help: such as `+alarm(_)` or `!go(dock)`"
             )
         self._term = None if self.name == self.written else term
 
     def fits(self, recorded: str) -> bool:
-        """Whether a recorded trigger, goal or belief is one that is asked for."""
+        """Return whether a recorded trigger, goal or belief matches."""
         sign, kind, literal = _split(recorded)
         if (
             kind != self.kind
@@ -53,24 +54,24 @@ class Pattern:
         return self._term is None or _is_instance(self._term, literal)
 
     def fits_literal(self, recorded: str) -> bool:
-        """Whether the literal of a recorded trigger, goal or belief is one that is asked for, whatever the signs."""
+        """Return whether the literal of a recorded trigger, goal or belief matches, whatever the signs."""
         literal = _split(recorded)[2]
         return _name(literal) == self.name and (self._term is None or _is_instance(self._term, literal))
 
 
 def _split(text: str) -> tuple[str, str, str]:
     found = _PARTS.fullmatch(text)
-    assert found is not None, "the last part takes everything"
+    assert found is not None, "the last part matches everything"
     return found[1], found[2], found[3]
 
 
 def name_of(text: str) -> str:
-    """The name in a trigger, goal or belief, such as ``go`` in ``+!go(dock)``; empty if it has none."""
+    """Return the name in a trigger, goal or belief, such as ``go`` in ``+!go(dock)``; empty if it has none."""
     return _name(_split(text)[2])
 
 
 def unsigned(text: str) -> str:
-    """A trigger or goal without ``+`` or ``-`` before it."""
+    """Return a trigger or goal without ``+`` or ``-`` before it."""
     return text.lstrip("+-^ ")
 
 
@@ -87,7 +88,7 @@ def _term(literal: str) -> Term | None:
 
 
 def _is_instance(wanted: Term, literal: str) -> bool:
-    """Whether a recorded literal unifies with a wanted one; one that was cut off when it was recorded counts, too."""
+    """Return whether a recorded literal unifies with a wanted one. A truncated one counts, too."""
     found, trail = _term(literal), Trail()
     if found is None:
         return True

@@ -18,7 +18,7 @@ Tell = Callable[[str, Mapping[str, Any]], None]
 
 
 class ProgramRecords:
-    """Records what agents run; agents of one program share the texts.
+    """Records the programs of agents. Agents with the same program share the texts.
 
     Args:
         tell: takes the kind of a record and its data.
@@ -30,13 +30,13 @@ class ProgramRecords:
         self._known: dict[int, tuple[ProgramPlans, list[dict[str, Any]]]] = {}
 
     def begin(self, mind: Mind) -> "PlanNumbers":
-        """Record the program of an agent; gives the numbers of its plans."""
+        """Record the program of an agent. Return the numbers of its plans."""
         numbers = PlanNumbers(mind.library.program.plans)
         self.record(mind, numbers)
         return numbers
 
     def record(self, mind: Mind, numbers: "PlanNumbers") -> None:
-        """Record the plans and rules of an agent as they are now."""
+        """Record the current plans and rules of an agent."""
         library = mind.library
         if library.plans is library.program.plans and numbers.count_from_one(library.plans):
             plans = self._of_program(library.program)
@@ -64,15 +64,15 @@ class ProgramRecords:
 
 
 class PlanNumbers(dict[Plan, int]):
-    """The numbers of the plans of an agent, in the order of its program; later ones follow."""
+    """The numbers of the plans of an agent, in the order of its program. Plans added later follow."""
 
     def __init__(self, plans: Sequence[Plan]) -> None:
         super().__init__()
         for plan in _with_inner(plans):
-            self[plan]  # numbered as it is asked for
+            self[plan]  # numbered on access
 
     def count_from_one(self, plans: Sequence[Plan]) -> bool:
-        """Whether these plans have the first numbers; those of a reloaded program follow those of the old one."""
+        """Return whether these plans have the first numbers. Those of a reloaded program follow those of the old one."""
         return not plans or self[plans[0]] == 1
 
     def __missing__(self, plan: Plan) -> int:
@@ -100,7 +100,7 @@ def _plan(plan: Plan, number: int) -> dict[str, Any]:
 
 
 def _written(node: nodes.Node) -> str:
-    """Return a formula or rule as it is written, on one line."""
+    """Return a formula or rule as written, on one line."""
     span = node.span
     if span is None:
         return unbracketed(format_term(node))
@@ -111,7 +111,7 @@ def _written(node: nodes.Node) -> str:
 
 
 def _rules(mind: Mind) -> Iterator[nodes.Rule]:
-    """The rules of the program, which an agent that has not begun does not know yet, and those added at run time."""
+    """Return the rules of the program, which an agent that has not begun does not have yet, and those added at run time."""
     yield from (each for each in mind.program.beliefs if isinstance(each, nodes.Rule))
     for table in list(mind.beliefs.values()):
         if not table.plain:

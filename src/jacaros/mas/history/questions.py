@@ -1,4 +1,4 @@
-"""Questions about a run: a small grammar that forgives the words around what matters.
+"""Questions about a run: a small grammar that ignores filler words.
 
 ======================================  ==================================================================
 ``stopped``                             why the robot stopped
@@ -33,10 +33,10 @@ FORMS = (
     ("waiting", "what each intention waits for"),
     ("nothing", "why nothing happens"),
 )
-"""The forms of questions, and what each asks."""
+"""The forms of questions, with their meanings."""
 
 MOST_NAMES = 12
-"""Names that the error of an unknown question lists."""
+"""Number of names that the error for an unknown question lists."""
 
 _PLAN = re.compile(r"@\w+|[\w./\\-]+\.asl:\d+")
 _EVENT = re.compile(r"(?:^|(?<=[\s`'\"]))(?:[+\-]?[!?]|[+\-^])(?=~?[a-z_'])")
@@ -72,13 +72,13 @@ _STARTS_NAME = re.compile(r"[~a-z]\w*$")
 
 @dataclass(frozen=True, slots=True)
 class Question:
-    """A question that was understood.
+    """A parsed question.
 
     Attributes:
         written: as it was asked.
         kind: ``stopped``, ``command``, ``operation``, ``event``, ``plan``, ``belief``, ``waiting``, ``idle`` or ``name``
             (a lone word, which may be a belief, a goal or a label).
-        about: what it asks for: a literal, a plan, a topic; empty if nothing is named.
+        about: its subject: a literal, a plan, a topic; empty without one.
     """
 
     written: str
@@ -87,10 +87,10 @@ class Question:
 
 
 def read_question(written: str, known: Iterable[str] = ()) -> Question:
-    """Understand a question; *known* names are suggested if it is not understood.
+    """Parse a question. *known* names are suggested if it is not understood.
 
     Raises:
-        UsageError: it has none of the `FORMS`; the text lists them.
+        UsageError: it has none of the `FORMS`. The text lists them.
     """
     asked = written.strip(" ?.`'\"\n") if written.strip(" `'\"?") else written
     asked = f"?{asked}" if written.lstrip(" `'\"").startswith("?") else asked
@@ -101,7 +101,7 @@ def read_question(written: str, known: Iterable[str] = ()) -> Question:
     if found is not None:
         of_plan = "plan" in asked[: found.start()].split()
         event = found[0] + literal_at(asked, found.end())
-        Pattern(event)  # refuses what is not a literal
+        Pattern(event)  # raises if it is not a literal
         return Question(written, "plan" if of_plan else "event", event)
     words = asked.split()
     if words[:1] == ["plan"] and len(words) > 1:
@@ -118,7 +118,7 @@ def read_question(written: str, known: Iterable[str] = ()) -> Question:
 
 
 def literal_at(text: str, start: int) -> str:
-    """The literal that begins at a place of a text; what follows its name and arguments is left out."""
+    """Return the literal at a position of a text, without what follows its name and arguments."""
     name = _NAME.match(text, start)
     if name is None:
         return text[start:]
@@ -147,7 +147,7 @@ def _of_words(written: str, words: list[str]) -> Question | None:
 
 
 def unknown_question(written: str, known: Iterable[str] = ()) -> UsageError:
-    """The error of a question that is not understood; *known* are names that can be asked for."""
+    """Return the error for a question that is not understood. *known* are names for suggestions."""
     words = {word for each in _WORDS.values() for word in each}
     names = sorted(set(known))
     last = written.strip(" ?`'\"").split()[-1:] or [""]

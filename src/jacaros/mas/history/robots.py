@@ -1,4 +1,4 @@
-"""Records of robots: laser scans that our node receives, planned paths, and where robots believe to be."""
+"""Records of robots: laser scans that our node receives, planned paths, and estimated poses."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -10,7 +10,7 @@ MOST_RAYS = 90
 SCAN_PERIOD = 0.1
 """Seconds between two recorded scans of one topic."""
 OFF = (0.05, math.radians(5.0))
-"""Metres and radians from the truth up to which a belief is taken for it."""
+"""Difference in metres and radians from the true pose up to which an estimate counts as equal."""
 _SCAN = "LaserScan"
 _PATH = "Path"
 
@@ -21,25 +21,25 @@ class WatchedRobots(Protocol):
     """What the embedded world shows of its robots (`jacaros.sim.node.SimNode`)."""
 
     def beliefs(self) -> dict[str, tuple[float, float, float]]:
-        """Where each robot believes to be: x, y, yaw."""
+        """Return the estimated pose of each robot: x, y, yaw."""
 
     def paths(self) -> dict[str, Sequence[tuple[float, float]]]:
-        """The path that each robot follows."""
+        """Return the path that each robot follows."""
 
 
 Truths = Callable[[], Mapping[str, tuple[float, float, float]]]
-"""Gives the true pose of each robot: x, y, yaw."""
+"""Returns the true pose of each robot: x, y, yaw."""
 
 
 class RobotRecords:
     """Makes the records ``laser``, ``path`` and ``believed``.
 
     Args:
-        clock: of the run.
+        clock: clock of the run.
         tell: takes the kind of a record and its data.
-        robot_at: finds a robot's name by what stands before its topics, such as ``/robot_0``.
-        find_robots: gives the robots of the embedded world, None without one.
-        truths: their true poses.
+        robot_at: returns a robot's name for a topic prefix, such as ``/robot_0``.
+        find_robots: returns the robots of the embedded world, or None.
+        truths: returns their true poses.
     """
 
     def __init__(
@@ -57,7 +57,7 @@ class RobotRecords:
         self._astray: set[str] = set()
 
     def listener_of(self, message: Any) -> Callable[[str, Any], None] | None:
-        """Give what records messages such as this one, which our node received: scans and paths; None for others."""
+        """Return what records messages such as this one (scans and paths), or None."""
         kind = type(message).__name__
         if kind.endswith(_SCAN):
             return self._scan
@@ -69,7 +69,7 @@ class RobotRecords:
 
     def _scan(self, topic: str, scan: Any) -> None:
         now = self._clock.elapsed
-        # A little less: scans that come ten times a second do not come exactly so.
+        # Slightly less, because scans at 10 Hz do not arrive at exact intervals.
         if now - self._scanned.get(topic, -SCAN_PERIOD) < 0.9 * SCAN_PERIOD:
             return
         self._scanned[topic] = now
@@ -77,7 +77,7 @@ class RobotRecords:
         self._tell("laser", {"robot": robot, **thinned(scan)})
 
     def look(self) -> None:
-        """Record paths and beliefs that have changed; to be called a few times a second."""
+        """Record paths and estimated poses that have changed. Call it a few times a second."""
         robots = self._find_robots()
         if robots is None:
             return
@@ -107,13 +107,13 @@ class RobotRecords:
 
 
 def thinned(scan: Any) -> dict[str, Any]:
-    """Return a scan with at most `MOST_RAYS` rays: of rays beside each other the shortest, in whole centimetres."""
+    """Return a scan with at most `MOST_RAYS` rays: of adjacent rays the shortest, in whole centimetres."""
     ranges = scan.ranges
     share = max(1, math.ceil(len(ranges) / MOST_RAYS))
     least, most = scan.range_min, scan.range_max
     rays = []
     for start in range(0, len(ranges), share):
-        # NaN fails both comparisons, infinity the second one.
+        # NaN fails both comparisons, infinity the second.
         seen = [metres for metres in ranges[start : start + share] if least <= metres <= most]
         rays.append(round(100.0 * float(min(seen))) if seen else 0)
     middle = 0.5 * (share - 1) * scan.angle_increment

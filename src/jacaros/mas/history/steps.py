@@ -1,4 +1,4 @@
-"""Where an intention is in its plans: the stack of its goals, each with the step that it is at."""
+"""The position of an intention in its plans: the stack of its goals, each with its current step."""
 
 from typing import Any, NamedTuple
 
@@ -12,14 +12,14 @@ from jacaros.mas.history.words import cut, named, shown_event
 from jacaros.terms.substitution import is_ground
 
 DEEPEST = 24
-"""Goals of a stack that are recorded: the lowest one, and those next to the top."""
+"""Maximum number of recorded goals of a stack: the lowest one, and those next to the top."""
 
 
 class Stacks:
-    """Shows the stacks of intentions; a level whose goals hold no variables is the same as long as its step is.
+    """Shows the stacks of intentions. A level whose goals have no variables is unchanged as long as its step is.
 
     Args:
-        numbers: of the plans.
+        numbers: numbers of the plans.
     """
 
     def __init__(self, numbers: PlanNumbers) -> None:
@@ -27,7 +27,7 @@ class Stacks:
         self._levels: dict[int, list[_Shown]] = {}
 
     def of(self, intention: Intention) -> list[dict[str, Any]]:
-        """Return the goals of an intention from the bottom up, with the steps they are at."""
+        """Return the goals of an intention from the bottom up, with their current steps."""
         frames = [frame for frame in intention.frames if frame[GOAL][0].functor.namespace != "jacaros"]
         levels = list(zip(frames, [*frames[1:], None], strict=True))
         if len(levels) > DEEPEST:
@@ -41,7 +41,7 @@ class Stacks:
         return [each.data for each in shown]
 
     def forget(self, number: int) -> None:
-        """Forget an intention that is over."""
+        """Forget a finished intention."""
         self._levels.pop(number, None)
 
     def _show(self, frame: Frame, above: Frame | None) -> "_Shown":
@@ -50,7 +50,7 @@ class Stacks:
 
 
 class _Shown(NamedTuple):
-    """A level of a stack as it was recorded, and whether that stays true until its step changes."""
+    """A level of a stack as recorded, and whether it is valid until its step changes."""
 
     frame: Frame
     above: Frame | None
@@ -59,7 +59,7 @@ class _Shown(NamedTuple):
     data: dict[str, Any]
 
     def is_still(self, frame: Frame, above: Frame | None) -> bool:
-        """Whether nothing of it has changed."""
+        """Return whether nothing of it has changed."""
         return self.lasting and self.frame is frame and self.above is above and self.step is frame[STEP]
 
 
@@ -86,7 +86,7 @@ def shown_goal(frame: Frame) -> str:
 
 
 def place_of(intention: Intention, numbers: PlanNumbers) -> dict[str, Any]:
-    """Return plan, file and line of the step that an intention is at; empty without a stack."""
+    """Return plan, file and line of an intention's current step; empty without a stack."""
     if not intention.frames:
         return {}
     frame = intention.frames[-1]
@@ -97,14 +97,14 @@ def place_of(intention: Intention, numbers: PlanNumbers) -> dict[str, Any]:
 
 
 def step_of(frame: Frame) -> str:
-    """Return the step that a frame is at, with the values of its variables; empty at the end of the plan."""
+    """Return the current step of a frame, with the values of its variables; empty at the end of the plan."""
     info = getattr(frame[STEP], "info", None)
     if info is None:
         return ""
     try:
         return cut(named(StepPlace(frame, info).step()))
     except Exception:
-        # What is shown to people can never make a run fail.
+        # Output for users must not make a run fail.
         return _written(info.node.span)
 
 

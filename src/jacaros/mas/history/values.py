@@ -1,4 +1,4 @@
-"""Values of the environment and messages of ROS as plain JSON data of limited length."""
+"""Values of the environment and ROS messages as plain JSON data of limited length."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -9,9 +9,9 @@ from jacaros.env.operation import OperationRequest
 from jacaros.env.values import Out, text
 
 LONGEST = 200
-"""Characters of a value or message that is recorded."""
+"""Maximum number of characters of a recorded value or message."""
 _FIELDS = 12
-"""Numbers of a message that are shown."""
+"""Maximum number of fields of a message."""
 _LARGEST = 10**15
 
 
@@ -21,7 +21,7 @@ def limited(words: str) -> str:
 
 
 def json_value(value: object) -> object:
-    """Return a plain value of the environment as JSON data: numbers, truth values and texts as they are, others as text."""
+    """Return a plain value of the environment as JSON data: numbers, Booleans and strings unchanged, others as text."""
     kind = type(value)
     if kind is float:
         return value if math.isfinite(value) else str(value)  # type: ignore[arg-type]
@@ -38,18 +38,18 @@ def json_values(values: Iterable[object]) -> list[object]:
 
 
 def call_text(name: str, arguments: Iterable[object]) -> str:
-    """Return an operation or a signal with its arguments as agents write it; output parameters are ``_``."""
+    """Return an operation or a signal with its arguments as agents write it. Output parameters are ``_``."""
     written = ",".join("_" if isinstance(each, Out) else _text(each, quoted=True) for each in arguments)
     return limited(f"{name}({written})" if written else name)
 
 
 def request_text(request: OperationRequest) -> str:
-    """Return what somebody asks of an artifact as agents write it."""
+    """Return a request to an artifact as agents write it."""
     return call_text(request.operation, request.arguments)
 
 
 def output_texts(request: OperationRequest) -> list[str | None]:
-    """Return the values of the output parameters of an operation as agents write them; None for those without one."""
+    """Return the values of the output parameters of an operation as agents write them; None for unset ones."""
     outputs = (each for each in request.arguments if isinstance(each, Out))
     return [limited(_text(each.value, quoted=True)) if each.is_set else None for each in outputs]
 
@@ -57,12 +57,12 @@ def output_texts(request: OperationRequest) -> list[str | None]:
 def _text(value: object, quoted: bool = False) -> str:
     try:
         return text(value, quoted)
-    except Exception:  # whatever the class of a user does in __str__: a record is no reason to fail
+    except Exception:  # an error in a user's __str__ must not make a record fail
         return type(value).__name__
 
 
 def message_text(message: Any) -> str:
-    """Return the numbers, texts and truth values of a message that are not 0 or empty, by their fields."""
+    """Return the numbers, strings and Booleans of a message that are not 0 or empty, by field."""
     found: list[str] = []
     _add_fields(message, "", 4, found)
     if len(found) > _FIELDS:
@@ -88,7 +88,7 @@ def _add_fields(message: Any, path: str, depth: int, found: list[str]) -> None:
 
 @lru_cache(256)
 def _field_names(message_class: type) -> Sequence[str]:
-    """Names of the fields of messages, whatever library has made their class."""
+    """Return the names of the fields of a message class, whichever library has created it."""
     for attribute in ("__dataclass_fields__", "_fields_and_field_types", "__slots__"):
         names = getattr(message_class, attribute, None)
         if names is not None:

@@ -26,7 +26,7 @@ def waits_for(waiting: Waiting) -> str:
 
 
 def _awaited(waiting: Waiting) -> Term:
-    """What a reason of ``.wait`` names, see `jacaros.bdi.actions.waiting`."""
+    """Return the subject of a ``.wait``. See `jacaros.bdi.actions.waiting`."""
     found = annotations_of(waiting.reason)
     return found[0] if found else waiting.reason
 

@@ -1,4 +1,4 @@
-"""Whether records have the fields that answers read: a recording may be damaged, or written by another program."""
+"""Validation of records: a recording may be damaged, or written by another program."""
 
 from collections.abc import Callable, Mapping
 
@@ -30,7 +30,7 @@ def _maybe_whole(value: object) -> bool:
 
 
 def _list(each: Check) -> Check:
-    """A list of things that pass a check; None stands for an empty one."""
+    """Check a list whose items pass a check. None stands for an empty one."""
     return lambda value: value is None or (isinstance(value, (list, tuple)) and all(map(each, value)))
 
 
@@ -110,6 +110,6 @@ _RECORDS: Mapping[str, Check] = {
 
 
 def is_well_formed(event: str, data: object) -> bool:
-    """Whether a record has the fields that its kind needs; records of other kinds need be mappings only."""
+    """Return whether a record has the fields that its kind needs. Records of other kinds need only be mappings."""
     check = _RECORDS.get(event)
     return isinstance(data, Mapping) if check is None else check(data)

@@ -1,4 +1,4 @@
-"""Questions about a run, answered from its records."""
+"""Answers to questions about a run, from its records."""
 
 from collections.abc import Iterable
 
@@ -21,14 +21,14 @@ def explain(
     """Answer a question about a run.
 
     Args:
-        records: (t, event, data), as docs/reference/recordings.md describes them, the oldest first.
+        records: (t, event, data), as described in docs/reference/recordings.md, the oldest first.
         question: see `jacaros.mas.history.questions`.
-        at: seconds since the run began; later records do not count.  None: the end of the records.
-        agent: whose goals, plans and beliefs count; all agents if empty.
-        robot: whose commands count; all robots if empty.
+        at: seconds since the run began; later records are ignored. None: the end of the records.
+        agent: only goals, plans and beliefs of this agent; empty for all.
+        robot: only commands to this robot; empty for all.
 
     Raises:
-        UsageError: the question is not understood, or names a plan or an agent that does not exist.
+        UsageError: the question is not understood, or names an unknown plan or agent.
     """
     past = Past.of(records, at)
     asked = read_question(question, known_names(past))
@@ -60,10 +60,10 @@ def _answer(past: Past, asked: Question, agent: str, robot: str) -> Explanation:
 
 
 def _named(past: Past, asked: Question, agent: str) -> Question:
-    """What a lone word means: a belief, a goal or the label of a plan.
+    """Resolve a lone word: a belief, a goal or the label of a plan.
 
     Raises:
-        UsageError: it is none of them.
+        UsageError: it is unknown.
     """
     pattern, name = Pattern(asked.about), asked.about
     if any(pattern.fits_literal(str(data.get("belief", ""))) for _, data in past.beliefs):

@@ -11,12 +11,12 @@ from jacaros.terms.text import text
 from jacaros.terms.values import Term
 
 LONGEST = 300
-"""Characters of a term that are recorded."""
+"""Maximum number of characters of a recorded term."""
 _UNNAMED = re.compile(r'"(?:[^"\\]|\\.)*"|\b_\w+')
 
 
 def shown(term: Term) -> str:
-    """Return a term as text: the beginning of a large one, and ``_`` for variables that nobody named."""
+    """Return a term as text: the beginning of a large one, and ``_`` for unnamed variables."""
     if is_flat(term):
         return cut(text(term))
     try:
@@ -32,7 +32,7 @@ def shown_event(goal: Goal, annotations: EventAnnotations = ()) -> str:
 
 
 def named(told: str) -> str:
-    """Put ``_`` in place of variables such as ``_22`` that have no name of their own."""
+    """Replace unnamed variables such as ``_22`` with ``_``."""
     return _UNNAMED.sub(_name, told) if "_" in told else told
 
 

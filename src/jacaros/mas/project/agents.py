@@ -1,4 +1,4 @@
-"""The agents of a project: their programs, their instances, and where they begin."""
+"""The agents of a project: programs, instances, joined workspaces and focused artifacts."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -19,19 +19,19 @@ _PYTHON: Final = ".py"
 
 
 class ProjectAgents:
-    """Finds the programs of agents and spreads agents over their instances.
+    """Finds the programs of agents and expands agents to their instances.
 
     Args:
-        part: what the project declares.
+        part: the declarations of the project.
         places: its workspaces and artifacts.
-        remarks: takes what is wrong.
+        remarks: collects diagnostics.
     """
 
     def __init__(self, part: ProjectPart, places: ProjectPlaces, remarks: Remarks) -> None:
         self._part, self._places, self._remarks = part, places, remarks
 
     def instances(self, agent: AgentPart) -> list[AgentSpec]:
-        """One agent for each instance."""
+        """Return one agent for each instance."""
         for option, value in agent.options.items():
             found = check_option(option, value, agent.option_places.get(option))
             if found is not None:
@@ -54,7 +54,7 @@ class ProjectAgents:
     # programs
 
     def _source(self, agent: AgentPart) -> Path:
-        """The file of an agent's program."""
+        """Return the file of an agent's program."""
         written = (agent.source or agent.name).removeprefix("file:")
         span = agent.source_span or agent.span
         files = [written] if written.endswith((_PROGRAM, _PYTHON)) else [written + _PROGRAM, written]
@@ -66,28 +66,30 @@ class ProjectAgents:
             return library_file(Path(files[0]).name)
         help = "expected in " + ", ".join(str(folder) for folder in agent.folders)
         if "://" in written:
-            help = "programs are read from files, not over the network"
-        self._remarks.error(f"program of agent '{agent.name}' not found: {files[0]}", span, help)
+            help = "download the program: only files are supported"
+        self._remarks.error(f"program of agent `{agent.name}` not found: {files[0]}", span, help)
         return (agent.folders or (Path(),))[0] / files[0]
 
     def _literals(self, written: list[Written], what: str) -> str:
-        """The pieces joined; each must be literals."""
+        """Return the literals, joined. Report what is not a literal."""
         for text, span in written:
             try:
                 parse_literals(_literal(text))
             except AslError as error:
                 message = error.diagnostics[0].message
-                help = "write rules in the program of the agent" if ":-" in text else None
-                self._remarks.error(f"'{_first_line(text)}' is not a {what}: {message}", span, help)
+                help = "write rules in the agent's program" if ":-" in text else None
+                self._remarks.error(f"invalid {what} `{_first_line(text)}`: {message}", span, help)
             else:
                 if text.startswith("!") and what == "belief":
-                    self._remarks.error(f"'{text}' is a goal", span, f"goals: {text[1:]}")
+                    self._remarks.error(
+                        f"expected a belief, found the goal `{text}`", span, f"write `goals: {text[1:]}`"
+                    )
         return ", ".join(_literal(text) for text, _ in written)
 
     # places
 
     def _situated(self, agent: AgentSpec, part: AgentPart) -> AgentSpec:
-        """The instance *agent* of *part* with its workspaces and focused artifacts."""
+        """Return the instance *agent* of *part* with the workspaces it joins and the artifacts it focuses."""
         join = [self._places.join(wanted) for wanted in part.join]
         focus = [self._places.focus(wanted) for wanted in part.focus]
         for workspace in self._part.workspaces:

@@ -1,4 +1,4 @@
-"""Tokens of project files, and a place in them."""
+"""Tokens of project files, and a cursor over them."""
 
 import re
 from collections.abc import Callable, Iterator
@@ -33,9 +33,12 @@ _LONGEST: Final = 1000
 
 @dataclass(frozen=True, slots=True)
 class Token:
-    """``kind`` is ``word``, ``string``, ``number``, ``quoted``, ``end``, or the sign itself.
+    """A token of a project file.
 
-    ``start`` and ``stop`` are offsets in the text; ``first`` tells the first token of a line.
+    Attributes:
+        kind: ``word``, ``string``, ``number``, ``quoted``, ``end``, or the sign itself.
+        start, stop: offsets in the text.
+        first: whether it is the first token of its line.
     """
 
     kind: str
@@ -47,26 +50,22 @@ class Token:
     first: bool
 
     def __str__(self) -> str:
-        """The token as messages show it."""
+        """Return the token as messages show it."""
         return (
-            "the end of the file"
-            if self.kind == "end"
-            else self.text
-            if self.kind == "string"
-            else f"'{self.text}'"
+            "end of file" if self.kind == "end" else self.text if self.kind == "string" else f"`{self.text}`"
         )
 
 
 class ProjectPanic(Exception):
-    """The declaration cannot be read any further; what is wrong has been reported."""
+    """Abandon a declaration after an error that has been reported."""
 
 
 class UnclosedPanic(ProjectPanic):
-    """A bracket is not closed: the blocks around it cannot be read any further either."""
+    """Abandon the enclosing blocks, too: a bracket is not closed."""
 
 
 class ProjectCursor:
-    """The tokens of one project file and a place in them; collects the diagnostics."""
+    """A position in the tokens of one project file. Collects diagnostics."""
 
     def __init__(self, file: SourceFile, diagnostics: list[Diagnostic]) -> None:
         self.file = file
@@ -77,79 +76,79 @@ class ProjectCursor:
 
     @property
     def token(self) -> Token:
-        """The current token."""
         return self.tokens[self.index]
 
     def peek(self, further: int = 1) -> Token:
-        """The token behind the current one, or further on."""
+        """Return the token *further* positions ahead."""
         return self.tokens[min(self.index + further, len(self.tokens) - 1)]
 
     def before(self) -> Token:
-        """The token that was taken last."""
+        """Return the token before the current one."""
         return self.tokens[self.index - 1]
 
     def advance(self) -> Token:
-        """Take the current token; the one of kind ``end`` is never passed."""
+        """Consume the current token and return it. The ``end`` token is never consumed."""
         token = self.token
         if token.kind != "end":
             self.index += 1
         return token
 
     def accept(self, text: str) -> bool:
-        """Take the current token if it is this sign or word."""
+        """Consume the current token if it is this sign or word. Return whether it was."""
         if self.token.text != text or self.token.kind in ("string", "end"):
             return False
         self.advance()
         return True
 
     def expect(self, text: str, help: str | None = None) -> Token:
-        """Take this sign or word."""
+        """Consume this sign or word, or fail."""
         token = self.token
         if not self.accept(text):
-            self.fail(f"'{text}' is expected, not {token}", help=help)
+            self.fail(f"expected `{text}`, found {token}", help=help)
         return token
 
     def name(self, what: str) -> Token:
-        """Take a name."""
+        """Consume a name, or fail. *what* says in messages what it names."""
         if self.token.kind != "word":
-            self.fail(f"{what} is expected, not {self.token}")
+            self.fail(f"expected {what}, found {self.token}")
         return self.advance()
 
     def lower_name(self, what: str) -> Token:
-        """Take a name, which begins with a lower-case letter."""
+        """Consume a name. Report one that does not begin with a lower-case letter."""
         token = self.name(what)
         if not token.text[0].islower():
             first = token.text[0].lower() + token.text[1:]
-            self.report(f"{what} begins with a lower-case letter", self.span_of(token), f"write {first}")
+            self.report(
+                f"{what} must begin with a lower-case letter", self.span_of(token), f"write `{first}`"
+            )
         return token
 
     def span_of(self, token: Token) -> Span:
-        """The place of one token."""
         return Span(self.file, token.line, token.column, token.line, token.column + len(token.text))
 
     def report(self, message: str, span: Span | None = None, help: str | None = None) -> None:
-        """Record an error; reading goes on."""
+        """Report an error and continue."""
         self.diagnostics.append(Diagnostic("error", message, span or self.span_of(self.token), help))
 
     def warn(self, message: str, span: Span, help: str | None = None) -> None:
-        """Record something that is read and has no effect."""
+        """Report a declaration that has no effect."""
         self.diagnostics.append(Diagnostic("warning", message, span, help))
 
     def fail(self, message: str, span: Span | None = None, help: str | None = None) -> NoReturn:
-        """Record an error and give up the declaration."""
+        """Report an error and abandon the declaration."""
         self.report(message, span, help)
         raise ProjectPanic
 
     def fail_unclosed(self, opener: Token, help: str | None = None) -> NoReturn:
-        """Blame a bracket that is not closed."""
-        self.report(f"'{opener.kind}' is not closed", self.span_of(opener), help)
+        """Report a bracket that is not closed."""
+        self.report(f"`{opener.kind}` is not closed", self.span_of(opener), help)
         raise UnclosedPanic
 
     @contextmanager
     def nested(self) -> Iterator[None]:
-        """Read something inside of something of its kind, as deep as people write it."""
+        """Enter a nested value. Fail beyond the maximum depth."""
         if self._depth >= _DEEPEST:
-            self.fail("this is nested too deeply")
+            self.fail(f"nested too deeply: at most {_DEEPEST} levels are supported")
         self._depth += 1
         try:
             yield
@@ -157,19 +156,19 @@ class ProjectCursor:
             self._depth -= 1
 
     def number(self, token: Token) -> int | float:
-        """The value of a number."""
+        """Return the value of a number token."""
         if token.text.lstrip("-").isdigit():
             if len(token.text) > _LONGEST:
-                self.fail("the number has too many digits", self.span_of(token))
+                self.fail(f"number too long: at most {_LONGEST} digits are supported", self.span_of(token))
             return int(token.text)
         return float(token.text)
 
     def at_key(self) -> bool:
-        """Whether ``key:`` stands here."""
+        """Return whether ``key:`` comes next."""
         return self.token.kind == "word" and self.peek().kind == ":"
 
     def raw(self, ends: Callable[[], bool]) -> str:
-        """The text up to where *ends* holds outside brackets, or a bracket closes that was opened before."""
+        """Return the text up to where *ends* holds outside brackets, or to a closing bracket that is not opened in it."""
         start = stop = self.token.start
         closers: list[str] = []
         while self.token.kind != "end":
@@ -185,7 +184,7 @@ class ProjectCursor:
         return self.file.text[start:stop]
 
     def skip_block(self) -> None:
-        """Behind the bracket that closes the one here."""
+        """Skip to the token after the matching closing bracket."""
         opener = self.advance()
         depth = 1
         while depth:
@@ -196,7 +195,7 @@ class ProjectCursor:
 
 
 def text_of(token: Token) -> str:
-    """The content of a string, the text of any other token."""
+    """Return the content of a string, or the text of any other token."""
     if token.kind != "string":
         return token.text
     return unquoted(token.text)
@@ -218,12 +217,8 @@ def _tokenize(file: SourceFile, report: Callable[[str, Span], None]) -> list[Tok
                 begin = start + text.rfind("\n") + 1
             continue
         if kind in ("wrong", "open_comment"):
-            what = (
-                "the string does not end on its line"
-                if text[0] == '"'
-                else f"'{text[0]}' does not belong here"
-            )
-            what = "the comment is not closed" if kind == "open_comment" else what
+            what = "unterminated string" if text[0] == '"' else f"unexpected `{text[0]}`"
+            what = "unterminated comment" if kind == "open_comment" else what
             report(what, Span(file, line, column, line, column + len(text.splitlines()[0].rstrip())))
             continue
         tokens.append(

@@ -1,7 +1,7 @@
 """`.jcm` project files.
 
-Accepted beyond the reference: sections in any order, blocks on one line, negative and boolean parameters of
-artifacts, lists and structures as such, ``parent:`` of workspaces, workspaces named by paths, ``world:`` and ``mapping:``.
+Beyond JaCaMo's grammar they accept sections in any order, blocks on one line, negative and boolean arguments of artifacts,
+lists and structures as arguments, ``parent:`` of workspaces, paths as names of workspaces, ``world:`` and ``mapping:``.
 """
 
 from contextlib import suppress
@@ -19,11 +19,11 @@ from jacaros.mas.project.unsupported import NODES, PACKAGES, PATHS, PLATFORMS
 
 _KEYS: Final = ("asl-path", "org-path", "java-path", "class-path", "platform", "world", "mapping")
 _OWN_PLATFORMS: Final = ("cartago", "local", "centralised", "jacamo.platform.Cartago")
-"""Platforms whose work is done here anyway."""
+"""Platforms that JaCaROS replaces, so they need no warning."""
 
 
 def read_jcm(cursor: ProjectCursor) -> ProjectPart:
-    """The declarations of a `.jcm` file; errors are left in the cursor."""
+    """Return the declarations of a `.jcm` file. Errors are collected in the cursor."""
     part = ProjectPart()
     with suppress(ProjectPanic):
         _JcmReader(cursor, part).project()
@@ -38,32 +38,31 @@ class _JcmReader(JcmValues):
         self.organisations = JcmOrganisations(cursor, part)
 
     def project(self) -> None:
-        """Read the whole file."""
         cursor = self.cursor
-        cursor.expect("mas", "a .jcm file begins with mas name {")
+        cursor.expect("mas", "begin the file with `mas name {`")
         self.part.name = cursor.lower_name("the name of the system").text
         if cursor.accept("uses"):
             while cursor.token.kind in NAME:
                 self.part.uses.append(self.file_name("a project file"))
                 cursor.accept(",")
-        opener = cursor.expect("{", "the head of a .jcm file is: mas name {")
+        opener = cursor.expect("{", "begin the file with `mas name {`")
         while not cursor.accept("}"):
             if cursor.token.kind == "end":
-                cursor.fail("'{' is not closed", cursor.span_of(opener), "the file ends with }")
+                cursor.fail("`{` is not closed", cursor.span_of(opener), "end the file with `}`")
             start = cursor.index
             try:
                 self._section()
             except UnclosedPanic:
                 if cursor.token.kind == "end":
-                    return  # nothing of the file's own '}' is known: the error may have swallowed it
+                    return  # the error may have consumed the closing bracket of the file
             except ProjectPanic:
                 self._to_next_section(start)
                 if cursor.token.kind == "end":
                     return
         if cursor.token.kind != "end":
             cursor.report(
-                f"{cursor.token} after the end of the system",
-                help="there may be an extra '}' before it",
+                f"unexpected {cursor.token} after the end of the system",
+                help="check for an extra `}` before it",
             )
 
     def _section(self) -> None:
@@ -94,12 +93,12 @@ class _JcmReader(JcmValues):
         sections = (*SECTIONS[:4], *_KEYS)
         close = close_matches(token.text, sections)
         self.cursor.fail(
-            f"unknown section {token} of a .jcm file",
-            help=f"did you mean '{close[0]}'?" if close else f"the sections are {', '.join(sections)}",
+            f"unknown section {token} in a .jcm file",
+            help=f"did you mean `{close[0]}`?" if close else f"expected one of {', '.join(sections)}",
         )
 
     def _to_next_section(self, start: int) -> None:
-        """After an error in the section that began at *start*: to the next one on a line of its own."""
+        """Skip to the next section at the beginning of a line, after an error in the one that began at *start*."""
         cursor = self.cursor
         if cursor.index == start:
             cursor.advance()
@@ -110,7 +109,7 @@ class _JcmReader(JcmValues):
             cursor.advance()
 
     def _line(self, key: Token) -> None:
-        """The value of a key of the whole project."""
+        """Read the value of a key of the project."""
         cursor = self.cursor
         if key.text == "asl-path":
             self.part.source_paths += [text for text, _ in self._some(key)]
@@ -118,7 +117,7 @@ class _JcmReader(JcmValues):
             self.part.code_paths += [text for text, _ in self._some(key)]
         elif key.text == "world":
             if cursor.token.kind not in NAME:
-                cursor.fail("the name of a world file is expected")
+                cursor.fail(f"expected the name of a world file, found {cursor.token}")
             name = cursor.advance()
             self.part.world, self.part.world_span = text_of(name), cursor.span_of(name)
         elif key.text == "mapping":
@@ -127,25 +126,25 @@ class _JcmReader(JcmValues):
             self._platforms(key)
         else:
             self._some(key)
-            self.unsupported(PATHS, f"'{key.text}'", cursor.span_of(key))
+            self.unsupported(PATHS, f"`{key.text}`", cursor.span_of(key))
 
     def _some(self, key: Token) -> list[Written]:
-        """At least one name."""
+        """Return at least one name."""
         found = self.names()
         if not found:
-            self.cursor.fail(f"a value is expected behind '{key.text}:', not {self.cursor.token}")
+            self.cursor.fail(f"expected a value after `{key.text}:`, found {self.cursor.token}")
         return found
 
     def _platforms(self, key: Token) -> None:
         found = self.classes()
         if not found:
-            self.cursor.fail(f"a platform is expected behind '{key.text}:', not {self.cursor.token}")
+            self.cursor.fail(f"expected a platform after `{key.text}:`, found {self.cursor.token}")
         for text, span in found:
             self.part.infrastructure.append(text)
             name, _, parameters = text.partition("(")
             switched_off = parameters.strip('") ') == "false"
             if name.strip() not in _OWN_PLATFORMS and not switched_off:
-                self.unsupported(PLATFORMS, f"the platform {name}", span)
+                self.unsupported(PLATFORMS, f"the platform `{name}`", span)
 
     def _node(self) -> None:
         """``node name [running] [@ host[:port]]``."""
@@ -155,15 +154,15 @@ class _JcmReader(JcmValues):
         cursor.accept("running")
         if cursor.accept("@"):
             self.file_name("the address of the node")
-        self.unsupported(NODES, f"the node '{name.text}'", cursor.span_of(name))
+        self.unsupported(NODES, f"the node `{name.text}`", cursor.span_of(name))
 
     def _package(self) -> None:
         """``uses package: name "file or coordinates"``."""
         cursor = self.cursor
         cursor.advance()
-        cursor.expect("package", 'packages are written: uses package: name "file.jar"')
-        cursor.expect(":", 'packages are written: uses package: name "file.jar"')
+        cursor.expect("package", 'write `uses package: name "file.jar"`')
+        cursor.expect(":", 'write `uses package: name "file.jar"`')
         name = cursor.name("the name of the package")
         if cursor.token.kind == "string":
             cursor.advance()
-        self.unsupported(PACKAGES, f"the package '{name.text}'", cursor.span_of(name))
+        self.unsupported(PACKAGES, f"the package `{name.text}`", cursor.span_of(name))

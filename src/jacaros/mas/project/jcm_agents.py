@@ -31,8 +31,8 @@ class JcmAgents(JcmValues):
             self.block(lambda: self._entry(agent))
         elif not (cursor.token.first or self.at_end()):
             cursor.fail(
-                f"{cursor.token} does not belong to agent '{agent.name}'",
-                help="agent name : file.asl { ... }; quote file names with blanks",
+                f"unexpected {cursor.token} after agent `{agent.name}`",
+                help="write `agent name : file.asl { ... }`, with quotes around a file name with spaces",
             )
 
     def _entry(self, agent: AgentPart) -> None:
@@ -57,36 +57,36 @@ class JcmAgents(JcmValues):
                 agent.architecture_classes += [text for text, _ in self.classes()]
             case "host" | "node":
                 agent.host = " ".join(text for text, _ in self.names())
-                self.unsupported(NODES, f"'{key.text}' of agent '{agent.name}'", cursor.span_of(key))
+                self.unsupported(NODES, f"`{key.text}` of agent `{agent.name}`", cursor.span_of(key))
             case "roles":
                 self._roles(agent)
             case _:
                 self._option(agent, key)
         if cursor.token.kind not in ("}", "end", ",") and not self.at_end():
-            cursor.fail(f"{cursor.token} does not belong to '{key.text}'")
+            cursor.fail(f"unexpected {cursor.token} in the value of `{key.text}`")
 
     def _option(self, agent: AgentPart, key: Token) -> None:
-        """A setting of Jason's, or a parameter of the user's own."""
+        """Read an option of Jason, or a parameter of the project's own."""
         cursor = self.cursor
         span = cursor.span_of(key)
         if key.text in agent.options:
-            cursor.warn(f"'{key.text}' is given twice; the last one counts", span)
+            cursor.warn(f"duplicate key `{key.text}`: only the last value has an effect", span)
         close = [] if key.text in KEYS else close_matches(key.text, KEYS, 0.8)
         if close:
-            message = f"'{key.text}' is kept as a parameter of your own"
-            cursor.warn(message, span, f"did you mean '{close[0]}'?")
+            message = f"unknown key `{key.text}`, kept as a parameter of the agent"
+            cursor.warn(message, span, f"did you mean `{close[0]}`?")
         agent.option_places[key.text] = span
         agent.options[key.text] = ", ".join(_unquoted(text) for text, _ in self.pieces())
         if key.text == "debug":
-            self.unsupported(INSPECTORS, f"'debug' of agent '{agent.name}'", span)
+            self.unsupported(INSPECTORS, f"`debug` of agent `{agent.name}`", span)
 
     def _class(self, key: Token, before: str | None) -> str | None:
         cursor = self.cursor
         found = self.classes()
         if not found:
-            cursor.fail(f"the class for '{key.text}' is expected, not {cursor.token}")
+            cursor.fail(f"expected the class for `{key.text}`, found {cursor.token}")
         if len(found) > 1 or before is not None:
-            cursor.report(f"an agent has one '{key.text}'", found[-1][1])
+            cursor.report(f"duplicate key `{key.text}`: an agent has only one", found[-1][1])
         return found[0][0]
 
     def _instances(self, agent: AgentPart, key: Token) -> None:
@@ -98,7 +98,7 @@ class JcmAgents(JcmValues):
             agent.instances = [text for text, _ in values]
         else:
             self.cursor.report(
-                "'instances' is a number or the names of agents",
+                "expected a number or names of agents as `instances`",
                 values[0][1] if values else self.cursor.span_of(key),
             )
 
@@ -107,7 +107,7 @@ class JcmAgents(JcmValues):
         while cursor.token.kind in NAME and not self.at_end():
             token = cursor.advance()
             name = text_of(token)
-            elsewhere = self.node(f"the workspace '{name}'")
+            elsewhere = self.node(f"the workspace `{name}`")
             agent.join.append(JoinPart(name, cursor.span_of(token), elsewhere))
             cursor.accept(",")
 
@@ -120,20 +120,20 @@ class JcmAgents(JcmValues):
                 namespace, token = token.text, cursor.name("the name of an artifact")
             workspace, dot, artifact = token.text.rpartition(".")
             span = cursor.span_of(first).to(cursor.span_of(token))
-            elsewhere = self.node(f"the artifact '{token.text}'")
+            elsewhere = self.node(f"the artifact `{token.text}`")
             agent.focus.append(FocusPart(artifact, workspace if dot else None, namespace, span, elsewhere))
             cursor.accept(",")
 
     def _roles(self, agent: AgentPart) -> None:
-        """``role in [organisation.]group [@ node]``, several of them."""
+        """Read ``role in [organisation.]group [@ node]``, any number of times."""
         cursor = self.cursor
         while cursor.token.kind == "word" and not self.at_end():
             role = cursor.advance()
-            cursor.expect("in", "roles are written: role in organisation.group")
+            cursor.expect("in", "write `role in organisation.group`")
             group = cursor.name("the name of a group")
             span: Span = cursor.span_of(role).to(cursor.span_of(group))
-            self.unsupported(ROLES, f"the role '{role.text}' in '{group.text}'", span)
-            self.node(f"the group '{group.text}'")
+            self.unsupported(ROLES, f"the role `{role.text}` in `{group.text}`", span)
+            self.node(f"the group `{group.text}`")
             cursor.accept(",")
 
 

@@ -1,4 +1,4 @@
-"""Organisations and institutions in `.jcm` project files: read, checked and reported, without effect."""
+"""Organisations and institutions in `.jcm` project files: read and checked, but without effect."""
 
 from collections.abc import Callable
 
@@ -12,15 +12,15 @@ class JcmOrganisations(JcmValues):
     """Reads ``organisation name : file { ... }`` and ``institution name : file { ... }``."""
 
     def organisation(self) -> None:
-        """Read one organisation; the cursor is on the word."""
+        """Read one organisation. The cursor is on the keyword."""
         part = self._head("organisation")
-        self.unsupported(ORGANISATIONS, f"the organisation '{part.name}'", part.span)
+        self.unsupported(ORGANISATIONS, f"the organisation `{part.name}`", part.span)
         self._body(lambda: self._organisation_entry(part), ("group", "scheme", "debug"))
 
     def institution(self) -> None:
-        """Read one institution; the cursor is on the word."""
+        """Read one institution. The cursor is on the keyword."""
         part = self._head("institution")
-        self.unsupported(INSTITUTIONS, f"the institution '{part.name}'", part.span)
+        self.unsupported(INSTITUTIONS, f"the institution `{part.name}`", part.span)
         self._body(lambda: self._institution_entry(part), ("debug",))
 
     def _head(self, what: str) -> OrganisationPart:
@@ -34,7 +34,7 @@ class JcmOrganisations(JcmValues):
         return part
 
     def _body(self, entry: Callable[[], None], entries: tuple[str, ...]) -> None:
-        """A block, if there is one, in which *entries* may stand besides keys."""
+        """Read an optional block of keys and of *entries*."""
         if self.cursor.token.kind != "{":
             return
         around, self.entries = self.entries, entries
@@ -65,7 +65,7 @@ class JcmOrganisations(JcmValues):
 
     def _group(self, part: OrganisationPart) -> None:
         name = self._typed("group")
-        self.unsupported(ORGANISATIONS, f"the group '{name.text}'", self.cursor.span_of(name), detail=True)
+        self.unsupported(ORGANISATIONS, f"the group `{name.text}`", self.cursor.span_of(name), detail=True)
         self._body(lambda: self._group_entry(part, name), ("group", "debug"))
 
     def _group_entry(self, part: OrganisationPart, group: Token) -> None:
@@ -81,7 +81,7 @@ class JcmOrganisations(JcmValues):
                 self.pieces()
 
     def _players(self, part: OrganisationPart, group: Token) -> None:
-        """``agent role``, several of them."""
+        """Read ``agent role``, any number of times."""
         cursor = self.cursor
         while cursor.token.kind in ("word", "*") and not self.at_end():
             agent = cursor.advance()
@@ -89,19 +89,19 @@ class JcmOrganisations(JcmValues):
                 part.agents.append((agent.text, cursor.span_of(agent)))
             if cursor.token.kind != "word" or cursor.token.first or self.at_end():
                 cursor.fail(
-                    f"the role of '{agent.text}' is expected, not {cursor.token}",
-                    help="players are written: agent role, agent role",
+                    f"expected the role of `{agent.text}`, found {cursor.token}",
+                    help="write `players: agent role, agent role`",
                 )
             role = cursor.advance()
             span = cursor.span_of(agent).to(cursor.span_of(role))
-            what = f"the role '{role.text}' of '{agent.text}' in '{group.text}'"
+            what = f"the role `{role.text}` of `{agent.text}` in `{group.text}`"
             self.unsupported(ROLES, what, span)
-            self.node(f"the role '{role.text}'")
+            self.node(f"the role `{role.text}`")
             cursor.accept(",")
 
     def _scheme(self, part: OrganisationPart) -> None:
         name = self._typed("scheme")
-        self.unsupported(ORGANISATIONS, f"the scheme '{name.text}'", self.cursor.span_of(name), detail=True)
+        self.unsupported(ORGANISATIONS, f"the scheme `{name.text}`", self.cursor.span_of(name), detail=True)
         self._body(lambda: self._scheme_entry(part), ("debug",))
 
     def _scheme_entry(self, part: OrganisationPart) -> None:
@@ -113,11 +113,11 @@ class JcmOrganisations(JcmValues):
                 self.pieces()
 
     def _typed(self, what: str) -> Token:
-        """``group name : type``; the name."""
+        """Read ``group name : type`` and return the name."""
         cursor = self.cursor
         cursor.advance()
         name = cursor.name(f"the name of a {what}")
-        cursor.expect(":", f"a {what} has a type: {what} name : type")
+        cursor.expect(":", f"write `{what} name : type`")
         cursor.name(f"the type of the {what}")
         return name
 

@@ -1,4 +1,4 @@
-"""The values of keys in `.jcm` project files, and the blocks that they stand in."""
+"""Values of keys in `.jcm` project files, and blocks of keys."""
 
 from collections.abc import Callable, Iterable
 from typing import Final
@@ -15,13 +15,13 @@ NAME: Final = ("word", "string")
 
 
 class JcmValues:
-    """Reads values at the place of a cursor; a value ends before the next key, entry, section or closing bracket.
+    """Reads values at a cursor. A value ends before the next key, entry, section or closing bracket.
 
     Args:
-        cursor: the file and the place in it.
-        part: what is read from the file.
-        entries: words that begin an entry of the block that is read, besides its keys.
-        keys: the keys of that block.
+        cursor: position in the file.
+        part: collects the declarations.
+        entries: keywords that begin an entry of the current block, besides its keys.
+        keys: keys of that block.
     """
 
     def __init__(
@@ -38,13 +38,13 @@ class JcmValues:
         self._inside = False
 
     def unsupported(self, topic: Topic, what: str, span: Span, detail: bool = False) -> None:
-        """Record something that has no effect here."""
+        """Record a declaration that has no effect."""
         self.part.unsupported.append(Unsupported(topic, what, span, detail))
 
     # where things end
 
     def at_section(self) -> bool:
-        """Whether ``agent name``, or another section of the file, begins here; inside of a block, with a line."""
+        """Return whether a section begins here. Inside a block, a section must begin a line."""
         cursor = self.cursor
         token = cursor.token
         if token.kind != "word" or token.text not in SECTIONS or cursor.peek().kind != "word":
@@ -52,7 +52,7 @@ class JcmValues:
         return token.first or not self._inside
 
     def at_entry(self) -> bool:
-        """Whether a key or an entry of the block begins here."""
+        """Return whether a key or an entry of the block begins here."""
         cursor = self.cursor
         if cursor.at_key():
             return True
@@ -60,7 +60,7 @@ class JcmValues:
             return False
         following = cursor.peek()
         if cursor.token.text in self.keys:
-            # The ':' was forgotten.
+            # The ':' is missing.
             return cursor.token.first and following.kind in NAME and not following.first
         if cursor.token.text not in self.entries:
             return False
@@ -69,13 +69,13 @@ class JcmValues:
         return following.kind == "word"
 
     def at_end(self) -> bool:
-        """Whether a value ends before the token here."""
+        """Return whether a value ends before the current token."""
         return self.cursor.token.kind in ("}", "end") or self.at_entry() or self.at_section()
 
     # blocks
 
     def block(self, entry: Callable[[], None]) -> None:
-        """``{ ... }`` with *entry* reading each thing in it; after an error the next one is read."""
+        """Read ``{ ... }``, calling *entry* for each entry. After an error, continue with the next entry."""
         around, self._inside = self._inside, True
         try:
             with self.cursor.nested():
@@ -90,7 +90,7 @@ class JcmValues:
             if cursor.token.kind == "end":
                 cursor.fail_unclosed(opener)
             if self.at_section():
-                cursor.fail_unclosed(opener, "put a '}' before the next section")
+                cursor.fail_unclosed(opener, "add `}` before the next section")
             start = cursor.index
             try:
                 entry()
@@ -101,7 +101,7 @@ class JcmValues:
             cursor.accept(",")
 
     def to_next_entry(self, start: int) -> None:
-        """After an error in the entry that began at *start*: to the next one on a line of its own."""
+        """Skip to the next entry at the beginning of a line, after an error in the one that began at *start*."""
         cursor = self.cursor
         if cursor.index == start and cursor.token.kind != "}":
             cursor.advance()
@@ -115,39 +115,39 @@ class JcmValues:
             cursor.advance()
 
     def key(self, known: Iterable[str], what: str) -> Token:
-        """Take ``key:``.
+        """Consume ``key:``.
 
         Args:
-            known: the keys that may stand here.
-            what: the thing that has them, for people.
+            known: the keys that are valid here.
+            what: what has these keys, for messages.
         """
         cursor = self.cursor
         token = cursor.token
         if token.kind == "word" and not cursor.at_key():
             known = list(known)
             close = close_matches(token.text, known)
-            help = f"did you mean '{close[0]}'?" if close and close[0] != token.text else None
+            help = f"did you mean `{close[0]}`?" if close and close[0] != token.text else None
             keys = [f"{each}:" for each in known if each not in self.entries]
-            help = help or f"{what} has {', '.join([*self.entries, *keys])}"
-            cursor.fail(f"a ':' is missing behind '{token.text}'", help=help)
+            help = help or f"keys of {what}: {', '.join([*self.entries, *keys])}"
+            cursor.fail(f"missing `:` after `{token.text}`", help=help)
         if token.kind != "word":
-            cursor.fail(f"'key:' is expected, not '{token.text}'")
+            cursor.fail(f"expected a key, found `{token.text}`")
         cursor.advance()
         cursor.advance()
         return token
 
     def unknown_key(self, key: Token, known: Iterable[str], what: str) -> None:
-        """Blame a key that has no meaning, and read its value."""
+        """Report an unknown key and skip its value."""
         known = list(known)
         close = close_matches(key.text, known)
-        help = f"did you mean '{close[0]}'?" if close else f"{what} has {', '.join(known)}"
-        self.cursor.report(f"unknown key '{key.text}' of {what}", self.cursor.span_of(key), help)
+        help = f"did you mean `{close[0]}`?" if close else f"keys of {what}: {', '.join(known)}"
+        self.cursor.report(f"unknown key `{key.text}` in {what}", self.cursor.span_of(key), help)
         self.pieces()
 
     # values
 
     def pieces(self) -> list[Written]:
-        """The pieces of a value, which are separated by commas or line ends, as written."""
+        """Return the pieces of a value, separated by commas or line ends, as written."""
         cursor = self.cursor
         found: list[Written] = []
         while not self.at_end():
@@ -161,11 +161,11 @@ class JcmValues:
             if text:
                 found.append((text, cursor.span_of(start)))
             if not cursor.accept(",") and cursor.token is start:
-                cursor.fail(f"'{start.text}' does not belong here")
+                cursor.fail(f"unexpected `{start.text}`")
         return found
 
     def names(self) -> list[Written]:
-        """Names separated by blanks, commas or line ends."""
+        """Return names separated by spaces, commas or line ends."""
         cursor = self.cursor
         found: list[Written] = []
         while cursor.token.kind in (*NAME, "number", "*") and not self.at_end():
@@ -175,7 +175,7 @@ class JcmValues:
         return found
 
     def classes(self) -> list[Written]:
-        """Names of classes with their parameters, as written, separated by blanks, commas or line ends."""
+        """Return names of classes with their arguments as written, separated by spaces, commas or line ends."""
         cursor = self.cursor
         found: list[Written] = []
         while cursor.token.kind in NAME and not self.at_end():
@@ -188,16 +188,16 @@ class JcmValues:
         return found
 
     def bracketed(self) -> str:
-        """The text from the bracket here to the one that closes it."""
+        """Return the text from the current bracket to the matching one."""
         start = self.cursor.token.start
         self.cursor.skip_block()
         return self.cursor.file.text[start : self.cursor.before().stop]
 
     def file_name(self, what: str) -> Written:
-        """The name of a file; without quotes it goes on as long as there is no blank."""
+        """Return the name of a file. Without quotes, it ends at a space."""
         cursor = self.cursor
         if cursor.token.kind not in NAME:
-            cursor.fail(f"{what} is expected, not {cursor.token}")
+            cursor.fail(f"expected {what}, found {cursor.token}")
         first = last = cursor.advance()
         if first.kind == "string":
             return text_of(first), cursor.span_of(first)
@@ -206,7 +206,7 @@ class JcmValues:
         return cursor.file.text[first.start : last.stop], cursor.span_of(first).to(cursor.span_of(last))
 
     def agent_names(self) -> list[AgentName]:
-        """``[namespace::]agent`` or ``*``, several of them."""
+        """Return ``[namespace::]agent`` or ``*``, any number of times."""
         cursor = self.cursor
         found: list[AgentName] = []
         while cursor.token.kind in ("word", "*") and not self.at_end():
@@ -220,28 +220,28 @@ class JcmValues:
         return found
 
     def node(self, what: str) -> bool:
-        """``@ node`` behind the name of something on another node; whether it is there."""
+        """Read ``@ node`` after the name of something on another node. Return whether it is present."""
         cursor = self.cursor
         at = cursor.token
         if not cursor.accept("@"):
             return False
         name = cursor.name("the name of a node")
-        self.unsupported(NODES, f"'@ {name.text}' of {what}", cursor.span_of(at).to(cursor.span_of(name)))
+        self.unsupported(NODES, f"`@ {name.text}` of {what}", cursor.span_of(at).to(cursor.span_of(name)))
         return True
 
     def arguments(self, closer: str = ")") -> tuple[object, ...]:
-        """The values between the bracket here and its *closer*."""
+        """Return the values between the current bracket and its *closer*."""
         cursor = self.cursor
         opener = cursor.advance()
         values: list[object] = []
         while not cursor.accept(closer):
             values.append(self.argument(opener))
             if cursor.token.kind != closer:
-                cursor.expect(",", f"the '{opener.kind}' of line {opener.line} is closed by '{closer}'")
+                cursor.expect(",", f"close the `{opener.kind}` in line {opener.line} with `{closer}`")
         return tuple(values)
 
     def argument(self, opener: Token) -> object:
-        """One value; strings stay strings, also those that look like numbers."""
+        """Return one value. A string remains a string even if it looks like a number."""
         cursor = self.cursor
         token = cursor.token
         if token.kind == "[":
@@ -251,11 +251,11 @@ class JcmValues:
             cursor.advance()
             return cursor.number(token)
         if token.kind not in ("word", "string", "quoted"):
-            cursor.fail(
-                "a value is expected", help=f"the '{opener.kind}' of line {opener.line} is not closed"
-            )
+            cursor.fail("expected a value", help=f"close the `{opener.kind}` in line {opener.line}")
         if token.kind == "word" and not (token.text[0].isalpha() or token.text[0] in "_$"):
-            cursor.fail(f"'{token.text}' is not a value", help="write a number, or a text in quotes")
+            cursor.fail(
+                f"expected a value, found `{token.text}`", help="write a number, or a string in quotes"
+            )
         cursor.advance()
         if token.kind == "string":
             return text_of(token)

@@ -16,7 +16,7 @@ class JcmWorkspaces(JcmValues):
     """Reads ``workspace name { ... }``."""
 
     def workspace(self) -> None:
-        """Read one workspace; the cursor is on ``workspace``."""
+        """Read one workspace. The cursor is on ``workspace``."""
         cursor = self.cursor
         cursor.advance()
         name = cursor.lower_name("the name of a workspace")
@@ -34,11 +34,12 @@ class JcmWorkspaces(JcmValues):
         span = cursor.span_of(token)
         if token.text == "debug" and not cursor.at_key():
             cursor.advance()
-            self.unsupported(INSPECTORS, f"'debug' of workspace '{workspace.name}'", span)
+            self.unsupported(INSPECTORS, f"`debug` of workspace `{workspace.name}`", span)
             return
         if token.kind == "word" and cursor.peek().kind == "word" and not cursor.at_key():
             cursor.fail(
-                f"an artifact or a key is expected, not {token}", help="artifact name : Class(arguments)"
+                f"expected an artifact or a key, found {token}",
+                help="write `artifact name : Class(arguments)`",
             )
         key = self.key(_KEYS, "a workspace")
         match key.text:
@@ -49,10 +50,10 @@ class JcmWorkspaces(JcmValues):
                 workspace.parent, workspace.parent_span = parent.text, cursor.span_of(parent)
             case "host" | "node":
                 cursor.name("the name of a node")
-                self.unsupported(NODES, f"'{key.text}' of workspace '{workspace.name}'", span)
+                self.unsupported(NODES, f"`{key.text}` of workspace `{workspace.name}`", span)
             case "debug":
                 self.pieces()
-                self.unsupported(INSPECTORS, f"'debug' of workspace '{workspace.name}'", span)
+                self.unsupported(INSPECTORS, f"`debug` of workspace `{workspace.name}`", span)
             case _:
                 self.unknown_key(key, ("artifact", *_KEYS), "a workspace")
 
@@ -60,14 +61,14 @@ class JcmWorkspaces(JcmValues):
         cursor = self.cursor
         cursor.advance()
         name = cursor.lower_name("the name of an artifact")
-        # Known from here on, also when the rest is wrong: who names it is not to be blamed.
+        # Add it now: if the rest has an error, references to the artifact are still valid.
         part = ArtifactPart(ArtifactSpec(name.text, "", span=cursor.span_of(name)))
         workspace.artifacts.append(part)
-        cursor.expect(":", "artifact name : Class(arguments)")
+        cursor.expect(":", "write `artifact name : Class(arguments)`")
         if cursor.token.kind not in NAME:
             cursor.fail(
-                f"the class of the artifact is expected, not {cursor.token}",
-                help="artifact name : Class(arguments)",
+                f"expected the class of the artifact, found {cursor.token}",
+                help="write `artifact name : Class(arguments)`",
             )
         type_token = cursor.advance()
         arguments = self.arguments() if cursor.token.kind == "(" else ()

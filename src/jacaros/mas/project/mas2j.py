@@ -23,11 +23,11 @@ _SECTIONS: Final = (
 )
 _AGENT_KEYS: Final = ("agentArchClass", "agentClass", "beliefBaseClass", "at")
 _OWN_INFRASTRUCTURES: Final = ("local", "centralised", "centralized")
-"""Infrastructures whose work is done here anyway, in lower case."""
+"""Infrastructures that JaCaROS replaces, so they need no warning, in lower case."""
 
 
 def read_mas2j(cursor: ProjectCursor) -> ProjectPart:
-    """The declarations of a `.mas2j` file; errors are left in the cursor."""
+    """Return the declarations of a `.mas2j` file. Errors are collected in the cursor."""
     part = ProjectPart()
     with suppress(ProjectPanic):
         _Mas2jReader(cursor, part).project()
@@ -41,23 +41,23 @@ class _Mas2jReader:
 
     def project(self) -> None:
         cursor = self.cursor
-        cursor.expect("MAS", "a .mas2j file begins with MAS name {")
+        cursor.expect("MAS", "begin the file with `MAS name {`")
         self.part.name = cursor.name("the name of the system").text
-        opener = cursor.expect("{", "the head of a .mas2j file is: MAS name {")
+        opener = cursor.expect("{", "begin the file with `MAS name {`")
         while not cursor.accept("}"):
             if cursor.token.kind == "end":
-                cursor.fail("'{' is not closed", cursor.span_of(opener), "the file ends with }")
+                cursor.fail("`{` is not closed", cursor.span_of(opener), "end the file with `}`")
             start = cursor.index
             try:
                 self.section()
             except ProjectPanic:
                 self.to_next_section(start)
                 if cursor.token.kind == "end":
-                    return  # nothing of the file's own '}' is known: the error may have swallowed it
+                    return  # the error may have consumed the closing bracket of the file
         if cursor.token.kind != "end":
             cursor.report(
-                f"{cursor.token} after the end of the system",
-                help="there may be an extra '}' before it",
+                f"unexpected {cursor.token} after the end of the system",
+                help="check for an extra `}` before it",
             )
 
     def section(self) -> None:
@@ -86,35 +86,37 @@ class _Mas2jReader:
             case _:
                 span = cursor.span_of(key)
                 cursor.raw(self.at_section_or_end)
-                self.unsupported(JAVA, f"'{key.text}'", span)
+                self.unsupported(JAVA, f"`{key.text}`", span)
 
     def unsupported(self, topic: Topic, what: str, span: Span) -> None:
-        """Record something that has no effect here."""
+        """Record a declaration that has no effect."""
         self.part.unsupported.append(Unsupported(topic, what, span))
 
     def infrastructure(self) -> None:
-        """How the agents are run; here they always share one process."""
+        """Read the infrastructure. Agents always share one process here."""
         token = self.cursor.token
         self.part.infrastructure.append(self.class_text())
         if token.text.lower() not in _OWN_INFRASTRUCTURES:
-            self.unsupported(INFRASTRUCTURES, f"the infrastructure {token.text}", self.cursor.span_of(token))
+            self.unsupported(
+                INFRASTRUCTURES, f"the infrastructure `{token.text}`", self.cursor.span_of(token)
+            )
 
     def environment(self) -> None:
-        """The class of the environment; one of Java has no effect."""
+        """Read the class of the environment. A Java class has no effect."""
         token = self.cursor.token
         self.part.environment = self.class_text()
         name = self.part.environment.partition("(")[0]
         if name not in CARTAGO_ENVIRONMENTS:
-            self.unsupported(JAVA_ENVIRONMENT, f"the environment {name}", self.cursor.span_of(token))
+            self.unsupported(JAVA_ENVIRONMENT, f"the environment `{name}`", self.cursor.span_of(token))
 
     def no_section(self) -> NoReturn:
         token = self.cursor.token
         close = close_matches(token.text, _SECTIONS)
-        help = f"did you mean '{close[0]}'?" if close else f"the sections are {', '.join(_SECTIONS)}"
-        self.cursor.fail(f"unknown section {token} of a .mas2j file", help=help)
+        help = f"did you mean `{close[0]}`?" if close else f"expected one of {', '.join(_SECTIONS)}"
+        self.cursor.fail(f"unknown section {token} in a .mas2j file", help=help)
 
     def to_next_section(self, start: int) -> None:
-        """After an error in the section that began at *start*: to the next one or the end."""
+        """Skip to the next section or the end, after an error in the section that began at *start*."""
         if self.cursor.index == start:
             self.cursor.advance()
         while self.cursor.token.kind != "end" and not self.at_section_or_end():
@@ -126,17 +128,17 @@ class _Mas2jReader:
 
     def value(self, what: str) -> Token:
         if self.cursor.token.kind not in ("string", "word", "number"):
-            self.cursor.fail(f"{what} is expected")
+            self.cursor.fail(f"expected {what}, found {self.cursor.token}")
         return self.cursor.advance()
 
     def class_text(self) -> str:
-        """A class with its parameters, as written; ``at "host"`` behind it is left out."""
+        """Return a class with its arguments, as written, without a following ``at "host"``."""
         name = self.cursor.name("a class name").text
         text = name + self.parameters()
         at = self.cursor.token
         if self.cursor.accept("at"):
             host = self.value("the name of a host")
-            self.unsupported(NODES, f"'at {text_of(host)}'", self.cursor.span_of(at))
+            self.unsupported(NODES, f"`at {text_of(host)}`", self.cursor.span_of(at))
         self.cursor.accept(";")
         return text
 
@@ -157,7 +159,7 @@ class _Mas2jReader:
 
     def agents(self) -> None:
         if self.at_section_or_end():
-            self.cursor.report("no agent is declared")
+            self.cursor.report("expected at least one agent")
         while not self.at_section_or_end() and self.cursor.token.kind != "end":
             try:
                 self.agent()
@@ -165,7 +167,7 @@ class _Mas2jReader:
                 self.to_next_agent()
 
     def to_next_agent(self) -> None:
-        """After an error: behind the next ';'."""
+        """Skip to the token after the next ';', after an error."""
         while self.cursor.token.kind != "end" and not self.at_section_or_end():
             if self.cursor.advance().kind == ";":
                 return
@@ -187,23 +189,23 @@ class _Mas2jReader:
         self.part.agents.append(agent)
 
     def refuse_misspelt_key(self) -> None:
-        """Blame a word before a class that is nearly a key: it would be taken for the file of the agent."""
+        """Report a word before a class that is nearly a key. Otherwise it would be read as the agent's file."""
         cursor = self.cursor
         meant = [key for key in _AGENT_KEYS if key.lower() == cursor.token.text.lower()]
         meant = meant or (
             close_matches(cursor.token.text, _AGENT_KEYS[:3], 0.8) if cursor.peek().kind == "word" else []
         )
         if meant and cursor.token.kind == "word":
-            cursor.fail(f"{cursor.token} does not belong here", help=f"did you mean '{meant[0]}'?")
+            cursor.fail(f"unexpected {cursor.token}", help=f"did you mean `{meant[0]}`?")
 
     def source(self, agent: AgentPart) -> None:
         token = self.cursor.advance()
         if token.first and token.kind == "word" and "/" not in token.text and "." not in token.text:
-            # A file may stand on a line of its own, but then it looks like a file.
+            # A file name may be on a line of its own, but then it must look like one.
             self.cursor.report(
-                f"a ';' is missing behind the agent '{agent.name}'",
+                f"missing `;` after agent `{agent.name}`",
                 self.cursor.span_of(token),
-                "each agent of the list ends with ';'",
+                "end each agent with `;`",
             )
             return
         agent.source, agent.source_span = text_of(token), self.cursor.span_of(token)
@@ -216,12 +218,12 @@ class _Mas2jReader:
             return
         if key.text not in _AGENT_KEYS or key.kind != "word":
             close = close_matches(key.text, _AGENT_KEYS) if key.kind == "word" else []
-            help = f"did you mean '{close[0]}'?" if close else "each agent of the list ends with ';'"
-            cursor.fail(f"a ';' is expected behind the agent '{agent.name}'", help=help)
+            help = f"did you mean `{close[0]}`?" if close else "end each agent with `;`"
+            cursor.fail(f"expected `;` after agent `{agent.name}`, found {key}", help=help)
         cursor.advance()
         if key.text == "at":
             agent.host = text_of(self.value("the name of a host"))
-            self.unsupported(NODES, f"'at' of agent '{agent.name}'", cursor.span_of(key))
+            self.unsupported(NODES, f"`at` of agent `{agent.name}`", cursor.span_of(key))
             return
         name = cursor.name("a class name")
         text = name.text + self.parameters()
@@ -237,7 +239,11 @@ class _Mas2jReader:
     def count(self) -> int:
         token = self.value("a number of agents")
         if token.kind != "number" or not token.text.isdecimal() or not 0 < len(token.text.lstrip("0")) < 7:
-            self.cursor.fail("the number of agents is a whole number", self.cursor.span_of(token), "as in #3")
+            self.cursor.fail(
+                f"expected a positive number of agents, found {token}",
+                self.cursor.span_of(token),
+                "write `#3`",
+            )
         return int(token.text)
 
     def options(self, agent: AgentPart) -> None:
@@ -245,10 +251,10 @@ class _Mas2jReader:
         opener = cursor.advance()
         while not cursor.accept("]"):
             if cursor.token.kind == "end":
-                cursor.fail("'[' is not closed", cursor.span_of(opener))
+                cursor.fail("`[` is not closed", cursor.span_of(opener))
             key = cursor.name("the name of an option")
-            cursor.expect("=", "options are written [verbose=2, events=discard]")
-            value = self.value(f"the value of '{key.text}'")
+            cursor.expect("=", "write options as `[verbose=2, events=discard]`")
+            value = self.value(f"the value of `{key.text}`")
             text = text_of(value) + self.parameters()
             if key.text == "beliefs":
                 agent.beliefs.append((text, cursor.span_of(value)))
@@ -258,4 +264,4 @@ class _Mas2jReader:
                 agent.options[key.text] = text
                 agent.option_places[key.text] = cursor.span_of(value)
             if cursor.token.kind != "]":
-                cursor.expect(",", "options are separated by ','")
+                cursor.expect(",", "separate options with `,`")

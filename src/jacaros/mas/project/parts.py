@@ -1,4 +1,4 @@
-"""What is read from one project file, before names are resolved and files are found."""
+"""The declarations of one project file, before names are resolved and files are found."""
 
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -8,16 +8,16 @@ from jacaros.mas.deployment import ArtifactSpec
 from jacaros.mas.project.unsupported import Unsupported
 
 Written = tuple[str, Span]
-"""A piece of text and its place."""
+"""A piece of text and its location."""
 
 
 AgentName = tuple[str, str | None, Span]
-"""``[namespace::]agent`` (or ``*``): the agent, the namespace and the place."""
+"""``[namespace::]agent`` (or ``*``): the agent, the namespace and the location."""
 
 
 @dataclass
 class FocusPart:
-    """``[namespace::][workspace.]artifact`` in an agent's ``focus:``; ``elsewhere`` if it is on another node."""
+    """``[namespace::][workspace.]artifact`` in an agent's ``focus:``. ``elsewhere`` is true if it is on another node."""
 
     artifact: str
     workspace: str | None
@@ -28,7 +28,7 @@ class FocusPart:
 
 @dataclass
 class JoinPart:
-    """A workspace in an agent's ``join:``; ``elsewhere`` if it is on another node."""
+    """A workspace in an agent's ``join:``. ``elsewhere`` is true if it is on another node."""
 
     workspace: str
     span: Span
@@ -37,9 +37,11 @@ class JoinPart:
 
 @dataclass
 class AgentPart:
-    """One declared agent; ``instances`` is a number or the names of the instances.
+    """One declared agent.
 
-    ``folders`` are where its program is looked for, set when the file that declares it has been read.
+    Attributes:
+        instances: a number, or the names of the instances.
+        folders: searched for its program; set once the file that declares it has been read.
     """
 
     name: str
@@ -60,7 +62,7 @@ class AgentPart:
     folders: tuple[Path, ...] = ()
 
     def instance_names(self) -> list[str]:
-        """The names of its instances in the run."""
+        """Return the names of its instances in the run."""
         if isinstance(self.instances, list):
             return self.instances
         if self.instances is None or self.instances == 1:
@@ -70,7 +72,7 @@ class AgentPart:
 
 @dataclass
 class ArtifactPart:
-    """One declared artifact; ``focused_by`` are agents with an optional namespace."""
+    """One declared artifact. ``focused_by`` are agents with an optional namespace."""
 
     spec: ArtifactSpec
     focused_by: list[AgentName] = field(default_factory=list)
@@ -78,7 +80,7 @@ class ArtifactPart:
 
 @dataclass
 class WorkspacePart:
-    """One declared workspace; ``name`` may be a path."""
+    """One declared workspace. ``name`` may be a path."""
 
     name: str
     span: Span
@@ -90,7 +92,7 @@ class WorkspacePart:
 
 @dataclass
 class OrganisationPart:
-    """What names may refer to: an organisation or an institution with the agents that it mentions."""
+    """An organisation or institution, with the agents and workspaces that it mentions."""
 
     name: str
     span: Span
@@ -100,7 +102,7 @@ class OrganisationPart:
 
 @dataclass
 class ProjectPart:
-    """One project file; ``mapped`` are the artifacts of its mapping files."""
+    """One project file. ``mapped`` are the artifacts of its mapping files."""
 
     name: str = "mas"
     uses: list[Written] = field(default_factory=list)

@@ -1,4 +1,4 @@
-"""The workspaces and artifacts of a project, and the names that lead to them."""
+"""The workspaces and artifacts of a project, found by name."""
 
 from jacaros.asl.source import Span
 from jacaros.env.ids import resolve_path
@@ -9,17 +9,17 @@ from jacaros.mas.project.unsupported import INSTITUTIONS, ORGANISATIONS, Unsuppo
 
 _MAIN = "/main"
 _DEFAULT_NAMES = frozenset({"workspace", "blackboard", "console", "manrepo", "system"})
-"""The artifacts that every workspace has."""
+"""The standard artifacts of every workspace."""
 
 
 class ProjectPlaces:
-    """Finds workspaces and artifacts by the names that a project uses for them.
+    """Resolves the names of workspaces and artifacts in a project.
 
-    A workspace may be called by its name, its path from ``/main`` on, or its full path.
+    A workspace is named by its name, by its path below ``/main``, or by its full path.
 
     Args:
-        part: what the project declares.
-        remarks: takes what is wrong.
+        part: the declarations of the project.
+        remarks: collects diagnostics.
     """
 
     def __init__(self, part: ProjectPart, remarks: Remarks) -> None:
@@ -31,10 +31,10 @@ class ProjectPlaces:
     # what is declared
 
     def _add(self, workspace: WorkspacePart) -> None:
-        """Work out the full path of a workspace, and make those above it known."""
+        """Compute the full path of a workspace, and add it and the workspaces above it."""
         path = self._path(workspace, ())
         if self._paths.get(path) is not None:
-            self._remarks.error(f"two workspaces have the name '{workspace.name}'", workspace.span)
+            self._remarks.error(f"duplicate workspace `{workspace.name}`", workspace.span)
             return
         above = path
         while (above := above.rpartition("/")[0]) and above not in self._paths:
@@ -57,19 +57,19 @@ class ProjectPlaces:
         for other in self._part.workspaces:
             if other.name == wanted or other.name.endswith(f"/{wanted}"):
                 if other.name in below:
-                    self._remarks.error("workspaces are each other's parents", workspace.span)
+                    self._remarks.error(f"workspace `{workspace.name}` is its own ancestor", workspace.span)
                     return _MAIN
                 return self._path(other, below)
         names = {each.name for each in self._part.workspaces}
         self._remarks.error(
-            f"the workspace '{wanted}' is not declared in the project",
+            f"unknown workspace `{wanted}`",
             workspace.parent_span,
             meant(wanted, names),
         )
         return _MAIN
 
     def specs(self) -> tuple[WorkspaceSpec, ...]:
-        """The workspaces in the order of the file, but each behind the one that it is a part of."""
+        """Return the workspaces in the order of the file, but each after its parent."""
         known = {name for agent in self._part.agents for name in (agent.name, *agent.instance_names())}
         for workspace in self._part.workspaces:
             self._check(workspace, known)
@@ -104,21 +104,21 @@ class ProjectPlaces:
         for artifact in workspace.artifacts:
             for name, _, span in artifact.focused_by:
                 self._check_agent(name, span, known)
-        self._remarks.repeated([(a.spec.name, a.spec.span) for a in workspace.artifacts], "artifacts")
+        self._remarks.repeated([(a.spec.name, a.spec.span) for a in workspace.artifacts], "artifact")
         for artifact in workspace.artifacts:
             if artifact.spec.name in _DEFAULT_NAMES:
-                message = f"every workspace has an artifact '{artifact.spec.name}' already"
-                self._remarks.error(message, artifact.spec.span, "give it another name")
+                message = f"`{artifact.spec.name}` is a standard artifact of every workspace"
+                self._remarks.error(message, artifact.spec.span, "choose another name")
 
     def _check_agent(self, name: str, span: Span, known: set[str], is_error: bool = True) -> None:
         if name != "*" and name not in known:
-            tell = self._remarks.error if is_error else self._remarks.warn
-            tell(f"unknown agent '{name}'", span, meant(name, known))
+            report = self._remarks.error if is_error else self._remarks.warn
+            report(f"unknown agent `{name}`", span, meant(name, known))
 
     # what names lead to
 
     def shortest_name(self, workspace: WorkspacePart) -> str:
-        """The name of a declared workspace, or its full path if others have that name too."""
+        """Return the name of a declared workspace, or its full path if the name is ambiguous."""
         return next((self._shortest(path) for path, part in self._paths.items() if part is workspace), _MAIN)
 
     def _shortest(self, path: str) -> str:
@@ -126,7 +126,7 @@ class ProjectPlaces:
         return name if sum(each.endswith(f"/{name}") for each in self._paths) == 1 else path
 
     def _lookup(self, name: str, span: Span) -> str | None:
-        """The full path of the workspace *name*; None, and it is told, if there is none."""
+        """Return the full path of workspace *name*, or None after reporting that it is unknown or ambiguous."""
         full = name if name.startswith("/") else f"{_MAIN}/{name}"
         if full in self._paths:
             return full
@@ -135,16 +135,18 @@ class ProjectPlaces:
             return found[0]
         if found:
             self._remarks.error(
-                f"{len(found)} workspaces are called '{name}'", span, f"write {' or '.join(found)}"
+                f"ambiguous workspace `{name}`", span, f"write {' or '.join(f'`{path}`' for path in found)}"
             )
             return None
         names = {path.rpartition("/")[2] for path in self._paths}
-        message = f"the workspace '{name}' is not declared in the project"
-        self._remarks.error(message, span, meant(name, names) or f"the project has no 'workspace {name}'")
+        message = f"unknown workspace `{name}`"
+        self._remarks.error(
+            message, span, meant(name, names) or f"declare it in the project: `workspace {name}`"
+        )
         return None
 
     def join(self, wanted: JoinPart) -> str | None:
-        """The workspace that an agent is to join; None if there is none here."""
+        """Return the workspace that an agent joins, or None if it is not in this run."""
         if self._is_of_organisation(wanted.workspace, wanted.span):
             return None
         if wanted.elsewhere and not self._is_here(wanted.workspace):
@@ -153,7 +155,7 @@ class ProjectPlaces:
         return None if path is None else self._shortest(path)
 
     def focus(self, wanted: FocusPart) -> FocusSpec | None:
-        """The artifact *wanted* with its workspace; if none is written it is looked up in all of them."""
+        """Return the artifact *wanted* with its workspace. Without a workspace, search all of them."""
         if wanted.workspace is None:
             return self._focus_anywhere(wanted)
         if self._is_of_organisation(wanted.workspace, wanted.span):
@@ -166,9 +168,9 @@ class ProjectPlaces:
         known = self._artifacts(path)
         if wanted.artifact not in known:
             self._remarks.warn(
-                f"the artifact '{wanted.artifact}' is not declared in workspace '{wanted.workspace}'",
+                f"artifact `{wanted.artifact}` is not declared in workspace `{wanted.workspace}`",
                 wanted.span,
-                meant(wanted.artifact, known) or "it is focused when an agent has made it",
+                meant(wanted.artifact, known) or "the agent focuses it as soon as it is created",
             )
         return FocusSpec(wanted.artifact, self._shortest(path), wanted.namespace)
 
@@ -177,16 +179,18 @@ class ProjectPlaces:
         if not found:
             if not wanted.elsewhere:
                 every = {name for path in self._paths for name in self._artifacts(path, defaults=False)}
-                message = f"the artifact '{wanted.artifact}' is not declared in the project"
+                message = f"unknown artifact `{wanted.artifact}`"
                 help = meant(wanted.artifact, every)
-                help = help or f"if an agent makes it, write its workspace too: w.{wanted.artifact}"
+                help = (
+                    help or f"if an agent creates it, name its workspace, too: `workspace.{wanted.artifact}`"
+                )
                 self._remarks.error(message, wanted.span, help)
             return None
         if len(found) > 1:
             self._remarks.warn(
-                f"the artifact '{wanted.artifact}' is in {len(found)} workspaces; the first is taken",
+                f"ambiguous artifact `{wanted.artifact}`: it is in {len(found)} workspaces, and the first one is used",
                 wanted.span,
-                f"write {self._shortest(found[0])}.{wanted.artifact}",
+                f"write `{self._shortest(found[0])}.{wanted.artifact}`",
             )
         return FocusSpec(wanted.artifact, self._shortest(found[0]), wanted.namespace)
 
@@ -199,15 +203,15 @@ class ProjectPlaces:
         return any(path.endswith(f"/{name.removeprefix('/')}") for path in self._paths)
 
     def _is_of_organisation(self, name: str, span: Span) -> bool:
-        """Whether *name* is that of an organisation, which in JaCaMo is a workspace as well; told if so."""
+        """Return whether *name* is an organisation, which is also a workspace in JaCaMo. Record it as unsupported."""
         if self._is_here(name) or all(name != each.name for each in self._part.organisations):
             return False
         is_institution = any(
-            one.topic is INSTITUTIONS and one.what == f"the institution '{name}'"
+            one.topic is INSTITUTIONS and one.what == f"the institution `{name}`"
             for one in self._part.unsupported
         )
         topic = INSTITUTIONS if is_institution else ORGANISATIONS
-        found = Unsupported(topic, f"the workspace of '{name}'", span)
+        found = Unsupported(topic, f"the workspace of `{name}`", span)
         if found not in self._part.unsupported:
             self._part.unsupported.append(found)
         return True

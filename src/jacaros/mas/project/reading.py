@@ -1,4 +1,4 @@
-"""Project files: from a `.mas2j` or `.jcm` file to what is to be run."""
+"""Read project files: from a `.mas2j` or `.jcm` file to a deployment."""
 
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -17,21 +17,21 @@ from jacaros.text_files import file_text, is_file
 
 _JCM: Final = ".jcm"
 _JCM_PATHS: Final = (".", "src/agt", "src/agt/inc")
-"""Where programs of a `.jcm` file are looked for, unless it has an ``asl-path``."""
+"""Folders that are searched for programs of a `.jcm` file without an ``asl-path``."""
 
 _JCM_CODE_PATHS: Final = ("src", "src/env", "src/agt")
-"""Where its Python modules are looked for besides, unless it has a ``java-path``."""
+"""Further folders that are searched for its Python modules without a ``java-path``."""
 
 USUAL_PATHS: Final = (".", "src/agt", "src/agt/inc", "src/asl", "asl", "agents")
 
 
 @dataclass(frozen=True)
 class Reading:
-    """What came of reading a project.
+    """The result of reading a project.
 
     Attributes:
-        deployment: what can be made of it; ``ignored`` holds what a run tells of its warnings.
-        diagnostics: all that is wrong or without effect, in the order of the text.
+        deployment: the declared system as far as it is valid. Its ``ignored`` holds the warnings that a run prints.
+        diagnostics: all errors and warnings, in the order of the text.
         used: the files that it uses.
     """
 
@@ -44,7 +44,7 @@ def read_project(path: Path) -> Reading:
     """Read a `.mas2j` or `.jcm` file, with the files that it uses.
 
     Raises:
-        ProjectError: the file cannot be read at all.
+        ProjectError: the file cannot be read.
     """
     files = _Files()
     part = files.read(path)
@@ -59,7 +59,7 @@ def read_project(path: Path) -> Reading:
 
 
 class _Files:
-    """Reads a project file and those that it uses, each once."""
+    """Reads a project file and the files that it uses, each once."""
 
     def __init__(self) -> None:
         self.diagnostics: list[Diagnostic] = []
@@ -67,14 +67,14 @@ class _Files:
 
     @property
     def seen(self) -> frozenset[Path]:
-        """All files that were read."""
+        """Return all files that were read."""
         return frozenset(self._read)
 
     def read(self, path: Path, using: tuple[Path, ...] = ()) -> ProjectPart:
-        """The declarations of one file and, before its own, of the files it uses.
+        """Return the declarations of one file, preceded by those of the files it uses.
 
         Raises:
-            ProjectError: the file cannot be read at all.
+            ProjectError: the file cannot be read.
         """
         self._read.add(path.resolve())
         cursor = ProjectCursor(SourceFile(path.as_posix(), _text(path)), self.diagnostics)
@@ -84,9 +84,9 @@ class _Files:
         for file, span in reversed(part.uses):
             used = path.parent / (file if file.endswith(_JCM) else file + _JCM)
             if not is_file(used):
-                cursor.report(f"project '{file}' not found", span, f"expected at {used}")
+                cursor.report(f"project not found: `{file}`", span, f"expected at {used}")
             elif used.resolve() in (*using, path.resolve()):
-                cursor.report(f"the project '{file}' uses itself", span)
+                cursor.report(f"project `{file}` uses itself", span)
             elif used.resolve() not in self._read:
                 try:
                     _import(part, self.read(used, (*using, path.resolve())))
@@ -105,7 +105,7 @@ class _Files:
             self.diagnostics += wrong
             part.mapped += map(ArtifactPart, specs)
         if path.suffix != _JCM:
-            # Here no agent can say what it focuses.
+            # A `.mas2j` file cannot declare what agents focus.
             for agent in part.agents:
                 agent.focus += [FocusPart(each.spec.name, MAIN, None, agent.span) for each in part.mapped]
 
@@ -120,7 +120,7 @@ def _text(path: Path) -> str:
 
 
 def _read_part(suffix: str, cursor: ProjectCursor) -> ProjectPart:
-    # Imported here: a project is written in one of the two.
+    # Imported on demand: a project uses one of the two formats.
     if suffix == _JCM:
         from jacaros.mas.project.jcm import read_jcm
 
@@ -135,14 +135,14 @@ def _has_programs(folder: str) -> bool:
 
 
 def _complete(path: Path, part: ProjectPart) -> None:
-    """Find the folders and files that the file at *path* names; they are relative to it."""
+    """Resolve the folders and files that the project at *path* names, relative to it."""
     base = path.parent
     written = [folder for folder in part.source_paths if not folder.startswith("$")]
     declared = [base / folder for folder in written]
-    # Jason looks in the folder in which it is started.
+    # Jason searches the folder in which it is started.
     declared += [Path(folder) for folder in written if not (base / folder).is_dir() and _has_programs(folder)]
     if path.suffix == _JCM:
-        # As in JaCaMo: the first asl-path takes the place of the usual ones, but for the project's own folder.
+        # As in JaCaMo, the first asl-path replaces the default folders, except for the project's own folder.
         usual = [base / folder for folder in (_JCM_PATHS[:1] if part.source_paths else _JCM_PATHS)]
         code = [base / folder for folder in part.code_paths or _JCM_CODE_PATHS]
     else:
@@ -169,11 +169,11 @@ def _import(part: ProjectPart, used: ProjectPart) -> None:
 
 
 def _deployment(path: Path, part: ProjectPart, remarks: Remarks) -> Deployment:
-    _furnish(part)
+    _add_mapped_artifacts(part)
     places = ProjectPlaces(part, remarks)
     agents = ProjectAgents(part, places, remarks)
     instances: list[AgentSpec] = [each for agent in part.agents for each in agents.instances(agent)]
-    remarks.repeated([(agent.name, agent.span) for agent in instances], "agents")
+    remarks.repeated([(agent.name, agent.span) for agent in instances], "agent")
     cartago = (part.environment or "").partition("(")[0] in CARTAGO_ENVIRONMENTS
     return Deployment(
         name=part.name,
@@ -189,8 +189,8 @@ def _deployment(path: Path, part: ProjectPart, remarks: Remarks) -> Deployment:
     )
 
 
-def _furnish(part: ProjectPart) -> None:
-    """Put the mapped artifacts into the workspace main."""
+def _add_mapped_artifacts(part: ProjectPart) -> None:
+    """Add the mapped artifacts to workspace ``main``."""
     if not part.mapped:
         return
     main = next(

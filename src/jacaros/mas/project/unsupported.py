@@ -1,4 +1,4 @@
-"""What project files declare and what has no effect here: nothing of it is passed over in silence."""
+"""Declarations of project files that have no effect here. Each one is reported."""
 
 from collections.abc import Sequence
 from typing import Final, NamedTuple
@@ -8,11 +8,11 @@ from jacaros.asl.source import Span
 
 CODE: Final = "no-effect"
 _NAMED: Final = 3
-"""So many things are told by name; of more only the number is told."""
+"""Up to this number of declarations are named in a warning; beyond it, only their number is given."""
 
 
 class Topic(NamedTuple):
-    """A kind of declaration without effect; ``plural`` names several of them, ``why`` ends the sentence."""
+    """A kind of declaration without effect. ``plural`` names several of them; ``why`` ends the message."""
 
     plural: str
     why: str
@@ -22,36 +22,38 @@ class Topic(NamedTuple):
 ROLES: Final = Topic(
     "roles",
     "roles in organisations are not supported",
-    "give the agent its duties as goals, and let agents agree by messages or through an artifact",
+    "declare the duties as goals, and coordinate agents by messages or through an artifact",
 )
 ORGANISATIONS: Final = Topic(
     "organisations",
     "organisations are not supported",
-    "let agents agree by messages or through an artifact",
+    "coordinate agents by messages or through an artifact",
 )
 INSTITUTIONS: Final = Topic("institutions", "institutions are not supported")
-NODES: Final = Topic("nodes and hosts", "a run is one process")
+NODES: Final = Topic("nodes and hosts", "all agents run in one process")
 PACKAGES: Final = Topic(
-    "packages", "Java packages are not used", "install Python packages where jacaros is installed"
+    "packages", "Java packages are not supported", "install Python packages beside jacaros with pip"
 )
 PATHS: Final = Topic(
     "paths",
-    "no Java classes and no organisations are read",
-    "put artifacts in Python beside the project file, or into src/env",
+    "Java classes and organisations are not supported",
+    "put Python artifacts beside the project file, or in src/env",
 )
-PLATFORMS: Final = Topic("platforms", "a run is one process, and agents reach each other in it")
-INSPECTORS: Final = Topic("inspectors", "JaCaROS has no windows", "watch a run with --view or --record")
-JAVA: Final = Topic("sections", "that is about Java code")
-INFRASTRUCTURES: Final = Topic("infrastructures", "a run is one process, and agents reach each other in it")
+PLATFORMS: Final = Topic("platforms", "all agents run in one process")
+INSPECTORS: Final = Topic(
+    "inspectors", "JaCaROS opens no windows", "watch the run with --view, or record it with --record"
+)
+JAVA: Final = Topic("sections", "JaCaROS runs no Java code")
+INFRASTRUCTURES: Final = Topic("infrastructures", "all agents run in one process")
 JAVA_ENVIRONMENT: Final = Topic(
     "environments",
-    "environments in Java are not used",
-    "write it as an artifact in Python, and here: environment: jacaros.Environment",
+    "Java environments are not supported",
+    "write artifacts in Python, and declare `environment: jacaros.Environment`",
 )
 
 
 class Unsupported(NamedTuple):
-    """One declaration without effect; a *detail* is part of another one that is told."""
+    """One declaration without effect. A *detail* belongs to another one that is reported."""
 
     topic: Topic
     what: str
@@ -60,7 +62,7 @@ class Unsupported(NamedTuple):
 
 
 def each(found: Sequence[Unsupported]) -> list[Diagnostic]:
-    """A message for each of them, as `jacaros check` tells them: details are notes."""
+    """Return a message for each declaration, as `jacaros check` prints them. Details are notes."""
     return [
         Diagnostic("note", _message(one), one.span, None, CODE)
         if one.detail
@@ -70,7 +72,7 @@ def each(found: Sequence[Unsupported]) -> list[Diagnostic]:
 
 
 def condensed(found: Sequence[Unsupported]) -> list[Diagnostic]:
-    """One warning for each topic and file, without the details, as a run tells them."""
+    """Return one warning for each topic and file, without details, as a run prints them."""
     groups: dict[tuple[str, Topic], list[Unsupported]] = {}
     for one in sorted(found, key=lambda one: one.span[1:]):
         if not one.detail:

@@ -1,1 +1,1 @@
-"""Agents written in Python, in a run."""
+"""Python agents in a run."""

@@ -1,4 +1,4 @@
-"""Exceptions of agents written in Python, as people are told of them."""
+"""Exceptions of Python agents, as they are logged."""
 
 import sysconfig
 from pathlib import Path
@@ -8,11 +8,11 @@ _STANDARD = sysconfig.get_path("stdlib")
 
 
 def fault_lines(error: BaseException) -> list[str]:
-    """What to tell: the exception, the line of the user's code that it was raised in, and the lines that led there."""
+    """Return the exception, the line of the user's code that raised it, and the lines that led there."""
     if isinstance(error.__cause__, SystemExit):
         error = error.__cause__
     places = _places(error)
-    lines = [f"error: the agent has ended: {said(error)}{place_of_fault(error)}"]
+    lines = [f"error: the agent was ended by {said(error)}{place_of_fault(error)}"]
     lines += [f"  called from {place}" for place in reversed(places[:-1])]
     for each in error.exceptions if isinstance(error, BaseExceptionGroup) else ():
         lines.append(f"  {said(each)}{place_of_fault(each)}")
@@ -20,12 +20,12 @@ def fault_lines(error: BaseException) -> list[str]:
 
 
 def said(error: BaseException) -> str:
-    """An exception in words."""
+    """Return the class and text of an exception."""
     return f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
 
 
 def place_of_fault(error: BaseException) -> str:
-    """The innermost line of the user's code that an exception came through, in brackets; empty without one."""
+    """Return the innermost line of the user's code in the traceback, in brackets; empty without one."""
     places = _places(error)
     return f" ({places[-1]})" if places else ""
 

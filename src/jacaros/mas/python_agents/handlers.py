@@ -1,4 +1,4 @@
-"""The handlers of an agent written in Python: ``on_message``, ``on_signal``, ``on_property``."""
+"""The handlers of a Python agent: ``on_message``, ``on_signal``, ``on_property``."""
 
 import asyncio
 from collections.abc import Callable, Coroutine
@@ -9,28 +9,28 @@ from typing import Any
 from jacaros.env.session.session import Session
 from jacaros.extension.python_agent import PythonAgent, overridden
 from jacaros.extension.views import ReceivedMessage
-from jacaros.mas.python_agents.attendance import Attendance
-from jacaros.mas.python_agents.correspondence import Correspondence
+from jacaros.mas.python_agents.messaging import Messaging
+from jacaros.mas.python_agents.task_activity import TaskActivity
 
 
 class Handlers:
-    """Calls the handlers that an agent has, one after the other, in the order of what happened.
+    """Calls the handlers of an agent in turn, in the order of events.
 
     Args:
-        agent: whose handlers.
+        agent: the agent.
         mail: its messages.
-        attendance: told what is waited for.
+        task_activity: counts waits.
         start: runs a coroutine of the agent.
     """
 
     def __init__(
         self,
         agent: PythonAgent,
-        mail: Correspondence,
-        attendance: Attendance,
+        mail: Messaging,
+        task_activity: TaskActivity,
         start: Callable[[Coroutine[Any, Any, Any]], object],
     ) -> None:
-        self._mail, self._attendance, self._start = mail, attendance, start
+        self._mail, self._task_activity, self._start = mail, task_activity, start
         self._on_message = overridden(agent, "on_message")
         self._on_signal = overridden(agent, "on_signal")
         self._on_property = overridden(agent, "on_property")
@@ -46,14 +46,14 @@ class Handlers:
         if self._on_message is not None:
             self._start(self._read())
         while True:
-            with self._attendance.waiting():
+            with self._task_activity.waiting():
                 handle = await self._waiting.get()
             done = handle()
             if isawaitable(done):
                 await done
 
     def listen(self, session: Session) -> None:
-        """Note what the session of the agent perceives, from its beginning on."""
+        """Record what the session of the agent perceives, from its beginning."""
         if self._on_signal is not None:
             on_signal = self._on_signal
             session.on_signal(lambda signal: self._waiting.put_nowait(partial(on_signal, signal)))

@@ -1,4 +1,4 @@
-"""What runs an agent written in Python: its tasks, its messages, its place in the environment."""
+"""The host of a Python agent: its tasks, messages and session."""
 
 import asyncio
 from collections.abc import Callable, Coroutine, Iterable, Iterator, Mapping
@@ -18,27 +18,27 @@ from jacaros.extension.literal import Literal
 from jacaros.extension.python_agent import PythonAgent
 from jacaros.mas.agent_host import AgentHost, Run
 from jacaros.mas.coroutines import without_exit
-from jacaros.mas.python_agents.attendance import Attendance
-from jacaros.mas.python_agents.correspondence import Correspondence
 from jacaros.mas.python_agents.faults import fault_lines, place_of_fault, said
 from jacaros.mas.python_agents.handlers import Handlers
+from jacaros.mas.python_agents.messaging import Messaging
+from jacaros.mas.python_agents.task_activity import TaskActivity
 from jacaros.terms.values import Term
 
 _PATIENCE = 5.0
-"""Seconds that an agent has at the end of a run to put its things in order."""
+"""Seconds that an agent has for its clean-up at the end of a run."""
 
 
 class PythonAgentHost(AgentHost):
-    """Runs one agent written in Python; it has a task where other agents have a mind that makes cycles.
+    """Runs one Python agent. It has tasks where other agents have a mind with cycles.
 
     Args:
-        agent: the object of the user's class.
-        name: of the agent.
-        run: the run that it belongs to.
-        seed: of the agent's own generator of random numbers.
-        mind_options: how much it tells.
-        options: those of the project file.
-        beliefs: those of the project file.
+        agent: object of the user's class.
+        name: name of the agent.
+        run: its run.
+        seed: seed of the agent's random numbers.
+        mind_options: options for its logs.
+        options: options of the project file.
+        beliefs: beliefs of the project file.
     """
 
     def __init__(
@@ -54,13 +54,11 @@ class PythonAgentHost(AgentHost):
         super().__init__(name, run, seed)
         self.options, self.beliefs = options, beliefs
         self.open_session: Callable[[], Session] | None = None
-        self.attendance = Attendance(run.activity, self._settled)
-        self.mail = Correspondence(
-            name, self.send, self.agent_names, run.clock, run.activity, self.attendance
-        )
+        self.task_activity = TaskActivity(run.activity, self._settled)
+        self.mail = Messaging(name, self.send, self.agent_names, run.clock, run.activity, self.task_activity)
         self.mind = _Task(self, mind_options)
         self._agent = agent
-        self._handlers = Handlers(agent, self.mail, self.attendance, self.start)
+        self._handlers = Handlers(agent, self.mail, self.task_activity, self.start)
         self._session: Session | None = None
         self._observer: Observer | None = None
         self._tasks: dict[asyncio.Task[Any], None] = {}
@@ -69,19 +67,19 @@ class PythonAgentHost(AgentHost):
 
     @property
     def agent(self) -> PythonAgent:
-        """The object of the user's class."""
+        """Object of the user's class."""
         return self._agent
 
     def observe(self, observer: Observer) -> None:
-        """Have *observer* told of the agent's work from now on: its ``run``, its operations, and what its trees are at."""
+        """Report to *observer*, from now on, the agent's ``run``, its operations, and the state of its trees."""
         self._observer = observer
         if self._session is not None:
             self._session.observer = observer
 
-    # ---- its life
+    # ---- lifecycle
 
     def begin(self) -> None:
-        """Let the agent begin, in the next turn of the loop."""
+        """Start the agent in the next turn of the event loop."""
         if self._leaving:
             return
         if self._handlers.wanted:
@@ -112,22 +110,22 @@ class PythonAgentHost(AgentHost):
         tell("achieved", told, self, "")
 
     async def _when_all_is_over(self) -> None:
-        """Refuse messages as soon as nothing of the agent is left to read them."""
+        """Refuse messages as soon as no task of the agent is left to read them."""
         own = asyncio.current_task()
-        with self.attendance.waiting():
+        with self.task_activity.waiting():
             while others := [task for task in self._tasks if task is not own]:
                 await asyncio.wait(others)
         self.mail.close()
 
     def start(self, work: Coroutine[Any, Any, Any]) -> "asyncio.Task[Any]":
-        """Run a coroutine of the agent; its exception ends the agent."""
+        """Run a coroutine of the agent. An exception in it ends the agent."""
         if self._leaving:
             work.close()
             raise JacarosError(f"agent {self.name} is shutting down and cannot start tasks")
         task = asyncio.get_running_loop().create_task(without_exit(work), name=f"agent {self.name}")
         self._tasks[task] = None
-        self.attendance.add(task)
-        # A task that is cancelled before its first step never came to await the coroutine.
+        self.task_activity.add(task)
+        # A task that is cancelled before its first step has not awaited the coroutine.
         task.add_done_callback(lambda _: work.close())
         task.add_done_callback(self._done)
         return task
@@ -135,7 +133,7 @@ class PythonAgentHost(AgentHost):
     def _done(self, task: "asyncio.Task[Any]") -> None:
         self._tasks.pop(task, None)
         error = None if task.cancelled() else task.exception()
-        # A signal from the keyboard ends the run, wherever it strikes.
+        # Ctrl+C ends the run, wherever it is raised.
         if error is not None and not self._closed and not isinstance(error, KeyboardInterrupt):
             self._failed(error)
         if self._leaving and not self._tasks:
@@ -150,15 +148,15 @@ class PythonAgentHost(AgentHost):
             self._run.end_agent(self.name)
 
     def run(self, fuel: int) -> bool:
-        """Nothing: the loop gives its tasks their turns."""
+        """Do nothing: the event loop runs its tasks."""
         return False
 
     def _settled(self) -> None:
-        """Have it looked whether the run is idle, as after the turn of any agent."""
+        """Check whether the run is idle, as after the turn of any agent."""
         self._run.scheduler.make_ready(self)
 
     def halt(self) -> None:
-        """Cancel its tasks and operations; ``finally`` blocks run, and may still act and print."""
+        """Cancel its tasks and operations. Their ``finally`` blocks run, and may still act and print."""
         if self._leaving:
             return
         super().halt()
@@ -169,7 +167,7 @@ class PythonAgentHost(AgentHost):
             self._session.cancel_operations()
 
     def end(self) -> None:
-        """Leave the environment; when it has tasks, as soon as they are over."""
+        """Leave the environment, after its tasks have ended."""
         super().end()
         if self._tasks:
             self._run.clock.call_later(_PATIENCE, self._shut)
@@ -177,7 +175,7 @@ class PythonAgentHost(AgentHost):
             self._shut()
 
     async def close(self) -> None:
-        """Wait until its tasks have put their things in order."""
+        """Wait until its tasks have finished their clean-up."""
         await super().close()
         if self._tasks:
             await asyncio.wait(tuple(self._tasks), timeout=_PATIENCE)
@@ -194,7 +192,7 @@ class PythonAgentHost(AgentHost):
             self._session.close()
 
     def _check(self) -> None:
-        """Let an agent that would go on for ever after its end do so no more.
+        """Stop an agent that would continue after its end.
 
         Raises:
             JacarosError: everything is closed.
@@ -212,15 +210,15 @@ class PythonAgentHost(AgentHost):
     async def sleep(self, seconds: float) -> None:
         """Wait on the run's clock."""
         self._check()
-        with self.attendance.under_way():
+        with self.task_activity.under_way():
             await self._run.clock.sleep(seconds)
         self._run.clock.busy(1)
 
     async def turn(self) -> None:
-        """Let others have their turn; it counts as a reasoning cycle, so that a virtual clock moves on."""
+        """Let other tasks run. It counts as a reasoning cycle, so that a virtual clock advances."""
         self._check()
         self._run.clock.busy(1)
-        with self.attendance.under_way():
+        with self.task_activity.under_way():
             await asyncio.sleep(0)
 
     # ---- the environment
@@ -243,16 +241,16 @@ class PythonAgentHost(AgentHost):
             self._handlers.listen(self._session)
         return self._session
 
-    # ---- people
+    # ---- output
 
     def print(self, text: str) -> None:
-        """Show a line of output; also while the agent is ending."""
+        """Print a line of output, also while the agent is ending."""
         if not self._closed and (self._tasks or not self._ended):
             self._run.console.print(self.name, text)
 
 
 class _Task:
-    """What stands in the place of a mind, for the run."""
+    """Replaces a mind, for the run."""
 
     def __init__(self, host: PythonAgentHost, options: Options) -> None:
         self.stopped = False
@@ -260,25 +258,25 @@ class _Task:
         self._host = host
 
     def start(self) -> None:
-        """Let the agent begin."""
+        """Start the agent."""
         self._host.begin()
 
     def post_goal(self, goal: Term) -> None:
-        """Nothing: it has no goals."""
+        """Do nothing: it has no goals."""
 
     def adopt(self, goals: Iterable[LiteralNode]) -> None:
-        """Nothing: it has no goals."""
+        """Do nothing: it has no goals."""
 
     def run(self, fuel: int) -> bool:
-        """Nothing: it makes no cycles."""
+        """Do nothing: it has no cycles."""
         return False
 
     def receive(self, message: SpeechAct) -> None:
-        """Take a message in."""
+        """Receive a message."""
         self._host.mail.inbox.put(message)
 
     def accept_kill(self, killer: str) -> bool:
-        """Whether another agent may end this one."""
+        """Return whether another agent may kill this one."""
         try:
             return bool(self._host.agent.accept_kill(killer))
         except Exception as error:
@@ -286,23 +284,23 @@ class _Task:
             return True
 
     def perceive(self, percepts: list[Percept]) -> None:
-        """Nothing: it perceives by its session."""
+        """Do nothing: it perceives through its session."""
 
     def has_untaken(self, name: str) -> bool:
-        """Nothing waits: its session takes everything up at once."""
+        """Return False: its session processes everything immediately."""
         return False
 
     def keep_histories(self, namespace: str | None, histories: Mapping[str, float]) -> None:
-        """Nothing: it has no beliefs."""
+        """Do nothing: it has no beliefs."""
 
     def complete(self, act_id: int, completion: Completion) -> None:
-        """Nothing: it acts by its session."""
+        """Do nothing: it acts through its session."""
 
     def preempted(self, act_id: int, resource: str) -> None:
-        """Nothing: its operations pause by themselves."""
+        """Do nothing: its operations pause automatically."""
 
     def regained(self, act_id: int) -> None:
-        """Nothing: its operations continue by themselves."""
+        """Do nothing: its operations continue automatically."""
 
     def shut_down_in(self, milliseconds: float) -> None:
-        """Nothing: it is cancelled when the time has come."""
+        """Do nothing: it is cancelled at the end."""

@@ -1,4 +1,4 @@
-"""Agents written in Python: from the file that a project names to the object of the user's class."""
+"""Load agents written in Python: from the file that a project names to the object of the user's class."""
 
 from collections.abc import Callable, Sequence
 from types import ModuleType
@@ -29,14 +29,14 @@ _OF_MINDS: Final = (
     "urgency",
     "tro",
 )
-"""Options that say how a mind reasons."""
+"""Options of a mind, which a Python agent does not have."""
 
 
 def agent_class(modules: ProjectModules, spec: AgentSpec) -> type[PythonAgent]:
-    """The class of an agent: the one in its file, the one that the project names, or the one with the agent's name.
+    """Return the class of an agent: the one in its file, the one that the project names, or the one with the agent's name.
 
     Raises:
-        ProjectError: the file has no such class, or several, or a mistake.
+        ProjectError: the file has no such class, or several, or cannot be imported.
     """
     if spec.python_class is not None:
         return spec.python_class
@@ -48,13 +48,13 @@ def agent_class(modules: ProjectModules, spec: AgentSpec) -> type[PythonAgent]:
         for name in [name for name, value in vars(module).items() if value is UNSEEN] or [""]:
             modules.require_seen(module, name)
     if not found:
-        raise _wrong(spec, f"{file} has no class derived from jacaros.PythonAgent")
+        raise _wrong(spec, f"no subclass of jacaros.PythonAgent in {file}")
     if wanted is not None:
         if wanted.rpartition(".")[2] in found:
             return found[wanted.rpartition(".")[2]]
         close = close_matches(wanted, found)
-        help = f"did you mean {close[0]}?" if close else f"it has {', '.join(found)}"
-        raise _wrong(spec, f"{file} has no class {wanted} derived from jacaros.PythonAgent", help)
+        help = f"did you mean `{close[0]}`?" if close else f"it has {', '.join(found)}"
+        raise _wrong(spec, f"no subclass `{wanted}` of jacaros.PythonAgent in {file}", help)
     if len(found) == 1:
         return next(iter(found.values()))
     for name in (spec.declared_name, spec.name, file.stem):
@@ -63,8 +63,8 @@ def agent_class(modules: ProjectModules, spec: AgentSpec) -> type[PythonAgent]:
             return found[meant[0]]
     raise _wrong(
         spec,
-        f"{file} has several classes of agents, and none has the name of agent '{spec.declared_name}'",
-        f"name one of {', '.join(found)}: [class=...] in a .mas2j file, class: ... in a .jcm file",
+        f"ambiguous class of agent `{spec.declared_name}`: {file} has several, and none has the agent's name",
+        f"name one of {', '.join(found)}: `[class=...]` in a .mas2j file, `class: ...` in a .jcm file",
     )
 
 
@@ -78,13 +78,11 @@ def _module(modules: ProjectModules, spec: AgentSpec) -> ModuleType:
                     return modules.load(name)[0]
                 except ModuleUnreadable as wrong:
                     raise _wrong(spec, str(wrong)) from wrong
-    raise _wrong(
-        spec, f"{spec.source_path} cannot be imported: the names of its folders are not Python names"
-    )
+    raise _wrong(spec, f"cannot import {spec.source_path}: its folders do not have valid Python names")
 
 
 def _classes(module: ModuleType) -> dict[str, type[PythonAgent]]:
-    """The classes of agents in a module: its own, or if it has none, those that it imports."""
+    """Return the agent classes that a module defines or, without any, those that it imports."""
     known = {
         name: value
         for name, value in vars(module).items()
@@ -95,23 +93,23 @@ def _classes(module: ModuleType) -> dict[str, type[PythonAgent]]:
 
 
 def check(modules: ProjectModules, spec: AgentSpec, warn: Callable[[Diagnostic], None]) -> None:
-    """Look for the class of an agent, and tell what of its declaration has no effect.
+    """Check the class of an agent, and warn about options without effect.
 
     Raises:
-        ProjectError: there is no class for it.
+        ProjectError: the class cannot be found.
     """
     for what in _without_effect(spec):
-        message = f"{what} of agent '{spec.declared_name}' has no effect: the agent is written in Python"
+        message = f"{what} of agent `{spec.declared_name}` has no effect: it is a Python agent"
         warn(Diagnostic("warning", message, spec.span))
     if spec.name == DIRECTORY_NAME:
-        raise _wrong(spec, "the directory facilitator 'df' cannot be an agent written in Python")
+        raise _wrong(spec, "the directory facilitator `df` cannot be a Python agent")
     agent_class(modules, spec)
 
 
 def _without_effect(spec: AgentSpec) -> Sequence[str]:
-    found = [f"the option '{option}'" for option in _OF_MINDS if option in spec.options]
+    found = [f"the option `{option}`" for option in _OF_MINDS if option in spec.options]
     if spec.goals.strip():
-        found.append("'goals'")
+        found.append("`goals`")
     if spec.architecture_classes:
         found.append("the architecture class")
     if spec.belief_base_class:
@@ -122,16 +120,16 @@ def _without_effect(spec: AgentSpec) -> Sequence[str]:
 
 
 def make(modules: ProjectModules, spec: AgentSpec, run: Run, seed: str) -> PythonAgentHost:
-    """The host of an agent written in Python, which is still to begin.
+    """Return the host of an agent written in Python, not yet started.
 
     Raises:
-        ProjectError: there is no class for it, or its constructor fails.
+        ProjectError: the class cannot be found, or its constructor fails.
     """
     kind = agent_class(modules, spec)
     try:
         agent = kind()
     except Exception as error:
-        message = f"{kind.__name__} cannot be made: {type(error).__name__}: {error}{place_of_fault(error)}"
+        message = f"cannot create {kind.__name__}: {type(error).__name__}: {error}{place_of_fault(error)}"
         raise _wrong(spec, message) from error
     return PythonAgentHost(
         agent, spec.name, run, seed, mind_options(spec.options), spec.options, _beliefs(spec)

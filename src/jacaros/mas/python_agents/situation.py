@@ -1,4 +1,4 @@
-"""Where an agent written in Python begins in the environment."""
+"""The session of a Python agent at its start."""
 
 from jacaros.env.environment import Environment
 from jacaros.env.errors import OperationFailed, UnknownArtifact
@@ -10,12 +10,12 @@ from jacaros.mas.python_agents.host import PythonAgentHost
 
 
 def situate(host: AgentHost, spec: AgentSpec, environment: Environment) -> None:
-    """Let an agent have a session, in which it has joined and focused what the project says.
+    """Give an agent a session that has joined and focused what the project declares.
 
-    An artifact that is not there is focused when somebody makes it; what else is wrong is told in the log.
+    An artifact that does not exist is focused as soon as it is created. Other errors are logged.
     """
     assert isinstance(host, PythonAgentHost)
-    host.open_session = lambda: Session(environment, host.name, account=host.attendance)
+    host.open_session = lambda: Session(environment, host.name, account=host.task_activity)
     try:
         for workspace in spec.join:
             host.session.join(path_of(environment, workspace))

@@ -1,4 +1,4 @@
-"""A recorded run given to a changed program, to see where it decides differently."""
+"""Replay a recorded run against a changed program, to see where it decides differently."""
 
 from jacaros.mas.replaying.differences import Comparison, Decision
 from jacaros.mas.replaying.rerun import replay_against

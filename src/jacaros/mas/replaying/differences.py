@@ -11,7 +11,7 @@ from jacaros.mas.history.explanation import Fact, seconds
 from jacaros.mas.history.past import Data, Past, Record
 
 MOST_EVENTS = 5
-"""Events of one run only that the text names."""
+"""Number of events of one run only that the text lists."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,8 +21,8 @@ class Decision:
     Attributes:
         t: seconds since the recorded run began.
         event: as text, such as ``+battery(25)``.
-        then, now: the plan in the recording and in the rerun; None if none applied.
-        reasons: the plans that the rerun did not take before its decision, with what their contexts stop at.
+        then, now: the plan in the recording and in the rerun; None if none was applicable.
+        reasons: the plans that the rerun considered before, with the part of the context that failed.
     """
 
     t: float
@@ -32,7 +32,7 @@ class Decision:
     reasons: tuple[Fact, ...]
 
     def text(self) -> str:
-        """The decision as lines."""
+        """Return the decision as lines."""
         lines = [
             f"{seconds(self.t)}  {self.event}",
             f"  then: {_told(self.then)}",
@@ -46,12 +46,12 @@ class Comparison:
     """The decisions of a recorded agent compared with those of a changed program.
 
     Attributes:
-        agent: its name.
+        agent: name of the agent.
         same: number of events that both handled with the same plan.
         decisions: events that they handled differently, the oldest first.
         only_then, only_now: events of one run only, as text with their times.
-        waiting: actions of the rerun whose end the recording does not have.
-        unreadable: number of inputs that were cut off in the recording and left out.
+        waiting: actions of the rerun whose end was not recorded.
+        unreadable: number of inputs that were truncated in the recording and ignored.
     """
 
     agent: str
@@ -63,7 +63,7 @@ class Comparison:
     unreadable: int
 
     def text(self) -> str:
-        """The comparison as lines."""
+        """Return the comparison as lines."""
         count = len(self.decisions)
         told = (
             f"{self.agent} decides differently {_times(count)}"
@@ -74,15 +74,15 @@ class Comparison:
         lines += [each.text() for each in self.decisions]
         lines += _listed("events only then", self.only_then)
         lines += _listed("events only now", self.only_now)
-        lines += _listed("actions that wait, since the recording has no end for them", self.waiting)
+        lines += _listed("actions that wait, because their end was not recorded", self.waiting)
         if self.unreadable:
             lines.append(
-                f"percepts and messages left out, since they were recorded in part: {self.unreadable}"
+                f"percepts and messages ignored, because they are truncated in the recording: {self.unreadable}"
             )
         return "\n".join(lines)
 
     def data(self) -> dict[str, Any]:
-        """The comparison as dictionaries, lists, texts and numbers, ready for JSON."""
+        """Return the comparison as JSON data."""
         return asdict(self)
 
 
@@ -93,7 +93,9 @@ def compare(
     waiting: Sequence[str] = (),
     unreadable: int = 0,
 ) -> Comparison:
-    """Compare the decisions of an agent in two runs: the first event of a text with the first one, and so on."""
+    """Compare the decisions of an agent in two runs: the first event with a text with the first one in the other run,
+    and so on.
+    """
     old, new = Past.of(then), Past.of(now)
     identity = _Identity(old, new, agent)
     before, after = _by_event(old, agent), _by_event(new, agent)
@@ -121,7 +123,7 @@ def _by_event(past: Past, agent: str) -> dict[str, list[tuple[float, Data]]]:
 def _rest(
     first: dict[str, list[tuple[float, Data]]], other: dict[str, list[tuple[float, Data]]]
 ) -> tuple[str, ...]:
-    """The events that only the first run has, the oldest first."""
+    """Return the events that only the first run has, the oldest first."""
     left = [(t, event) for event, handled in first.items() for t, _ in handled[len(other.get(event, ())) :]]
     return tuple(f"{event} at {seconds(t)}" for t, event in sorted(left))
 
@@ -150,7 +152,7 @@ class _Identity:
         self._then, self._now = dict(_names(then, ordered)), dict(_names(now, ordered))
 
     def is_same(self, then: Any, now: Any) -> bool:
-        """Whether a plan of the first program is one of the second; None is no plan."""
+        """Return whether a plan of the first program is one of the second; None equals only None."""
         return self._then.get(then) == self._now.get(now)
 
 
@@ -175,7 +177,7 @@ def _names(plans: dict[Any, Data], ordered: set[str]) -> Iterator[tuple[Any, tup
 
 
 def _trigger(plan: Data) -> str:
-    """The kind of event that a plan is for: name and arguments without values."""
+    """Return the kind of event that a plan is for: name and arguments without values."""
     return shown(plan.get("trigger", "")).partition("(")[0]
 
 

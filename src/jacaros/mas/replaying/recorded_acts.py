@@ -17,15 +17,15 @@ from jacaros.terms.values import String, Term, Var, deref, functor
 _ERROR_MSG = functor("error_msg", 1)
 _REASON = functor("env_failure_reason", 1)
 CANCELLED: Final = "cancelled"
-"""The reason of an operation that was given up: how it would have ended is unknown."""
+"""The reason of a cancelled operation: its own end is unknown."""
 
 
 @dataclass(slots=True)
 class RecordedAct:
-    """One action that an agent did.
+    """One action of an agent.
 
     Attributes:
-        key: name and number of arguments, such as ``driveTo/2``.
+        key: name and arity, such as ``driveTo/2``.
         written: with its arguments; empty if they were not recorded.
         began: seconds since the run began.
         ended: seconds since the run began; None if its end is unknown.
@@ -40,10 +40,10 @@ class RecordedAct:
 
 
 class RecordedActs:
-    """Gives each action of a rerun the end that the same action had in the recording, each end once.
+    """Gives each action of a rerun the end of the same action in the recording, each end once.
 
-    The same action has the same name and arguments; if none is left, one with the same name and number of arguments.
-    Actions on workspaces and artifacts, such as ``makeArtifact`` and ``focus``, are not recorded: they succeed immediately.
+    The same action has the same name and arguments; if none is left, the same name and arity. Actions on workspaces and
+    artifacts, such as ``makeArtifact`` and ``focus``, are not recorded: they succeed immediately.
     """
 
     def __init__(self, records: Iterable[Record], agent: str) -> None:
@@ -68,11 +68,11 @@ class RecordedActs:
         self._left.sort(key=lambda each: each.began)
 
     def ends(self) -> list[RecordedAct]:
-        """Those whose end is known."""
+        """Return the actions whose end is known."""
         return [each for each in self._left if each.end and each.ended is not None]
 
     def take(self, act: Act, now: float) -> RecordedAct | None:
-        """The recorded action for an action that begins *now*; None if there is none left."""
+        """Return the recorded action for an action that begins *now*, or None if none is left."""
         key = f"{act.functor.name}/{act.functor.arity}"
         written = shown(text((act.functor, *act.arguments) if act.arguments else act.functor))
         same = [each for each in self._left if each.key == key]
@@ -85,7 +85,7 @@ class RecordedActs:
 
 
 def completion(recorded: RecordedAct, act: Act) -> Completion:
-    """How an action ended, as its agent learns it."""
+    """Return how an action ended, for its agent."""
     if recorded.end.get("state") != "failed":
         return Completion(True, tuple(_outputs(recorded, act)))
     message: Term = (_ERROR_MSG, String(str(recorded.end.get("reason") or "")))
@@ -94,7 +94,7 @@ def completion(recorded: RecordedAct, act: Act) -> Completion:
 
 
 def _outputs(recorded: RecordedAct, act: Act) -> Iterator[tuple[Term, Term]]:
-    """The output variables of an action with the values that were recorded."""
+    """Return the output variables of an action with the recorded values."""
     variables = [each for each in act.arguments if deref(each).__class__ is Var]
     for variable, written in zip(variables, recorded.end.get("outputs") or (), strict=False):
         value = _term(written)
@@ -103,7 +103,7 @@ def _outputs(recorded: RecordedAct, act: Act) -> Iterator[tuple[Term, Term]]:
 
 
 def _term(written: str | None) -> Term | None:
-    """A recorded text as a term; None without one, or if it was cut off."""
+    """Parse a recorded text. Return None without one, or if it is truncated."""
     if written is None:
         return None
     try:

@@ -1,4 +1,4 @@
-"""What an agent was given in a recorded run: percepts, signals, messages and beliefs from outside."""
+"""The inputs of an agent in a recorded run: percepts, signals, messages and beliefs from outside."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ from jacaros.mas.history.patterns import name_of
 
 @dataclass(frozen=True, slots=True)
 class Input:
-    """One thing that an agent was given.
+    """One input of an agent.
 
     Attributes:
         t: seconds since the run began.
@@ -34,7 +34,7 @@ class Input:
 
 
 def inputs_of(records: Iterable[Record], agent: str) -> list[Input]:
-    """What an agent was given, the oldest first."""
+    """Return the inputs of an agent, the oldest first."""
     reader = _Reader(agent)
     return [each for order, record in enumerate(records) for each in reader.read(order, *record)]
 
@@ -81,18 +81,18 @@ class _Reader:
             yield Input(t, order, "add_belief" if added else "remove_belief", belief, {}, {})
 
     def _goal(self, order: int, t: float, data: Data) -> Iterator[Input]:
-        """A goal that nothing in the run led to and that is not in the program: from the project file, or from outside."""
+        """Return a goal without a cause in the run that is not in the program: from the project file, or from outside."""
         trigger = str(data.get("trigger", ""))
         if trigger.startswith("+!") and not data.get("parent") and not self._is_written(t, trigger[1:]):
             yield Input(t, order, "post_goal", trigger[2:], {}, {})
 
     def _is_written(self, t: float, told: str) -> bool:
-        """Whether an initial belief or goal comes from the program, not from the project file."""
+        """Return whether an initial belief or goal comes from the program, not from the project file."""
         return t <= (self._began or t) and _key(told) in self._written
 
 
 def _initial(file: str, text: str) -> set[str]:
-    """The initial beliefs and goals of a program, each by its name and number of arguments."""
+    """Return the initial beliefs and goals of a program, each by name and arity."""
     program, _ = read_program(SourceFile(file, text))
     beliefs = {_literal_key(each) for each in program.beliefs if isinstance(each, nodes.Literal)}
     return beliefs | {f"!{_literal_key(each)}" for each in program.goals}
@@ -103,7 +103,7 @@ def _literal_key(literal: nodes.Literal) -> str:
 
 
 def _key(told: str) -> str:
-    """Name and number of arguments of a recorded belief or goal, with ``!`` before a goal."""
+    """Return name and arity of a recorded belief or goal, with ``!`` before a goal."""
     sign = "!" if told.startswith("!") else ""
     try:
         return f"{sign}{_literal_key(parse_literal(told.removeprefix('!')))}"

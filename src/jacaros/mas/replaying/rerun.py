@@ -1,4 +1,4 @@
-"""A rerun: a changed program is given what an agent was given in a recorded run, on the virtual clock."""
+"""A rerun: a changed program gets the inputs of an agent in a recorded run, on the virtual clock."""
 
 import asyncio
 from bisect import bisect
@@ -26,22 +26,22 @@ from jacaros.mas.replaying.recorded_inputs import Input, inputs_of
 from jacaros.terms.text import text
 
 AT_ONCE = 1e-3
-"""Seconds by which an action of the rerun may begin earlier or later than the recorded one and still end with it."""
+"""Seconds by which an action of the rerun may begin earlier or later than the recorded one, and still end with it."""
 TURNS = 5
-"""Turns of the loop between two things that happened at one moment."""
+"""Turns of the event loop between two inputs of the same moment."""
 
 
 def replay_against(records: Sequence[Record], program: Path, agent: str = "") -> Comparison:
-    """Give a program what an agent was given in a recorded run, and compare its decisions with the recorded ones.
+    """Run a program with the recorded inputs of an agent, and compare its decisions with the recorded ones.
 
     Args:
-        records: of the run.
+        records: records of the run.
         program: the changed program, a ``.asl`` file.
-        agent: whose percepts and messages the program gets; not needed if the recording has one agent.
+        agent: the agent whose inputs the program gets. Optional if the recording has one agent.
 
     Raises:
         UsageError: the recording has no such agent, or no decisions of it.
-        AslError: the program is wrong.
+        AslError: the program has errors.
     """
     records = [each for each in records if is_well_formed(each[1], each[2])]
     past = Past.of(records)
@@ -67,8 +67,8 @@ class _Rerun:
     """One rerun.
 
     Attributes:
-        unanswered: actions that wait, since the recording has no end for them.
-        unreadable: inputs that were cut off when they were recorded, and are left out.
+        unanswered: actions that wait, because their end was not recorded.
+        unreadable: inputs that were truncated when they were recorded, and are ignored.
     """
 
     def __init__(self, records: Sequence[Record], past: Past, program: Path, name: str) -> None:
@@ -92,7 +92,7 @@ class _Rerun:
         self._early: list[Input] = []
 
     async def run(self) -> list[Record]:
-        """The records of the rerun."""
+        """Return the records of the rerun."""
         found: list[Record] = []
         async with Mas(seed=self._seed, on_print=_ignore, on_log=_ignore) as mas:
             self._clock = mas.system.clock
@@ -100,7 +100,7 @@ class _Rerun:
             history.listen(lambda t, event, data: found.append((t, event, _with_short_names(event, data))))
             for (
                 other
-            ) in self._others:  # they are silent: programs ask for names, and messages are in the recording
+            ) in self._others:  # they do nothing: programs look up names, and messages are in the recording
                 mas.add_agent(other, "")
             await mas.sleep(self._began)
             agent = self._begin(mas)
@@ -129,7 +129,7 @@ class _Rerun:
         return agent
 
     def _moments(self) -> list[tuple[float, int, Input | RecordedAct]]:
-        """All that happens to the agent, in the order of the recording."""
+        """Return all that happens to the agent, in the order of the recording."""
         inputs: list[tuple[float, int, Input | RecordedAct]] = [
             (each.t, each.order, each) for each in self._inputs
         ]
@@ -142,7 +142,7 @@ class _Rerun:
         return sorted(inputs, key=lambda each: each[:2])
 
     def _activity(self) -> list[int]:
-        """The numbers of the records of what the agent did: between two of them it had no turn."""
+        """Return the numbers of the agent's own records: between two of them it had no turn."""
         return [
             order
             for order, (_, event, data) in enumerate(self._records)
@@ -181,7 +181,7 @@ class _Rerun:
         self._sent.append(message)
         for each in [each for each in self._early if _answers(each, message)]:
             self._early.remove(each)
-            # Later: the agent does not wait for the answer before its question is sent.
+            # Later: the agent waits for the answer only after its question is sent.
             asyncio.get_running_loop().call_soon(self._receive, each, message)
         return True
 
@@ -211,13 +211,13 @@ class _Rerun:
 
 
 async def _turns() -> None:
-    """Let the agent handle what it was given before the next thing of the same moment comes."""
+    """Let the agent handle its inputs before the next one of the same moment."""
     for _ in range(TURNS):
         await asyncio.sleep(0)
 
 
 def _with_short_names(event: str, data: Data) -> Data:
-    """A record of the rerun; the files of a program are named from the current folder."""
+    """Return a record of the rerun with file names relative to the current folder."""
     if event != "program":
         return data
     here = f"{Path.cwd()}/"
@@ -225,11 +225,11 @@ def _with_short_names(event: str, data: Data) -> Data:
 
 
 def _ignore(*_: str) -> None:
-    """What the program prints and logs was seen in the recorded run."""
+    """Ignore output and logs of the program, which the recorded run has shown."""
 
 
 def _answers(answer: Input, question: SpeechAct) -> bool:
-    """Whether a recorded answer is for a question of the rerun."""
+    """Return whether a recorded answer belongs to a question of the rerun."""
     asked = answer.question
     return (
         asked.get("to") == question.receiver

@@ -13,7 +13,7 @@ from jacaros.env.values import Atom, Structure, text
 
 @dataclass
 class Party:
-    """A claimant that writes down what it is told, and gives way at once unless told otherwise."""
+    """A claimant that records its events, and yields immediately by default."""
 
     arbiter: Arbiter
     can_yield: bool = True
@@ -33,7 +33,7 @@ class Party:
 
 
 class Table:
-    """An arbiter, and claims that are made in one line."""
+    """An arbiter, with short methods for claims."""
 
     def __init__(self) -> None:
         self.clock = VirtualClock()
@@ -49,7 +49,7 @@ class Table:
         can_yield: bool = True,
         brakes: bool = False,
         enter: bool = True,
-        who: str = "somebody",
+        who: str = "another",
         plan_of: str = "",
         blocks: str = "",
     ) -> Claim:
@@ -71,7 +71,7 @@ def table() -> Table:
     return Table()
 
 
-def test_equals_have_a_resource_in_the_order_of_asking(table: Table) -> None:
+def test_equal_claims_are_granted_in_order(table: Table) -> None:
     a, b, c = (table.claim("wheels") for _ in range(3))
     assert [each.state for each in (a, b, c)] == [State.HELD, State.WAITING, State.WAITING]
     table.arbiter.leave(b)
@@ -96,7 +96,7 @@ def test_several_resources_are_granted_together_or_not_at_all(table: Table) -> N
     assert later.holds
 
 
-def test_a_more_urgent_claim_preempts_and_the_preempted_one_has_it_back(table: Table) -> None:
+def test_a_more_urgent_claim_preempts_and_the_preempted_one_is_granted_again(table: Table) -> None:
     patrol, other = table.claim("wheels"), table.claim("wheels")
     flee = table.claim("wheels", urgency=10)
     assert flee.holds
@@ -106,7 +106,7 @@ def test_a_more_urgent_claim_preempts_and_the_preempted_one_has_it_back(table: T
     assert other.state is State.WAITING
 
 
-def test_a_holder_keeps_the_resource_until_it_has_given_way(table: Table) -> None:
+def test_a_holder_keeps_the_resource_until_it_has_yielded(table: Table) -> None:
     patrol = table.claim("wheels", brakes=True)
     flee = table.claim("wheels", urgency=10)
     assert (patrol.state, flee.state) == (State.YIELDING, State.WAITING)
@@ -114,7 +114,7 @@ def test_a_holder_keeps_the_resource_until_it_has_given_way(table: Table) -> Non
     assert flee.holds
 
 
-def test_a_preempting_claim_that_goes_away_leaves_the_resource_to_the_holder(table: Table) -> None:
+def test_a_withdrawn_preempting_claim_leaves_the_resource_to_the_holder(table: Table) -> None:
     patrol = table.claim("wheels", brakes=True)
     flee = table.claim("wheels", urgency=10)
     table.arbiter.leave(flee)
@@ -142,7 +142,7 @@ def test_a_claim_within_another_does_not_wait_for_it(table: Table) -> None:
     assert turn.holds
 
 
-def test_preempting_a_plan_preempts_its_operation_and_both_come_back(table: Table) -> None:
+def test_preempting_a_plan_preempts_its_operation_and_both_are_granted_again(table: Table) -> None:
     plan = table.claim("base", "arm")
     drive = table.claim("base", within=(plan,), brakes=True)
     flee = table.claim("base", urgency=1)
@@ -154,7 +154,7 @@ def test_preempting_a_plan_preempts_its_operation_and_both_come_back(table: Tabl
     assert drive.holds
 
 
-def test_refuse_fails_at_once_and_waits_for_a_holder_that_gives_way(table: Table) -> None:
+def test_refuse_fails_immediately_but_waits_for_a_yielding_holder(table: Table) -> None:
     holder = table.claim("wheels", urgency=5, brakes=True)
     assert told(table.claim("wheels", policy="refuse")) == ["resource_busy(wheels)"]
     urgent = table.claim("wheels", urgency=6, policy="refuse")
@@ -176,7 +176,7 @@ def test_take_takes_from_an_equal_once(table: Table) -> None:
     assert told(table.claim("wheels", policy="take", urgency=0)) == ["granted"]
 
 
-def test_a_counted_resource_has_so_many_holders(table: Table) -> None:
+def test_a_counted_resource_has_several_holders(table: Table) -> None:
     first, second = table.claim("lift(2)"), table.claim("lift")
     third = table.claim("lift")
     assert first.holds
@@ -189,7 +189,7 @@ def test_a_counted_resource_has_so_many_holders(table: Table) -> None:
     assert told(table.claim("lift", "lift", "lift")) == ["resource_exceeded(lift)"]
 
 
-def test_readers_go_together_and_a_writer_waits_for_all(table: Table) -> None:
+def test_readers_share_and_a_writer_waits_for_all_of_them(table: Table) -> None:
     a, b = table.claim("map(shared)"), table.claim("map(shared)")
     writer = table.claim("map")
     assert a.holds
@@ -204,7 +204,7 @@ def test_readers_go_together_and_a_writer_waits_for_all(table: Table) -> None:
     assert late.holds
 
 
-def test_a_holder_that_cannot_give_way_inherits_the_urgency_of_what_it_blocks(table: Table) -> None:
+def test_a_holder_that_cannot_yield_inherits_the_urgency_of_what_it_blocks(table: Table) -> None:
     atomic = table.claim("base", can_yield=False)
     middle = table.claim("arm", urgency=5)
     urgent = table.claim("base", urgency=10)
@@ -218,7 +218,7 @@ def test_a_holder_that_cannot_give_way_inherits_the_urgency_of_what_it_blocks(ta
     assert middle.holds
 
 
-def test_a_circle_of_waiting_plans_ends_with_the_newest_of_the_least_urgent(table: Table) -> None:
+def test_a_deadlock_of_plans_fails_the_newest_of_the_least_urgent(table: Table) -> None:
     one, other = table.claim("base", who="[a] !one"), table.claim("arm", who="[a] !other")
     wants_arm = table.claim("arm", within=(one,), who="[a] !one")
     assert not told(wants_arm)
@@ -229,7 +229,7 @@ def test_a_circle_of_waiting_plans_ends_with_the_newest_of_the_least_urgent(tabl
     assert wants_arm.holds
 
 
-def test_a_circle_in_which_one_is_more_urgent_ends_by_preempting(table: Table) -> None:
+def test_a_deadlock_with_a_more_urgent_claim_ends_by_preemption(table: Table) -> None:
     one, other = table.claim("base", urgency=1), table.claim("arm")
     wants_base = table.claim("base", within=(other,))
     wants_arm = table.claim("arm", within=(one,), urgency=1)
@@ -252,14 +252,14 @@ def test_a_long_wait_is_reported_once_and_moves_a_claim_forward(table: Table) ->
         urgent = table.claim("wheels", urgency=2)
         assert urgent.holds
         await table.clock.sleep(2 * REPORTED)
-        assert "[a] !scan has waited 300 s for wheels, held by somebody" in table.warnings
+        assert "[a] !scan has waited 300 s for wheels, held by another" in table.warnings
         assert len(table.warnings) == 3
         assert urgent.holds, "age takes nothing away"
 
     run(main, table.clock)
 
 
-def test_uses_are_read_from_text() -> None:
+def test_uses_are_parsed() -> None:
     assert read_uses("wheels") == (Use("wheels"),)
     assert read_uses(("base", "lift(2)", "map(shared)")) == (
         Use("base"),
@@ -297,7 +297,7 @@ def test_an_atomic_plan_waits_for_operations_and_for_other_agents() -> None:
         table.arbiter.leave(atomic)
 
 
-def test_an_operation_under_way_ends_before_its_plan_gives_way_to_an_atomic_one() -> None:
+def test_a_running_operation_ends_before_its_plan_yields_to_an_atomic_one() -> None:
     table = Table()
     plan = table.claim("wheels", plan_of="robot")
     drive = table.claim("wheels", within=(plan,))
@@ -307,7 +307,7 @@ def test_an_operation_under_way_ends_before_its_plan_gives_way_to_an_atomic_one(
     assert (plan.state, atomic.state) == (State.WAITING, State.HELD)
 
 
-def test_a_plan_that_waits_goes_behind_an_atomic_one_of_its_agent_alone() -> None:
+def test_a_waiting_plan_queues_only_behind_an_atomic_one_of_its_agent() -> None:
     table = Table()
     holder = table.claim("wheels", plan_of="other", can_yield=False)
     plan = table.claim("wheels", urgency=5, plan_of="robot")
@@ -324,7 +324,7 @@ def test_a_plan_that_waits_goes_behind_an_atomic_one_of_its_agent_alone() -> Non
 # --- claims that would have it again at once --------------------------------------------------------------------
 
 
-def test_what_is_within_one_that_stays_is_not_asked_to_give_way() -> None:
+def test_a_claim_nested_in_one_that_stays_is_not_asked_to_yield() -> None:
     table = Table()
     plan = table.claim("base", urgency=1, can_yield=False)
     step = table.claim("base", within=(plan,))
@@ -332,7 +332,7 @@ def test_what_is_within_one_that_stays_is_not_asked_to_give_way() -> None:
     assert (plan.state, step.state, taker.state) == (State.HELD, State.HELD, State.WAITING)
 
 
-def test_what_is_within_others_does_not_take_back_what_it_gave_to_one_that_waits_for_more() -> None:
+def test_a_nested_claim_does_not_take_back_what_it_yielded_to_one_that_waits_for_more() -> None:
     table = Table()
     plan = table.claim("lift(2)", urgency=1)
     braking = table.claim("arm", "map(shared)", urgency=1, brakes=True)
@@ -345,7 +345,7 @@ def test_what_is_within_others_does_not_take_back_what_it_gave_to_one_that_waits
     assert (braking.state, step.state) == (State.HELD, State.HELD)
 
 
-def test_nothing_is_taken_away_for_one_that_waits_behind_others() -> None:
+def test_nothing_is_preempted_for_a_claim_that_waits_behind_others() -> None:
     table = Table()
     plan = table.claim("map(shared)", urgency=1)
     step = table.claim("base", within=(plan,))

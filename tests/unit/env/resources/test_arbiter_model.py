@@ -1,4 +1,4 @@
-"""Schedules of claims that hypothesis makes, checked after each step against what the rules promise."""
+"""Random schedules of claims, checked after each step against the rules."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -33,7 +33,7 @@ class Choices:
         return alternatives[self._left.pop() % len(alternatives) if self._left else 0]
 
     def rarely(self, often: int) -> bool:
-        """Whether something happens that does so once in *often* times."""
+        """Return True with probability 1 / *often*."""
         return self.one_of(range(often)) == often - 1
 
     def some_of(self, alternatives: Sequence[Item], count: int) -> list[Item]:
@@ -44,7 +44,7 @@ class Choices:
 
 @dataclass
 class Party:
-    """A claimant that gives way at once, later or never, and now and then dies of being told something."""
+    """A claimant that yields immediately, later or never, and sometimes ends in a callback."""
 
     arbiter: Arbiter
     choices: Choices
@@ -119,7 +119,7 @@ class Schedule:
                 self.arbiter.leave(each)
 
     def check(self) -> None:
-        """Nobody has what another one has, and nothing is free that somebody may have."""
+        """No unit is held twice, and no claim waits for a free resource."""
         holders = [c for c in self.claims if c.holds]
         for name in NAMES:
             mine = [c for c in holders if any(u.name == name for u in c.uses)]
@@ -156,7 +156,7 @@ class Schedule:
         )
 
     def _is_blocked(self, claim: Claim) -> bool:
-        """Whether an atomic plan of its agent has asked for something, or has it."""
+        """Return whether an atomic plan of its agent has or waits for a claim."""
         atomic = any(c.blocks for c in self.claims if c.state is not State.OUT)
         return atomic and bool(claim.plan_of) and not claim.blocks
 
@@ -165,7 +165,7 @@ class Schedule:
         return self._go_together(use.name, [*mine, claim])
 
 
-def test_no_schedule_breaks_a_promise() -> None:
+def test_no_schedule_breaks_an_invariant() -> None:
     tried = 0
 
     @settings(max_examples=SCHEDULES, derandomize=True, database=None, deadline=None)

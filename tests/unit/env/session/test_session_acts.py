@@ -1,4 +1,4 @@
-"""Sessions: plain asyncio code makes artifacts and acts on them."""
+"""Sessions: plain asyncio code creates artifacts and acts on them."""
 
 import asyncio
 
@@ -45,14 +45,16 @@ def test_types_are_found_by_name(play):
     play(scene)
 
 
-def test_values_of_out_arguments_are_given(play):
+def test_values_of_out_arguments_are_returned(play):
     async def scene(stage):
         session = session_in(stage)
         await session.make_artifact("wheels", Wheels)
         assert await session.act("getCurrentPose", Out(), Out()) == (0.0, 0.0)
         assert await session.act("x", Out()) == 0.0
         assert await session.act("nothing", Out()) is None
-        with pytest.raises(WorkspaceError, match=r"an argument of x is the class Out: write Out\(\)"):
+        with pytest.raises(
+            WorkspaceError, match=r"expected an Out object as argument of x, found the class Out"
+        ):
             await session.act("x", Out)
 
     play(scene)
@@ -70,7 +72,7 @@ def test_a_failure_is_raised_with_its_reason(play):
         ) as raised:
             await session.act("inc", 1, 2)
         assert raised.value.reason == Structure("unknown_operation", ("inc",))
-        with pytest.raises(OperationFailed, match=r"has an operation incc/0; did you mean inc"):
+        with pytest.raises(OperationFailed, match=r"has an operation incc/0; did you mean `inc`"):
             await session.act("incc")
         with pytest.raises(OperationFailed) as raised:
             await session.act("inc", "two")
@@ -81,8 +83,8 @@ def test_a_failure_is_raised_with_its_reason(play):
 
 def test_own_artifacts_come_before_focused_ones_and_those_before_others(play):
     async def scene(stage):
-        first = await stage.make(Counter, name="first", creator="somebody")
-        second = await stage.make(Counter, name="second", creator="somebody")
+        first = await stage.make(Counter, name="first", creator="other")
+        second = await stage.make(Counter, name="second", creator="other")
         session = session_in(stage)
         await session.act("inc")
         assert stage.property(first, "count") == (1,)
@@ -179,7 +181,7 @@ class Books:
         self.passive -= 1
 
 
-def test_account_is_kept_of_what_is_waited_for(play):
+def test_waits_are_counted(play):
     async def scene(stage):
         books = Books()
         with session_in(stage, account=books) as session:

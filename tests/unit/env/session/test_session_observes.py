@@ -30,7 +30,7 @@ def test_focusing_again_has_no_effect(play):
     play(scene)
 
 
-def test_an_artifact_is_focused_as_soon_as_it_is_there(play):
+def test_an_artifact_is_focused_as_soon_as_it_exists(play):
     async def scene(stage):
         session = session_in(stage)
         waiting = asyncio.ensure_future(session.focus_when_available("counter"))
@@ -65,7 +65,7 @@ def test_properties_are_found_by_name_and_values(play):
     play(scene)
 
 
-def test_an_unknown_property_is_an_error_that_says_what_there_is(play):
+def test_the_error_for_an_unknown_property_lists_known_ones(play):
     async def scene(stage):
         session = session_in(stage)
         counter = await session.make_artifact("counter", Counter)
@@ -75,16 +75,16 @@ def test_an_unknown_property_is_an_error_that_says_what_there_is(play):
             session.value("count", artifact=counter)
         session.focus(counter)
         with pytest.raises(
-            UnknownProperty, match=r"what is focused \(counter\) has count; did you mean count"
+            UnknownProperty, match=r"the focused artifacts \(counter\) have count; did you mean `count`"
         ):
             session.values("cuont")
-        with pytest.raises(UnknownArtifact, match="no artifact cuonter"):
+        with pytest.raises(UnknownArtifact, match="unknown artifact `cuonter`"):
             session.value("count", artifact="cuonter")
 
     play(scene)
 
 
-def test_what_is_observed_is_the_sessions_own(play):
+def test_observed_values_are_copies(play):
     class Route(Artifact):
         def init(self):
             self.define_property("route", ["a", "b"])
@@ -147,7 +147,7 @@ def test_callbacks_see_what_was_published_together(play):
     play(scene)
 
 
-def test_a_callback_that_raises_harms_nobody(play):
+def test_a_callback_that_raises_has_no_other_effect(play):
     async def scene(stage):
         session = session_in(stage)
         session.focus(await session.make_artifact("counter", Counter))
@@ -161,7 +161,7 @@ def test_a_callback_that_raises_harms_nobody(play):
             "ZeroDivisionError",
             "KeyError: 'no'",
             "IndexError",
-            "[painter] a callback for changes failed",
+            "[painter] an on_change callback raised",
         ):
             assert stage.logged(what), what
 
@@ -181,7 +181,7 @@ def test_a_condition_that_holds_for_one_step_only_is_not_missed(play):
     play(scene)
 
 
-def test_a_condition_that_raises_is_told_to_who_waits(play):
+def test_a_condition_that_raises_raises_in_the_waiting_task(play):
     async def scene(stage):
         session = session_in(stage)
         session.focus(await session.make_artifact("counter", Counter))
@@ -228,7 +228,7 @@ def test_what_an_artifact_does_by_itself_is_observed(play):
     play(scene)
 
 
-def test_streams_get_a_signal_in_the_order_of_their_making_and_go_when_nobody_reads_them(play):
+def test_streams_get_a_signal_in_the_order_of_creation_and_end_without_a_reader(play):
     async def scene(stage):
         session = session_in(stage)
         session.focus(await session.make_artifact("counter", Counter))

@@ -1,4 +1,4 @@
-"""Operations of sessions while they are under way: paused, cancelled, too late."""
+"""Operations of sessions while they run: paused, cancelled, timed out."""
 
 import asyncio
 

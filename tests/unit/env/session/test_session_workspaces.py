@@ -14,7 +14,7 @@ def test_workspaces_are_joined_and_left(play):
     async def scene(stage):
         session = session_in(stage)
         assert session.create_workspace("/main/lab") == "/main/lab"
-        with pytest.raises(UnknownWorkspace, match="no workspace /main/lob; did you mean"):
+        with pytest.raises(UnknownWorkspace, match="unknown workspace `/main/lob`; did you mean"):
             session.join("lob")
         assert session.join("lab") == "/main/lab"
         assert session.joined == ("/main", "/main/lab")

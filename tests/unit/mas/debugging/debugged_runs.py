@@ -1,4 +1,4 @@
-"""Runs on the virtual clock that are paused, or not, and what they did."""
+"""Paused and unpaused runs on the virtual clock, and their records."""
 
 from collections.abc import Awaitable, Callable
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Breakpoints stop a run before what they name."""
+"""Breakpoints stop a run before their step, event or condition."""
 
 import asyncio
 from collections.abc import Mapping
@@ -33,7 +33,7 @@ def stops(at: Mapping[str, Any], program: str = COUNTER, **options: Any) -> list
 
     lines = debugged(test, program, **options)
     if program is COUNTER:
-        assert lines[-1] == "over", "the run goes on to its end"
+        assert lines[-1] == "over", "the run continues to its end"
     return found
 
 
@@ -131,12 +131,12 @@ def test_a_condition_becomes_true_by_a_percept_that_no_plan_handles() -> None:
     debugged(test, "ready.")
 
 
-def test_a_condition_without_end_does_not_hold_the_run_up() -> None:
+def test_an_endless_condition_does_not_block_the_run() -> None:
     program = "p(X) :- p(X). !go. +!go <- .print(a); .print(b)."
     assert stops({"condition": "p(1)", "agent": "bob"}, program) == []
 
 
-def test_breakpoints_hold_for_agents_that_come_later() -> None:
+def test_breakpoints_apply_to_agents_created_later() -> None:
     async def test(mas: Mas, debugger: Debugger, lines: list[str]) -> None:
         debugger.add_breakpoint({"event": "+!later(_)"})
         await mas.sleep(5.0)
@@ -151,7 +151,7 @@ def test_breakpoints_hold_for_agents_that_come_later() -> None:
     debugged(test)
 
 
-def test_a_removed_breakpoint_stops_nothing_and_the_agent_is_asked_no_more() -> None:
+def test_a_removed_breakpoint_stops_nothing_and_costs_nothing() -> None:
     async def test(mas: Mas, debugger: Debugger, lines: list[str]) -> None:
         at = {"line": {"file": "<bob>", "line": 5}}
         debugger.add_breakpoint(at)
@@ -183,7 +183,7 @@ def test_a_removed_breakpoint_stops_nothing_and_the_agent_is_asked_no_more() -> 
         {"condition": ".send(bob, tell, x)", "agent": "bob"},
     ],
 )
-def test_what_is_no_breakpoint_is_refused(at: dict[str, Any]) -> None:
+def test_invalid_breakpoints_are_refused(at: dict[str, Any]) -> None:
     async def test(mas: Mas, debugger: Debugger, lines: list[str]) -> None:
         with pytest.raises(UsageError):
             debugger.add_breakpoint(at)
@@ -215,7 +215,7 @@ def test_an_atomic_plan_is_held_too() -> None:
         await mas.until_idle()
 
     assert debugged(test, program) == ["a", "b", "c"]
-    # The first one says which breakpoints there are.
+    # The first record lists the breakpoints.
     assert [each.state for each in states] == ["running", "paused", "running"]
 
 

@@ -138,7 +138,7 @@ def test_a_paused_run_can_end(clock: Any) -> None:
     jacaros.run(main(), clock=clock)
 
 
-def test_steps_stop_where_they_say() -> None:
+def test_steps_stop_at_the_right_place() -> None:
     program = "!a. !b. +!a <- .print(a1); .print(a2). +!b <- .print(b1); !c; .print(b2). +!c <- .print(c)."
 
     async def test(mas: Mas, debugger: Debugger, lines: list[str]) -> None:
@@ -175,7 +175,7 @@ def test_one_agent_is_stepped_while_others_have_their_turns() -> None:
         await debugger.wait_until_paused()
         assert [line for line in lines if line in "xyz"] == ["x"]
         with pytest.raises(UsageError):
-            debugger.step("step", "nobody")
+            debugger.step("step", "other")
         with pytest.raises(UsageError):
             debugger.step("leap")  # type: ignore[arg-type]
         debugger.resume()
@@ -183,7 +183,7 @@ def test_one_agent_is_stepped_while_others_have_their_turns() -> None:
     debugged(test)
 
 
-def test_an_agent_that_is_held_can_be_told_and_its_goal_can_be_dropped() -> None:
+def test_a_held_agent_can_receive_messages_and_its_goal_can_be_dropped() -> None:
     program = "!go. +!go <- .print(a); .print(b). +hello <- .print(hello)."
 
     async def test(mas: Mas, debugger: Debugger, lines: list[str]) -> None:
@@ -214,7 +214,7 @@ class Walker(PythonAgent):
 
 
 @pytest.mark.parametrize("clock", ["real", "fast"])
-def test_an_agent_in_python_waits_too_and_real_time_says_what_it_cannot_stop(
+def test_a_python_agent_is_paused_too_and_a_real_graph_lists_what_continues(
     clock: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     lines: list[str] = []

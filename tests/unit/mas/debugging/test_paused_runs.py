@@ -17,7 +17,7 @@ PROJECTS = {
 
 
 def pauses_at_random(seed: int, times: int, seconds: float):
-    """Pause at random moments, also in the middle of what happens at one moment, and see that nothing goes on."""
+    """Pause at random moments, also between simultaneous events, and check that nothing continues."""
 
     async def during(mas: Mas, found: Observed) -> None:
         random, debugger = Random(seed), mas.debugger

@@ -1,4 +1,4 @@
-"""Changed programs are read again while the run continues."""
+"""Reload of changed programs during a run."""
 
 from collections.abc import Awaitable, Callable
 from pathlib import Path
@@ -34,7 +34,7 @@ def reloaded(
     old: str = OLD,
     **files: str,
 ) -> list[str]:
-    """Run *test* with agents bob and ann that run the file robot.asl; what they printed."""
+    """Run *test* with agents bob and ann that run the file robot.asl. Return their output."""
     lines: list[str] = []
     file = tmp_path / "robot.asl"
     write(file, old)
@@ -71,8 +71,8 @@ def test_plans_and_rules_are_replaced_and_beliefs_and_intentions_kept(tmp_path: 
         )
         told = mas.reload()
         assert f"agent bob: intention 1 continues with its old plan +!go ({file}:4)" in told
-        assert "agent bob: 1 plan gone, 2 new, 1 unchanged" in told
-        assert "agent ann: 1 plan gone, 2 new, 1 unchanged" in told
+        assert "agent bob: 1 plan removed, 2 new, 1 unchanged" in told
+        assert "agent ann: 1 plan removed, 2 new, 1 unchanged" in told
         assert "agent bob: the new initial belief size(4) is not adopted" in told
         assert "agent ann: the new initial goal more is not adopted" in told
         assert len(told) == 8
@@ -108,7 +108,7 @@ def test_a_wrong_program_is_reported_and_nothing_is_replaced(tmp_path: Path) -> 
     assert [line for line in lines if line.startswith("bob")] == ["bob old", "bob oldend", "bob old"]
 
 
-def test_a_program_that_is_as_before_is_left_alone(tmp_path: Path) -> None:
+def test_an_unchanged_program_is_not_reloaded(tmp_path: Path) -> None:
     async def test(mas: Mas, file: Path, lines: list[str]) -> None:
         await mas.sleep(0.5)
         library = mas.agent("bob").mind.library
@@ -132,7 +132,7 @@ def test_derived_events_that_stay_keep_their_windows(tmp_path: Path) -> None:
             patterns + "{ derive(next, count(hit(_), within(1000), at_least(3))) }\n",
         )
         told = mas.reload()
-        assert "agent bob: derived events and histories: 0 gone, 1 new, 1 unchanged" in told
+        assert "agent bob: derived events and histories: 0 removed, 1 new, 1 unchanged" in told
         await mas.sleep(0.7)
         assert lines == ["bob many"]
         await mas.sleep(0.2)

@@ -23,7 +23,7 @@ from fake_real_time import FakeTimeLoop, in_fake_time
 REAL = RunOptions(ros="ros2")
 
 
-def test_the_robot_stands_during_a_pause_and_drives_on_after_it(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_robot_stops_during_a_pause_and_continues_afterwards(monkeypatch: pytest.MonkeyPatch) -> None:
     """The world has a clock of its own, as a real robot has; only that of the run is paused."""
 
     async def main(loop: FakeTimeLoop) -> None:

@@ -48,7 +48,7 @@ def test_the_end_of_the_block_ends_everything(how: str) -> None:
             jacaros.run(main(), clock="fast")
 
 
-def test_waiting_for_what_cannot_come_any_more_raises() -> None:
+def test_a_wait_that_can_no_longer_end_raises() -> None:
     async def test(mas: Mas) -> None:
         bob = mas.add_agent("bob", "+!stop <- .stopMAS(0, 5). +!long <- .wait(100000).")
         ann = mas.add_agent("ann", "")
@@ -160,8 +160,8 @@ class Door(Artifact):
                 self.log("not yet")
 
 
-def test_who_is_told_later_sees_the_change_before_the_end() -> None:
-    """An observer that disposes the artifact of which it is just being told."""
+def test_an_observer_notified_later_sees_the_change_before_the_end() -> None:
+    """An observer that disposes an artifact as soon as it is notified of it."""
 
     async def test(mas: Mas) -> None:
         door = await mas.make_artifact("door", Door)
@@ -184,7 +184,7 @@ def test_who_is_told_later_sees_the_change_before_the_end() -> None:
     assert [line[6:] for line in lines] == ["open(false)", "no_more(false)", "open(true)", "no_more(true)"]
 
 
-def test_an_artifact_that_is_disposed_when_it_appears_is_waited_for() -> None:
+def test_waiting_continues_if_an_artifact_is_disposed_as_soon_as_it_exists() -> None:
     async def test(mas: Mas) -> None:
         first, second = mas.session("first"), mas.session("second")
         first.on_change(lambda change: first.dispose_artifact("door") if change.now and once else None)
@@ -204,7 +204,7 @@ def test_an_artifact_that_is_disposed_when_it_appears_is_waited_for() -> None:
     assert run(test).exit_code == 0
 
 
-def test_a_run_ends_though_an_operation_takes_no_cancellation() -> None:
+def test_a_run_ends_although_an_operation_ignores_cancellation() -> None:
     async def test(mas: Mas) -> None:
         session = mas.session("s")
         await session.make_artifact("door", Door)

@@ -1,4 +1,4 @@
-"""A Python program gives agents goals and beliefs, and waits for what comes of it."""
+"""A Python program gives agents goals and beliefs, and waits for the outcome."""
 
 import asyncio
 
@@ -12,7 +12,7 @@ from jacaros.clock import VirtualClock
 from jacaros.mas.embedding.running_agent import RunningAgent
 
 
-def test_a_condition_is_waited_for() -> None:
+def test_until_waits_for_a_condition() -> None:
     async def test(mas: Mas) -> None:
         await mas.make_artifact("counter", Counter)
         bob = mas.add_agent("bob", "big(X) :- count(X) & X > 2.", focus=["counter"])
@@ -33,7 +33,7 @@ def test_a_condition_is_waited_for() -> None:
     run(test)
 
 
-def test_a_condition_that_does_not_come_in_time_tells_what_there_is() -> None:
+def test_a_timeout_of_a_condition_shows_related_beliefs() -> None:
     async def test(mas: Mas) -> None:
         bob = mas.add_agent("bob", "count(1). other(2).")
         with pytest.raises(TimeoutError) as late:
@@ -66,7 +66,7 @@ def test_a_cancelled_wait_leaves_nothing_behind() -> None:
     run(test)
 
 
-def test_beliefs_percepts_and_signals_are_given() -> None:
+def test_beliefs_percepts_and_signals_can_be_added() -> None:
     async def test(mas: Mas) -> None:
         bob = mas.add_agent(
             "bob",
@@ -81,7 +81,7 @@ def test_beliefs_percepts_and_signals_are_given() -> None:
         bob.remove_belief("door(shut)")
         await mas.until_idle()
         assert bob.beliefs == ["door(red)[source(ann)]"]
-        with pytest.raises(ValueError, match="a percept has no variables"):
+        with pytest.raises(ValueError, match="a percept must be ground"):
             bob.perceive("door(X)")
 
     lines: list[str] = []
@@ -98,7 +98,7 @@ def test_beliefs_percepts_and_signals_are_given() -> None:
     )
 
 
-def test_an_agent_may_be_given_things_while_it_prints() -> None:
+def test_beliefs_can_be_added_while_an_agent_prints() -> None:
     agents: list[RunningAgent] = []
 
     async def main() -> None:
@@ -145,20 +145,20 @@ def test_a_failed_goal_raises_with_its_reasons() -> None:
     run(test)
 
 
-def test_waiting_for_ever_on_the_virtual_clock_raises() -> None:
+def test_waiting_forever_on_the_virtual_clock_raises() -> None:
     async def test(mas: Mas) -> None:
         bob = mas.add_agent("bob", '+!long <- .wait("+never"). +!later(N) <- .wait(N); +later.')
         bob.achieve("later(5000)")
         assert await bob.until("later") == {}
         for waiting in (bob.achieve("long").wait(), bob.until("p"), mas.mailbox("me").get()):
-            with pytest.raises(TimeoutError, match="and nothing more will happen: all agents wait"):
+            with pytest.raises(TimeoutError, match="and never will: all agents are idle"):
                 await waiting
         assert await asyncio.to_thread(lambda: 7) == 7
 
     run(test)
 
 
-def test_goals_can_be_dropped_and_late() -> None:
+def test_goals_can_be_dropped_or_time_out() -> None:
     async def test(mas: Mas) -> None:
         bob = mas.add_agent("bob", "+!long <- .wait(10000). +!forget <- .drop_intention(long).")
         goal = bob.achieve("long")
@@ -177,14 +177,14 @@ def test_goals_can_be_dropped_and_late() -> None:
     run(test)
 
 
-def test_being_idle_is_waited_for() -> None:
+def test_until_idle_waits_for_idleness() -> None:
     async def test(mas: Mas) -> None:
         await mas.until_idle()
         mas.add_agent("bob", "!go. +!go <- .wait(3000); +done. +!busy <- .wait(1); !busy.")
         await mas.until_idle()
         assert mas.agent("bob").believes("done")
         mas.agent("bob").achieve("busy")
-        with pytest.raises(TimeoutError, match="the agents did not get idle within 2 s"):
+        with pytest.raises(TimeoutError, match="the agents did not become idle within 2 s"):
             await mas.until_idle(timeout=2)
 
     run(test)
@@ -195,7 +195,7 @@ def test_an_operation_of_a_session_is_under_way() -> None:
         await mas.make_artifact("counter", Counter)
         painter = mas.session("painter")
         driving = painter.begin("drive")
-        with pytest.raises(TimeoutError, match="did not get idle within 2 s"):
+        with pytest.raises(TimeoutError, match="did not become idle within 2 s"):
             await mas.until_idle(timeout=2)
         await mas.until_idle(timeout=2000)
         assert driving.done
@@ -205,7 +205,7 @@ def test_an_operation_of_a_session_is_under_way() -> None:
     run(test)
 
 
-def test_a_failed_goal_that_nobody_awaits_is_told() -> None:
+def test_a_failed_goal_that_is_not_awaited_is_logged() -> None:
     async def test(mas: Mas) -> None:
         bob = mas.add_agent("bob", "+!refused <- .fail.")
         bob.achieve("nothing(1)")

@@ -38,12 +38,12 @@ def test_python_code_has_mailboxes() -> None:
         question = await me.get()
         me.send(question.sender, "tell", "weather(fine)", reply_to=question)
         await asking
-        with pytest.raises(UnknownAgent, match="unknown agent bobb; did you mean bob"):
+        with pytest.raises(UnknownAgent, match="unknown agent `bobb`; did you mean `bob`"):
             me.send("bobb", "tell", "x")
-        with pytest.raises(TimeoutError, match="no message came for me within 1 s"):
+        with pytest.raises(TimeoutError, match="no message for me within 1 s"):
             await me.get(timeout=1)
         with pytest.raises(
-            UsageError, match="the name bob belongs to an agent; give the mailbox another name"
+            UsageError, match="duplicate name `bob`: an agent has it; choose another name for the mailbox"
         ):
             mas.mailbox("bob")
 
@@ -52,7 +52,7 @@ def test_python_code_has_mailboxes() -> None:
     assert lines == ["[bob] weather(fine)[source(me)]"]
 
 
-def test_messages_are_gone_through_as_they_come() -> None:
+def test_messages_are_iterated_as_they_arrive() -> None:
     async def test(mas: Mas) -> None:
         me = mas.mailbox("me")
         mas.add_agent(

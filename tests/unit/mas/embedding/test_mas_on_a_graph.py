@@ -1,4 +1,4 @@
-"""A system in a Python program and its ROS graph: what is given to `Mas` as on the command line."""
+"""A system in a Python program and its ROS graph: options of `Mas`, as on the command line."""
 
 from pathlib import Path
 from typing import Any
@@ -12,12 +12,12 @@ from jacaros.errors import UsageError
 from jacaros.mas.deployment import ProjectError
 
 
-def test_a_virtual_clock_and_a_real_graph_do_not_go_together() -> None:
+def test_a_virtual_clock_excludes_a_real_graph() -> None:
     async def main() -> None:
         async with Mas(ros="ros1"):
             pytest.fail("it began")
 
-    with pytest.raises(UsageError, match="the virtual clock"):
+    with pytest.raises(UsageError, match="--clock fast excludes"):
         jacaros.run(main(), clock="fast")
 
 
@@ -32,15 +32,15 @@ def test_a_mapping_and_other_names_are_given_as_on_the_command_line(tmp_path: Pa
         bob = mas.add_agent("bob", "+!go <- .wait(odom(X)); .print(X).", focus=["wheels"])
         await bob.achieve("go")
         assert mas.ros.resolve("odom") == "/odom"
-        assert mas.ros.resolve("scan") == "/somebody/scan"
+        assert mas.ros.resolve("scan") == "/other/scan"
 
     run(
         test,
         lines,
         mappings=[mapping],
         world="empty",
-        remap={"/somebody/odom": "/odom"},
-        namespace="somebody",
+        remap={"/other/odom": "/odom"},
+        namespace="other",
     )
     assert lines == ["[bob] 0"]
 
@@ -53,16 +53,16 @@ def test_a_mapping_and_other_names_are_given_as_on_the_command_line(tmp_path: Pa
         ({"master": "http://robot.lab.example:11311"}, "--master goes with --ros ros1"),
         ({"ros": "ros1", "master": "robot"}, "--master is an address"),
         ({"bridge": "ws://robot.lab.example:9090"}, "--bridge goes with --ros rosbridge"),
-        ({"ros_clock": True}, "--clock ros follows"),
+        ({"ros_clock": True}, "--clock ros needs"),
         ({"node_name": "my node"}, "my node"),
         ({"remap": {"a b": "c"}}, "a b"),
     ],
 )
-def test_options_of_the_graph_are_checked_when_they_are_given(options: dict[str, Any], text: str) -> None:
+def test_options_of_the_graph_are_checked_immediately(options: dict[str, Any], text: str) -> None:
     with pytest.raises(UsageError, match=text):
         Mas(**options)
 
 
-def test_a_missing_mapping_is_told_when_it_is_given() -> None:
+def test_a_missing_mapping_is_reported_immediately() -> None:
     with pytest.raises(ProjectError, match=r"mapping file not found: nowhere\.yaml"):
         Mas(mappings=["nowhere.yaml"])

@@ -84,5 +84,5 @@ def test_what_cannot_be_explained_is_refused_before_the_run(
     program.write_text("!start. +!start <- .print(began).")
     assert call(["run", str(program), "--explain", "+a b("]) == 2
     told = capfd.readouterr()
-    assert "not an event, a goal or a belief: `+a b(`" in told.err
+    assert "expected an event, a goal or a belief, found `+a b(`" in told.err
     assert "began" not in told.out

@@ -1,4 +1,4 @@
-"""What watchers are told of goals."""
+"""Records of goals."""
 
 import pytest
 
@@ -9,7 +9,7 @@ from jacaros.terms.values import functor
 
 @pytest.fixture
 def told():
-    """What was told, as ``id state goal``; called with what a mind tells."""
+    """The records, as ``id state goal``. Called with the reports of a mind."""
     lines = []
     news = GoalRecords(
         lambda goal: lines.append(f"{goal['id']} {goal['agent']} {goal['state']} {goal['goal']}")
@@ -23,7 +23,7 @@ def told():
     return hear
 
 
-def test_work_for_a_goal_is_told_once(told):
+def test_work_for_a_goal_is_recorded_once(told):
     assert told("executing", "executing", "executing", "achieved") == [
         "1 bob pursued !patrol",
         "1 bob achieved !patrol",
@@ -54,12 +54,12 @@ def test_events_and_waits_are_not_recorded_as_goals(told):
     assert [goal["goal"] for goal in heard] == ["!bump"]
 
 
-def test_a_goal_whose_failure_was_dealt_with_is_over(told):
+def test_a_goal_whose_failure_was_handled_has_ended(told):
     told("executing", "failed", "executing", "executing", "recovered", "finished")
     assert [line.split()[2] for line in told()] == ["pursued", "failed", "pursued", "recovered"]
 
 
-def test_the_end_of_a_goal_is_told_once(told):
+def test_the_end_of_a_goal_is_recorded_once(told):
     told("executing", "achieved", "finished")
     told("executing", "failed", "finished")
     told("executing", "dropped", "finished")
@@ -70,7 +70,7 @@ def test_the_end_of_a_goal_is_told_once(told):
     ]
 
 
-def test_why_a_goal_failed_is_told():
+def test_the_reason_of_a_failed_goal_is_recorded():
     told = []
     news = GoalRecords(told.append)
     news.take("bob", "executing", "!patrol", 1, 1)
@@ -79,6 +79,6 @@ def test_why_a_goal_failed_is_told():
     assert told[1]["why"] == "no way"
 
 
-def test_a_goal_whose_intention_is_over_is_over(told):
+def test_a_goal_ends_with_its_intention(told):
     told("executing", "finished", "failed", "finished", "dropped")
     assert [line.split()[2] for line in told()] == ["pursued", "dropped"]

@@ -8,7 +8,7 @@ from jacaros import Mas
 from jacaros.mas.history.history import History
 
 
-def test_agents_that_come_later_are_observed():
+def test_agents_created_later_are_observed():
     records = records_of(
         {"ann": "p."}, during=lambda mas: mas.add_agent("bob", "!go. +!go <- .wait(1000); .print(x).")
     )
@@ -39,7 +39,7 @@ def observed(act):
     jacaros.run(main(), clock="fast")
 
 
-def test_old_records_are_forgotten_but_for_what_describes_agents_that_are_there():
+def test_old_records_are_dropped_except_those_that_describe_present_agents():
     def act(history):
         history.record("agent", {"agent": "ann", "state": "began"})
         history.record("agent", {"agent": "bob", "state": "began"})

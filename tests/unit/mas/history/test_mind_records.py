@@ -140,7 +140,7 @@ def test_a_deliberation_without_an_applicable_plan_chooses_none():
     assert event["options"] == [{"plan": 1, "why": "stops at `X > 3` with X=1"}]
 
 
-def test_contexts_are_examined_so_often_a_second_and_no_more():
+def test_the_number_of_examined_contexts_per_second_is_limited():
     program = "!go(0). +!go(N) : N < 0. +!go(N) : N < 50 <- !go(N + 1). +!go(_) <- .wait(1500); !end. +!end : no. +!end."
     found = of(records_of({"ann": program}), "deliberation")
     examined = [bool(each["options"]) for each in found]
@@ -182,13 +182,13 @@ def test_a_suspended_intention_says_why():
     assert suspended[0]["reason"]
 
 
-def test_intentions_are_looked_at_ten_times_a_second():
+def test_intentions_are_checked_ten_times_a_second():
     program = "!go. +!go <- for (.range(I, 1, 300)) { .wait(10) }."
     found = of(records_of({"ann": program}, seconds=4.0), "intention")
     assert 20 <= len(found) <= 32
 
 
-def test_of_many_agents_some_are_looked_at_in_each_period():
+def test_of_many_agents_some_are_checked_in_each_period():
     programs: dict[str, str | Path] = {f"a{number}": "!go. +!go <- .wait(9000)." for number in range(120)}
     found = Counter(t for t, event, _ in records_of(programs, seconds=4.0) if event == "intention")
     assert found == {0.1: 50, 0.2: 50, 0.3: 20}
@@ -244,7 +244,7 @@ def test_agents_in_python_read_messages():
     assert [each["id"] for each in of(records, "message") if each["state"] == "read"] == [told, asked, answer]
 
 
-def test_when_nobody_looks_nothing_is_observed():
+def test_without_a_listener_nothing_is_observed():
     async def main():
         async with Mas(on_log=lambda *line: None) as mas:
             mas.add_agent("ann", "p.")

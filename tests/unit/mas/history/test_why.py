@@ -33,7 +33,7 @@ def test_a_stop_is_traced_back_to_the_message(question: str) -> None:
     assert "!patrol(kitchen) dropped at 9.000 s" in answer.text()
 
 
-def test_a_robot_that_drives_has_not_stopped() -> None:
+def test_a_moving_robot_has_not_stopped() -> None:
     answer = ask("stopped", at=5.0)
     assert answer.answer.startswith(
         "no command to stop until 5.000 s; the last command is `/cmd_vel linear.x=0.3"
@@ -41,7 +41,7 @@ def test_a_robot_that_drives_has_not_stopped() -> None:
     assert kinds(answer) == ["command", "operation", "act", "event"]
 
 
-def test_robots_are_told_apart() -> None:
+def test_robots_are_distinguished() -> None:
     assert ask("stopped", robot="robot1").t == 9.1
     assert ask("stopped", robot="robot2").t is None
 
@@ -63,7 +63,7 @@ def test_a_command_by_its_topic() -> None:
     )
 
 
-def test_an_operation_that_runs_on() -> None:
+def test_an_operation_that_is_still_running() -> None:
     answer = ask("operation go")
     assert answer.answer == "go(kitchen) of /main/wheels began at 0.100 s, still running"
     assert kinds(answer) == ["operation", "act", "event"]
@@ -76,7 +76,7 @@ def test_an_event_names_the_chosen_plan(question: str) -> None:
     answer = ask(question)
     assert answer.answer == "guard handled `+battery(12)` at 9.000 s with @low (guard.asl:7)"
     assert kinds(answer) == ["event", "property", "sample"]
-    assert "`+battery(B)`: not tried, since the chosen plan comes before it (guard.asl:9)" in answer.text()
+    assert "`+battery(B)`: not tried, because the chosen plan comes before it (guard.asl:9)" in answer.text()
 
 
 def test_an_earlier_event() -> None:
@@ -95,7 +95,7 @@ def test_an_event_without_applicable_plan() -> None:
 def test_an_event_of_a_rule_never_happens() -> None:
     answer = ask("+low")
     assert answer.t is None
-    assert "`low` is the conclusion of a rule; conclusions cause no events" in answer.text()
+    assert "`low` is the conclusion of a rule; rules cause no events" in answer.text()
 
 
 def test_a_belief_without_relevant_plan() -> None:
@@ -105,7 +105,7 @@ def test_a_belief_without_relevant_plan() -> None:
     ]
     answer = explain(records, "+alarm(_,_)")
     assert answer.answer == "guard has no relevant plan for `+alarm(a,b)[source(self)]` at 13.000 s"
-    assert "is not for it: another trigger" in answer.text()
+    assert "does not match: another trigger" in answer.text()
 
 
 def test_an_event_that_never_happened_has_a_near_name() -> None:
@@ -139,7 +139,7 @@ def test_a_plan_that_was_never_considered() -> None:
 
 
 def test_an_unknown_plan_lists_the_plans() -> None:
-    with pytest.raises(UsageError, match="unknown plan: `@lo`\n  = help: there are @dock, @low, @patrol"):
+    with pytest.raises(UsageError, match="unknown plan: `@lo`\n  = help: known plans: @dock, @low, @patrol"):
         ask("plan @lo")
 
 
@@ -151,7 +151,7 @@ def test_waiting() -> None:
     )
 
 
-def test_nothing_happens_because_all_waits() -> None:
+def test_nothing_happens_because_everything_waits() -> None:
     answer = ask("why does nothing happen")
     assert answer.answer == "every open intention of all agents waits at 12.000 s"
     assert "the last event `+alarm(fire)` had no applicable plan" in answer.text()
@@ -183,7 +183,7 @@ def test_a_belief_and_what_changed_it(question: str) -> None:
 
 def test_a_belief_of_the_program() -> None:
     answer = ask("belief battery(_)", at=1.0)
-    assert answer.facts[0].text == "it is an initial belief, or came from outside of the plans"
+    assert answer.facts[0].text == "it is an initial belief, or was added from outside of the plans"
 
 
 def test_a_belief_that_a_step_changed() -> None:
@@ -201,7 +201,7 @@ def test_a_belief_that_a_step_changed() -> None:
     )
 
 
-def test_a_belief_that_never_was() -> None:
+def test_a_belief_that_never_existed() -> None:
     answer = ask("belief batery(_)")
     assert answer.t is None
     assert answer.answer == "no agent ever believed `batery(_)` until 12.000 s"
@@ -250,7 +250,7 @@ def test_an_answer_is_plain_data() -> None:
     assert data["t"] == 9.1
 
 
-def test_records_without_a_field_do_no_harm() -> None:
+def test_records_without_a_field_are_skipped() -> None:
     broken = [
         (1.0, "cause", {}),
         (1.0, "program", {"agent": "a"}),
@@ -260,7 +260,7 @@ def test_records_without_a_field_do_no_harm() -> None:
     assert explain([*broken, *RECORDS], "stopped").t == 9.1
 
 
-def test_a_chain_that_is_a_circle_ends() -> None:
+def test_a_cyclic_chain_ends() -> None:
     records = [
         (1.0, "cause", {"id": 1, "parent": 2, "kind": "command", "what": "/a", "at": 1.0}),
         (1.0, "cause", {"id": 2, "parent": 1, "kind": "operation", "what": "go", "at": 1.0}),
@@ -298,7 +298,7 @@ def test_a_stop_by_a_suspended_goal_names_the_step_and_the_event() -> None:
     )
 
 
-def test_a_stop_at_the_end_of_the_run_is_no_decision() -> None:
+def test_a_stop_at_the_end_of_the_run_is_not_a_decision() -> None:
     records = [
         *(each for each in RECORDS if each[0] < 5.0),
         cause(6.0, 50, 3, "command", "/cmd_vel", topic="/cmd_vel"),
@@ -330,7 +330,7 @@ def test_plans_that_a_busy_agent_did_not_examine_are_listed() -> None:
     assert answer.answer == "guard has no applicable plan for `+alarm(fire)` at 13.000 s"
     assert (
         answer.facts[0].text
-        == "`+alarm(T) : zones(T)`: did not apply; not examined, since the agent was busy"
+        == "`+alarm(T) : zones(T)`: did not apply; not examined, because the agent was busy"
     )
     other = (
         13.0,

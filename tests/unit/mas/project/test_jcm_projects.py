@@ -1,4 +1,4 @@
-"""What is seen in `.jcm` and `.mas2j` files of real projects, in files of our own."""
+"""Features of real `.jcm` and `.mas2j` projects, in files of our own."""
 
 from pathlib import Path
 from textwrap import dedent
@@ -47,7 +47,7 @@ def by_name(deployment: Deployment) -> dict[str, Path]:
 # where programs are
 
 
-def test_programs_are_found_where_jacamo_looks_for_them(folder: Path) -> None:
+def test_programs_are_found_in_jacamos_folders(folder: Path) -> None:
     (folder / "src" / "agt" / "inc" / "dora.asl").write_text("", encoding="utf-8")
     (folder / "emil.asl").write_text("", encoding="utf-8")
     (folder / "src" / "agt" / "team").mkdir()
@@ -72,18 +72,18 @@ def test_programs_are_found_where_jacamo_looks_for_them(folder: Path) -> None:
     }
 
 
-def test_an_asl_path_takes_the_place_of_the_usual_ones(folder: Path) -> None:
+def test_an_asl_path_replaces_the_default_folders(folder: Path) -> None:
     (folder / "own").mkdir()
     (folder / "own" / "dora.asl").write_text("", encoding="utf-8")
     text = 'mas m {\n agent dora\n agent bob\n asl-path: own, "more"\n "$jacamoJar/test/jacamo/inc"\n}'
     (found,) = diagnostics(folder, text)
-    assert found.message == "program of agent 'bob' not found: bob.asl"
+    assert found.message == "program of agent `bob` not found: bob.asl"
     assert found.help == f"expected in {folder / 'own'}, {folder / 'more'}, {folder}"
 
 
 def test_programs_are_not_read_over_the_network(folder: Path) -> None:
     (found,) = diagnostics(folder, 'mas m {\n agent bob : "http://far.example/bob.asl"\n}')
-    assert found.help == "programs are read from files, not over the network"
+    assert found.help == "download the program: only files are supported"
 
 
 def test_used_projects_have_folders_of_their_own(folder: Path) -> None:
@@ -109,8 +109,8 @@ def test_projects_that_use_each_other_are_refused(folder: Path) -> None:
     write(folder, "two.jcm", "mas two uses one {\n agent alice\n}")
     found = errors(folder, "mas m\n uses one, three {\n}")
     assert found == [
-        (2, "project 'three' not found"),
-        (1, "the project 'one' uses itself"),
+        (2, "project not found: `three`"),
+        (1, "project `one` uses itself"),
     ]
 
 
@@ -119,14 +119,14 @@ def test_a_used_project_is_checked_with_the_one_that_uses_it(folder: Path) -> No
     write(folder, "whole.jcm", "mas whole uses agents {\n workspace w\n}")
     assert check_files([folder]).diagnostics == []
     assert [each.message for each in check_files([folder / "agents.jcm"]).diagnostics] == [
-        "the workspace 'w' is not declared in the project"
+        "unknown workspace `w`"
     ]
 
 
-# what stands in values
+# values
 
 
-def test_values_stand_on_lines_of_their_own_or_behind_commas(folder: Path) -> None:
+def test_values_are_separated_by_line_ends_or_commas(folder: Path) -> None:
     deployment = load(
         folder,
         """\
@@ -184,44 +184,44 @@ def test_agents_may_have_names_of_sections_and_keys(folder: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "told"),
     [
-        ("agent bob { beliefs: !start }", "'!start' is a goal"),
+        ("agent bob { beliefs: !start }", "expected a belief, found the goal `!start`"),
         (
             "agent bob { beliefs: p(X) :- q(X) }",
-            "'p(X) :- q(X)' is not a belief: the end is expected, not ':-'",
+            "invalid belief `p(X) :- q(X)`: the end is expected, not ':-'",
         ),
-        ("agent bob { instances: 0 }", "'instances' is a number or the names of agents"),
-        ("agent bob { ag-class: a.B c.D }", "an agent has one 'ag-class'"),
-        ("agent bob { ag-class: }", "the class for 'ag-class' is expected, not '}'"),
-        ("agent bob { roles: cook }", "'in' is expected, not '}'"),
-        ("agent bob { focus: ns:: }", "the name of an artifact is expected, not '}'"),
-        ("agent bob { join: w\n focus w.a\n }", "a ':' is missing behind 'focus'"),
-        ("agent bob : bob.asl x", "'x' does not belong to agent 'bob'"),
-        ("workspace w { artifact a : A(3f) }", "'3f' is not a value"),
-        ("workspace w { artifact a : A { focused: bob } }", "unknown key 'focused' of an artifact"),
-        ("workspace w { artifact console : A }", "every workspace has an artifact 'console' already"),
-        ("workspace w { artifact a : A artifact a : B }", "two artifacts have the name 'a'"),
-        ("workspace w { parent: v }", "the workspace 'v' is not declared in the project"),
-        ("workspace w { parent: /v }", "the workspace '/v' is not declared in the project"),
-        ("workspace w { parent: v } workspace v { parent: w }", "workspaces are each other's parents"),
-        ("workspace w workspace w", "two workspaces have the name 'w'"),
-        ("workspace a/w workspace b/w agent bob { join: w }", "2 workspaces are called 'w'"),
-        ("organisation o : o.xml { group g }", "':' is expected, not '}'"),
-        ("organisation o : o.xml { group g : t { players: bob } }", "the role of 'bob' is expected, not '}'"),
-        ("organisation o : o.xml { scheme s : }", "the type of the scheme is expected, not '}'"),
-        ("organisation o : o.xml { grup g : t }", "a ':' is missing behind 'grup'"),
-        ("institution i : i.sai { workspaces: v }", "the workspace 'v' is not declared in the project"),
-        ("uses packages: x", "'package' is expected, not 'packages'"),
-        ("node n @", "the address of the node is expected, not '}'"),
-        ("platform:", "a platform is expected behind 'platform:', not '}'"),
-        ("asl-path:", "a value is expected behind 'asl-path:', not '}'"),
-        ("agent bob { goals: start } }", "'}' after the end of the system"),
+        ("agent bob { instances: 0 }", "expected a number or names of agents as `instances`"),
+        ("agent bob { ag-class: a.B c.D }", "duplicate key `ag-class`: an agent has only one"),
+        ("agent bob { ag-class: }", "expected the class for `ag-class`, found `}`"),
+        ("agent bob { roles: cook }", "expected `in`, found `}`"),
+        ("agent bob { focus: ns:: }", "expected the name of an artifact, found `}`"),
+        ("agent bob { join: w\n focus w.a\n }", "missing `:` after `focus`"),
+        ("agent bob : bob.asl x", "unexpected `x` after agent `bob`"),
+        ("workspace w { artifact a : A(3f) }", "expected a value, found `3f`"),
+        ("workspace w { artifact a : A { focused: bob } }", "unknown key `focused` in an artifact"),
+        ("workspace w { artifact console : A }", "`console` is a standard artifact of every workspace"),
+        ("workspace w { artifact a : A artifact a : B }", "duplicate artifact `a`"),
+        ("workspace w { parent: v }", "unknown workspace `v`"),
+        ("workspace w { parent: /v }", "unknown workspace `/v`"),
+        ("workspace w { parent: v } workspace v { parent: w }", "workspace `w` is its own ancestor"),
+        ("workspace w workspace w", "duplicate workspace `w`"),
+        ("workspace a/w workspace b/w agent bob { join: w }", "ambiguous workspace `w`"),
+        ("organisation o : o.xml { group g }", "expected `:`, found `}`"),
+        ("organisation o : o.xml { group g : t { players: bob } }", "expected the role of `bob`, found `}`"),
+        ("organisation o : o.xml { scheme s : }", "expected the type of the scheme, found `}`"),
+        ("organisation o : o.xml { grup g : t }", "missing `:` after `grup`"),
+        ("institution i : i.sai { workspaces: v }", "unknown workspace `v`"),
+        ("uses packages: x", "expected `package`, found `packages`"),
+        ("node n @", "expected the address of the node, found `}`"),
+        ("platform:", "expected a platform after `platform:`, found `}`"),
+        ("asl-path:", "expected a value after `asl-path:`, found `}`"),
+        ("agent bob { goals: start } }", "unexpected `}` after the end of the system"),
     ],
 )
-def test_mistakes_are_told(folder: Path, text: str, told: str) -> None:
+def test_each_mistake_has_a_message(folder: Path, text: str, told: str) -> None:
     assert told in [message for _, message in errors(folder, f"mas m {{\n {text}\n}}")]
 
 
-def test_after_a_mistake_the_rest_of_the_block_is_read(folder: Path) -> None:
+def test_after_an_error_the_rest_of_the_block_is_read(folder: Path) -> None:
     found = errors(
         folder,
         """\
@@ -254,7 +254,7 @@ def test_after_a_mistake_the_rest_of_the_block_is_read(folder: Path) -> None:
 # what has no effect
 
 
-def test_a_run_tells_each_kind_once_and_the_checker_everything(folder: Path) -> None:
+def test_a_run_warns_once_for_each_kind_and_the_checker_reports_everything(folder: Path) -> None:
     path = write(
         folder,
         "p.jcm",
@@ -294,18 +294,18 @@ def test_a_run_tells_each_kind_once_and_the_checker_everything(folder: Path) -> 
     assert {each.code for each in reading.diagnostics} == {"no-effect"}
     assert [each.message for each in reading.diagnostics if each.severity == "note"] == [
         f"the {what} has no effect: organisations are not supported"
-        for what in ("group 'all'", "group 'inner'", "scheme 's1'", "scheme 's2'")
+        for what in ("group `all`", "group `inner`", "scheme `s1`", "scheme `s2`")
     ]
     told = [each.message for each in load_deployment(path).ignored]
     assert len(told) == 8, told
     assert told[0] == "5 roles have no effect: roles in organisations are not supported (lines 2, 6, 13, 14)"
-    nodes = "5 nodes and hosts have no effect: a run is one process (lines 2, 4, 7, 26, 27)"
+    nodes = "5 nodes and hosts have no effect: all agents run in one process (lines 2, 4, 7, 26, 27)"
     assert nodes in told
-    assert "the platform jade has no effect: a run is one process, and agents reach each other in it" in told
+    assert "the platform `jade` has no effect: all agents run in one process" in told
     assert load_deployment(path).agents[0].focus == ()
 
 
-def test_a_mas2j_file_tells_what_has_no_effect(folder: Path) -> None:
+def test_a_mas2j_file_reports_what_has_no_effect(folder: Path) -> None:
     path = write(
         folder,
         "p.mas2j",
@@ -341,27 +341,27 @@ def test_a_mas2j_file_tells_what_has_no_effect(folder: Path) -> None:
     assert " ".join((alice.belief_base_class or "").split()).startswith("x.Chain( x.One, x.Two(")
     assert deployment.agents[3].source_path == folder / "src" / "agt" / "bob.asl"
     assert [each.message for each in deployment.ignored] == [
-        "the infrastructure Jade has no effect: a run is one process, and agents reach each other in it",
-        "the environment x.Env has no effect: environments in Java are not used",
-        "'at h0' and 'at' of agent 'bob' have no effect: a run is one process (lines 6, 9)",
-        "'executionControl' and 'directives' have no effect: that is about Java code (lines 7, 20)",
+        "the infrastructure `Jade` has no effect: all agents run in one process",
+        "the environment `x.Env` has no effect: Java environments are not supported",
+        "`at h0` and `at` of agent `bob` have no effect: all agents run in one process (lines 6, 9)",
+        "`executionControl` and `directives` have no effect: JaCaROS runs no Java code (lines 7, 20)",
     ]
 
 
-def test_misspelt_words_of_a_mas2j_file_are_told(folder: Path) -> None:
+def test_misspelt_keys_of_a_mas2j_file_are_reported(folder: Path) -> None:
     text = "MAS m {\n agents:\n bob agentarchclass x.Y;\n alice agentclas x.Y;\n}"
     with pytest.raises(ProjectError) as refused:
         load(folder, text, "p.mas2j")
     assert [(each.message, each.help) for each in refused.value.diagnostics] == [
-        ("'agentarchclass' does not belong here", "did you mean 'agentArchClass'?"),
-        ("'agentclas' does not belong here", "did you mean 'agentClass'?"),
+        ("unexpected `agentarchclass`", "did you mean `agentArchClass`?"),
+        ("unexpected `agentclas`", "did you mean `agentClass`?"),
     ]
 
 
-def test_words_that_are_nearly_keys_are_told(folder: Path) -> None:
+def test_keys_similar_to_known_ones_are_reported(folder: Path) -> None:
     found = diagnostics(folder, "mas m {\n agent bob { goal: start verbose: 1 verbose: 2 }\n asl-pth: x\n}")
     assert [(each.severity, each.message, each.help) for each in found] == [
-        ("warning", "'goal' is kept as a parameter of your own", "did you mean 'goals'?"),
-        ("warning", "'verbose' is given twice; the last one counts", None),
-        ("error", "unknown section 'asl-pth' of a .jcm file", "did you mean 'asl-path'?"),
+        ("warning", "unknown key `goal`, kept as a parameter of the agent", "did you mean `goals`?"),
+        ("warning", "duplicate key `verbose`: only the last value has an effect", None),
+        ("error", "unknown section `asl-pth` in a .jcm file", "did you mean `asl-path`?"),
     ]

@@ -130,7 +130,7 @@ def test_a_world_can_be_named_in_both_formats(folder: Path):
     assert load(folder, "p.jcm", 'mas m { agent bob world: "lab.yaml" }').world == str(folder / "lab.yaml")
 
 
-def test_java_parts_are_read_over_with_a_warning(folder: Path):
+def test_java_parts_are_skipped_with_a_warning(folder: Path):
     deployment = load(
         folder,
         "p.mas2j",
@@ -145,8 +145,8 @@ def test_java_parts_are_read_over_with_a_warning(folder: Path):
         """,
     )
     assert [warning.message for warning in deployment.ignored] == [
-        "the environment mars.MarsEnv has no effect: environments in Java are not used",
-        "'executionControl', 'directives' and 'classpath' have no effect: that is about Java code (lines 4, 6, 7)",
+        "the environment `mars.MarsEnv` has no effect: Java environments are not supported",
+        "`executionControl`, `directives` and `classpath` have no effect: JaCaROS runs no Java code (lines 4, 6, 7)",
     ]
     assert deployment.environment == "mars.MarsEnv(gui, 3)"
     assert not deployment.artifact_environment
@@ -164,12 +164,12 @@ def test_errors_of_a_mas2j_file_are_reported_together(folder: Path):
         }
         """
     assert located(report(folder, "p.mas2j", text)) == [
-        ("3:13", "a ';' is missing behind the agent 'bob'"),
-        ("4:13", "the name of an agent begins with a lower-case letter"),
-        ("4:13", "program of agent 'Carl' not found: Carl.asl"),
-        ("5:13", "program of agent 'dora' not found: dora.asl"),
-        ("6:40", "'=' is expected, not '2'"),
-        ("7:5", "unknown section 'agentz' of a .mas2j file"),
+        ("3:13", "missing `;` after agent `bob`"),
+        ("4:13", "the name of an agent must begin with a lower-case letter"),
+        ("4:13", "program of agent `Carl` not found: Carl.asl"),
+        ("5:13", "program of agent `dora` not found: dora.asl"),
+        ("6:40", "expected `=`, found `2`"),
+        ("7:5", "unknown section `agentz` in a .mas2j file"),
     ]
 
 
@@ -183,35 +183,35 @@ def test_wrong_options_are_reported_at_their_line(folder: Path):
         }
         """
     assert located(report(folder, "p.mas2j", text)) == [
-        ("2:25", "events is one of discard, requeue, retrieve, not 'discord'"),
-        ("2:42", "intBels is one of sameFocus, newFocus, not 'here'"),
-        ("3:26", "verbose is one of 0, 1, 2, not '9'"),
-        ("3:33", "tro is one of true, false, not 'yes'"),
-        ("4:25", "nrcbp is a whole number from 1 on, not '0'"),
-        ("5:35", "'bump 10' does not say how urgent events are"),
+        ("2:25", "expected one of discard, requeue, retrieve as `events`, found `discord`"),
+        ("2:42", "expected one of sameFocus, newFocus as `intBels`, found `here`"),
+        ("3:26", "expected one of 0, 1, 2 as `verbose`, found `9`"),
+        ("3:33", "expected one of true, false as `tro`, found `yes`"),
+        ("4:25", "expected a positive integer as `nrcbp`, found `0`"),
+        ("5:35", "expected urgencies of events, found `bump 10`"),
     ]
 
 
-def test_options_without_effect_are_passed_over_with_a_warning(folder: Path):
+def test_options_without_effect_cause_a_warning(folder: Path):
     deployment = load(
         folder,
         "p.mas2j",
         'MAS m { agents: bob [mindinspector="web(ms,100)", cycles_act=2, synchronised=true, own=x]; }',
     )
     assert [warning.message for warning in deployment.ignored] == [
-        "the option 'mindinspector' has no effect: use --view or --record",
-        "the option 'cycles_act' has no effect: every cycle has each stage once",
-        "the option 'synchronised' has no effect: agents take turns anyway",
+        "the option `mindinspector` has no effect: use --view or --record instead",
+        "the option `cycles_act` has no effect: every cycle has each stage once",
+        "the option `synchronised` has no effect: agents always take turns",
     ]
 
 
-def test_an_error_shows_the_line_and_a_hint(folder: Path):
+def test_an_error_shows_the_line_and_a_fix(folder: Path):
     assert report(folder, "p.mas2j", "MAS m {\n    agents: bob\n            alice;\n}\n") == dedent(
         """\
-        p.mas2j:3:13: error: a ';' is missing behind the agent 'bob'
+        p.mas2j:3:13: error: missing `;` after agent `bob`
           3 |             alice;
             |             ^^^^^
-          = help: each agent of the list ends with ';'"""
+          = help: end each agent with `;`"""
     )
 
 
@@ -361,7 +361,7 @@ def test_used_projects_come_first(folder: Path):
     assert "uses itself" in report(folder, "loop.jcm", 'mas m uses "loop.jcm" { agent bob }')
 
 
-def test_what_is_not_supported_is_read_over_with_a_warning(folder: Path):
+def test_unsupported_declarations_are_skipped_with_a_warning(folder: Path):
     deployment = load(
         folder,
         "p.jcm",
@@ -380,20 +380,20 @@ def test_what_is_not_supported_is_read_over_with_a_warning(folder: Path):
         }
         """,
     )
-    roles = "the role 'worker' in 'o.g1' and the role 'worker' of 'bob' in 'g1'"
+    roles = "the role `worker` in `o.g1` and the role `worker` of `bob` in `g1`"
     assert [warning.message for warning in deployment.ignored] == [
         f"{roles} have no effect: roles in organisations are not supported (lines 3, 7)",
-        "'host' of workspace 'w' and the node 'n1' have no effect: a run is one process (lines 4, 12)",
-        "'debug' of workspace 'w' has no effect: JaCaROS has no windows",
-        "the institution 'i' has no effect: institutions are not supported",
-        "the organisation 'o' has no effect: organisations are not supported",
-        "the package 'lib' has no effect: Java packages are not used",
+        "`host` of workspace `w` and the node `n1` have no effect: all agents run in one process (lines 4, 12)",
+        "`debug` of workspace `w` has no effect: JaCaROS opens no windows",
+        "the institution `i` has no effect: institutions are not supported",
+        "the organisation `o` has no effect: organisations are not supported",
+        "the package `lib` has no effect: Java packages are not supported",
     ]
     assert all(warning.severity == "warning" for warning in deployment.ignored)
     assert deployment.infrastructure == ("local(pool,4)",)
 
 
-def test_slips_in_names_are_told_with_what_may_be_meant(folder: Path):
+def test_misspelt_names_are_reported_with_a_suggestion(folder: Path):
     text = """\
         mas m {
           agent bob { instances: 2  join: lap  focus: clok, lab.bell }
@@ -402,16 +402,16 @@ def test_slips_in_names_are_told_with_what_may_be_meant(folder: Path):
         """
     found = report(folder, "p.jcm", text)
     assert located(found) == [
-        ("2:35", "the workspace 'lap' is not declared in the project"),
-        ("2:47", "the artifact 'clok' is not declared in the project"),
-        ("3:56", "unknown agent 'bop'"),
+        ("2:35", "unknown workspace `lap`"),
+        ("2:47", "unknown artifact `clok`"),
+        ("3:56", "unknown agent `bop`"),
     ]
     hints = [line for line in found.splitlines() if line.startswith("  = help")]
     assert hints == [
-        "  = help: did you mean 'lab'?",
-        "  = help: did you mean 'clock'?",
-        "  = help: it is focused when an agent has made it",
-        "  = help: did you mean 'bob'?",
+        "  = help: did you mean `lab`?",
+        "  = help: did you mean `clock`?",
+        "  = help: the agent focuses it as soon as it is created",
+        "  = help: did you mean `bob`?",
     ]
 
 
@@ -432,14 +432,14 @@ def test_errors_of_a_jcm_file_are_reported_together(folder: Path):
         }
         """
     assert located(report(folder, "p.jcm", text)) == [
-        ("2:9", "program of agent 'dora' not found: dora.asl"),
-        ("3:24", "'p(' is not a belief: the file ends where a term is expected"),
-        ("4:17", "a ':' is missing behind 'goals'"),
-        ("7:5", "',' is expected, not 'artifact'"),
-        ("8:3", "':' is expected, not '}'"),
-        ("9:13", "the name of a workspace begins with a lower-case letter"),
-        ("10:3", "unknown section 'agnt' of a .jcm file"),
-        ("12:9", "two agents have the name 'carl'"),
+        ("2:9", "program of agent `dora` not found: dora.asl"),
+        ("3:24", "invalid belief `p(`: the file ends where a term is expected"),
+        ("4:17", "missing `:` after `goals`"),
+        ("7:5", "expected `,`, found `artifact`"),
+        ("8:3", "expected `:`, found `}`"),
+        ("9:13", "the name of a workspace must begin with a lower-case letter"),
+        ("10:3", "unknown section `agnt` in a .jcm file"),
+        ("12:9", "duplicate agent `carl`"),
     ]
 
 
@@ -447,7 +447,7 @@ def test_wrong_beliefs_are_reported_at_their_line(folder: Path):
     found = report(folder, "p.jcm", "mas m {\n agent bob {\n beliefs: p(1), q(2]\n }\n}")
     assert "p.jcm:3:" in found
     found = report(folder, "p.mas2j", 'MAS m {\n agents:\n bob [goals="go(else)"];\n}')
-    assert found.startswith("p.mas2j:3:13: error: 'go(else)' is not a goal: 'else' is a reserved word")
+    assert found.startswith("p.mas2j:3:13: error: invalid goal `go(else)`: 'else' is a reserved word")
 
 
 @pytest.mark.parametrize("name", ["p.jcm", "p.mas2j"])

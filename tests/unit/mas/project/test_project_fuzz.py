@@ -1,4 +1,4 @@
-"""No text makes the readers of project files crash or hang, and whatever they blame has a place in the text."""
+"""No text makes the readers of project files crash or hang, and every diagnostic has a valid location."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Files of code that tests write anew."""
+"""Files of code that tests rewrite."""
 
 import sys
 

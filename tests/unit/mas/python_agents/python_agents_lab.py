@@ -1,4 +1,4 @@
-"""Projects with agents in Python: what they use, and how they are run."""
+"""Projects with Python agents, and how to run them."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Messages for agents written in Python: readers, answers, refusals."""
+"""Messages for Python agents: readers, answers, refusals."""
 
 import asyncio
 
@@ -8,8 +8,8 @@ import jacaros
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.clock import clock_of
 from jacaros.mas.idleness import Activity
-from jacaros.mas.python_agents.attendance import Attendance
-from jacaros.mas.python_agents.correspondence import Correspondence
+from jacaros.mas.python_agents.messaging import Messaging
+from jacaros.mas.python_agents.task_activity import TaskActivity
 from jacaros.terms.values import atom
 
 
@@ -23,13 +23,13 @@ class Desk:
     def __init__(self) -> None:
         self.sent: list[SpeechAct] = []
         activity = Activity()
-        self.mail = Correspondence(
+        self.mail = Messaging(
             "ann",
             self._send,
             lambda: ("ann", "bob"),
             clock_of(asyncio.get_running_loop()),
             activity,
-            Attendance(activity, lambda: None),
+            TaskActivity(activity, lambda: None),
         )
 
     def _send(self, said: SpeechAct) -> bool:
@@ -56,7 +56,7 @@ def test_readers_are_served_in_turn_and_a_cancelled_one_keeps_nothing() -> None:
     jacaros.run(main(), clock="fast")
 
 
-def test_an_answer_goes_to_who_asked_and_a_late_one_to_nobody() -> None:
+def test_an_answer_goes_to_the_waiting_task_and_a_late_one_is_discarded() -> None:
     async def main() -> None:
         desk = Desk()
         asking = asyncio.ensure_future(desk.mail.ask("bob", "askOne", atom("q"), None))
@@ -73,7 +73,7 @@ def test_an_answer_goes_to_who_asked_and_a_late_one_to_nobody() -> None:
     jacaros.run(main(), clock="fast")
 
 
-def test_questions_that_nobody_reads_any_more_have_no_answer() -> None:
+def test_unread_questions_get_a_negative_answer_at_the_end() -> None:
     async def main() -> None:
         desk = Desk()
         desk.mail.inbox.put(message(1, performative="askAll"))

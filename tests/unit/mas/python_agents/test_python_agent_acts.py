@@ -1,4 +1,4 @@
-"""Agents written in Python act and perceive, in projects with others."""
+"""Python agents act and perceive, in projects with others."""
 
 from pathlib import Path
 
@@ -84,6 +84,6 @@ def test_without_an_environment_it_cannot_act(tmp_path: Path) -> None:
         a_py='class A(PythonAgent):\n    async def run(self):\n        await self.act("inc")\n',
     )
     assert result.errors[0].startswith(
-        "[a] error: the agent has ended: WorkspaceError: the project has no environment"
+        "[a] error: the agent was ended by WorkspaceError: the project has no environment"
     )
     assert result.errors[0].endswith(f"({tmp_path}/a.py:4, in run)")

@@ -1,4 +1,4 @@
-"""Agents written in Python in project files: which class it is, and what it is given."""
+"""Python agents in project files: their classes, options and beliefs."""
 
 from pathlib import Path
 
@@ -47,14 +47,14 @@ def test_the_class_of_several_is_that_with_the_agents_name_or_the_one_that_is_na
 @pytest.mark.parametrize(
     ("code", "agent", "told"),
     [
-        ("x = 1", "a a.py", "a.py has no class derived from jacaros.PythonAgent"),
-        (TWO, "a a.py", "has several classes of agents, and none has the name of agent 'a'"),
+        ("x = 1", "a a.py", "no subclass of jacaros.PythonAgent in "),
+        (TWO, "a a.py", "ambiguous class of agent `a`: "),
         (
             TWO,
             "a a.py",
-            "name one of PaintBrush, Other: [class=...] in a .mas2j file, class: ... in a .jcm file",
+            "name one of PaintBrush, Other: `[class=...]` in a .mas2j file, `class: ...` in a .jcm file",
         ),
-        (TWO, "a a.py [class=Othr]", "did you mean Other?"),
+        (TWO, "a a.py [class=Othr]", "did you mean `Other`?"),
         (TWO, "a a.py [class=Xyz]", "it has PaintBrush, Other"),
         (
             "class A(PythonAgent):\n    def run(self): ...",
@@ -64,11 +64,11 @@ def test_the_class_of_several_is_that_with_the_agents_name_or_the_one_that_is_na
         ("class A(PythonAgent):\n    def __init__(self): 1/0", "a a.py", "a.py:3, in __init__)"),
         ("class A(PythonAgent:", "a a.py", "a.py:2: "),
         ("import nowhere", "a a.py", "a.py:2: ModuleNotFoundError: No module named 'nowhere'"),
-        (TWO, "a b.py", "program of agent 'a' not found: b.py"),
-        (TWO, "df a.py [class=Other]", "the directory facilitator 'df' cannot be"),
+        (TWO, "a b.py", "program of agent `a` not found: b.py"),
+        (TWO, "df a.py [class=Other]", "the directory facilitator `df` cannot be"),
     ],
 )
-def test_what_is_wrong_with_the_file_is_told_before_anything_runs(
+def test_errors_in_the_file_are_reported_before_anything_runs(
     tmp_path: Path, code: str, agent: str, told: str
 ) -> None:
     result = run(tmp_path, m_mas2j=f"MAS m {{\n  agents: {agent};\n}}", a_py=code)
@@ -78,7 +78,7 @@ def test_what_is_wrong_with_the_file_is_told_before_anything_runs(
     assert result.lines == []
 
 
-def test_what_has_no_effect_is_told(tmp_path: Path) -> None:
+def test_declarations_without_effect_are_reported(tmp_path: Path) -> None:
     result = run(
         tmp_path,
         m_jcm="mas m { agent a: a.py { instances: 2 goals: g  events: discard  ag-arch: X ag-bb-class: Y } }",
@@ -86,12 +86,12 @@ def test_what_has_no_effect_is_told(tmp_path: Path) -> None:
     )
     told = [line.partition(": ")[2].partition("\n")[0] for line in result.errors]
     assert told == [
-        f"warning: {what} of agent 'a' has no effect: the agent is written in Python"
-        for what in ("the option 'events'", "'goals'", "the architecture class", "the belief base class")
+        f"warning: {what} of agent `a` has no effect: it is a Python agent"
+        for what in ("the option `events`", "`goals`", "the architecture class", "the belief base class")
     ]
 
 
-def test_its_file_may_stand_in_a_folder_and_import_others(tmp_path: Path) -> None:
+def test_its_file_may_be_in_a_folder_and_import_others(tmp_path: Path) -> None:
     (tmp_path / "src" / "agt").mkdir(parents=True)
     (tmp_path / "src" / "agt" / "shapes.py").write_text("SIDES = 4\n", encoding="utf-8")
     (tmp_path / "src" / "agt" / "a.py").write_text(
@@ -103,7 +103,7 @@ def test_its_file_may_stand_in_a_folder_and_import_others(tmp_path: Path) -> Non
     assert run(tmp_path, m_mas2j='MAS m { agents: b "src/agt/a.py"; }').lines == ["[b] 4"]
 
 
-def test_what_it_is_to_focus_may_come_later(tmp_path: Path) -> None:
+def test_an_artifact_to_focus_may_be_created_later(tmp_path: Path) -> None:
     result = run(
         tmp_path,
         m_jcm="""mas m {

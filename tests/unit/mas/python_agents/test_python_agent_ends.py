@@ -1,4 +1,4 @@
-"""How agents written in Python end: with the run, when they are killed, by an exception of their own."""
+"""How Python agents end: with the run, when they are killed, by an exception of their own."""
 
 from pathlib import Path
 
@@ -50,7 +50,7 @@ def compute(self, x):
     )
     assert result.lines == ["[a] finally", "[bob] [bob]"]
     assert result.errors == [
-        f"[a] error: the agent has ended: ZeroDivisionError: division by zero ({tmp_path}/a.py:11, in compute)",
+        f"[a] error: the agent was ended by ZeroDivisionError: division by zero ({tmp_path}/a.py:11, in compute)",
         f"[a]   called from {tmp_path}/a.py:6, in run",
     ]
     assert result.exit_code == 0
@@ -63,21 +63,21 @@ def compute(self, x):
         ("raise ValueError", "ValueError"),
         (
             "self.value('count')",
-            "UnknownProperty: no observable property count is known: no artifact is focused",
+            "UnknownProperty: unknown observable property `count`: no artifact is focused",
         ),
-        ("self.send('x', 'tell', 'p')", "UnknownAgent: unknown agent x; agents: a"),
+        ("self.send('x', 'tell', 'p')", "UnknownAgent: unknown agent `x`; agents: a"),
         ("await self.act('x')", "OperationFailed: no artifact of workspace /main has an operation x/0"),
         (
             "A.on_message = print; self.messages()",
             "JacarosError: A has on_message, which is called with every message",
         ),
-        ("self.focus('x')", "UnknownArtifact: workspace /main has no artifact x"),
-        ("self.join('x')", "UnknownWorkspace: there is no workspace /main/x; did you mean /main?"),
+        ("self.focus('x')", "UnknownArtifact: unknown artifact `x` in workspace /main"),
+        ("self.join('x')", "UnknownWorkspace: unknown workspace `/main/x`; did you mean `/main`?"),
     ],
 )
-def test_what_is_raised_is_told_with_its_place(tmp_path: Path, code: str, told: str) -> None:
+def test_an_exception_is_logged_with_its_location(tmp_path: Path, code: str, told: str) -> None:
     result = alone(tmp_path, f"async def run(self):\n    {code}")
-    assert result.errors[0].startswith(f"[a] error: the agent has ended: {told}")
+    assert result.errors[0].startswith(f"[a] error: the agent was ended by {told}")
     assert result.errors[0].endswith(f" ({tmp_path}/a.py:4, in run)")
     assert len(result.errors) == 1
     assert result.exit_code == 0
@@ -98,14 +98,14 @@ async def other(self):
         "",
     )
     assert result.errors == [
-        f"[a] error: the agent has ended: KeyError: 'other' ({tmp_path}/a.py:9, in other)"
+        f"[a] error: the agent was ended by KeyError: 'other' ({tmp_path}/a.py:9, in other)"
     ]
     result = talk(tmp_path, "def on_message(self, message):\n    message.x", "!g. +!g <- .send(a, tell, p).")
     assert "AttributeError" in result.errors[0]
     assert f"({tmp_path}/a.py:4, in on_message)" in result.errors[0]
 
 
-def test_tasks_of_a_group_that_fail_are_told(tmp_path: Path) -> None:
+def test_failing_tasks_of_a_group_are_logged(tmp_path: Path) -> None:
     result = alone(
         tmp_path,
         """
@@ -146,7 +146,7 @@ def test_it_may_be_ended_before_its_first_step(tmp_path: Path) -> None:
     jacaros.run(main(), clock="fast")
 
 
-def test_who_does_not_accept_its_end_is_told_of_and_ended(tmp_path: Path) -> None:
+def test_an_agent_that_ignores_its_cancellation_is_reported_and_ended(tmp_path: Path) -> None:
     body = """
 async def run(self):
     import asyncio
@@ -161,10 +161,10 @@ async def run(self):
     assert result.errors[0] == "[a] warning: the agent did not end within 5 s of its cancellation"
 
 
-def test_what_it_may_not_do_in_its_constructor_is_told(tmp_path: Path) -> None:
+def test_forbidden_calls_in_its_constructor_are_reported(tmp_path: Path) -> None:
     result = alone(tmp_path, "def __init__(self):\n    self.print(1)")
     assert (
-        "A cannot be made: JacarosError: A has not started yet: do this in run, not in __init__"
+        "cannot create A: JacarosError: A has not started yet: do this in run, not in __init__"
         in result.errors[0]
     )
     assert f"({tmp_path}/a.py:4, in __init__)" in result.errors[0]
@@ -172,7 +172,7 @@ def test_what_it_may_not_do_in_its_constructor_is_told(tmp_path: Path) -> None:
     assert "AttributeError: A has no attribute 'prin'" in result.errors[0]
 
 
-def test_who_is_killed_has_five_seconds(tmp_path: Path) -> None:
+def test_a_killed_agent_has_five_seconds(tmp_path: Path) -> None:
     result = talk(
         tmp_path,
         """
@@ -193,7 +193,7 @@ async def run(self):
     assert result.errors == ["[a] warning: the agent did not end within 5 s of its cancellation"]
 
 
-def test_an_error_when_it_is_asked_whether_it_may_be_killed_is_told(tmp_path: Path) -> None:
+def test_an_error_in_accept_kill_is_logged(tmp_path: Path) -> None:
     result = talk(
         tmp_path,
         """

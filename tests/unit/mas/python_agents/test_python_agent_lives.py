@@ -1,4 +1,4 @@
-"""Agents written in Python live beside others: whose turn it is, and who makes whom."""
+"""Python agents beside others: turns and creation."""
 
 from pathlib import Path
 
@@ -51,7 +51,7 @@ class A(PythonAgent):
     assert result.seconds == 5
 
 
-def test_who_waits_for_something_else_is_not_idle(tmp_path: Path) -> None:
+def test_an_agent_that_waits_for_something_else_is_not_idle(tmp_path: Path) -> None:
     body = """
 async def run(self):
     import asyncio
@@ -63,7 +63,7 @@ async def run(self):
     assert result.seconds == 5
 
 
-def test_it_gives_others_their_turn(tmp_path: Path) -> None:
+def test_it_lets_others_have_their_turn(tmp_path: Path) -> None:
     result = run(
         tmp_path,
         idle=False,
@@ -75,7 +75,7 @@ def test_it_gives_others_their_turn(tmp_path: Path) -> None:
     assert result.errors == []
 
 
-def test_it_makes_and_ends_agents_and_the_run(tmp_path: Path) -> None:
+def test_it_creates_and_ends_agents_and_the_run(tmp_path: Path) -> None:
     result = run(
         tmp_path,
         idle=False,
@@ -123,7 +123,7 @@ def test_it_is_added_to_a_system_in_a_python_program(tmp_path: Path) -> None:
             box.send("echo", "tell", "hello(1)")
             assert str((await box.get(timeout=1)).content) == 'heard("hello")'
             await mas.until_idle()
-            with pytest.raises(UsageError, match="agent echo is written in Python"):
+            with pytest.raises(UsageError, match="agent echo is a Python agent"):
                 echo.achieve("x")
             box.send("echo", "achieve", "hello(1)")
             await mas.until_idle()
@@ -132,4 +132,4 @@ def test_it_is_added_to_a_system_in_a_python_program(tmp_path: Path) -> None:
 
     jacaros.run(main(), clock="fast")
     assert len(lines) == 1
-    assert lines[0].startswith("[echo] error: the agent has ended: ValueError: achieve")
+    assert lines[0].startswith("[echo] error: the agent was ended by ValueError: achieve")

@@ -1,4 +1,4 @@
-"""Agents written in Python tell and ask, and are told and asked."""
+"""Python agents send and receive beliefs and questions."""
 
 from pathlib import Path
 
@@ -54,7 +54,7 @@ async def run(self):
     assert result.errors == []
 
 
-def test_it_is_told_and_asked(tmp_path: Path) -> None:
+def test_it_receives_beliefs_and_questions(tmp_path: Path) -> None:
     result = talk(
         tmp_path,
         """
@@ -82,7 +82,7 @@ async def run(self):
     assert result.errors == []
 
 
-def test_handlers_are_called_one_after_the_other(tmp_path: Path) -> None:
+def test_handlers_are_called_in_turn(tmp_path: Path) -> None:
     result = run(
         tmp_path,
         m_jcm=BOTH.format("counter", "Counter"),
@@ -117,7 +117,7 @@ class A(PythonAgent):
     assert result.errors == []
 
 
-def test_who_is_over_gives_no_answers(tmp_path: Path) -> None:
+def test_an_agent_that_has_ended_gives_no_answers(tmp_path: Path) -> None:
     result = talk(
         tmp_path,
         'async def run(self):\n    await self.sleep(1)\n    self.print("over")',
@@ -127,10 +127,10 @@ def test_who_is_over_gives_no_answers(tmp_path: Path) -> None:
     assert result.lines == ["[a] over", "[bob] false", "[bob] false", "[bob] [a,bob]"]
 
 
-def test_a_message_to_nobody_is_an_error_in_python(tmp_path: Path) -> None:
+def test_a_message_to_an_unknown_agent_is_an_error_in_python(tmp_path: Path) -> None:
     body = """
 async def run(self):
-    for receiver in ("nobody", "a"):
+    for receiver in ("other", "a"):
         try:
             self.send(receiver, "tell", "p")
         except UnknownAgent as error:
@@ -146,7 +146,7 @@ async def run(self):
         self.print(type(error).__name__)
 """
     assert alone(tmp_path, body).of("a") == [
-        "unknown agent nobody; agents: a",
+        "unknown agent `other`; agents: a",
         "self",
         "no message within 1.5 s",
         "AslError",
@@ -171,7 +171,7 @@ async def run(self):
     assert result.of("a") == ['tell from df: provider(bob,"sell")', '["bob"]["a"]', "[]"]
 
 
-def test_all_kinds_of_contents_are_heard(tmp_path: Path) -> None:
+def test_all_kinds_of_contents_are_received(tmp_path: Path) -> None:
     result = talk(
         tmp_path,
         """

@@ -1,4 +1,4 @@
-"""A recorded run given to a changed program: the same decisions, or each difference with its reason."""
+"""Replay of a recorded run against a changed program: the same decisions, or each difference with its reason."""
 
 import json
 from pathlib import Path
@@ -91,7 +91,7 @@ def test_a_changed_condition_is_reported_with_its_reason(tmp_path: Path) -> None
     assert "then: `+battery(B) : B < 20`" in found.text()
 
 
-def test_a_plan_that_is_gone_is_reported(tmp_path: Path) -> None:
+def test_a_removed_plan_is_reported(tmp_path: Path) -> None:
     found = against(
         PROGRAM.replace("+hint(X)[source(bob)] <- +told(X).", "+hint(X) : false <- +told(X)."), tmp_path
     )

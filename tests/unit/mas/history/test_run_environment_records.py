@@ -1,4 +1,4 @@
-"""Records of what surrounds the agents: artifacts, operations, commands, robots, the ROS graph, and the log."""
+"""Records of the environment of a run: artifacts, operations, commands, robots, the ROS graph, and the log."""
 
 import re
 from pathlib import Path
@@ -73,7 +73,7 @@ def of(found: Happened, event: str, **fields: Any) -> list[dict[str, Any]]:
     ]
 
 
-def test_an_artifact_is_recorded_from_its_making_to_its_end(tmp_path: Path) -> None:
+def test_an_artifact_is_recorded_from_creation_to_disposal(tmp_path: Path) -> None:
     program = """
         !start.
         +!start <- makeArtifact(lamp, "Lamp", [], L); focus(L); switch(3); stopFocus(L); disposeArtifact(L).
@@ -101,7 +101,7 @@ def test_an_artifact_is_recorded_from_its_making_to_its_end(tmp_path: Path) -> N
     assert of(found, "artifact", artifact="/main/lamp", state="disposed")
 
 
-def test_a_property_that_changes_all_the_time_is_recorded_now_and_then_and_in_the_end(tmp_path: Path) -> None:
+def test_a_property_that_changes_continuously_is_recorded_periodically_and_at_the_end(tmp_path: Path) -> None:
     program = '!start. +!start <- makeArtifact(lamp, "Lamp", [], L); fade.'
     found = happened(tmp_path, program, 3, {"artifacts.py": LAMPS})
     power = of(found, "property", name="power")
@@ -125,7 +125,7 @@ def test_an_operation_fails_with_its_reason_or_because_it_is_cancelled(tmp_path:
     ]
 
 
-def test_what_is_recorded_of_a_value_is_limited(tmp_path: Path) -> None:
+def test_recorded_values_are_limited(tmp_path: Path) -> None:
     program = f'!s. +!s <- makeArtifact(lamp, "Lamp", [], L); say("{"x" * 5000}").'
     found = happened(tmp_path, program, 1, {"artifacts.py": LAMPS})
     [said] = of(found, "property", name="said")
@@ -162,7 +162,7 @@ def test_messages_without_effect_are_not_recorded(tmp_path: Path) -> None:
     assert not [each for each in of(found, "cause") if each["kind"] == "sample"]
 
 
-def test_a_scan_is_recorded_only_while_one_of_ours_listens(tmp_path: Path) -> None:
+def test_a_scan_is_recorded_only_while_an_artifact_listens(tmp_path: Path) -> None:
     listens = '!s. +!s <- makeArtifact(laser, "ArtBaseScan", [], L); focus(L).'
     scans = of(happened(tmp_path, listens, 4, world="patrol"), "laser")
     assert 10 < len(scans) <= 40
@@ -173,7 +173,7 @@ def test_a_scan_is_recorded_only_while_one_of_ours_listens(tmp_path: Path) -> No
     assert of(happened(tmp_path, DRIVE, 4), "laser") == []
 
 
-def test_the_path_of_embedded_navigation_is_recorded_until_the_robot_is_there() -> None:
+def test_the_path_of_embedded_navigation_is_recorded_until_the_robot_arrives() -> None:
     told: list[tuple[str, Any]] = []
 
     class Robots:
@@ -239,7 +239,7 @@ def test_lines_of_the_log_are_recorded(tmp_path: Path) -> None:
     assert {each["level"] for each in logged} <= {"info", "warning", "error"}
 
 
-def test_nothing_is_linked_while_nobody_watches(tmp_path: Path) -> None:
+def test_nothing_is_linked_without_a_listener(tmp_path: Path) -> None:
     (tmp_path / "artifacts.py").write_text(LAMPS, encoding="utf-8")
 
     async def main() -> None:

@@ -1,4 +1,4 @@
-"""When an agent written in Python counts as busy."""
+"""When a Python agent counts as busy."""
 
 import asyncio
 from collections.abc import Coroutine
@@ -6,25 +6,25 @@ from typing import Any
 
 import jacaros
 from jacaros.mas.idleness import Activity
-from jacaros.mas.python_agents.attendance import Attendance
+from jacaros.mas.python_agents.task_activity import TaskActivity
 
 
 class Stage:
     def __init__(self) -> None:
         self.activity = Activity()
         self.settled = 0
-        self.attendance = Attendance(self.activity, self._settle)
+        self.task_activity = TaskActivity(self.activity, self._settle)
 
     def _settle(self) -> None:
         self.settled += 1
 
     def start(self, work: Coroutine[Any, Any, Any]) -> "asyncio.Task[Any]":
         task = asyncio.ensure_future(work)
-        self.attendance.add(task)
+        self.task_activity.add(task)
         return task
 
     async def wait_for_others(self, event: asyncio.Event) -> None:
-        with self.attendance.waiting():
+        with self.task_activity.waiting():
             await event.wait()
 
     @property
@@ -55,9 +55,9 @@ def test_a_task_is_busy_unless_it_waits_for_others() -> None:
     jacaros.run(main(), clock="fast")
 
 
-def test_what_is_under_way_counts_beside_the_tasks() -> None:
+def test_running_operations_count_beside_the_tasks() -> None:
     stage = Stage()
-    with stage.attendance.under_way():
+    with stage.task_activity.under_way():
         assert stage.busy
     assert (stage.busy, stage.settled) == (False, 1)
 

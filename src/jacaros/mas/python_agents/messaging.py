@@ -1,4 +1,4 @@
-"""What an agent written in Python says to others and hears from them."""
+"""The messages of a Python agent."""
 
 import asyncio
 from collections import deque
@@ -10,23 +10,23 @@ from jacaros.clock import Clock
 from jacaros.extension.views import ReceivedMessage
 from jacaros.mas.embedding.errors import UnknownAgent
 from jacaros.mas.idleness import Activity, AgentTimer
-from jacaros.mas.python_agents.attendance import Attendance
+from jacaros.mas.python_agents.task_activity import TaskActivity
 from jacaros.terms.values import Term
 
 
-class Correspondence:
-    """The messages of one agent.
+class Messaging:
+    """Sends and receives the messages of one agent.
 
     Args:
-        name: of the agent.
-        send: delivers a message; False when there is no such receiver.
-        names: of all agents.
-        clock: time-outs are counted on it.
-        activity: that of the run.
-        attendance: told what is waited for.
+        name: name of the agent.
+        send: delivers a message. Returns False if the receiver is unknown.
+        names: returns the names of all agents.
+        clock: clock for time limits.
+        activity: activity of the run.
+        task_activity: counts waits.
 
     Attributes:
-        inbox: where messages for the agent go.
+        inbox: receives messages for the agent.
     """
 
     def __init__(
@@ -36,18 +36,18 @@ class Correspondence:
         names: Callable[[], Sequence[str]],
         clock: Clock,
         activity: Activity,
-        attendance: Attendance,
+        task_activity: TaskActivity,
     ) -> None:
         self.inbox = Inbox()
         self._name, self._send, self._names = name, send, names
-        self._clock, self._activity, self._attendance = clock, activity, attendance
+        self._clock, self._activity, self._task_activity = clock, activity, task_activity
         self._count = 0
 
     def say(self, receiver: str, performative: str, content: Term) -> None:
         """Send a message.
 
         Raises:
-            UnknownAgent: there is no such agent.
+            UnknownAgent: the receiver does not exist.
         """
         self._say(receiver, performative, content, self._next_id(), None)
 
@@ -65,8 +65,8 @@ class Correspondence:
         """Send a question and wait for the answer.
 
         Raises:
-            UnknownAgent: there is no such agent.
-            TimeoutError: no answer came within *timeout* seconds.
+            UnknownAgent: the receiver does not exist.
+            TimeoutError: no answer arrived within *timeout* seconds.
         """
         id = self._next_id()
         answer = self.inbox.ask(id)
@@ -83,7 +83,7 @@ class Correspondence:
         """Wait for the next message.
 
         Raises:
-            TimeoutError: none came within *timeout* seconds.
+            TimeoutError: none arrived within *timeout* seconds.
         """
         while (message := self.inbox.take()) is None:
             try:
@@ -99,7 +99,7 @@ class Correspondence:
             late = TimeoutError(f"{what} within {timeout:g} s")
             timer = AgentTimer(self._clock, self._activity, timeout, lambda: _fail(future, late))
         try:
-            with self._attendance.waiting():
+            with self._task_activity.waiting():
                 await future
         finally:
             if timer is not None:
@@ -109,7 +109,7 @@ class Correspondence:
         self._say(question.sender, performative, content, self._next_id(), question.id)
 
     def close(self) -> None:
-        """Read no more messages: a question gets the answer that there is none."""
+        """Stop reading messages. Questions get a negative answer."""
         self.inbox.close(self._refuse)
 
     def _refuse(self, message: SpeechAct) -> None:
@@ -142,7 +142,7 @@ class Inbox:
         self._refuse: Callable[[SpeechAct], None] | None = None
 
     def put(self, message: SpeechAct) -> None:
-        """Take a message in: the answer to a question goes to who asked."""
+        """Add a message. The answer to a question is passed to the waiting task."""
         question = message.in_reply_to
         if question is not None and question in self._asked:
             asked = self._asked.pop(question)
@@ -158,7 +158,7 @@ class Inbox:
             self._wake()
 
     def take(self) -> SpeechAct | None:
-        """The next message, None while there is none."""
+        """Return the next message, or None."""
         if not self._messages:
             return None
         message = self._messages.popleft()
@@ -170,10 +170,10 @@ class Inbox:
             self.when_read(message)
 
     def arrival(self) -> "asyncio.Future[None]":
-        """What ends when there may be a message; several readers are served in the order of their asking."""
+        """Return a future that ends when there may be a message. Several readers are served in order."""
         reader: asyncio.Future[None] = asyncio.get_running_loop().create_future()
         self._readers.append(reader)
-        reader.add_done_callback(self._passed_over)
+        reader.add_done_callback(self._cancelled)
         return reader
 
     def _wake(self) -> None:
@@ -183,28 +183,28 @@ class Inbox:
                 reader.set_result(None)
                 return
 
-    def _passed_over(self, reader: "asyncio.Future[None]") -> None:
+    def _cancelled(self, reader: "asyncio.Future[None]") -> None:
         if reader in self._readers:
             self._readers.remove(reader)
 
     def give_up(self) -> None:
-        """A reader was cancelled, perhaps when it had been woken already: the message is for the next one."""
+        """A reader was cancelled, perhaps after it had been woken: the message goes to the next one."""
         if self._messages:
             self._wake()
 
     def ask(self, question: str) -> "asyncio.Future[SpeechAct]":
-        """A place for the answer to a question, which `forget` gives up."""
+        """Return a future for the answer to a question. `forget` abandons it."""
         asked: asyncio.Future[SpeechAct] = asyncio.get_running_loop().create_future()
         self._asked[question] = asked
         return asked
 
     def forget(self, question: str) -> None:
-        """Nobody waits for that answer any more; it is thrown away when it comes."""
+        """Discard the answer to this question when it arrives."""
         if self._asked.pop(question, None) is not None:
             self._abandoned.add(question)
 
     def close(self, refuse: Callable[[SpeechAct], None]) -> None:
-        """Give to *refuse* what nobody reads any more: the messages that are there, and those to come."""
+        """Pass unread messages, and later ones, to *refuse*."""
         self._refuse = refuse
         while self._messages:
             refuse(self._messages.popleft())

@@ -1,4 +1,4 @@
-"""Projects with an environment: what they declare is made, joined and focused before agents begin."""
+"""Projects with an environment: declarations are created, joined and focused before agents begin."""
 
 from pathlib import Path
 
@@ -44,7 +44,7 @@ def write(folder: Path, **files: str) -> Path:
     return paths[0]
 
 
-def test_what_a_jcm_file_declares_is_there_when_agents_begin(folder: Path) -> None:
+def test_declarations_of_a_jcm_file_exist_when_agents_begin(folder: Path) -> None:
     file = write(
         folder,
         p_jcm="""
@@ -74,7 +74,7 @@ def test_what_a_jcm_file_declares_is_there_when_agents_begin(folder: Path) -> No
     ]
 
 
-def test_what_an_agent_focuses_is_noticed_before_its_goals(folder: Path) -> None:
+def test_focused_artifacts_are_perceived_before_goals(folder: Path) -> None:
     file = write(
         folder,
         p_jcm="""
@@ -98,7 +98,7 @@ def test_what_an_agent_focuses_is_noticed_before_its_goals(folder: Path) -> None
     assert run_project(file).of("ann")[0] == "53"
 
 
-def test_an_artifact_that_cannot_be_made_ends_the_run_at_its_place(folder: Path) -> None:
+def test_a_failed_creation_ends_the_run_with_its_location(folder: Path) -> None:
     file = write(
         folder,
         p_jcm="""
@@ -118,7 +118,7 @@ def test_an_artifact_that_cannot_be_made_ends_the_run_at_its_place(folder: Path)
     assert "negative" in result.errors[-1]
 
 
-def test_a_mistake_in_the_artifacts_is_told_before_anything_runs(folder: Path) -> None:
+def test_an_error_in_the_artifacts_is_reported_before_anything_runs(folder: Path) -> None:
     (folder / "artifacts.py").write_text("import nothing_of_this_name", encoding="utf-8")
     file = write(
         folder,
@@ -141,7 +141,7 @@ def test_an_agent_made_later_has_a_body_too(folder: Path) -> None:
     assert run_project(file).lines == ["[b] 1"]
 
 
-def test_a_killed_agent_gives_up_what_it_focuses(folder: Path) -> None:
+def test_a_killed_agent_stops_focusing(folder: Path) -> None:
     file = write(
         folder,
         p_mas2j="MAS p { environment: jaca.CartagoEnvironment agents: a; b; }",
@@ -151,12 +151,12 @@ def test_a_killed_agent_gives_up_what_it_focuses(folder: Path) -> None:
     assert run_project(file).lines == ["[b] 0"]
 
 
-def test_an_operation_under_way_keeps_the_run_alive(folder: Path) -> None:
+def test_a_running_operation_keeps_the_run_alive(folder: Path) -> None:
     file = write(folder, a_asl='!go. +!go <- in("never"); .print(late).')
     assert run_project(file, until_idle=True, seconds=5).seconds == pytest.approx(5)
 
 
-def test_what_is_printed_through_the_console_is_output(folder: Path) -> None:
+def test_lines_printed_by_the_console_artifact_are_output(folder: Path) -> None:
     file = write(folder, a_asl='!go. +!go <- println("X: ", 3, b).')
     assert run_project(file, until_idle=True).lines == ["[a] X: 3b"]
 
@@ -195,10 +195,10 @@ def test_an_artifact_that_an_agent_makes_later_is_focused_then(folder: Path) -> 
     )
     result = run_project(file)
     assert result.lines == ["[ann] 4"]
-    assert "is not declared in workspace 'lab'" in result.errors[0]
+    assert "is not declared in workspace `lab`" in result.errors[0]
 
 
-def test_a_killed_agent_does_not_focus_what_comes_later(folder: Path) -> None:
+def test_a_killed_agent_does_not_focus_later_artifacts(folder: Path) -> None:
     file = write(
         folder,
         p_jcm="""
@@ -216,7 +216,7 @@ def test_a_killed_agent_does_not_focus_what_comes_later(folder: Path) -> None:
     assert result.exit_code == 0
 
 
-def test_all_types_that_there_are_not_are_told_at_their_places_before_anything_is_made(folder: Path) -> None:
+def test_all_unknown_types_are_reported_before_anything_is_created(folder: Path) -> None:
     file = write(
         folder,
         p_jcm="""
@@ -236,13 +236,13 @@ def test_all_types_that_there_are_not_are_told_at_their_places_before_anything_i
     assert result.lines == []
     (text,) = result.errors
     assert "p.jcm:6:29: error" in text
-    assert "did you mean Counter?" in text
+    assert "did you mean `Counter`?" in text
     assert "p.jcm:7:29: error" in text
-    assert "  = help: write a class Zz(Artifact) in q.py or artifacts.py beside the project file" in text
+    assert "  = help: write `class Zz(Artifact)` in q.py or artifacts.py beside the project file" in text
     assert "made c" not in text
 
 
-def test_all_artifacts_that_cannot_be_made_are_told(folder: Path) -> None:
+def test_all_failed_creations_are_reported(folder: Path) -> None:
     file = write(
         folder,
         p_jcm="""
@@ -257,11 +257,11 @@ def test_all_artifacts_that_cannot_be_made_are_told(folder: Path) -> None:
         a_asl="!go. +!go <- .print(hi).",
     )
     text = run_project(file).errors[-1]
-    assert "p.jcm:5:26: error: artifact c (Counter) cannot be made: negative" in text
-    assert "p.jcm:6:26: error: artifact d (Counter) cannot be made: its init takes" in text
+    assert "p.jcm:5:26: error: cannot create artifact c (Counter): negative" in text
+    assert "p.jcm:6:26: error: cannot create artifact d (Counter): expected" in text
 
 
-def test_texts_become_numbers_where_the_type_wants_numbers(folder: Path) -> None:
+def test_strings_become_numbers_where_the_type_expects_numbers(folder: Path) -> None:
     (folder / "artifacts.py").write_text(
         """
 from jacaros.env import Artifact
@@ -291,7 +291,7 @@ class Taken(Artifact):
     assert run_project(file).of("ann") == ['[b,"x",-5,6,false,[a,"b",p(-1)]]', '[a,"1",2,3.5,true,"4"]']
 
 
-def test_what_the_project_makes_is_nobodys_own(folder: Path) -> None:
+def test_artifacts_of_the_project_have_no_creator(folder: Path) -> None:
     file = write(
         folder,
         p_jcm="""
@@ -329,7 +329,7 @@ def test_agents_with_plans_for_jacamos_own_goals_run(folder: Path) -> None:
     assert run_project(file).lines == ["[ann] 5"]
 
 
-def test_workspaces_of_one_name_are_told_apart_by_their_paths(folder: Path) -> None:
+def test_workspaces_with_the_same_name_are_distinguished_by_path(folder: Path) -> None:
     file = write(
         folder,
         p_jcm="""
@@ -351,7 +351,7 @@ def test_workspaces_of_one_name_are_told_apart_by_their_paths(folder: Path) -> N
     assert result.of("ann") == ["21", '["/main/hotel/kitchen","/main/house/kitchen","/main"]']
 
 
-def test_what_every_workspace_has_can_be_focused_from_the_start(folder: Path) -> None:
+def test_standard_artifacts_can_be_focused_from_the_start(folder: Path) -> None:
     (folder / "artifacts.py").unlink()
     file = write(
         folder,

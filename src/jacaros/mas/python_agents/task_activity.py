@@ -1,4 +1,4 @@
-"""What an agent written in Python waits for, so that a run knows when nobody has anything to do."""
+"""Whether a Python agent is busy, for the idleness of the run."""
 
 import asyncio
 from collections.abc import Callable, Iterator
@@ -8,16 +8,16 @@ from typing import Any
 from jacaros.mas.idleness import Activity
 
 
-class Attendance:
-    """Keeps account of the tasks of one agent: the agent counts as busy unless all of them wait for others.
+class TaskActivity:
+    """Counts the tasks of one agent. The agent is busy unless all of them wait for others.
 
-    A task waits for others while it is in `waiting`: for a message, a signal, a condition.  A task that waits for
-    anything else is busy, be it a thread or a socket; but if it has tasks that were not started as the agent's own
-    (those of ``asyncio.gather`` and of task groups), and all of them wait for others, so does it.
+    A task waits for others while it is in `waiting`: for a message, a signal, a condition. A task that waits for
+    anything else, such as a thread or a socket, is busy. But if it has started tasks that are not the agent's own (with
+    ``asyncio.gather`` or a task group), and all of them wait for others, so does it.
 
     Args:
-        activity: that of the run.
-        settled: called whenever there may be nothing to do any more.
+        activity: activity of the run.
+        settled: called whenever the agent may have become idle.
     """
 
     def __init__(self, activity: Activity, settled: Callable[[], None]) -> None:
@@ -29,7 +29,7 @@ class Attendance:
         self._counted = False
 
     def begin(self) -> None:
-        """An operation, or another thing that has an end of its own, is under way."""
+        """An operation, or something else with an end, has begun."""
         self._activity.begin()
 
     def end(self) -> None:
@@ -39,7 +39,7 @@ class Attendance:
 
     @contextmanager
     def under_way(self) -> Iterator[None]:
-        """Surrounds something that has an end of its own."""
+        """Context of something with an end."""
         self.begin()
         try:
             yield
@@ -47,14 +47,14 @@ class Attendance:
             self.end()
 
     def add(self, task: "asyncio.Task[Any]") -> None:
-        """Be told of a task of the agent."""
+        """Add a task of the agent."""
         self._own.add(task)
         task.add_done_callback(self._gone)
         self._count()
 
     @contextmanager
     def waiting(self) -> Iterator[None]:
-        """Surrounds a wait that somebody else has to end."""
+        """Context of a wait that something else must end."""
         task = asyncio.current_task()
         assert task is not None
         if task not in self._own and task not in self._others:

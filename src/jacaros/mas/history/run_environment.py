@@ -1,4 +1,4 @@
-"""Records of what surrounds the agents: the environment, robots and the ROS graph."""
+"""Records of the environment of a run: artifacts, robots and the ROS graph."""
 
 import asyncio
 from collections.abc import Callable, Mapping
@@ -16,31 +16,31 @@ if TYPE_CHECKING:
     from jacaros.env.environment import Environment
 
 PERIOD = 1.0
-"""Seconds between two looks at what tells nobody of its changes."""
+"""Seconds between two checks of what does not report its changes."""
 ONLY_ROBOT = {"": "robot"}
 """The robot of a real graph whose topics have no namespace, and its name on the page."""
 
 Tell = Callable[[str, Mapping[str, Any]], None]
 
 
-class SurroundedSystem(Protocol):
-    """A running system as far as this needs it (`jacaros.mas.system.System`)."""
+class SituatedSystem(Protocol):
+    """A running system, as far as this module needs it (`jacaros.mas.system.System`)."""
 
     clock: Clock
     ros: RosGraph
 
     def trace(self, tracer: Tracer | None) -> None:
-        """Have *tracer* make the causes; None ends it."""
+        """Let *tracer* create the causes. None ends this."""
 
-    def when_situated(self, told: "Callable[[Environment], None]") -> Callable[[], None]:
-        """Call *told* with the environment, now or when it is made; gives what ends that."""
+    def when_situated(self, callback: "Callable[[Environment], None]") -> Callable[[], None]:
+        """Call *callback* with the environment, now or when it is created. Return a function that ends this."""
 
-    def listen_to_log(self, told: Callable[[str, str], None]) -> Callable[[], None]:
-        """Call *told* with text and level of each line that is logged; gives what ends that."""
+    def listen_to_log(self, callback: Callable[[str, str], None]) -> Callable[[], None]:
+        """Call *callback* with text and level of each line of the log. Return a function that ends this."""
 
 
-class Surroundings:
-    """Observes what surrounds the agents of a system, from `start` until what that gives is called.
+class RunEnvironmentRecords:
+    """Records the environment of the agents of a system. `start` returns a function that ends this.
 
     Args:
         system: the system.
@@ -51,7 +51,7 @@ class Surroundings:
         causes: numbers the causes of the run.
     """
 
-    def __init__(self, system: SurroundedSystem, beginning: float, tell: Tell) -> None:
+    def __init__(self, system: SituatedSystem, beginning: float, tell: Tell) -> None:
         self._system, self._tell = system, tell
         self._clock = system.clock
         self.causes = CauseRecords(system.clock, beginning, tell, self._listener_of)
@@ -63,7 +63,7 @@ class Surroundings:
         self._looking: asyncio.Task[None] | None = None
 
     def start(self) -> Callable[[], None]:
-        """Begin to observe; gives what ends it."""
+        """Begin to observe. Return a function that ends this."""
         system = self._system
         ends = (
             system.when_situated(self._environment.observe),

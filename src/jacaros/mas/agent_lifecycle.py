@@ -1,4 +1,4 @@
-"""The agents of a run: made, copied, ended."""
+"""The lifecycle of agents in a run: create, clone, end."""
 
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping
@@ -24,29 +24,29 @@ from jacaros.mas.python_code import PythonCode
 
 
 class Situate(Protocol):
-    """Gives an agent that was made its place in the environment."""
+    """Gives a new agent its place in the environment."""
 
     def __call__(self, host: AgentHost, spec: AgentSpec) -> None:
-        """Give it a body, or what makes one."""
+        """Give it a body, or a function that creates one."""
 
 
-class Population:
-    """Makes and ends the agents of a run.
+class AgentLifecycle:
+    """Creates and ends the agents of a run.
 
     Args:
-        run: what their hosts ask of it.
-        directory: where they are entered.
-        programs: the programs.
-        classes: makes those of the project's own classes.
+        run: port of the run for their hosts.
+        directory: the directory of agents.
+        programs: reads programs.
+        classes: creates agents of user-defined classes.
         code: the project's Python code.
-        seed: of the run.
-        situate: gives each its place in the environment.
+        seed: seed of the run.
+        situate: gives each agent its place in the environment.
         when_made: called with every agent before it begins.
-        folder: keeps the code of their plans from run to run; None for not.
+        folder: keeps the code of their plans between runs. None: do not keep it.
 
     Attributes:
-        programs: reads what they run.
-        when_ended: told of every agent that ends before the run does.
+        programs: reads programs.
+        when_ended: called with every agent that ends before the run does.
     """
 
     def __init__(
@@ -76,18 +76,18 @@ class Population:
         self._uncompiled: deque[ProgramPlans] = deque()
 
     def check(self, agents: Iterable[AgentSpec]) -> None:
-        """Look for the classes of agents, so that mistakes are told before anything runs.
+        """Find the classes of agents, to report errors before anything runs.
 
         Raises:
-            ProjectError: with all that is wrong.
+            ProjectError: all errors.
         """
         self._classes.check(agents)
 
     def add(self, spec: AgentSpec, program: Program) -> AgentHost:
-        """Make an agent that is still to begin, see `begin`.
+        """Create an agent. To start it, call `begin`.
 
         Raises:
-            ProjectError: its class cannot be found or begun.
+            ProjectError: its class cannot be found or instantiated.
         """
         name = spec.name
         self._specs[name] = spec
@@ -102,7 +102,7 @@ class Population:
         return host
 
     def plans_of(self, program: Program) -> ProgramPlans:
-        """The plans of a program: agents that run the same one share them, compiled."""
+        """Return the plans of a program. Agents with the same program share them, compiled."""
         made = self._plans.get(id(program.plans))
         if made is None:
             kept = None if self._folder is None else self._folder.of_program(program.plans)
@@ -112,11 +112,11 @@ class Population:
         return made
 
     def spec(self, name: str) -> AgentSpec | None:
-        """What an agent was made from; None when the run has made no agent of that name."""
+        """Return the declaration of an agent, or None if the run has created no agent of this name."""
         return self._specs.get(name)
 
     def compile_ahead(self) -> bool:
-        """Compile a little of what no event has asked for yet, some milliseconds at most; False when nothing is left."""
+        """Compile plans that no event has needed yet, for a few milliseconds. Return False when none is left."""
         while self._uncompiled:
             plans = self._uncompiled[0]
             if plans.engine.compile_ahead(plans):
@@ -127,7 +127,7 @@ class Population:
         return False
 
     def create(self, name: str, source: str | None, classes: Mapping[str, str]) -> str | None:
-        """Make and start an agent for another one; its final name, or None with the reason logged."""
+        """Create and start an agent for another one. Return its final name, or None after logging the reason."""
         wanted = source if source is not None else f"{name}.asl"
         log = self._run.console.log
         try:
@@ -137,7 +137,7 @@ class Population:
             host = self.add(spec, program)
         except FileNotFoundError:
             folders = ", ".join(str(folder) for folder in self.programs.folders)
-            log(f"error: agent {name}: program not found: {wanted} in {folders}", "error")
+            log(f"error: agent {name}: program not found: {wanted}; expected in {folders}", "error")
             return None
         except JacarosError as wrong:
             log(str(wrong), "error")
@@ -146,12 +146,15 @@ class Population:
         return host.name
 
     def clone(self, original: str, name: str) -> str | None:
-        """Make an agent with a copy of the mind of *original*; its final name, or None with the reason logged."""
+        """Create an agent with a copy of the mind of *original*.
+
+        Return its final name, or None after logging the reason.
+        """
         host = self._directory.find(original)
         spec = self._specs.get(original)
         if host is None or spec is None or not isinstance(host.mind, Mind):
-            told = f"error: agent {name}: cannot clone unknown agent {original}"
-            self._run.console.log(told, "error")
+            message = f"error: agent {name}: cannot clone unknown agent `{original}`"
+            self._run.console.log(message, "error")
             return None
         copy = self.add(replace(spec, name=self._directory.free_name(name)), host.mind.program)
         assert isinstance(copy.mind, Mind)
@@ -159,9 +162,9 @@ class Population:
         return copy.name
 
     def kill(self, name: str, delay: float, killer: str) -> bool:
-        """End an agent after *delay* seconds, of which it is told, on behalf of another one.
+        """Kill an agent on behalf of another, *delay* seconds after announcing it.
 
-        False when there is none of that name, or it does not accept its end.
+        Return False if it is unknown or refuses.
         """
         host = self._directory.find(name)
         if host is None or not host.mind.accept_kill(killer):
@@ -183,7 +186,7 @@ class Population:
 
 
 def begin(host: AgentHost, spec: AgentSpec, program: Program) -> None:
-    """Let a mind begin: as in JaCaMo, what it focuses is noticed before it adopts its goals."""
+    """Start a mind. As in JaCaMo, it perceives what it focuses before it adopts its goals."""
     host.mind.start()
     if _is_situated(spec):
         host.mind.run(1)
@@ -191,17 +194,17 @@ def begin(host: AgentHost, spec: AgentSpec, program: Program) -> None:
 
 
 def _is_situated(spec: AgentSpec) -> bool:
-    """Whether an agent begins with workspaces joined or artifacts focused."""
+    """Return whether an agent joins workspaces or focuses artifacts at its start."""
     return bool(spec.join or spec.focus)
 
 
 def _initial(spec: AgentSpec, program: Program) -> Program:
-    """What the mind begins with; the goals of a situated agent come later, see `begin`."""
+    """Return the program that the mind starts with. The goals of a situated agent come later: see `begin`."""
     return replace(program, goals=()) if _is_situated(spec) else program
 
 
 def _spec(name: str, declared: str, path: Path, classes: Mapping[str, str]) -> AgentSpec:
-    """An agent that is made at run time."""
+    """Return the declaration of an agent that is created at run time."""
     architecture = classes.get("agentArchClass")
     return AgentSpec(
         name,
