@@ -107,7 +107,7 @@ def chosen_workloads(names: Sequence[str] | None) -> list[Workload]:
 def draw(file: Path, folder: Path) -> None:
     """Draw the pictures, where there is the library for it."""
     if not engines.PEER.exists():
-        print("no pictures: there is no .venv-bench (make bench makes it)", file=sys.stderr)
+        print("no pictures: .venv-bench does not exist (make bench creates it)", file=sys.stderr)
         return
     script = Path(__file__).parent / "report" / "charts.py"
     subprocess.run([engines.PEER, script, file, folder], check=True)

@@ -45,7 +45,7 @@ def python_of(kind: str) -> Path:
 def missing(kind: str) -> str:
     """A note about an environment that does not exist."""
     script = f"tools/install_ros{ENVIRONMENTS[kind]}.sh"
-    return f"{kind}: not measured; there is no `.venv-{kind}` (`{script}` makes it)."
+    return f"{kind}: not measured: `.venv-{kind}` does not exist (`{script}` creates it)."
 
 
 def figures_in(text: str, graph: str) -> list[dict[str, Any]]:

@@ -8,7 +8,7 @@ through an agent (artifact, belief, event, plan, operation), and through an echo
 Prints both, and how many times as long the agent takes; figures on a busy machine say little.
 
 With ``--busy`` the agent's plan is urgent and has 100 intentions beside it that never rest, and the echo has a computing
-thread beside it.  On the graph in memory the two measure one after the other, each in a process of its own.
+thread beside it.  On the graph in memory the two measure in turn, each in a separate process.
 The echo's process keeps Python's own switch interval of 5 ms; with ``--same-interval`` it has the 0.5 ms that
 ``jacaros run`` sets.
 

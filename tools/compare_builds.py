@@ -6,7 +6,7 @@ compare_builds.py --seconds 600                                    this tree wit
 compare_builds.py --seed 17 --programs 1 --show                    print the program of a number
 
 A program ends, whatever is drawn: goals call later goals only, waits are short.  What agents print has to be the same, in
-its order, and with one tree also what is told to people.  A program that differs is made smaller, line by line, and
+its order, and with one tree also the log.  A program that differs is made smaller, line by line, and
 written with both outputs to the folder given by --into.
 """
 
@@ -24,11 +24,11 @@ from running_programs import Writer
 
 ROOT = Path(__file__).resolve().parent.parent
 PATIENCE = 8.0
-"""Seconds that a program may take; one that takes longer is passed over in both builds."""
+"""Time limit of a program in seconds; a slower program is skipped in both builds."""
 
 
 def work(path: str) -> None:
-    """Be a worker: read projects as lines, run each on one *path*, write what came of it as lines."""
+    """Be a worker: read projects as lines, run each on one *path*, write the results as lines."""
     from jacaros.testing import run_project
 
     if path == "plain":
@@ -107,7 +107,7 @@ class Comparison:
 
     Args:
         builds: where.
-        prints_only: compare what agents print; without it what people are told as well.
+        prints_only: compare only the output of agents, not the log.
         into: folder for programs that differ.
 
     Attributes:

@@ -136,7 +136,7 @@ def soup(random: Random) -> str:
 
 
 def piece(random: Random) -> str:
-    """A token, or something that is none."""
+    """Return a token, or something that is not one."""
     return random.choice(ODD) if random.random() < 0.1 else random.choice(PIECES)
 
 

@@ -5,7 +5,7 @@
 KIND is memory, ros1 (a master runs), ros2 or rosbridge (a server runs, ROS_DISTRO or ROS_MASTER_URI tell whose graph is
 listened to).  Each run is a process that gives velocities as fast as it can, and gets one or two of SIGINT, SIGTERM and
 SIGHUP: while it drives, or at any moment from its start.  A process with nothing of JaCaROS in it, written with rclpy or
-rospy, hears all of them.  On the graph inside the process nobody else can listen; there a second node writes what it
+rospy, hears all of them.  On the graph inside the process no other process can listen; there a second node writes what it
 receives to a pipe.
 """
 
@@ -54,7 +54,7 @@ MODULES = (
     "jacaros.sim.node",
 )
 QUIET = 0.3
-"""Seconds without a message after which none is on its way any more."""
+"""Seconds without a message after which no message can still be on its way."""
 START = 60.0
 """Seconds in which a run gives its first command, also on a busy machine."""
 END = 30.0

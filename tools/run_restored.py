@@ -2,7 +2,7 @@
 
 run_restored.py PROJECT [--clock fast] …     options as of `jacaros run`; JACAROS_RESTORED_SEED chooses the cycles
 
-The new mind has plans of its own, so nothing that the old one compiled helps it.  A mind that cannot be stored goes on as
+The new mind has plans of its own, so nothing that the old one compiled helps it.  A mind that cannot be stored continues as
 it is; why is written to the file that the variable JACAROS_NOT_RESTORED names.
 """
 

@@ -122,7 +122,7 @@ def in_process(burst: bool, count: int, program: Path) -> str:
         robot.scan()
         beats(PERIOD, robot.beat, lambda: robot.done, mas)
 
-    launch(program, RunOptions(world=HERE / "nobody.yaml"), StandardConsole("error"), started)
+    launch(program, RunOptions(world=HERE / "no_robots.yaml"), StandardConsole("error"), started)
     return robots[0].report()
 
 

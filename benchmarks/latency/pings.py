@@ -1,4 +1,4 @@
-"""Numbered odometry messages, one after the other, and how long each took to come back as a command."""
+"""Numbered odometry messages, sent in turn, and the time until each returns as a command."""
 
 import statistics
 from collections.abc import Callable, Sequence

@@ -33,7 +33,7 @@ def available() -> list[str]:
 
 
 def run(engine: str, workload: Workload, n: int) -> dict[str, Any]:
-    """Run a workload at a size; its figures (see `marks.Marks.report`), or ``note``: why there are none."""
+    """Run a workload at a size; return its figures (see `marks.Marks.report`), or a ``note`` why there are not any."""
     times = _times(engine, workload, n)
     with tempfile.TemporaryDirectory() as scratch:
         folder = Path(scratch)

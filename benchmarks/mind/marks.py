@@ -53,7 +53,7 @@ class Marks:
             gc.collect()
             self._call = seconds_for_a_call()
             self._began = time.process_time()
-            # For whoever waits in vain for the end.
+            # For the reader of the marks, who would otherwise wait in vain.
             print(f"begin {self._began:.3f}", file=sys.stderr, flush=True)
         elif text.startswith("end") and self._began is not None:
             spent = now - self._began

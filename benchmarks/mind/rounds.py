@@ -1,4 +1,4 @@
-"""Running workloads on all engines in turn, and what comes of it."""
+"""Run workloads on all engines in turn, and collect the results."""
 
 import sys
 from collections.abc import Callable, Sequence
@@ -25,7 +25,7 @@ class Figures:
     notes: dict[str, dict[str, Any]] = field(default_factory=dict)
 
     def median(self, engine: str, n: int, key: str) -> float | None:
-        """The middle of what the rounds gave; None where there were none."""
+        """Return the median of the rounds; None without rounds."""
         runs = self.runs.get((engine, n))
         return median(run[key] for run in runs) if runs else None
 

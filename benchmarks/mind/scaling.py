@@ -59,7 +59,7 @@ def messages(size: int) -> Workload:
 
 
 def stamps(size: int) -> Workload:
-    """Beliefs that get *size* annotations one after the other, 20,000 in all."""
+    """Beliefs that get *size* annotations in turn, 20,000 in all."""
     return single(f"beliefs with {size:,} annotations", "stamps", 20_000 // size, lambda n, k: n * k, k=size)
 
 

@@ -69,7 +69,7 @@ class Workload:
         return project
 
     def _plans(self) -> str:
-        """What ``$plans`` stands for: plans by the dozen that nobody wants to read in the program."""
+        """Return the replacement of ``$plans``: dozens of plans that would clutter the program."""
         if self.artifact:
             return "\n".join(f"+value{i}(X) : X > 0 <- Y = X + 1." for i in range(10))
         return "\n".join(f"+!do(kind{i}, X)." for i in range(1, 101))

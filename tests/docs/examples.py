@@ -33,7 +33,7 @@ class Example:
         line: where the block of that file begins.
         files: all files that stand on the page up to there.
         output: what the agents are said to print.
-        errors: what else is said to be told.
+        errors: other expected output.
     """
 
     file: str

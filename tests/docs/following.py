@@ -186,7 +186,7 @@ class Reader:
             assert came, f"{where}: $ {command}\nprints\n{output}\nand not, before Ctrl-C,\n{before}"
         else:
             output = running.end()
-        # While the key is pressed agents may print further lines, and nobody else does.
+        # While the key is pressed, agents may print further lines, but nothing else does.
         meanwhile = r"(?:\[[^\n]*\n)*" if pressed else ""
         found = re.fullmatch(pattern(before) + meanwhile + pattern(after), output)
         assert found, f"{where}: $ {command}\nprints\n{output}\nand not\n{expected}"

@@ -67,7 +67,7 @@ def test_make_knows_the_targets_that_pages_show(where: str, words: list[str]) ->
 @pytest.mark.parametrize(("where", "line"), LINES)
 def test_tools_that_pages_name_are_there(where: str, line: str) -> None:
     for tool in re.findall(r"(?<![\w/])tools/[\w.]+", line):
-        assert (ROOT / tool).is_file(), f"{where}: there is no {tool}"
+        assert (ROOT / tool).is_file(), f"{where}: {tool} does not exist"
 
 
 def test_the_pages_have_commands() -> None:

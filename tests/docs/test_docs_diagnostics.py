@@ -1,4 +1,4 @@
-"""The page about diagnostics: every code, with a program for which it is told and one for which nothing is."""
+"""The page about diagnostics: every code, with a program that triggers it and one that triggers nothing."""
 
 import json
 import re

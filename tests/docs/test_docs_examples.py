@@ -55,6 +55,6 @@ def test_excerpts_stand_in_their_files(page: Path) -> None:
         for line in (line.strip() for line in block.text.splitlines()):
             if line in ("", "...", "# ..."):
                 continue
-            where = f"{name_of(page)}:{block.line}: {path.name} has no line (any more, or not in this order)"
+            where = f"{name_of(page)}:{block.line}: {path.name} lacks a line (or has it in another order)"
             assert line in source[place:], f"{where}\n{line}"
             place = source.index(line, place) + 1

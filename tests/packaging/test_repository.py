@@ -42,7 +42,7 @@ HOSTS = {
 
 
 def tracked() -> list[Path]:
-    """The files under version control, or all files where there is none."""
+    """Return the files under version control; all files without version control."""
     listing = subprocess.run(
         ["git", "-c", "safe.directory=*", "ls-files", "--cached", "--others", "--exclude-standard", "-z"],
         cwd=ROOT,

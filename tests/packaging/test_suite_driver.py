@@ -80,7 +80,7 @@ def test_parts_of_all_stages_run(run: Any) -> None:
     assert verdicts == dict.fromkeys(stages, "ok")
 
 
-def test_what_cannot_run_here_is_told_loudly(run: Any) -> None:
+def test_what_cannot_run_here_is_reported_prominently(run: Any) -> None:
     code, verdicts, printed = run(("a", "exit 3", {"stage": "install"}), ("b", "true", {"needs": "a"}))
     assert code == 0
     assert verdicts == {"a": "NOT RUN", "b": "NOT RUN"}

@@ -51,7 +51,7 @@ class SeenRobot:
         self.battery: Any = None
 
     def hear_odometry(self, sample: Sample) -> bool:
-        """Keep the newest message, unless one of its numbers is none; whether it was kept."""
+        """Keep the newest message unless it contains NaN or infinity; return whether it was kept."""
         if not_finite(sample) is not None:
             return False
         self.odometry = sample.message

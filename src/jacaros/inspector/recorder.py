@@ -39,7 +39,7 @@ def format_of(path: Path) -> Callable[[], Format]:
 
 
 class Recorder:
-    """Writes a recording while the run goes on.
+    """Writes a recording during the run.
 
     Frames in which nothing has changed are left out, but for the one before the next change, so that a
     reader that interpolates sees a robot rest and then move, not creep.
@@ -47,7 +47,7 @@ class Recorder:
     Args:
         path: the file to write; None keeps the recording in memory only.
         keep: keep it in memory as well, as `recording`.
-        warn: takes a line about a file that cannot be written; the run goes on without it.
+        warn: takes a warning that the file cannot be written; the run continues without it.
         limit: bytes that the file and its older part may have together.  A file that has half of that becomes ``FILE.1``,
             in place of an older part, and a new one begins, with ``"part": 2``; `Recording.read` reads both.
 
@@ -119,7 +119,7 @@ class Recorder:
         self._write({"kind": "text", "t": round(t, 3), "agent": agent, "text": text})
 
     def event(self, t: float, kind: str, data: Mapping[str, Any]) -> None:
-        """Something that happened at a whole millisecond; *data* is plain JSON data, which nobody changes."""
+        """Record an event at a whole millisecond; *data* is plain JSON data that must not change afterwards."""
         if self._keep:
             self.recording.events.append((t, kind, dict(data)))
         if self._file is not None:

@@ -39,7 +39,7 @@ class Format(Protocol):
 class RecordingFile:
     """Writes records to a file; a file that has half of the limit becomes ``FILE.1``, and a new one begins.
 
-    Records are changed by nobody after `write`.  Nothing here raises an error or waits for a disk: see
+    Records must not change after `write`.  Nothing here raises an error or waits for a disk: see
     `jacaros.output.Output`.
 
     Args:

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple, Protocol
 from jacaros.sim import World
 
 UNKNOWN = -1.0
-"""The level of a battery that nobody tells of."""
+"""Battery level that is shown if none is published."""
 
 
 class RobotView(NamedTuple):
@@ -58,7 +58,7 @@ class Scene(Protocol):
         """Have *moved* called ten times a second while robots move; False if that is not known, or not yet."""
 
     def close(self) -> None:
-        """Look no more."""
+        """Stop looking."""
 
 
 class EmbeddedScene:
@@ -74,7 +74,7 @@ class EmbeddedScene:
         self._stop_following: Callable[[], None] | None = None
 
     def drawing(self) -> Mapping[str, Any] | None:
-        """The world, which does not change; None while there is none."""
+        """The world, which does not change; None without a world."""
         if self._drawing is None and (world := self._find()) is not None:
             self._drawing = world.description.drawing()
         return self._drawing

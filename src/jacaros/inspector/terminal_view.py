@@ -37,7 +37,7 @@ _INTENTIONS = 4
 
 
 class Screen(io.TextIOBase):
-    """A terminal as a file for Rich.  Drawing never waits for it: a terminal that nobody reads must not stop agents.
+    """A terminal as a file for Rich.  Drawing never waits for it: a blocked terminal must not stop agents.
 
     Args:
         stream: standard error, or another stream.

@@ -16,7 +16,7 @@ REST = 1.0
 
 
 class Watcher(Protocol):
-    """What is told of a run: a `jacaros.inspector.recorder.Recorder` or a view."""
+    """Receives the records of a run: a `jacaros.inspector.recorder.Recorder` or a view."""
 
     def world(self, drawing: Mapping[str, Any]) -> None:
         """The world, before everything else; once more when more of it is known."""
@@ -48,8 +48,8 @@ class Watch:
 
     Args:
         clock: the run's clock; ``t`` counts from the beginning of the history, without one from now.
-        watchers: who is told.
-        scene: the world that is looked at, None when there is none; it is closed at the end.
+        watchers: receive the records.
+        scene: the world to look at, None without a world; it is closed at the end.
         history: whose records are passed on while the watch is on, None for none.
         period: seconds between two frames.
     """
@@ -129,7 +129,7 @@ class Watch:
             watcher.event(t, kind, data)
 
     def stop(self) -> None:
-        """Look once more and then no more; watchers are closed by who made them."""
+        """Look a last time, and stop; the owner of the watchers closes them."""
         if self._timer is not None:
             self._timer.cancel()
             self._timer = None

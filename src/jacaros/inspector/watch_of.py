@@ -10,7 +10,7 @@ def watch_of(mas: System, watchers: list[Watcher], live: bool = False) -> Watch:
 
     Args:
         mas: the system.
-        watchers: who is told.
+        watchers: receive the records.
         live: whether a live page is among the watchers.
     """
     period = LIVE_PERIOD if live and not mas.clock.virtual else PERIOD

@@ -35,7 +35,7 @@ class Counts:
         names: the same, but of agents those of beliefs, variables and labels, too.
         lines: physical lines, blank lines and comments included.
         code_lines: lines without blank lines, comments and docstrings.
-        gzip_bytes: size of the files, one after the other, compressed together.
+        gzip_bytes: size of all files, concatenated and compressed.
         gzip_code_bytes: size of their code lines, compressed together.
         files: number of files.
     """

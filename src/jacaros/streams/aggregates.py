@@ -44,7 +44,7 @@ class Aggregate(Operator):
         self.hide()
 
     def add(self, time: float, value: float) -> float | None:
-        """Put a number into the window and return the aggregate; None if there is none."""
+        """Put a number into the window and return the aggregate; None without a value."""
         raise NotImplementedError
 
     def clear(self) -> None:

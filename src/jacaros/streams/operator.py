@@ -74,7 +74,7 @@ class Operator:
 
 
 def number_at(values: Values | None, place: int) -> float | None:
-    """Return the finite number at *place*; None if there is none."""
+    """Return the finite number at *place*; None otherwise."""
     if values is None or place >= len(values):
         return None
     value = values[place]

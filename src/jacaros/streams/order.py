@@ -1,4 +1,4 @@
-"""Events one after the other, and events that do not come."""
+"""Sequences of events, and events that do not come."""
 
 import math
 from collections import deque

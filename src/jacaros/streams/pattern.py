@@ -120,7 +120,7 @@ class Pattern:
         operator = self._operator
         while (due := operator.deadline) <= time:
             operator.advance(due)
-            if operator.deadline <= due:  # an operator that does not move on would hold everybody up
+            if operator.deadline <= due:  # an operator that makes no progress would block all others
                 operator.deadline = math.nextafter(due, math.inf)
 
 

@@ -126,7 +126,7 @@ OPERATORS: Final[dict[str, Shape]] = {
     "inside": Shape("a pose is in an area", STATE, (), ("circle", "rectangle", "margin")),
     "absent": Shape("no event for a while", STATE, ("for",)),
     "missing": Shape("an event did not follow another", OCCURRENCE, ("after", "within")),
-    "sequence": Shape("events one after the other", OCCURRENCE, ("within",), several=True),
+    "sequence": Shape("events in this order", OCCURRENCE, ("within",), several=True),
     "all": Shape("an event of each stream in a window", STATE, ("within",), several=True),
     "together": Shape("samples with stamps near each other", VALUE, ("within",), several=True),
     "interpolated": Shape("values at the stamps of the first stream", VALUE, ("within",), several=True),

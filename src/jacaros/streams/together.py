@@ -48,7 +48,7 @@ class Together(Joining):
 
 
 def _nearest_to(times: list[float], time: float) -> int | None:
-    """Return the place of the time nearest to *time*, the earlier one of two; None if there is none."""
+    """Return the place of the time nearest to *time*, the earlier one of two; None without times."""
     if not times:
         return None
     place = bisect_left(times, time)

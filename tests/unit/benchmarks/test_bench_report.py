@@ -110,7 +110,7 @@ def test_figures_are_put_between_their_marks_and_the_rest_stays() -> None:
     assert filled(new, {"one": "new"}) == new
 
 
-def test_marks_without_figures_are_told() -> None:
+def test_missing_figures_are_reported() -> None:
     with pytest.raises(ValueError, match="marks for one; there are figures for two"):
         filled("<!-- figures: one -->\n<!-- end of figures -->\n", {"two": ""})
 

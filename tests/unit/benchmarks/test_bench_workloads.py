@@ -34,7 +34,7 @@ def run(workload: Workload, n: int, times: int, folder: Path) -> tuple[list[str]
 
 
 @pytest.mark.parametrize("workload", WORKLOADS, ids=lambda each: each.name)
-def test_a_program_does_its_work_as_often_as_it_is_told_to(workload: Workload, tmp_path: Path) -> None:
+def test_a_program_runs_the_requested_number_of_times(workload: Workload, tmp_path: Path) -> None:
     lines, _ = run(small(workload, 4), 6, 3, tmp_path)
     assert [line.split()[0] for line in lines] == ["begin", "end"] * 3
     assert len(set(lines)) == 2, "the work has the same result each time"

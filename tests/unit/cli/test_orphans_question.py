@@ -14,7 +14,7 @@ pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="has no pseudo-t
 
 
 class Terminal:
-    """A terminal with somebody in front of it."""
+    """A terminal with a user in front of it."""
 
     def __init__(self, person: int, typed: TextIO, shown: TextIO) -> None:
         self._person, self._streams = person, (typed, shown)

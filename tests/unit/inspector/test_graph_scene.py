@@ -130,7 +130,7 @@ def test_odometry_alone_is_enough() -> None:
     looking("empty", body)
 
 
-def test_numbers_that_are_none_are_not_drawn() -> None:
+def test_nan_and_infinity_are_not_drawn() -> None:
     """Neither by a view, which nothing else draws, nor in a recording: JSON has no such numbers."""
 
     async def body(clock: VirtualClock, world: World, backend: Any, node: SimNode) -> None:
@@ -155,7 +155,7 @@ def test_numbers_that_are_none_are_not_drawn() -> None:
     "change",
     [{"width": 4}, {"width": 0, "height": 0}, {"resolution": 0.0}, {"resolution": math.nan}],
 )
-def test_a_map_that_is_none_is_not_drawn(change: dict[str, Any]) -> None:
+def test_an_invalid_map_is_not_drawn(change: dict[str, Any]) -> None:
     message = grid("##\n##")
     assert can_be_drawn(message)
     vars(message.info).update(change)

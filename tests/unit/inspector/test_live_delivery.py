@@ -81,7 +81,7 @@ def test_frames_in_which_nothing_moves_are_delivered_and_not_kept() -> None:
     assert [each["t"] for each in late if each["kind"] == "frame"] == [0.0, 49.0, 50.0]
 
 
-def test_a_page_that_is_too_slow_is_told_how_much_it_missed_and_begins_again(
+def test_a_slow_page_receives_the_number_of_missed_records_and_restarts(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(delivering, "AGAIN", 0.0)

@@ -237,7 +237,7 @@ def test_a_huge_message_is_refused() -> None:
     serving(test)
 
 
-def test_many_connections_that_say_nothing_hold_up_nobody(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_idle_connections_do_not_block_others(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(server, "ADMITTED", 10_000)
 
     async def test(mas: Mas, address: str) -> None:

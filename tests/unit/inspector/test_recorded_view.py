@@ -89,7 +89,7 @@ def test_the_command_prints_the_address_serves_and_ends_with_ctrl_c(recorded: Pa
     try:
         found = re.fullmatch(r"view: (\S+:\d+/[\w-]+/)\n", process.stderr.readline())
         assert found is not None
-        assert process.stderr.readline() == "press Ctrl+C to end\n"
+        assert process.stderr.readline() == "press Ctrl+C to stop\n"
         status, _, content = asyncio.run(get(found[1]))
         assert status == 200
         assert b"live.js" in content

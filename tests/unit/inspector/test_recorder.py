@@ -125,7 +125,7 @@ def test_an_older_part_of_another_run_is_not_read(tmp_path: Path) -> None:
     assert len(Recording.read(tmp_path / "run.jsonl").texts) == 1
 
 
-def test_a_recording_on_a_full_disk_is_warned_about_and_hurts_nobody() -> None:
+def test_a_full_disk_logs_a_warning_and_does_not_stop_the_run() -> None:
     if not Path("/dev/full").exists():
         pytest.skip("this system has no /dev/full")
     warnings: list[str] = []

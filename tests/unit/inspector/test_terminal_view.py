@@ -173,7 +173,7 @@ def test_closing_leaves_the_last_picture_and_twice_is_harmless() -> None:
 
 
 @pytest.mark.skipif(os.name != "posix", reason="needs a pseudo-terminal")
-def test_a_terminal_that_nobody_reads_stops_no_agent(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_blocked_terminal_does_not_stop_agents(monkeypatch: pytest.MonkeyPatch) -> None:
     reader, terminal = os.openpty()
     wall = Wall()
     with open(terminal, "w", encoding="utf-8") as stream:

@@ -1,4 +1,4 @@
-"""Lines and compressed bytes, counted by hand in small sources, and by the rule of the thesis."""
+"""Lines and compressed bytes, checked by hand-made counts of small sources, and by the rule of the thesis."""
 
 import gzip
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Identifiers, counted by hand in small sources."""
+"""Identifiers, checked by hand-made counts of small sources."""
 
 import gzip
 from pathlib import Path

@@ -102,7 +102,7 @@ def test_two_robots_clean_the_same_dirt() -> None:
     assert left(flat)["office", "dust"] == pytest.approx(9.7)
 
 
-def test_what_is_clean_is_exactly_clean_and_is_told_once() -> None:
+def test_a_clean_room_has_exactly_no_dirt_and_one_event() -> None:
     flat = world(**{"reach: 0.5": "reach: 9"})
     flat.use_tool("a", "mop")
     flat.use_tool("a", "vacuum")

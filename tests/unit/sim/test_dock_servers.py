@@ -102,7 +102,7 @@ def test_a_dock_out_of_sight_is_not_found() -> None:
     in_world("empty", body)
 
 
-def test_the_bumper_is_told_in_the_messages_of_all_three_turtlebots() -> None:
+def test_the_bumper_is_published_for_all_three_turtlebots() -> None:
     seen: dict[str, list[Any]] = {}
 
     async def body(lab: Lab) -> None:

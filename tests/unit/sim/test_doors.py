@@ -10,8 +10,8 @@ from jacaros.errors import UsageError
 from jacaros.ros.action import GoalStatus
 from jacaros.ros.qos import QoS
 from jacaros.sim import World, WorldError, read_world
+from jacaros.sim.navigation.laser_perception import LaserPerception
 from jacaros.sim.navigation.placement import Placement
-from jacaros.sim.navigation.sight import Sight
 
 TWO_ROOMS = """
 name: two rooms
@@ -161,13 +161,13 @@ def test_a_door_that_was_closed_is_gone_round_until_it_is_forgotten_or_seen_open
     assert bumps(in_world(WAY_ROUND, body).world) == []
 
 
-def test_nobody_sees_through_a_closed_door() -> None:
+def test_a_closed_door_blocks_the_view() -> None:
     text = TWO_ROOMS.replace("docks:", "  - {name: pantry, segment: [[1, -1], [1, 1]], open: true}\ndocks:")
     world = World.load(text)
     world.move_door("pantry", False)
     robot = world.robot()
     here = Placement.at(robot.x, robot.y, robot.yaw)
-    sight = Sight(world, robot)
+    sight = LaserPerception(world, robot)
     assert list(sight.closed_doors(here)) == ["kitchen"]
     world.move_door("kitchen", True)
     assert list(sight.closed_doors(here)) == ["pantry"]
@@ -185,7 +185,7 @@ def test_the_map_shows_doors_as_ways() -> None:
     in_world(TWO_ROOMS, body)
 
 
-def test_wrong_doors_are_told_at_once() -> None:
+def test_all_mistakes_of_doors_are_reported_in_one_pass() -> None:
     text = """
 name: wrong
 doors:

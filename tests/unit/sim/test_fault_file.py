@@ -54,7 +54,7 @@ robots:
         ("{kind: dead, topic: /scan, at: -1}", "'at' is -1, but must be at least 0"),
     ],
 )
-def test_a_mistake_is_told_with_its_place(fault: str, message: str) -> None:
+def test_a_mistake_has_a_location(fault: str, message: str) -> None:
     with pytest.raises(WorldError) as told:
         read_faults(f"faults:\n  # one\n  f: {fault}\n", WORLD, "f.yaml")
     assert message in str(told.value)
@@ -71,7 +71,7 @@ def test_topics_are_the_robots_unless_they_begin_with_a_slash() -> None:
     assert [fault.topic for fault in read_faults(text, WORLD)] == ["/two/scan", "/clock"]
 
 
-def test_a_file_is_told_from_others_and_checked_without_a_world(tmp_path: Path) -> None:
+def test_a_fault_file_is_recognised_and_checked_without_a_world(tmp_path: Path) -> None:
     path = tmp_path / "faults.yaml"
     path.write_text("faults:\n  a: {kind: closed_door, door: any}\n  b: {kind: dead}\n", encoding="utf-8")
     assert is_fault_file(path)
@@ -81,6 +81,6 @@ def test_a_file_is_told_from_others_and_checked_without_a_world(tmp_path: Path) 
     assert not is_fault_file(other)
 
 
-def test_a_missing_file_is_told(tmp_path: Path) -> None:
+def test_a_missing_file_is_reported(tmp_path: Path) -> None:
     with pytest.raises(WorldError, match="cannot read the file"):
         load_faults(tmp_path / "none.yaml", WORLD)

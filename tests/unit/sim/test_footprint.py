@@ -77,7 +77,7 @@ def test_a_place_beside_a_wall_is_checked_by_its_edges() -> None:
         (world(footprint="[0.6, 0]"), "a footprint is from 0.04 to 4 m long and wide"),
     ],
 )
-def test_a_wrong_footprint_is_told(text: str, message: str) -> None:
+def test_an_invalid_footprint_is_reported(text: str, message: str) -> None:
     with pytest.raises(WorldError, match=message):
         read_world(text)
 

@@ -155,6 +155,6 @@ def test_a_robot_without_a_gripper_offers_none() -> None:
 
 
 def test_two_objects_must_differ_in_name() -> None:
-    with pytest.raises(WorldError, match="there is an object 'cup' already"):
+    with pytest.raises(WorldError, match="duplicate object 'cup'"):
         read_world(TABLE.replace("name: far", "name: cup"))
     assert read_world(TABLE.replace("gripper: true", "gripper: {reach: 0.5}")).robots[0].gripper_reach == 0.5

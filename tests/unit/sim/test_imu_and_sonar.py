@@ -1,4 +1,4 @@
-"""The IMU and the sonar of a robot: what they measure, and that they cost nothing while nobody listens."""
+"""The IMU and the sonar of a robot: what they measure, and that they cost nothing without subscribers."""
 
 import math
 import random

@@ -44,7 +44,7 @@ async def occupied(lab: Lab, name: str, type_name: str, **fields: Any) -> None:
     """Send a goal that is accepted and aborted, because another navigator is at work."""
     outcome = await lab.do(name, type_name, **fields)
     assert outcome.status == GoalStatus.ABORTED
-    assert "is at work; cancel that goal first" in outcome.text
+    assert "is running; cancel that goal first" in outcome.text
 
 
 def test_a_goal_that_is_cancelled_just_before_the_next_one_comes_ends_as_aborted() -> None:

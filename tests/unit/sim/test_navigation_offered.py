@@ -49,7 +49,7 @@ def test_navigation_can_be_switched_off() -> None:
     in_world("name: w\nrobots: [{name: r, navigation: false}]\n", body)
 
 
-def test_types_that_are_not_known_are_left_out_and_told(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_unknown_types_are_skipped_with_a_warning(monkeypatch: pytest.MonkeyPatch) -> None:
     clock = VirtualClock()
     told = []
 

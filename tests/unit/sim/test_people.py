@@ -79,7 +79,7 @@ def test_a_careful_person_stops_before_a_robot_and_goes_on_when_it_has_left() ->
     assert place(flat) == (2.0, 0.0)
 
 
-def test_a_robot_beside_the_way_or_behind_stops_nobody() -> None:
+def test_a_robot_beside_or_behind_does_not_stop_people() -> None:
     flat = world("{name: ann, path: [[-2, 0.5], [2, 0.5]]}")
     flat.run(4.5)
     assert place(flat) == (2.0, 0.5)
@@ -152,11 +152,11 @@ def test_people_come_and_go_at_run_time() -> None:
 
 def test_a_person_comes_neither_twice_nor_onto_a_robot() -> None:
     flat = world()
-    with pytest.raises(UsageError, match="there is a person 'ann' already"):
+    with pytest.raises(UsageError, match="duplicate name of a person: 'ann'"):
         flat.add_person(PersonDescription("ann", ((1.0, 1.0),)))
-    with pytest.raises(UsageError, match="there is a robot 'a' already"):
+    with pytest.raises(UsageError, match="the name 'a' belongs to a robot"):
         flat.add_person(PersonDescription("a", ((1.0, 1.0),)))
-    with pytest.raises(UsageError, match="a stands where 'bob' is to come"):
+    with pytest.raises(UsageError, match="no room for 'bob': a is in the way"):
         flat.add_person(PersonDescription("bob", ((0.3, 0.0),)))
     with pytest.raises(UsageError, match="unknown person 'bob'; people: ann"):
         flat.remove_person("bob")
@@ -182,10 +182,10 @@ def test_equal_runs_are_equal() -> None:
         ("{name: ann, path: [[1, 1]], speed: 0}", "'speed' is 0, but must lie between 0.01 and 5"),
         ("{name: ann, path: [[1, 1]], careles: true}", "did you mean 'careless'?"),
         ("{name: ann, path: [[1, 1]], color: sky}", "'sky' is not a colour"),
-        ("{name: a, path: [[1, 1]]}", "the name 'a' is taken"),
-        ("{name: ann, path: [[0.3, 0]]}", "'ann' begins where the robot 'a' stands"),
+        ("{name: a, path: [[1, 1]]}", "duplicate name 'a'"),
+        ("{name: ann, path: [[0.3, 0]]}", "'ann' starts at the place of the robot 'a'"),
         ("{name: ann, path: [[1, 1], [1, 9]]}", "the path of 'ann' from [1, 1] to [1, 9] leaves the world"),
-        ("{name: ann, path: [[1, 1], [4.8, 1]]}", "is nearer to a wall than the radius of 0.25 m"),
+        ("{name: ann, path: [[1, 1], [4.8, 1]]}", "passes a wall at less than the radius of 0.25 m"),
     ],
 )
 def test_a_wrong_person_says_what_is_wrong(ann: str, message: str) -> None:

@@ -77,7 +77,7 @@ def test_an_obstacle_stops_a_robot_and_is_seen_by_its_laser(world: World) -> Non
     assert world.ground_truth.events_of("collision", robot="one")[0].data["with"] == obstacle.name
 
 
-def test_an_obstacle_that_is_gone_stops_nobody(world: World) -> None:
+def test_a_removed_obstacle_does_not_block(world: World) -> None:
     obstacle = world.add_obstacle(0.5, 0.0, 0.2)
     world.remove_obstacle(obstacle.name)
     for _ in range(300):

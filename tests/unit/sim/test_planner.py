@@ -39,7 +39,7 @@ def from_wall(x: float, y: float, walls: Sequence[Segment]) -> float:
 
 
 def dijkstra(weights: Sequence[float], width: int, start: int, goal: int) -> float:
-    """What the cheapest way costs, found without an estimate of what is left; infinite when there is none."""
+    """Return the cost of the cheapest path, found without an estimate of the rest; infinite without a path."""
     costs, waiting = {start: 0.0}, [(0.0, start)]
     while waiting:
         cost, cell = heapq.heappop(waiting)

@@ -174,7 +174,7 @@ def test_transforms_come_only_for_those_who_listen() -> None:
     assert frames == [("odom", "base_footprint"), ("map", "odom")]
 
 
-def test_two_robots_are_told_apart_by_their_namespaces() -> None:
+def test_two_robots_differ_by_their_namespaces() -> None:
     async def body(run: Run) -> None:
         run.listen("/robot_1/odom", "nav_msgs/msg/Odometry")
         await run.drive(2.0, 0.2, topic="/robot_1/cmd_vel")

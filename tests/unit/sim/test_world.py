@@ -129,7 +129,7 @@ def test_a_robot_behind_touches_with_its_back() -> None:
     assert [event.data["side"] for event in world.ground_truth.events_of("bump")] == ["back"]
 
 
-def test_two_robots_push_each_other_apart_and_both_are_told() -> None:
+def test_two_robots_push_each_other_apart_and_both_have_an_event() -> None:
     world = World(
         WorldDescription(
             robots=(
@@ -309,5 +309,5 @@ def test_the_path_is_sampled_ten_times_a_second_in_motion_and_seldom_at_rest() -
 
 
 def test_a_robot_that_is_not_there_is_named() -> None:
-    with pytest.raises(UsageError, match="has no robot 'dalek', only: turtlebot"):
+    with pytest.raises(UsageError, match="unknown robot 'dalek' in world .*; robots: turtlebot"):
         World.load("empty").robot("dalek")

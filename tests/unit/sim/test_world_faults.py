@@ -104,7 +104,7 @@ faults:
     assert world.robot().battery.charging
 
 
-def test_a_door_closes_and_opens_again_unless_somebody_is_in_it() -> None:
+def test_a_door_closes_and_opens_unless_it_is_blocked() -> None:
     world = world_with("{kind: closed_door, door: kitchen, at: 1, for: 2}")
     world.run(2.0)
     assert world.doors == {"kitchen": False}
@@ -248,7 +248,7 @@ def test_every_fault_has_a_service() -> None:
     assert [state for _, state in states(in_graph("{kind: blocked_wheel}", body))] == ["begins", "ends"]
 
 
-def test_a_fault_of_a_topic_that_nobody_has_is_refused() -> None:
+def test_a_fault_of_an_unknown_topic_is_reported() -> None:
     with pytest.raises(UsageError, match=r"fault f: unknown topic /skan; did you mean /scan\?"):
         heard("{kind: dead, topic: /skan}", *SCAN)
 
@@ -321,14 +321,14 @@ def test_a_door_is_stuck_for_a_share_of_the_requests() -> None:
     assert other == replies, "the same seed"
 
 
-def test_a_fault_of_an_action_that_nobody_offers_is_refused() -> None:
+def test_a_fault_of_an_unknown_action_is_reported() -> None:
     with pytest.raises(
         UsageError, match=r"fault f: unknown action /navigate_to; did you mean /navigate_to_pose\?"
     ):
         heard("{kind: aborted_action, action: /navigate_to}", *SCAN)
 
 
-def test_a_kidnapped_robot_is_lost_until_it_is_told_its_place() -> None:
+def test_a_kidnapped_robot_is_lost_until_it_receives_its_pose() -> None:
     async def body(backend: Backend, clock: VirtualClock) -> None:
         backend.tf_listen()
         await clock.sleep(2.0)

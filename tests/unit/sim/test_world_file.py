@@ -78,7 +78,7 @@ def test_a_robot_of_each_kind_drives_as_fast_as_it_can(kind: str) -> None:
     assert world.robot().speed == KINDS[kind].limits.speed
 
 
-def test_all_mistakes_are_told_at_once_with_line_excerpt_and_cure() -> None:
+def test_all_mistakes_are_reported_with_excerpt_and_help() -> None:
     text = "\n".join(
         [
             "name: 7",
@@ -152,14 +152,14 @@ walls:
     assert [each.area for each in world.furniture] == list(world.boxes[1:])
 
 
-def test_a_file_that_is_no_text_is_told_so(tmp_path: Path) -> None:
+def test_a_binary_file_is_reported(tmp_path: Path) -> None:
     path = tmp_path / "picture.yaml"
     path.write_bytes(b"\x89PNG\xff\xfe")
     with pytest.raises(WorldError, match="the byte 0x89 is not UTF-8"):
         World.load(path)
 
 
-def test_a_mistake_is_told_once() -> None:
+def test_a_mistake_is_reported_once() -> None:
     with pytest.raises(WorldError) as caught:
         read_world("robots: {name: a}")
     assert len(caught.value.problems) == 1
@@ -225,7 +225,7 @@ def test_navigation_is_switched_off_or_given_a_speed() -> None:
         assert told in str(error.value)
 
 
-def test_a_misspelt_key_that_a_merge_brings_in_is_told() -> None:
+def test_a_misspelt_key_from_a_merge_is_reported() -> None:
     with pytest.raises(WorldError, match="no key 'nam'"):
         read_world("x: &x {nam: a}\nrobots:\n  - <<: *x\n    name: r\n")
 
@@ -254,7 +254,7 @@ robots:
 """
 
 
-def test_robots_that_stand_where_they_cannot_are_told_all_at_once() -> None:
+def test_all_misplaced_robots_are_reported_in_one_pass() -> None:
     robots = {"far": (9, 0), "boxed": (0, 0), "walled": (1.4, 0.5), "stuck": (-1.5, 1.6)}
     lines = [
         f"  - {{name: {name}, namespace: {name}, pose: {{x: {x}, y: {y}}}}}"

@@ -1,4 +1,4 @@
-"""Real time for a loop on any clock: the timers of a loop on the virtual clock ring when nobody has anything to do."""
+"""Real time for a loop on any clock: on the virtual clock, timers of the loop would fire as soon as all agents wait."""
 
 import asyncio
 import threading
@@ -32,7 +32,7 @@ class Beat:
         await future
 
     def close(self) -> None:
-        """End the thread; whoever still waits is woken."""
+        """End the thread, and wake all waiters."""
         self._closed = True
         self._wanted.set()
         self._ring()

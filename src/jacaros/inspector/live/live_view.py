@@ -1,4 +1,4 @@
-"""A run as its live pages see it: takes what watchers are told, keeps a bounded part, and delivers it."""
+"""A run as shown on its live pages: receives the watch's records, keeps a bounded part, and delivers it."""
 
 from collections.abc import Iterable, Mapping
 from typing import Any
@@ -33,7 +33,7 @@ class LiveView:
         self._held: LiveRecord | None = None
         """The last frame, if nothing moved since the one before."""
 
-    # ---- what watchers are told
+    # ---- records of the watch
 
     def world(self, drawing: Mapping[str, Any]) -> None:
         """Show the world."""
@@ -98,7 +98,7 @@ class LiveView:
         return delivery
 
     def end(self, delivery: Delivery) -> None:
-        """Deliver no more to a page."""
+        """Stop delivering to a page."""
         self._deliveries.remove(delivery)
 
     async def answer(self, command: Mapping[str, Any]) -> Mapping[str, Any]:

@@ -64,7 +64,7 @@ class _You:
     """
 
     def names(self) -> Sequence[str]:
-        """No name: nobody else is to know of the page."""
+        """No name: no other agent must know of the page."""
         return ()
 
     def find(self, name: str) -> "_You | None":

@@ -43,7 +43,7 @@ class RecordedView:
         return Delivery(self, self._hello)
 
     def end(self, delivery: Delivery) -> None:
-        """Deliver no more: nothing is held."""
+        """Stop delivering; nothing is kept open."""
 
     async def answer(self, command: Mapping[str, Any]) -> Mapping[str, Any]:
         """Execute a command of a page."""

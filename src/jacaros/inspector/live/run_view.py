@@ -22,7 +22,7 @@ FIRST_VISIT = 5.0
 """Seconds that the end of a run waits for a browser that was opened and has not shown the run yet."""
 
 SIGNALS = 128
-"""Exit codes from here on say that a signal has ended the run: nobody wants to wait then."""
+"""Exit codes from here on mean that a signal ended the run, which must then not wait."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +48,7 @@ class RunView:
         place: where to serve.
 
     Attributes:
-        watcher: is to be told of the run.
+        watcher: receives the run.
         address: of the page.
         awaited: whether a browser was opened, so that the end of the run waits until it has shown something.
 

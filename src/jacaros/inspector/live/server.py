@@ -55,7 +55,7 @@ class Source(Protocol):
         """Begin to deliver to another page."""
 
     def end(self, delivery: Delivery) -> None:
-        """Deliver no more."""
+        """Stop delivering."""
 
     async def answer(self, command: Mapping[str, Any]) -> Mapping[str, Any]:
         """Execute a command of a page, and return the reply; raises nothing."""
