@@ -15,9 +15,9 @@ _NEARLY = 1e-3
 class WorldTime:
     """The time of a world on a clock.
 
-    A world is visible only through its messages. It is therefore stepped just before a message is published or a command arrives,
-    several steps of 20 ms in a row: a command takes effect at the first step after its arrival, exactly as if the steps had
-    been made one by one, and a virtual run need not stop fifty times a second.
+    A world is visible only through its messages. It is therefore stepped just before a message is published or a command
+    arrives, several steps of 20 ms in a row. A command takes effect at the first step after its arrival, exactly as if the
+    steps had been made one by one, and a virtual run need not stop fifty times a second.
 
     Attributes:
         world: the world.

@@ -58,7 +58,7 @@ def test_a_closed_door_is_a_wall() -> None:
     assert robot.x == pytest.approx(0.17, abs=0.01), "it is shut in"
     told = [(event.kind, event.data, event.robot) for event in world.log if event.kind.startswith("door")]
     assert told == [("door_opened", {"door": "kitchen"}, ""), ("door_closed", {"door": "kitchen"}, "")]
-    with pytest.raises(UsageError, match="no door 'cellar'"):
+    with pytest.raises(UsageError, match="unknown door 'cellar'"):
         world.move_door("cellar", True)
 
 

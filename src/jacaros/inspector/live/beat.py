@@ -9,9 +9,9 @@ PERIOD = 1 / 30
 
 
 class Beat:
-    """Wakes tasks of the running loop 30 times a second of real time, as long as any waits.
+    """Wakes the waiting tasks of the running loop 30 times per second of real time.
 
-    The waking comes from a thread, as a message from outside: it moves no virtual clock.
+    A thread wakes them like an external message, which does not advance a virtual clock.
     """
 
     def __init__(self) -> None:
@@ -43,7 +43,7 @@ class Beat:
             time.sleep(PERIOD)
             try:
                 self._loop.call_soon_threadsafe(self._ring)
-            except RuntimeError:  # the loop has been closed
+            except RuntimeError:  # the loop is closed
                 return
 
     def _ring(self) -> None:
