@@ -44,7 +44,7 @@ def test_files_of_a_page_are_used_by_its_commands(page: Path) -> None:
 
 
 @pytest.mark.parametrize("page", PAGES, ids=name_of)
-def test_excerpts_stand_in_their_files(page: Path) -> None:
+def test_excerpts_appear_in_their_files(page: Path) -> None:
     for block in blocks(page):
         if not block.purpose.startswith("excerpt "):
             continue

@@ -18,7 +18,7 @@ def anchors(page: Path) -> set[str]:
 
 
 @pytest.mark.parametrize("page", PAGES, ids=name_of)
-def test_links_lead_somewhere(page: Path) -> None:
+def test_links_have_a_target(page: Path) -> None:
     for link in links(page):
         if "://" in link:
             continue
@@ -36,7 +36,7 @@ def test_the_index_names_every_page() -> None:
     assert sorted(str(page) for page in pages - named) == []
 
 
-def test_pictures_are_drawings_that_need_nothing_else() -> None:
+def test_pictures_are_self_contained() -> None:
     pictures = sorted((ROOT / "docs" / "images").glob("*.svg"))
     assert pictures
     for picture in pictures:

@@ -52,7 +52,7 @@ def test_a_page_receives_the_end_of_the_run(program: Path) -> None:
 
 
 @pytest.mark.slow
-def test_pages_that_take_nothing_do_not_hold_up_the_end(program: Path) -> None:
+def test_blocked_pages_do_not_delay_the_end(program: Path) -> None:
     process, address = started(program)
 
     async def main() -> float:

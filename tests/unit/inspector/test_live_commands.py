@@ -179,14 +179,14 @@ def test_the_console_answers(line: str, result: str) -> None:
         ("", "`text` must be a text"),
     ],
 )
-def test_the_console_says_what_is_wrong_in_one_line(line: str, why: str) -> None:
+def test_the_console_reports_errors_in_one_line(line: str, why: str) -> None:
     async def test(_: Mas, page: LivePage) -> None:
         assert why in await refused(page, "console", agent="bob", text=line)
 
     commanding(test)
 
 
-def test_the_console_ends_long_answers() -> None:
+def test_the_console_limits_long_answers() -> None:
     async def test(_: Mas, page: LivePage) -> None:
         answers = str(await done(page, "console", agent="bob", text="?.range(X, 1, 1000000000)")).splitlines()
         assert answers[:2] == ["X = 1", "X = 2"]
@@ -229,7 +229,7 @@ def test_incomplete_commands_are_refused(command: dict[str, object], why: str) -
     commanding(test)
 
 
-def test_only_what_works_is_offered() -> None:
+def test_only_available_commands_are_offered() -> None:
     async def test(_: Mas, page: LivePage) -> None:
         assert {"belief", "console", "goal", "message", "operate"} <= set(page.hello["can"])
         assert not {"move_robot", "door", "obstacle", "person", "battery", "fault"} & set(page.hello["can"])

@@ -21,7 +21,7 @@ def recorded() -> Recorder:
     return recorder
 
 
-def test_objects_are_where_they_lie_at_the_end() -> None:
+def test_the_picture_shows_objects_at_their_final_places() -> None:
     recorder = recorded()
     before = picture_svg(recorder.recording)
     assert "<title>cup</title>" in before

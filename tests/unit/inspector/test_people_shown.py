@@ -22,7 +22,7 @@ people:
 """
 
 
-def test_a_person_is_shown_where_it_is() -> None:
+def test_a_person_is_shown_at_its_position() -> None:
     world = World.load(WORLD)
     seen = PeopleSeen(world.description.drawing())
 

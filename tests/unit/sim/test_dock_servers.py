@@ -12,7 +12,7 @@ from jacaros.ros.errors import GoalRejected
 TWIST = "geometry_msgs/msg/Twist"
 
 
-def test_docking_and_undocking_as_nav2_has_it() -> None:
+def test_docking_and_undocking_as_in_nav2() -> None:
     async def body(lab: Lab) -> None:
         outcome = await lab.do("/dock_robot", "nav2_msgs/action/DockRobot", dock_id="dock")
         assert outcome.status == GoalStatus.SUCCEEDED

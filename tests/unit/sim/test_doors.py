@@ -62,7 +62,7 @@ def test_a_closed_door_is_a_wall() -> None:
         world.move_door("cellar", True)
 
 
-def test_a_door_is_moved_and_told_in_the_graph() -> None:
+def test_a_door_is_moved_and_published_in_the_graph() -> None:
     heard: list[bool] = []
 
     async def body(lab: Lab) -> None:
@@ -86,7 +86,7 @@ def test_a_door_is_moved_and_told_in_the_graph() -> None:
     assert heard == [False, True, False, True]
 
 
-def test_the_way_fails_at_a_closed_door_and_not_when_it_is_open() -> None:
+def test_a_goal_fails_at_a_closed_door_and_succeeds_when_it_is_open() -> None:
     async def body(lab: Lab) -> None:
         failed = await lab.go(1, 0)
         assert (failed.status, failed.result.error_code) == (GoalStatus.ABORTED, 208)
@@ -102,7 +102,7 @@ def test_the_way_fails_at_a_closed_door_and_not_when_it_is_open() -> None:
     assert bumps(in_world(TWO_ROOMS, body).world) == []
 
 
-def test_a_goal_right_behind_a_closed_door_fails_for_the_door() -> None:
+def test_a_goal_just_behind_a_closed_door_fails_because_of_the_door() -> None:
     async def body(lab: Lab) -> None:
         assert (await lab.go(-0.3, 0)).status == GoalStatus.SUCCEEDED
         failed = await lab.go(0.02, 0)
@@ -111,7 +111,7 @@ def test_a_goal_right_behind_a_closed_door_fails_for_the_door() -> None:
     assert bumps(in_world(TWO_ROOMS, body).world) == []
 
 
-def test_a_door_that_is_opened_in_time_is_waited_for() -> None:
+def test_the_robot_waits_for_a_door_that_opens_in_time() -> None:
     async def body(lab: Lab) -> None:
         handle = await lab.send("/navigate_to_pose", NAVIGATE, pose=pose(1, 0))
         await lab.clock.sleep(8.0)
@@ -137,7 +137,7 @@ robots:
 """
 
 
-def test_a_door_that_was_closed_is_gone_round_until_it_is_forgotten_or_seen_open() -> None:
+def test_the_robot_avoids_a_closed_door_until_it_is_forgotten_or_seen_open() -> None:
     async def body(lab: Lab) -> None:
         async def there(x: float, y: float) -> float:
             begin = lab.world.robot().odometer
@@ -173,7 +173,7 @@ def test_a_closed_door_blocks_the_view() -> None:
     assert list(sight.closed_doors(here)) == ["pantry"]
 
 
-def test_the_map_shows_doors_as_ways() -> None:
+def test_the_map_shows_doors_as_free() -> None:
     async def body(lab: Lab) -> None:
         client = lab.backend.client("/map_server/map", "nav_msgs/srv/GetMap")
         found = (await client.call(timeout=5.0)).map

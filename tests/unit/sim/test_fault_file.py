@@ -61,12 +61,12 @@ def test_a_mistake_has_a_location(fault: str, message: str) -> None:
     assert str(told.value).startswith("f.yaml:3:")
 
 
-def test_a_robot_is_put_into_a_doorway_that_can_be_open_by_then() -> None:
+def test_a_kidnapped_robot_may_be_put_into_a_doorway() -> None:
     (fault,) = read_faults("faults: {f: {kind: kidnapped_robot, robot: one, to: {x: 2, y: 0}}}", WORLD)
     assert fault.pose == (2.0, 0.0, 0.0)
 
 
-def test_topics_are_the_robots_unless_they_begin_with_a_slash() -> None:
+def test_topics_are_relative_to_the_robot_unless_absolute() -> None:
     text = "faults:\n  a: {kind: dead, robot: two, topic: scan}\n  b: {kind: dead, topic: /clock}\n"
     assert [fault.topic for fault in read_faults(text, WORLD)] == ["/two/scan", "/clock"]
 

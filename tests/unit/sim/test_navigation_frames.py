@@ -137,7 +137,7 @@ def believed(message: Any) -> tuple[float, float, float, float]:
     return (round(place.x, 3), round(place.y, 3), round(covariance[0], 6), round(covariance[35], 6))
 
 
-def test_the_pose_of_the_localisation_is_latched_and_told_again_after_25_cm_or_11_degrees() -> None:
+def test_the_estimated_pose_is_latched_and_published_after_25_cm_or_11_degrees() -> None:
     async def body(lab: Lab) -> None:
         first = heard(lab)
         await lab.clock.sleep(3.0)
@@ -184,7 +184,7 @@ def test_a_received_pose_keeps_its_covariance_until_it_is_corrected() -> None:
     in_world("empty", body)
 
 
-def test_the_pose_of_a_robot_with_a_name_is_below_it() -> None:
+def test_the_pose_of_a_robot_is_in_its_namespace() -> None:
     async def body(lab: Lab) -> None:
         name = lab.world.description.robots[0].namespace
         messages = heard(lab, f"/{name}/amcl_pose")

@@ -13,7 +13,7 @@ from jacaros.ros.qos import QoS
 from jacaros.sim import SimNode, World
 
 
-def test_the_map_comes_latched_and_by_service() -> None:
+def test_the_map_is_available_latched_and_as_a_service() -> None:
     async def body(lab: Lab) -> None:
         maps: list[Any] = []
         latched = QoS(durability="transient_local", depth=1)

@@ -49,7 +49,7 @@ def test_a_person_walks_to_the_end_of_its_path_and_stays_there() -> None:
     ]
 
 
-def test_a_loop_has_no_end_and_pauses_at_each_point() -> None:
+def test_a_loop_never_ends_and_pauses_at_each_point() -> None:
     flat = world("{name: ann, path: [[-2, 2], [2, 2], [2, 1]], speed: 2, pause: 1, loop: true}")
     flat.run(2.5)
     assert place(flat) == (2.0, 2.0)
@@ -66,7 +66,7 @@ def test_a_loop_has_no_end_and_pauses_at_each_point() -> None:
     ]
 
 
-def test_a_careful_person_stops_before_a_robot_and_goes_on_when_it_has_left() -> None:
+def test_a_careful_person_stops_before_a_robot_and_continues_when_it_leaves() -> None:
     flat = world("{name: ann, path: [[-2, 0], [2, 0]]}")
     flat.run(5.0)
     gap = -flat.people["ann"].x - 0.17 - 0.25
@@ -99,7 +99,7 @@ def test_a_careless_person_runs_into_a_robot_but_not_through_it() -> None:
     assert robot.touching == {"ann"}
 
 
-def test_a_robot_that_drives_into_a_person_is_held() -> None:
+def test_a_person_blocks_a_robot() -> None:
     flat = world("{name: ann, path: [[1, 0]]}")
     for _ in range(50):
         flat.command("a", 0.5, 0.0)
@@ -133,7 +133,7 @@ def test_lasers_see_people_as_circles() -> None:
     assert flat.scan("a")[180] == pytest.approx(5.0)
 
 
-def test_people_come_and_go_at_run_time() -> None:
+def test_people_can_be_added_and_removed_at_run_time() -> None:
     flat = World.load("empty")
     assert flat.people == {}
     flat.run(1.0)
@@ -150,7 +150,7 @@ def test_people_come_and_go_at_run_time() -> None:
     )
 
 
-def test_a_person_comes_neither_twice_nor_onto_a_robot() -> None:
+def test_a_person_cannot_be_added_twice_or_onto_a_robot() -> None:
     flat = world()
     with pytest.raises(UsageError, match="duplicate name of a person: 'ann'"):
         flat.add_person(PersonDescription("ann", ((1.0, 1.0),)))
@@ -188,7 +188,7 @@ def test_equal_runs_are_equal() -> None:
         ("{name: ann, path: [[1, 1], [4.8, 1]]}", "passes a wall at less than the radius of 0.25 m"),
     ],
 )
-def test_a_wrong_person_says_what_is_wrong(ann: str, message: str) -> None:
+def test_mistakes_in_people_are_reported(ann: str, message: str) -> None:
     with pytest.raises(WorldError) as caught:
         read_world(WORLD.replace(ANN, ann))
     assert message in str(caught.value)
@@ -197,11 +197,11 @@ def test_a_wrong_person_says_what_is_wrong(ann: str, message: str) -> None:
 def test_a_path_through_a_thin_wall_is_found() -> None:
     text = "walls: [{segment: [[0, -1], [0, 1]]}]\nrobots: [{pose: {x: 2}}]\n"
     text += "people: [{name: ann, path: [[-1, 0], [1, 0]]}]"
-    with pytest.raises(WorldError, match="nearer to a wall"):
+    with pytest.raises(WorldError, match="passes a wall"):
         read_world(text)
 
 
-def test_a_closed_door_on_a_path_is_no_mistake() -> None:
+def test_a_path_through_a_closed_door_is_valid() -> None:
     read_world(
         WORLD.replace("open: true", "open: false").replace(ANN, "{name: ann, path: [[3, 0], [4.7, 0]]}")
     )

@@ -66,7 +66,7 @@ def in_world(name: str, body: Callable[[Run], Awaitable[None]]) -> Run:
     return runs[0]
 
 
-def test_odometry_comes_twenty_times_a_second_with_pose_and_twist() -> None:
+def test_odometry_is_published_at_20_hz_with_pose_and_twist() -> None:
     async def body(run: Run) -> None:
         run.listen("/odom", "nav_msgs/msg/Odometry")
         await run.drive(2.0, 0.3, 0.5)
@@ -100,7 +100,7 @@ def test_the_robot_obeys_all_command_topics(topic: str) -> None:
     assert done.world.ground_truth.pose().x == pytest.approx(0.2 * 3.0, abs=0.04)
 
 
-def test_the_last_writer_wins() -> None:
+def test_the_last_command_wins() -> None:
     async def body(run: Run) -> None:
         await run.drive(1.0, 0.2)
         await run.drive(1.0, -0.3, topic="/cmd_vel_mux/input/navi")
@@ -108,7 +108,7 @@ def test_the_last_writer_wins() -> None:
     assert in_world("empty", body).world.robot().speed == pytest.approx(-0.3)
 
 
-def test_a_command_counts_from_its_moment_though_the_world_is_stepped_later() -> None:
+def test_a_command_takes_effect_at_its_time_although_the_world_is_stepped_later() -> None:
     async def body(run: Run) -> None:
         await run.clock.sleep(0.071)
         publisher = run.backend.publisher("/cmd_vel", TWIST)
@@ -119,7 +119,7 @@ def test_a_command_counts_from_its_moment_though_the_world_is_stepped_later() ->
     assert event.time == pytest.approx(0.06 + 0.52)
 
 
-def test_stepping_late_gives_the_same_run_as_stepping_at_once() -> None:
+def test_late_steps_give_the_same_run() -> None:
     done = in_world("patrol", lambda run: run.drive(4.0, 0.3, 0.4))
     direct = World.load("patrol")
     for _ in range(40):
@@ -128,7 +128,7 @@ def test_stepping_late_gives_the_same_run_as_stepping_at_once() -> None:
     assert done.world.ground_truth.digest() == direct.ground_truth.digest()
 
 
-def test_the_battery_comes_every_second_and_when_charging_changes() -> None:
+def test_the_battery_is_published_every_second_and_when_charging_changes() -> None:
     async def body(run: Run) -> None:
         run.world.robot().battery.level = 50.0
         run.listen("/battery_state", "sensor_msgs/msg/BatteryState")
@@ -145,7 +145,7 @@ def test_the_battery_comes_every_second_and_when_charging_changes() -> None:
     assert done.received[-1].percentage == 1.0
 
 
-def test_the_laser_is_computed_only_for_those_who_listen() -> None:
+def test_the_laser_is_computed_only_with_subscribers() -> None:
     async def quiet(run: Run) -> None:
         await run.clock.sleep(1.0)
 
@@ -163,7 +163,7 @@ def test_the_laser_is_computed_only_for_those_who_listen() -> None:
     assert scan.angle_min + 180 * scan.angle_increment == pytest.approx(0.0)
 
 
-def test_transforms_come_only_for_those_who_listen() -> None:
+def test_transforms_are_published_only_with_subscribers() -> None:
     async def body(run: Run) -> None:
         run.listen("/tf", "tf2_msgs/msg/TFMessage")
         await run.clock.sleep(1.0)
@@ -186,7 +186,7 @@ def test_two_robots_differ_by_their_namespaces() -> None:
     assert done.received[0].child_frame_id == "robot_1/base_footprint"
 
 
-def test_a_cleaning_task_on_the_topic_is_logged_where_the_robot_truly_is() -> None:
+def test_a_cleaning_task_on_the_topic_is_recorded_with_the_true_pose() -> None:
     async def body(run: Run) -> None:
         await run.drive(2.0, 0.3)
         publisher = run.backend.publisher("/cleaning/task", "std_msgs/msg/String")
@@ -198,7 +198,7 @@ def test_a_cleaning_task_on_the_topic_is_logged_where_the_robot_truly_is() -> No
     assert event.x == pytest.approx(0.6, abs=0.1)
 
 
-def test_a_closed_node_stops_the_world_where_it_is() -> None:
+def test_a_closed_node_stops_the_world() -> None:
     async def body(run: Run) -> None:
         await run.drive(1.0, 0.2)
         run.node.close()
@@ -240,7 +240,7 @@ class HeldUpClock:
         return when
 
 
-def test_a_world_that_was_held_up_catches_up_without_a_burst_of_messages() -> None:
+def test_a_blocked_world_catches_up_without_a_burst_of_messages() -> None:
     clock, world, received = HeldUpClock(), World.load("empty"), []
 
     async def main() -> None:
@@ -275,7 +275,7 @@ def test_served_worlds_write_their_ground_truth_and_it_reads_back_the_same(tmp_p
     assert records[-1] == {"kind": "end", "time": 5.0}
 
 
-def test_the_ground_truth_is_on_disk_while_the_world_runs_and_a_cut_off_line_is_forgiven(
+def test_the_ground_truth_is_on_disk_during_the_run_and_a_truncated_line_is_skipped(
     tmp_path: Path,
 ) -> None:
     path, world = tmp_path / "truth.jsonl", World.load("empty")
@@ -302,7 +302,7 @@ def test_a_served_world_stops_cleanly_on_a_signal(tmp_path: Path, number: signal
     assert json.loads(path.read_text().splitlines()[-1])["kind"] == "end"
 
 
-def test_the_time_of_the_world_goes_to_clock() -> None:
+def test_the_time_of_the_world_is_published_on_clock() -> None:
     times: list[float] = []
     clock = VirtualClock()
 

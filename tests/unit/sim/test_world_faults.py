@@ -45,7 +45,7 @@ def states(world: World) -> list[tuple[float, str]]:
     return [(event.time, event.data["state"]) for event in world.ground_truth.events_of("fault")]
 
 
-def test_a_fault_begins_and_ends_at_its_times() -> None:
+def test_a_fault_starts_and_ends_on_schedule() -> None:
     world = world_with("{kind: wheel_slip, share: 0.5, at: 1, for: 2}")
     drive(world, 4.0)
     assert states(world) == [(1.0, "begins"), (3.0, "ends")]
@@ -53,7 +53,7 @@ def test_a_fault_begins_and_ends_at_its_times() -> None:
     assert (first.robot, first.data["fault"], first.data["kind"]) == ("turtlebot", "f", "wheel_slip")
 
 
-def test_slipping_wheels_roll_farther_than_the_robot_drives() -> None:
+def test_slipping_wheels_turn_farther_than_the_robot_drives() -> None:
     world = world_with("{kind: wheel_slip, share: 0.4, at: 0}")
     drive(world, 5.0)
     robot = world.robot()
@@ -70,7 +70,7 @@ def test_a_robot_with_a_blocked_wheel_turns_round_it(wheel: str, turns: int) -> 
     assert robot.odometry.yaw == pytest.approx(robot.yaw), "the wheels are what odometry counts"
 
 
-def test_a_robot_with_two_blocked_wheels_stands() -> None:
+def test_a_robot_with_two_blocked_wheels_does_not_move() -> None:
     world = world_with("{kind: blocked_wheel, at: 0, for: 1.1}")
     drive(world, 1.0)
     assert world.robot().pose == (0, 0, 0)
@@ -126,7 +126,7 @@ def test_a_person_comes_and_goes() -> None:
     assert world.people == {}
 
 
-def test_faults_begin_and_end_on_command() -> None:
+def test_faults_can_be_started_and_ended() -> None:
     world = world_with("{kind: blocked_wheel}")
     world.run(1.0)
     assert world.faults.at_work == []
@@ -211,7 +211,7 @@ def test_a_frozen_sensor_repeats_itself_with_new_stamps() -> None:
     assert len(set(stamps)) == len(stamps)
 
 
-def test_a_sensor_tells_nonsense() -> None:
+def test_a_nan_sensor_publishes_nan() -> None:
     scans = heard("{kind: nan, topic: /scan, at: 1, for: 1}", *SCAN)
     wrong = [all(math.isnan(each) for each in scan.ranges) for _, scan in scans]
     assert wrong == [1.0 < time <= 2.0 for time, _ in scans]
@@ -313,7 +313,7 @@ def test_a_stuck_door_does_not_move_and_the_reply_has_the_reason() -> None:
     assert door_replies("{kind: stuck_door, door: kitchen, at: 2}", [False, True]) == [(True, "")] * 2
 
 
-def test_a_door_is_stuck_for_a_share_of_the_requests() -> None:
+def test_a_stuck_door_fails_a_share_of_the_requests() -> None:
     replies = door_replies("{kind: stuck_door, door: kitchen, share: 0.25, at: 0}", [False, True] * 40)
     failed = [success for success, _ in replies].count(False)
     assert 5 <= failed <= 35
@@ -345,7 +345,7 @@ def test_a_kidnapped_robot_is_lost_until_it_receives_its_pose() -> None:
     in_graph("{kind: kidnapped_robot, to: {x: 1, y: -2}, at: 1}", body)
 
 
-def test_a_fault_from_the_beginning_is_in_the_file(tmp_path: Path) -> None:
+def test_a_fault_that_starts_with_the_world_is_in_the_file(tmp_path: Path) -> None:
     world, path = world_with("{kind: blocked_wheel, at: 0}"), tmp_path / "truth.jsonl"
     with GroundTruthFile(path, world, 0.0):
         world.run(1.0)
