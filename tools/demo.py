@@ -49,7 +49,7 @@ def summarise(recording: Recording, took: float) -> None:
     """Print what the robot did, as the world saw it."""
     frames = recording.frames
     levels = [frame.robots[0][3] for frame in frames]
-    # Turning on the spot in the dock, it stands there a moment more, nearly full: that is no recharge.
+    # A robot that turns on the spot in the dock stays a moment longer, nearly full: this does not count as a recharge.
     charges = sum(1 for _, kind, data in recording.events if kind == "charging" and data["level"] < 50)
     bumps = sum(1 for _, kind, _ in recording.events if kind in ("bump", "collision"))
     print(f"""

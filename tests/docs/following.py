@@ -26,7 +26,7 @@ from typing import Any
 from pages import Block, blocks, is_file
 
 PATIENCE = 150.0
-"""Seconds after which what should come is given up; its being late is no mistake."""
+"""Time limit in seconds for expected output; slow output is not an error."""
 
 MEMORY = "memory"
 KINDS = (MEMORY, "ros1", "ros2")
@@ -125,7 +125,7 @@ class Command:
 
 
 class Reader:
-    """Somebody who follows a page in a folder; a context manager, since terminals are closed in the end.
+    """A user who follows a page in a folder; a context manager that closes the terminals at the end.
 
     Args:
         folder: where the reader is.

@@ -1,8 +1,8 @@
 """A live view of a run in the terminal: a map of braille dots with the robots, batteries, goals and output.
 
-It goes to standard error, ten pictures a second on the wall at most and never for more than a tenth of the
-time, so that it does not slow a virtual run, which may do hundreds of seconds between two pictures.  Where
-standard error is no terminal, it is a line now and then.
+It is drawn on standard error, at most ten times per second of real time and for at most a tenth of the time, so that it
+does not slow a virtual run, which may simulate hundreds of seconds between two pictures. Without a terminal, it prints
+plain lines at intervals.
 """
 
 import io

@@ -125,7 +125,7 @@ class Planner:
         return best
 
     def _straighten(self, points: list[Point], weights: Sequence[float]) -> list[Point]:
-        """Remove points between which the straight line is no worse."""
+        """Remove points where the straight line costs at most the same."""
         costs = [0.0]
         for before, after in itertools.pairwise(points):
             cost = self._line_cost(before, after, weights)
