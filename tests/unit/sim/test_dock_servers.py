@@ -65,7 +65,7 @@ def test_the_actions_of_a_turtlebot_4() -> None:
             await lab.do("/undock", "irobot_create_msgs/action/Undock")
         docking = await lab.send("/dock", "irobot_create_msgs/action/Dock")
         await lab.clock.sleep(1.0)
-        with pytest.raises(GoalRejected, match="/dock is at work"):
+        with pytest.raises(GoalRejected, match="/dock is running"):
             await lab.do("/dock", "irobot_create_msgs/action/Dock")
         assert (await docking.outcome()).result.is_docked
         with pytest.raises(GoalRejected, match="already docked"):
