@@ -41,7 +41,7 @@ def test_a_newer_goal_preempts_goals_of_other_actions_too() -> None:
 
 
 async def occupied(lab: Lab, name: str, type_name: str, **fields: Any) -> None:
-    """Send a goal that is accepted and aborted, because another navigator is at work."""
+    """Send a goal that is accepted and aborted, because another navigator is running."""
     outcome = await lab.do(name, type_name, **fields)
     assert outcome.status == GoalStatus.ABORTED
     assert "is running; cancel that goal first" in outcome.text
