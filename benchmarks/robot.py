@@ -1,4 +1,4 @@
-"""What a robot asks of its agent: how soon, how often, how much of a core, and what comes first in a burst.
+"""What a robot demands of its agent: latency, rate, load, and order in a burst.
 
     robot.py [--json FILE] [NAME ...]
 

@@ -1,4 +1,4 @@
-"""How the cost of a look-up, an event, a message grows with what else there is."""
+"""How the cost of a look-up, an event or a message grows with the size of its surroundings."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -53,7 +53,7 @@ def taking_turns(size: int) -> Workload:
 
 
 def messages(size: int) -> Workload:
-    """Messages between a hub and *size* other agents, by turns."""
+    """Messages between a hub and *size* other agents, in turn."""
     agents = (("spoke", "spoke", size), ("hub", "hub", 1))
     return Workload(f"messages, {size:,} agents", agents, 20_000, lambda n, k: n, k=size)
 
