@@ -1,4 +1,4 @@
-"""Commands that the documentation only shows (set-up, real robots) name what there is."""
+"""Commands that the documentation only shows (setup, real robots) name existing things."""
 
 import re
 import shlex

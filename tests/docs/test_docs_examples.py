@@ -22,7 +22,7 @@ def test_the_commands_of_a_page_print_what_it_says(page: Path, tmp_path: Path) -
 
 @pytest.mark.parametrize("page", PAGES, ids=name_of)
 def test_every_block_of_a_page_has_a_known_purpose(page: Path) -> None:
-    """A program that is neither run nor an excerpt could be wrong without anybody noticing."""
+    """A program that is neither run nor an excerpt could be wrong without being noticed."""
     for block in blocks(page):
         where = f"{name_of(page)}:{block.line}"
         assert block.language in LANGUAGES, f"{where}: language {block.language!r}"

@@ -1,4 +1,4 @@
-"""The page about the layout of programs shows what `jacaros fmt` makes."""
+"""The page about the layout of programs shows the output of `jacaros fmt`."""
 
 from pages import ROOT, blocks
 

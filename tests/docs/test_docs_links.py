@@ -1,4 +1,4 @@
-"""Links lead somewhere, pictures are there, and the documentation is complete."""
+"""Links have targets, pictures exist, and the documentation is complete."""
 
 import re
 from pathlib import Path
@@ -9,7 +9,7 @@ from pages import PAGES, ROOT, links, name_of
 
 
 def anchors(page: Path) -> set[str]:
-    """What can stand behind a # in a link to *page*."""
+    """Return the anchors in links to *page*."""
     found = set()
     for heading in re.findall(r"^#+ +(.+)$", page.read_text(encoding="utf-8"), flags=re.MULTILINE):
         words = re.sub(r"[^\w\- ]", "", heading.lower().replace("`", ""))

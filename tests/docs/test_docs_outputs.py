@@ -1,4 +1,4 @@
-"""Every example that stands with its output prints exactly that."""
+"""Every example with an output prints exactly that output."""
 
 import difflib
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""The reference pages that follow from the code are up to date."""
+"""The generated reference pages are up to date."""
 
 import subprocess
 import sys

@@ -1,4 +1,4 @@
-"""The repository as an ament_python package: what colcon would ask of it, without colcon."""
+"""The repository as an ament_python package: what colcon would require, without colcon."""
 
 import ast
 import shutil

@@ -1,4 +1,4 @@
-"""The engines of the benchmarks are run in processes of their own, and what they tell is understood."""
+"""The engines of the benchmarks run in separate processes, and their output is parsed."""
 
 import sys
 from pathlib import Path

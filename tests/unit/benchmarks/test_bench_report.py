@@ -1,4 +1,4 @@
-"""The report of the benchmarks: what stands in its tables, which goals are met."""
+"""The report of the benchmarks: the content of its tables, and the goals that are met."""
 
 import json
 import runpy
@@ -24,7 +24,7 @@ def workload(name: str, **rest: Any) -> Workload:
 
 
 def outcomes(engine: str, each: Workload, n: int) -> dict[str, Any]:
-    """What an engine would tell."""
+    """Return the output of an engine."""
     if engine == OURS:
         calls = CALLS[each.name.partition(" ")[0]] * n
         return {"seconds": calls * 1e-8, "calls": calls, "megabytes": 20.0, "results": ["7"]}

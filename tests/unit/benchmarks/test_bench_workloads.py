@@ -1,4 +1,4 @@
-"""Every benchmark program does its work, and as many units of it as the table says."""
+"""Every benchmark program does its work, with as many units as in the table."""
 
 from collections.abc import Iterator
 from dataclasses import replace

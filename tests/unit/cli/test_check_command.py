@@ -127,7 +127,7 @@ def test_unreadable_files_are_reported(folder: Path, capsys: pytest.CaptureFixtu
     ("arguments", "told"),
     [
         (["godo.asl"], "did you mean `good.asl`?"),
-        (["good.asl", "--ignore", "nonsense"], "unknown code nonsense"),
+        (["good.asl", "--ignore", "nonsense"], "unknown code: `nonsense`"),
         (
             ["notes.txt"],
             "unsupported file type: `notes.txt`\n  = help: expected .asl, .mas2j, .jcm, .py, .yaml, .yml",

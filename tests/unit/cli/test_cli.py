@@ -1,4 +1,4 @@
-"""The command line: exit codes, outputs, and what it tells about mistakes."""
+"""The command line: exit codes, outputs and errors."""
 
 import json
 import signal
@@ -21,7 +21,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def outcome(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str, str]:
-    """Exit code, standard output and standard error output of a command."""
+    """Return exit code, standard output and standard error output of a command."""
     code = call(list(arguments))
     captured = capsys.readouterr()
     return code, captured.out, captured.err
@@ -202,7 +202,7 @@ NOT_FOR_A_LONE_PROGRAM = (
     # of the middleware a run needs only the owner of its signals, jacaros.ros.lifetime
     *("jacaros.ros.backend", "jacaros.ros.message", "jacaros.ros.node", "jacaros.ros.open"),
 )
-"""What a program that talks to no robot does not wait for at its start."""
+"""Modules that a program without robots must not import at start."""
 
 
 def test_a_program_without_robots_loads_only_what_it_needs(folder: Path) -> None:

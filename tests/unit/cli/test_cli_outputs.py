@@ -1,4 +1,4 @@
-"""Files of outputs are checked before the run."""
+"""Output files are checked before the run."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""What `jacaros ros map` writes of topics, services and actions of many types; none of it needs editing to be right."""
+"""Mapping files written by `jacaros ros map` for topics, services and actions of many types; none needs editing."""
 
 from pathlib import Path
 
@@ -41,7 +41,7 @@ def info(type_name: str) -> TopicInfo:
 
 
 def checked(types: StoredInterfaces, *entries: Entry) -> str:
-    """The text of the entries, which must be right at once."""
+    """Return the text of the entries, which must be valid."""
     lines = []
     for section in dict.fromkeys(entry.section for entry in entries):
         lines.append(f"{section}:")

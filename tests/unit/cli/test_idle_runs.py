@@ -1,4 +1,4 @@
-"""Runs that have nothing left to do, and runs that lost a goal: what they log, and their exit codes."""
+"""Idle runs, and runs that lost a goal: log lines and exit codes."""
 
 from pathlib import Path
 
@@ -27,7 +27,7 @@ class EndingConsole(RunResult):
 
 
 def notes(folder: Path, program: str, name: str = "robot.asl", seconds: float = 50.0) -> list[str]:
-    """The notes of a run of some seconds that ends at the first one."""
+    """Return the notes of a run of several seconds that ends at the first one."""
     file = folder / name
     file.write_text(program, encoding="utf-8")
     console = EndingConsole()

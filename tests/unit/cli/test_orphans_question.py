@@ -21,12 +21,12 @@ class Terminal:
         self.shown = ""
 
     def attach(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        """Make it the terminal of this process; in the test itself, since pytest sets the streams before."""
+        """Make it the terminal of this process; in the test itself, because pytest replaces the streams before."""
         for name, stream in zip(("stdin", "stderr"), self._streams, strict=True):
             monkeypatch.setattr(sys, name, stream)
 
     async def read_until(self, text: str) -> None:
-        """Wait until the terminal shows *text* behind what was read before."""
+        """Wait until the terminal shows *text* after what was read before."""
         loop = asyncio.get_running_loop()
         self.shown = ""
         while text not in self.shown:

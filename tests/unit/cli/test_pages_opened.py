@@ -1,4 +1,4 @@
-"""When a page is opened in the user's browser, and what is printed about it."""
+"""When a page is opened in the user's browser, and what is logged about it."""
 
 import sys
 import webbrowser
@@ -12,7 +12,7 @@ PAGE = "http://localhost:1/token/"
 
 @pytest.fixture
 def opened(monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    """The pages that were opened; the user sits at a terminal of a desktop."""
+    """The opened pages; the user sits at a terminal of a desktop."""
     found: list[str] = []
     monkeypatch.setattr(webbrowser, "open", found.append)
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)

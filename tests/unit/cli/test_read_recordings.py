@@ -1,4 +1,4 @@
-"""What commands print of recordings that are not whole."""
+"""Warnings of commands about incomplete recordings."""
 
 import gzip
 import json

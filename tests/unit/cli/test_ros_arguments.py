@@ -1,4 +1,4 @@
-"""What ``ros2 run``, launch files, rosrun and roslaunch add to a command line is understood."""
+"""Arguments added by ``ros2 run``, launch files, rosrun and roslaunch are translated."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""The options about the view, and ``jacaros view``: what is refused before anything runs."""
+"""The options of the view, and ``jacaros view``: checks before the run."""
 
 import sys
 from pathlib import Path
@@ -16,14 +16,14 @@ PROGRAM = "!start. +!start <- .print(hello); .stopMAS."
 
 @pytest.fixture
 def program(tmp_path: Path) -> Path:
-    """A program that ends by itself."""
+    """A program that ends."""
     path = tmp_path / "hello.asl"
     path.write_text(PROGRAM)
     return path
 
 
 def refused(command: object, *arguments: str) -> str:
-    """Why a command line is refused."""
+    """Return the error for a command line."""
     with pytest.raises(UsageError) as error:
         CliRunner().invoke(command, arguments, catch_exceptions=False, standalone_mode=False)  # type: ignore[arg-type]
     return str(error.value)

@@ -1,4 +1,4 @@
-"""The end of a run that is seen on a live page: pages receive all of it, and it does not take long."""
+"""The end of a run shown on a live page: pages receive all of it, and it does not take long."""
 
 import asyncio
 import re

@@ -1,4 +1,4 @@
-"""What a graph tells of its world: drawn maps, and robots as they are seen."""
+"""The world as seen in a graph: drawn maps and perceived robots."""
 
 import json
 import math

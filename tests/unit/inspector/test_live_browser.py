@@ -1,4 +1,4 @@
-"""The server of live pages against a real browser: what reaches the run, and who is kept out."""
+"""The server of live pages with a real browser: what reaches the run, and who is kept out."""
 
 import asyncio
 import json
@@ -44,7 +44,7 @@ async def connected(page: Page, address: str) -> None:
 
 
 async def counts_on(mas: Mas) -> None:
-    """Wait until the agent has counted on."""
+    """Wait until the agent has continued to count."""
     found = mas.agent("bob").ask("counted(N)")
     until = (found["N"] if found is not None else 0) + 10
     async with asyncio.timeout(PATIENCE):

@@ -1,4 +1,4 @@
-"""What one page receives: bounded, newest-only where that is enough, and complete again after it was too slow."""
+"""The records for one page: bounded, newest-only where that is enough, and complete again after the page was too slow."""
 
 import json
 from typing import Any
@@ -20,7 +20,7 @@ def event(number: int, name: str, /, **data: object) -> LiveRecord:
 
 
 def received(delivery: Delivery) -> list[Any]:
-    """All records and notes that wait, in their order."""
+    """Return all waiting records and notes, in order."""
     found: list[Any] = []
     while (message := delivery.take()) is not None:
         content = json.loads(message)
@@ -39,7 +39,7 @@ def robot(x: float) -> RobotView:
 
 
 def shown() -> tuple[LiveView, Delivery]:
-    """A view, and what a page that came at the beginning receives."""
+    """A view, and the records of a page connected from the beginning."""
     view = LiveView("lab", Commands())
     delivery = view.begin()
     assert names(received(delivery)) == ["hello"]

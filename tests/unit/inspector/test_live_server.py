@@ -37,13 +37,13 @@ def serving(test: Callable[[Mas, str], Awaitable[None]], program: str = COUNTS) 
 
 
 def counted(mas: Mas) -> int:
-    """How far the agent has counted."""
+    """Return the agent's count."""
     found = mas.agent("bob").ask("counted(N)")
     return found["N"] if found is not None else -1
 
 
 async def counts_on(mas: Mas, steps: int = 5) -> None:
-    """Wait until the agent has counted on; fails when the run is held up."""
+    """Wait until the agent has continued to count; fail if the run is blocked."""
     until = counted(mas) + steps
     async with asyncio.timeout(PATIENCE):
         await mas.agent("bob").until(f"counted(N) & N >= {until}")

@@ -1,4 +1,4 @@
-"""Objects and cliffs on the still picture and in what the replay page is given."""
+"""Objects and cliffs on the still picture and in the data of the replay page."""
 
 from jacaros.inspector.page import records
 from jacaros.inspector.picture import picture_svg

@@ -1,4 +1,4 @@
-"""People in the terminal and on the still picture: where their last event tells, straight on since then."""
+"""People in the terminal and on the still picture, extrapolated from their last event."""
 
 import io
 from typing import Any

@@ -1,4 +1,4 @@
-"""Dirt and furniture on the still picture: as much dirt as is left at the end, furniture in its colour."""
+"""Dirt and furniture on the still picture: the remaining dirt at the end, and furniture in its colour."""
 
 from jacaros.inspector.page import records
 from jacaros.inspector.picture import picture_svg

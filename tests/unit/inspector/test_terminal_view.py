@@ -1,4 +1,4 @@
-"""The terminal view: what it draws, how seldom, and what it does without a terminal."""
+"""The terminal view: its pictures, their rate, and its output without a terminal."""
 
 import io
 import os

@@ -1,4 +1,4 @@
-"""Which files of a folder are counted, and as what."""
+"""The files of a folder that are counted, and their groups."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -169,7 +169,7 @@ def test_programs_in_folders_with_equal_names_are_named_by_path(tmp_path: Path) 
 
 
 def test_an_included_file_is_read_in_the_context_of_its_program(tmp_path: Path) -> None:
-    """Alone it has an error: only the project says where the file is that it includes."""
+    """Alone, the program has an error: only the project knows the folder of its included file."""
     files = {
         "a.jcm": "mas a { agent a asl-path: shared, parts }\n",
         "shared/a.asl": '{ include("b.asl") }\n!go.\n+!go.\n',

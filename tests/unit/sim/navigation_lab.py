@@ -1,4 +1,4 @@
-"""A world on the memory graph, and goals for its robots, judged by what truly happens."""
+"""A world on the memory graph, and goals for its robots, checked against the ground truth."""
 
 import math
 from collections.abc import Awaitable, Callable

@@ -1,4 +1,4 @@
-"""The camera of a robot: what its images show, judged by where things are."""
+"""The camera of a robot: its images, checked against the positions of objects."""
 
 import math
 from array import array
@@ -34,7 +34,7 @@ def depth(image: Any, column: int, row: int) -> float:
 
 
 def column_of(x: float, y: float) -> int:
-    """The column in which a robot at the origin sees a point."""
+    """Return the column in which a robot at the origin sees a point."""
     return round(WIDTH / 2 - FOCAL_LENGTH * y / x - 0.5)
 
 

@@ -1,4 +1,4 @@
-"""Dirt and the tools that remove it: how much, where, of which kind, and what the ground truth says."""
+"""Dirt and the tools that remove it: amounts, places, kinds, and the ground truth."""
 
 import math
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Cliffs: robots that drive over one fall, and their sensors see it before."""
+"""Cliffs: robots that drive over one fall, and their sensors detect it before."""
 
 from collections.abc import Awaitable, Callable
 from typing import Any

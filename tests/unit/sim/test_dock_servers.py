@@ -1,4 +1,4 @@
-"""Robots dock and undock by the actions of Nav2 and of the TurtleBots, and tell of bumps."""
+"""Robots dock and undock with the actions of Nav2 and of the TurtleBots, and publish bumps."""
 
 import math
 from typing import Any

@@ -1,4 +1,4 @@
-"""Doors: walls that come and go, in the world, in the graph, and on the way of a robot."""
+"""Doors in the world, in the graph, and on the path of a robot."""
 
 import math
 from typing import Any

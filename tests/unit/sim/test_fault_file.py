@@ -1,4 +1,4 @@
-"""Fault files: all mistakes at once, each with its place and what to write."""
+"""Fault files: all mistakes in one pass, each with its location and a suggested fix."""
 
 from pathlib import Path
 

@@ -50,7 +50,7 @@ def test_the_sonar_detects_another_robot() -> None:
 
 
 def by_many_rays(segments: list[Segment], circles: list[Circle]) -> float:
-    """The nearest hit of many rays of the cone, from the origin along x."""
+    """Return the nearest hit of many rays of the cone, from the origin along x."""
     nearest = math.inf
     for number in range(2001):
         angle = FIELD * (number / 2000 - 0.5)

@@ -1,4 +1,4 @@
-"""Maps of map_server as worlds, and worlds as such maps."""
+"""Maps of map_server as worlds, and worlds as maps."""
 
 import itertools
 import math

@@ -1,4 +1,4 @@
-"""Robots that drive to goals: through the actions of the graph, judged by what truly happens."""
+"""Robots that drive to goals of the graph's actions, checked against the ground truth."""
 
 import math
 import os

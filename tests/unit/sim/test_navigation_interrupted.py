@@ -1,4 +1,4 @@
-"""Goals that do not have their way: cancelled, taken over, without power, and with robots in the way."""
+"""Interrupted goals: cancelled, preempted, without power, and with robots in the way."""
 
 import asyncio
 from typing import Any
@@ -188,7 +188,7 @@ robots:
     "x", [pytest.param(-1.6, id="closed from the beginning"), pytest.param(1.5, id="seen on the way")]
 )
 def test_a_detour_is_abandoned_when_the_obstacles_have_gone(x: float, they_go: bool) -> None:
-    """Between the racks it is 6.4 metres to the goal, round them 8.9 or, for who turns back, 12."""
+    """Between the racks it is 6.4 metres to the goal, around them 8.9, or 12 after turning back."""
 
     async def body(lab: Lab) -> None:
         first = await lab.send("/one/navigate_to_pose", NAVIGATE, pose=pose(3.2, 0))

@@ -1,4 +1,4 @@
-"""What a robot that drives by itself offers to the graph: the map and its servers, unless switched off."""
+"""The map and the servers of a navigating robot, unless they are disabled."""
 
 import math
 from typing import Any

@@ -1,4 +1,4 @@
-"""Robots that drive among people: round them, or waiting for them."""
+"""Robots among people: they drive around them or wait."""
 
 from navigation_lab import NAVIGATE, Lab, bumps, in_world, near, pose
 

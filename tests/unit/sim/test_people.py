@@ -1,4 +1,4 @@
-"""People who walk through a world: their ways, what they stop for, and what robots notice of them."""
+"""People who walk through a world: their paths, what stops them, and how robots perceive them."""
 
 import math
 

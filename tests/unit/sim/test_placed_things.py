@@ -1,4 +1,4 @@
-"""Changes of a running world: robots that are put elsewhere, obstacles, batteries."""
+"""Changes of a running world: moved robots, obstacles, batteries."""
 
 import math
 

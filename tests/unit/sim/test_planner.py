@@ -1,4 +1,4 @@
-"""Planning: against a search without any cleverness, against the walls, and the reasons when there is no way."""
+"""Planning: checked against a simple search and against the walls; reasons when there is no path."""
 
 import heapq
 import itertools
@@ -29,7 +29,7 @@ SHIPPED = ["empty", "house", "patrol", "two_robots"]
 
 
 def from_wall(x: float, y: float, walls: Sequence[Segment]) -> float:
-    """Distance to the nearest wall, all of them tried."""
+    """Return the distance to the nearest wall, by trying all of them."""
     nearest = math.inf
     for ax, ay, bx, by in walls:
         dx, dy = bx - ax, by - ay

@@ -1,4 +1,4 @@
-"""The world as a ROS node: topics, rates, commands, several robots, and the process of its own."""
+"""The world as a ROS node: topics, rates, commands, several robots, and the separate process."""
 
 import json
 import math
@@ -24,7 +24,7 @@ TWIST = "geometry_msgs/msg/Twist"
 
 
 class Run:
-    """A world on the memory backend and a virtual clock, with what was received."""
+    """A world on the memory backend and a virtual clock, with the received messages."""
 
     def __init__(self, world: World, backend: Backend, clock: VirtualClock) -> None:
         self.world, self.backend, self.clock = world, backend, clock
@@ -208,7 +208,7 @@ def test_a_closed_node_stops_the_world() -> None:
 
 
 class HeldUpClock:
-    """A wall clock whose timers come when the test says so."""
+    """A wall clock whose timers fire when the test says so."""
 
     virtual = False
 
@@ -233,7 +233,7 @@ class HeldUpClock:
         raise AssertionError
 
     def fire(self, late: float = 0.0) -> float:
-        """Call the next timer, *late* seconds after its time; gives the time it was set for."""
+        """Call the next timer, *late* seconds after its time; return that time."""
         when, callback = self.timers.pop(0)
         self.time = max(self.time, when + late)
         callback()
@@ -322,7 +322,7 @@ def test_the_time_of_the_world_is_published_on_clock() -> None:
 
 
 class Sonar:
-    """A sensor of a project: how far the robot is from the origin."""
+    """A sensor of a project: the distance of the robot from the origin."""
 
     def __init__(self, at: RobotOnGraph) -> None:
         self._at = at

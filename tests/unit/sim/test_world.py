@@ -188,7 +188,7 @@ def test_driving_through_a_dock_does_not_charge() -> None:
 
 
 def test_charging_starts_immediately_in_the_dock() -> None:
-    """In between it told that it was full, with 20 % in the battery."""
+    """In between it reported a full battery at 20 %."""
     world = docking_world(0.2)
     for _ in range(50):
         world.step()

@@ -1,4 +1,4 @@
-"""Faults of the world: what they do, when, and what the ground truth says of them."""
+"""Faults of the world: their effects, their times, and the ground truth about them."""
 
 import hashlib
 import json
@@ -155,7 +155,7 @@ def test_the_same_seed_gives_the_same_faults() -> None:
 
 
 def heard(faults: str, topic: str, type_name: str, seconds: float = 3.0) -> list[tuple[float, Any]]:
-    """What comes on a topic, with the time."""
+    """Return the messages of a topic, with their times."""
     found: list[tuple[float, Any]] = []
 
     async def body(backend: Backend, clock: VirtualClock) -> None:
@@ -254,7 +254,7 @@ def test_a_fault_of_an_unknown_topic_is_reported() -> None:
 
 
 def outcomes(fault: str, begins: list[float]) -> list[tuple[float, str, str]]:
-    """When goals end that begin at some times, how, and why."""
+    """Return when goals started at given times end, how, and why."""
     ended: list[tuple[float, str, str]] = []
 
     async def body(backend: Backend, clock: VirtualClock) -> None:
@@ -289,7 +289,7 @@ def test_a_share_of_the_goals_is_aborted() -> None:
 
 
 def door_replies(fault: str, requests: list[bool]) -> list[tuple[bool, str]]:
-    """What the service of a door that is open at first replies to requests to open (True) or close it."""
+    """Return the replies of the service of an open door to requests to open (True) or close it."""
     replies: list[tuple[bool, str]] = []
 
     async def body(backend: Backend, clock: VirtualClock) -> None:

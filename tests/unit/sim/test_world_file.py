@@ -1,4 +1,4 @@
-"""World files: what they say, and what is wrong with them, all at once and with lines."""
+"""World files: their content, and all mistakes in one pass, with lines."""
 
 import math
 from pathlib import Path

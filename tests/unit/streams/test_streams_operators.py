@@ -63,7 +63,7 @@ def streams(count: int) -> st.SearchStrategy[list[Event]]:
 
 
 class Run:
-    """A pattern, with what it has emitted."""
+    """A pattern, with its outputs."""
 
     def __init__(self, spec: Spec) -> None:
         self.now = 0.0
@@ -71,7 +71,7 @@ class Run:
         self.pattern = Pattern(spec, 0.0, lambda kind, values: self.outputs.append((kind, self.now)))
 
     def until(self, time: float) -> None:
-        """Look at it whenever it wants to."""
+        """Advance the pattern at each deadline."""
         while self.pattern.deadline <= time:
             self.now = self.pattern.deadline
             self.pattern.advance(self.now)
@@ -79,7 +79,7 @@ class Run:
 
     @property
     def occurred(self) -> list[float]:
-        """When something occurred."""
+        """Times of occurrences."""
         return [time for kind, time in self.outputs if kind == OCCUR]
 
 
@@ -93,7 +93,7 @@ def _same(one: Values | None, other: Values | None) -> bool:
 
 
 def _close_call(spec: Spec, past: list[Event], now: float) -> bool:
-    """Whether the share is so near to the limit that rounding decides."""
+    """Return whether the share is so near to the limit that rounding decides."""
     return (
         spec.operator == "share"
         and "at_least" in spec.options

@@ -1,4 +1,4 @@
-"""Stays in docks, from what truly happened."""
+"""Stays in docks, from the ground truth."""
 
 from jacaros.sim import GroundTruth, World
 from jacaros.testing import Verdict

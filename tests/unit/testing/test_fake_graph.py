@@ -1,4 +1,4 @@
-"""Tests of agents with mappings: messages and services that the test plays, and what the agents published and asked."""
+"""Tests of agents with mapping files: messages and services played by the test, publications and requests of the agents."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -53,7 +53,7 @@ def files(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def run(files: Path) -> Run:
-    """Runs tests with the bodies given; each has the mapping."""
+    """Runs tests with the given bodies; each has the mapping."""
 
     def run_tests(
         *bodies: str, label: str = '[test, mapping("robot.yaml")]', **options: object

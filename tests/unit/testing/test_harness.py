@@ -1,4 +1,4 @@
-"""The harness that puts one agent into the hands of a Python test."""
+"""The harness that puts one agent under the control of a Python test."""
 
 from collections.abc import Callable
 from pathlib import Path

@@ -26,7 +26,7 @@ def test_the_nearest_point_of_a_segment(x: float, y: float, far: float) -> None:
 
 
 def path_of(*commands: tuple[float, float, float]) -> list[Sample]:
-    """The path of a robot that is commanded speed and turn rate for some seconds each."""
+    """Return the path of a robot with a speed and turn rate for several seconds each."""
     world = World.load("empty")
     for speed, turn_rate, seconds in commands:
         for _ in range(round(seconds / 0.1)):

@@ -1,4 +1,4 @@
-"""What counts as a test, and where tests are looked for."""
+"""What counts as a test, and where tests are searched."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -15,7 +15,7 @@ PASSES = "@passes[test] +!passing <- !assert_true(true)."
 
 @pytest.fixture
 def write(tmp_path: Path) -> Write:
-    """Writes a file, and gives its path."""
+    """Writes a file and returns its path."""
 
     def write_file(name: str, text: str = PASSES) -> Path:
         path = tmp_path / name
