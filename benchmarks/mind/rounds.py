@@ -99,7 +99,7 @@ def row_of(workload: Workload, figures: Figures, engines: Sequence[str]) -> dict
 
 
 def _peer(workload: Workload, figures: Figures, engine: str) -> dict[str, Any]:
-    """Return the result of an engine relative to ours, or why there is none. `ratio` is the relative time."""
+    """Return the result of an engine relative to ours, or why it has no result. `ratio` is the relative time."""
     goal = workload.faster if engine == "agentspeak" else workload.faster_jason
     found: dict[str, Any] = {"goal": goal, "n": workload.size_on(engine)}
     if engine in workload.lacks:

@@ -310,7 +310,7 @@ def _what_waits(mas: System) -> str:
     if not waiting:
         return "no agent has a goal or an event"
     names = ", ".join(waiting[:MOST_NAMES]) + (", ..." if len(waiting) > MOST_NAMES else "")
-    return f"{names} wait, and no agent can wake them"
+    return f"the goals of {names} wait, and no agent can wake them"
 
 
 def _close(console: StandardConsole, code: int) -> None:
