@@ -1,15 +1,15 @@
-# make demo    a venv, the package, and a robot that patrols on the embedded world; under two minutes
-# make test    everything, ROS 1 and ROS 2 included (installs what that needs on Debian 12)
-# make test-all    that, and all unit tests again with every other Python of the machine
-# make quick   what to run before a commit: style, types, layers, unit tests
-# make coverage   which lines the unit, contract and conformance tests run, by package; in some fifteen minutes
-# make bench   figures of speed, beside those of other engines, in some ten minutes; renews docs/benchmarks.md
-#              make bench BENCH=--quick   in some three minutes, and changes nothing; JASON=/path/to/jason takes part, too
-# make experiment   the experiment of docs/experiment.md, in some fifteen minutes; renews the page and its charts
-# make reference   the reference pages and pictures that follow from the code
+# make demo          venv, package, and a robot that patrols on the embedded world; under 2 minutes
+# make test          all tests, including ROS 1 and ROS 2 (installs their packages on Debian 12)
+# make test-all      the same, and all unit tests with every other Python of the machine
+# make quick         checks before a commit: style, types, layers, unit tests
+# make coverage      lines run by the unit, contract and conformance tests, by package; about 15 minutes
+# make bench         benchmarks, beside other engines, in about 10 minutes; rewrites docs/benchmarks.md
+#                    make bench BENCH=--quick   about 3 minutes, writes nothing; JASON=/path/to/jason adds Jason
+# make experiment    the experiment of docs/experiment.md, in about 15 minutes; rewrites the page and its charts
+# make reference     reference pages and pictures generated from the code
 #
-# PYTHON=python3.12 make demo     with another interpreter (3.11 or newer)
-# make test PARTS="unit docs"     some parts only; `.venv/bin/python tools/test_all.py --list` names them
+# PYTHON=python3.12 make demo   use another interpreter (3.11 or newer)
+# make test PARTS="unit docs"   run some parts only; `.venv/bin/python tools/test_all.py --list` lists them
 
 VENV := .venv
 PYTHON ?= $(shell tools/find_python.sh)
@@ -31,7 +31,7 @@ quick: $(VENV)/.installed-dev
 coverage: $(VENV)/.installed-dev
 	$(VENV)/bin/python tools/measure_coverage.py
 
-# The reference pages that follow from the code, and the pictures.
+# Reference pages and pictures generated from the code.
 reference: $(VENV)/.installed-dev
 	$(VENV)/bin/python tools/make_reference.py
 	$(VENV)/bin/python tools/make_pictures.py
@@ -57,7 +57,7 @@ $(VENV)/.installed-dev: pyproject.toml setup.cfg setup.py | $(VENV)/bin/python
 	$(VENV)/bin/python -m pip install --quiet --disable-pip-version-check -e '.[dev]'
 	touch $@ $(VENV)/.installed
 
-# Apart, as what it holds is under the GPL, or for pictures only.
+# A separate venv, because its packages are under the GPL, or needed for pictures only.
 $(VENV)-bench/.installed: benchmarks/requirements.txt | $(VENV)/bin/python
 	$(VENV)/bin/python -m venv $(VENV)-bench
 	$(VENV)-bench/bin/python -m pip install --quiet --disable-pip-version-check -r benchmarks/requirements.txt

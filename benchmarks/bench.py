@@ -1,10 +1,10 @@
-"""Measure everything in one go, and write what came out: ``make bench``.
+"""Run all benchmarks and write the results: ``make bench``.
 
     bench.py [--quick] [--rounds N] [--only NAME ...] [--output FOLDER] [--page]
 
-The figures go to FOLDER/benchmarks.json (runs/bench unless given) and to the standard output, pictures beside them.  A
-complete run renews the page docs/benchmarks.md with its figures (docs/benchmarks.json) and pictures; ``--page`` writes the
-page from those figures once more, without measuring.  Jason takes part where the variable JASON names its command.
+The figures are written to FOLDER/benchmarks.json (default: runs/bench) and to the standard output, with pictures next to
+the file. A complete run updates docs/benchmarks.md with its figures (docs/benchmarks.json) and pictures; ``--page`` writes
+the page again from those figures, without measuring. Jason is included if the variable JASON names its command.
 """
 
 import argparse
@@ -52,7 +52,7 @@ def main() -> None:
 
 
 def measured(arguments: argparse.Namespace) -> dict[str, Any]:
-    """Measure everything that the arguments ask for."""
+    """Measure everything that the arguments select."""
     began = time.monotonic()
 
     def tell(text: str) -> None:
@@ -95,7 +95,7 @@ def measured(arguments: argparse.Namespace) -> dict[str, Any]:
 
 
 def chosen_workloads(names: Sequence[str] | None) -> list[Workload]:
-    """The workloads of those names, all of them unless there are any."""
+    """Return the workloads with these names; all of them without names."""
     unknown = set(names or ()) - {workload.name for workload in WORKLOADS}
     if unknown:
         sys.exit(
@@ -105,9 +105,9 @@ def chosen_workloads(names: Sequence[str] | None) -> list[Workload]:
 
 
 def draw(file: Path, folder: Path) -> None:
-    """Draw the pictures, where there is the library for it."""
+    """Draw the pictures, if the library is installed."""
     if not engines.PEER.exists():
-        print("no pictures: there is no .venv-bench (make bench makes it)", file=sys.stderr)
+        print("no pictures: .venv-bench does not exist (make bench creates it)", file=sys.stderr)
         return
     script = Path(__file__).parent / "report" / "charts.py"
     subprocess.run([engines.PEER, script, file, folder], check=True)
@@ -128,13 +128,13 @@ def _patrol() -> str:
 
 def _arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description="Measure everything in one go.")
-    parser.add_argument("--quick", action="store_true", help="one round, and the page is left as it is")
+    parser.add_argument("--quick", action="store_true", help="one round, without updating the page")
     parser.add_argument("--rounds", type=int, help="runs of each program on each engine (3; quick: 1)")
     parser.add_argument(
-        "--only", nargs="+", metavar="NAME", help="programs to measure; the page is left as it is"
+        "--only", nargs="+", metavar="NAME", help="programs to measure, without updating the page"
     )
-    parser.add_argument("--output", type=Path, default=ROOT / "runs" / "bench", help="folder of the figures")
-    parser.add_argument("--page", action="store_true", help="write the page from its figures once more")
+    parser.add_argument("--output", type=Path, default=ROOT / "runs" / "bench", help="folder for the figures")
+    parser.add_argument("--page", action="store_true", help="write the page again from its figures")
     arguments = parser.parse_args()
     arguments.rounds = arguments.rounds or (1 if arguments.quick else 3)
     return arguments

@@ -1,4 +1,4 @@
-"""Latencies on the ROS graphs of this machine: runs ``latency.py`` in each environment that is there."""
+"""Latencies on the ROS graphs of this machine: runs ``latency.py`` in each existing environment."""
 
 import re
 import subprocess
@@ -8,7 +8,7 @@ from typing import Any
 
 HERE = Path(__file__).resolve().parent
 ENVIRONMENTS = {"ros1": "1", "ros2-jazzy": "2", "ros2-kilted": "2"}
-"""What the virtual environments of a real ROS are called behind ``.venv-``, and the ROS that they have."""
+"""Suffixes of the virtual environments for real ROS (after ``.venv-``), and their ROS versions."""
 
 _LINE = re.compile(
     r"(\w+) +(agent|bare) +median +([\d.]+) ms +90 % +([\d.]+) ms +99 % +([\d.]+) ms +\((\d+) messages\)"
@@ -17,7 +17,7 @@ _RATE = re.compile(r"(\w+) +(agent|bare) +flat out +([\d.]+) a second")
 
 
 def latencies(kinds: list[str], tell: Callable[[str], None]) -> dict[str, Any]:
-    """Seconds from a message to its command in the environments of *kinds*; ``notes`` tell what was not measured."""
+    """Return the seconds from a message to its command in the environments of *kinds*; ``notes`` name the rest."""
     figures: list[dict[str, Any]] = []
     notes: list[str] = []
     for kind in kinds:
@@ -38,18 +38,18 @@ def latencies(kinds: list[str], tell: Callable[[str], None]) -> dict[str, Any]:
 
 
 def python_of(kind: str) -> Path:
-    """The Python of an environment, which may not exist."""
+    """Return the Python of an environment, which may not exist."""
     return HERE.parent / f".venv-{kind}" / "bin" / "python"
 
 
 def missing(kind: str) -> str:
-    """A note about an environment that does not exist."""
+    """Return a note about an environment that does not exist."""
     script = f"tools/install_ros{ENVIRONMENTS[kind]}.sh"
-    return f"{kind}: not measured; there is no `.venv-{kind}` (`{script}` makes it)."
+    return f"{kind}: not measured: `.venv-{kind}` does not exist (`{script}` creates it)."
 
 
 def figures_in(text: str, graph: str) -> list[dict[str, Any]]:
-    """The figures in what ``latency.py`` prints, in seconds and messages a second."""
+    """Return the figures printed by ``latency.py``, in seconds and messages per second."""
     rates = {match[2]: float(match[3]) for match in _RATE.finditer(text)}
     return [
         {

@@ -1,4 +1,4 @@
-"""From a published sensor message to the command that it leads to, through one plan of an agent.
+"""Latency from a published sensor message to the resulting command, through one plan of an agent.
 
     latency.py [memory|ros1|ros2] [--busy [--same-interval]]
     latency.py ros1 --profile
@@ -8,7 +8,7 @@ through an agent (artifact, belief, event, plan, operation), and through an echo
 Prints both, and how many times as long the agent takes; figures on a busy machine say little.
 
 With ``--busy`` the agent's plan is urgent and has 100 intentions beside it that never rest, and the echo has a computing
-thread beside it.  On the graph in memory the two measure one after the other, each in a process of its own.
+thread beside it.  On the graph in memory the two measure in turn, each in a separate process.
 The echo's process keeps Python's own switch interval of 5 ms; with ``--same-interval`` it has the 0.5 ms that
 ``jacaros run`` sets.
 
@@ -34,7 +34,7 @@ from jacaros.mas.launch import SWITCH_INTERVAL
 HERE = Path(__file__).resolve().parent / "latency"
 JACAROS = Path(sys.executable).parent / "jacaros"
 INTERVAL = "BENCHMARK_SWITCH_INTERVAL"
-"""Read by latency/computing.py."""
+"""The environment variable read by latency/computing.py."""
 
 
 def main() -> None:
@@ -49,7 +49,7 @@ def main() -> None:
 
 
 def in_process(busy: bool) -> str:
-    """Measure on the graph inside the process; beside something busy, the two ways take turns as processes."""
+    """Measure on the in-process graph; next to a busy load, the two ways run in turn as processes."""
     turns = [["agent"], ["bare"]] * 3 if busy else [[]]
     reports = [
         subprocess.run(
@@ -61,7 +61,7 @@ def in_process(busy: bool) -> str:
 
 
 def on_graph(kind: str, busy: bool, profile: bool) -> str:
-    """Measure on a real graph; with *profile*, the agents' process prints where the time goes."""
+    """Measure on a real graph; with *profile*, the agents' process prints where the time is spent."""
     more = ["--busy"] if busy else []
     program = HERE / f"{kind}.py"
     with tempfile.TemporaryDirectory() as scratch, graph(kind, Path(scratch)) as environment:
@@ -81,7 +81,7 @@ def on_graph(kind: str, busy: bool, profile: bool) -> str:
 
 
 def with_ratios(report: str) -> str:
-    """The report, and a line about how many times as long the agent takes."""
+    """Return the report, with a line about the ratio of the agent's time."""
     figures: dict[str, list[tuple[float, float]]] = {"agent": [], "bare": []}
     for way, median, most in re.findall(r"(agent|bare) +median +([\d.]+) ms.* 99 % +([\d.]+) ms", report):
         figures[way].append((float(median), float(most)))

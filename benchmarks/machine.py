@@ -11,7 +11,7 @@ from mind.marks import seconds_for_a_call
 
 
 def machine() -> dict[str, str | int | float]:
-    """What a reader has to know of it."""
+    """Return what a reader must know about the machine."""
     return {
         "processor": _processor(),
         "cores": os.cpu_count() or 1,

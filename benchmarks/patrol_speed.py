@@ -1,4 +1,4 @@
-"""How many times faster than life the patrol runs on the virtual clock: simulated seconds per wall second."""
+"""The speed of the patrol on the virtual clock: simulated seconds per second of real time."""
 
 import time
 from pathlib import Path
@@ -10,7 +10,7 @@ RUNS = 3
 
 
 def main() -> None:
-    """Run it a few times, and print the best."""
+    """Run the patrol several times, and print the best result."""
     speeds = []
     for _ in range(RUNS):
         began = time.perf_counter()

@@ -1,4 +1,4 @@
-"""What share of a core 100 patterns cost at 1,000 percepts a second, beside reactivex and a filter written by hand.
+"""The share of a core used by 100 patterns at 1,000 percepts per second, compared with reactivex and a hand-written filter.
 
     patterns.py [--seconds S] [--turns N]
 
@@ -24,18 +24,18 @@ from typing import Any
 
 PROPERTIES = 20
 RATE = 1000
-"""Percepts a second, of all properties together."""
+"""Percepts per second, over all properties."""
 WITHIN, ENOUGH, LIMIT, ON, OFF, LASTING = 1.0, 40, 8.0, 7.0, 3.0, 0.2
 
 Sample = tuple[float, int, float]
 """Time, number of the property, value."""
 
 Go = Callable[[], int]
-"""Takes all samples; what is measured. Gives the number of outputs."""
+"""Processes all samples; returns the number of outputs."""
 
 
 def main() -> None:
-    """Measure in turns, and print the medians."""
+    """Measure in turn, and print the medians."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--seconds", type=float, default=5.0, help="simulated seconds of each turn")
     parser.add_argument("--turns", type=int, default=5)
@@ -67,7 +67,7 @@ def main() -> None:
 
 
 def median(figures: list[float]) -> float:
-    """The middle one."""
+    """Return the median."""
     return sorted(figures)[len(figures) // 2]
 
 
@@ -102,7 +102,7 @@ def declarations() -> str:
 
 
 class Port:
-    """As much of an agent's host as a mind needs here: a clock, and timers that ring when time passes."""
+    """The parts of an agent's host that a mind needs here: a clock, and timers that fire when time advances."""
 
     def __init__(self) -> None:
         self.time, self.timers, self.numbers = 0.0, list[Any](), itertools.count()
@@ -119,7 +119,7 @@ class Port:
         return timer
 
     def pass_until(self, at: float, run: Callable[[int], bool]) -> None:
-        """Let timers ring until a moment."""
+        """Fire timers up to a time."""
         while self.timers and self.timers[0][0] <= at:
             self.time, _, timer = heapq.heappop(self.timers)
             if not timer.cancelled:
@@ -128,7 +128,7 @@ class Port:
         self.time = at
 
     class Timer:
-        """A call to come."""
+        """A pending call."""
 
         def __init__(self, due: float, callback: Callable[[], None]) -> None:
             self.due, self.callback, self.cancelled = due, callback, False
@@ -138,7 +138,7 @@ class Port:
 
 
 def agent(samples: list[Sample], derives: bool) -> Go:
-    """A mind that takes percepts in; how many derived beliefs hold at the end."""
+    """Run a mind on the percepts; return the number of derived beliefs at the end."""
     from jacaros.asl.loader import load_program
     from jacaros.bdi.mind import Mind
     from jacaros.bdi.state.act import Percept
@@ -207,7 +207,7 @@ def patterns(samples: list[Sample]) -> Go:
 
 
 class ByHand:
-    """The five patterns of one property, as one would write them for it."""
+    """The five patterns of one property, written by hand."""
 
     def __init__(self) -> None:
         self.times: deque[float] = deque()
@@ -219,7 +219,7 @@ class ByHand:
         self.outputs = 0
 
     def take(self, at: float, value: float) -> None:
-        """Take a sample."""
+        """Process a sample."""
         old = at - WITHIN
         self.times.append(at)
         while self.times[0] <= old:

@@ -20,7 +20,7 @@ PLANS = 300
 
 
 def started(rounds: int, engines: list[str]) -> dict[str, dict[str, float]]:
-    """Processor seconds, wall seconds and megabytes of processes that do next to nothing, in turn; the least of each."""
+    """Return processor seconds, wall seconds and megabytes of processes that do almost nothing; the minimum of each."""
     with tempfile.TemporaryDirectory() as scratch:
         hello = Path(scratch) / "hello.asl"
         hello.write_text(HELLO, encoding="utf-8")
@@ -40,7 +40,7 @@ def started(rounds: int, engines: list[str]) -> dict[str, dict[str, float]]:
 
 
 def spent(command: list[str]) -> dict[str, float]:
-    """What a process, with those that it waits for, needed: ``processor``, ``wall`` (seconds) and ``megabytes``.
+    """Return the resources used by a process and its children: ``processor``, ``wall`` (seconds) and ``megabytes``.
 
     Raises:
         RuntimeError: it failed.
@@ -63,7 +63,7 @@ def spent(command: list[str]) -> dict[str, float]:
 
 
 def memory(rounds: int, cycles: int = CYCLES) -> dict[str, float]:
-    """Megabytes of a tail recursion, and of one that ends at once."""
+    """Return the megabytes of a tail recursion, and of one that ends immediately."""
     with tempfile.TemporaryDirectory() as scratch:
         program = Path(scratch) / "count.asl"
         found: dict[str, list[float]] = {"empty": [], "recursion": []}

@@ -158,7 +158,7 @@ def outcome(command: "Sequence[str | Path]", environment: dict[str, str] | None 
 
 
 def summary(times: Sequence[float], lost: int) -> dict[str, float | int | None]:
-    """Percentiles of reaction times; None if there are none."""
+    """Return percentiles of reaction times; None without any."""
     times = sorted(times)
 
     def at(share: float) -> float | None:

@@ -1,4 +1,4 @@
-"""What a robot asks of its agent: how soon, how often, how much of a core, and what comes first in a burst.
+"""What a robot demands of its agent: latency, rate, load, and order in a burst.
 
     robot.py [--json FILE] [NAME ...]
 
@@ -20,7 +20,7 @@ the cost of an empty Python call with three arguments in the same run):
 * ``operations``: ``round_trip`` from agent to artifact and back, ``goal`` (20), ``call``.
 * ``observers``: ``observers`` (10), ``update`` (what one update costs with all of them), ``rate`` (updates a second),
   ``calls`` (an update in empty calls), all three where no plan is applicable to the event; ``reaction``,
-  ``reaction_rate`` and ``reaction_calls`` where one is carried out; ``goal`` (10000, a second), ``call``.
+  ``reaction_rate`` and ``reaction_calls`` where one is run; ``goal`` (10000, a second), ``call``.
 
 Half a minute: ``robot.py operations observers``.
 """
@@ -44,7 +44,7 @@ def main() -> None:
     arguments = parser.parse_args()
     unknown = [name for name in arguments.names if name not in LINES]
     if unknown:
-        parser.error(f"there is no {unknown[0]}; there are {', '.join(LINES)}")
+        parser.error(f"unknown benchmark {unknown[0]}; expected {', '.join(LINES)}")
     figures = {}
     for name in arguments.names or LINES:
         figures[name] = measured(name)

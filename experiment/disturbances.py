@@ -103,7 +103,7 @@ def _aborted(draw: Draw, where: Surroundings) -> list[str]:
 
 
 def _carried(draw: Draw, where: Surroundings) -> list[str]:
-    """Somebody lifts the robot and puts it down elsewhere."""
+    """Lift the robot and put it down elsewhere."""
     x0, y0, x1, y1 = where.area
     x, y, yaw = draw.uniform(x0, x1), draw.uniform(y0, y1), draw.uniform(-180, 180)
     return [

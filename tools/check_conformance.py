@@ -1,9 +1,9 @@
 """Run the conformance cases; all of them must pass.
 
 check_conformance.py language       all areas of the language, on the virtual clock
-check_conformance.py plain          the same without anything that is there for speed alone (JACAROS_PLAIN=1)
+check_conformance.py plain          the same without any optimisation (JACAROS_PLAIN=1)
 check_conformance.py restored       the same with minds that are stored and restored at random cycles
-check_conformance.py formatted      the same programs as `jacaros fmt` lays them out
+check_conformance.py formatted      the same programs, formatted by `jacaros fmt`
 check_conformance.py real-time      the areas about the reasoning cycle, on the wall clock
 check_conformance.py environment    artifacts, on the virtual clock
 """
@@ -29,7 +29,7 @@ CYCLE = ("beliefs", "body_statements", "failure", "intentions", "plan_selection"
 def main(arguments: list[str]) -> int:
     """Run one of the suites."""
     suite = arguments[0] if arguments else "language"
-    os.environ.setdefault("JACAROS_CACHE", "0")  # compile everything, unless you say otherwise
+    os.environ.setdefault("JACAROS_CACHE", "0")  # no cached code, unless the caller sets the variable
     if suite == "language":
         return judge(*run(CASES, "fast", 2))
     if suite == "plain":
@@ -42,16 +42,16 @@ def main(arguments: list[str]) -> int:
         with tempfile.TemporaryDirectory() as scratch:
             return judge(*run(formatted(Path(scratch)), "fast", 2))
     if suite == "real-time":
-        # One at a time: these cases measure moments 40 ms apart.
+        # One at a time: these cases measure times 40 ms apart.
         return judge(*run(CASES, "real", 1, *(part for area in CYCLE for part in ("--area", area))))
     if suite == "environment":
         return judge(*run(ROOT / "tests" / "conformance_environment", "fast", 2))
-    print(f"no suite {suite}", file=sys.stderr)
+    print(f"error: unknown suite: `{suite}`", file=sys.stderr)
     return 2
 
 
 def restored() -> int:
-    """Run the language with minds that are stored as JSON and restored; list those that could not be stored."""
+    """Run the language cases with minds stored as JSON and restored; list those that could not be stored."""
     with tempfile.TemporaryDirectory() as scratch:
         report = Path(scratch) / "not_restored"
         os.environ["JACAROS_NOT_RESTORED"] = str(report)
@@ -62,7 +62,7 @@ def restored() -> int:
 
 
 def formatted(scratch: Path) -> Path:
-    """A copy of the cases in which all programs without errors are laid out by `jacaros fmt`."""
+    """Yield a copy of the cases, with all programs without errors formatted by `jacaros fmt`."""
     copy = scratch / "conformance"
     shutil.copytree(CASES, copy, ignore=shutil.ignore_patterns("__pycache__"))
     shutil.rmtree(copy / "syntax_errors")
@@ -72,14 +72,14 @@ def formatted(scratch: Path) -> Path:
         after = format_program(str(path), before)
         path.write_text(after, encoding="utf-8")
         changed += before != after
-    print(f"{changed} programs are laid out in another way")
+    print(f"{changed} programs changed by formatting")
     return copy
 
 
 def run(
     folder: Path, clock: str, jobs: int, *options: str, command: str = f"{JACAROS} run"
 ) -> tuple[Counter[str], Counter[str]]:
-    """How many cases of each area pass, and how many there are; shows the report of the checker."""
+    """Return how many cases of each area pass, and their total; print the report of the checker."""
     with tempfile.TemporaryDirectory() as scratch:
         results = Path(scratch) / "results.xml"
         whole = f"{command} {{project}} --clock {clock}"
@@ -106,7 +106,7 @@ def run(
 
 
 def judge(passed: Counter[str], total: Counter[str]) -> int:
-    """Every case must pass; the exit code."""
+    """Return the exit code: 0 if every case passes."""
     wrong = [
         f"{area}: {passed[area]} of {total[area]} pass"
         for area in sorted(total)
@@ -115,7 +115,7 @@ def judge(passed: Counter[str], total: Counter[str]) -> int:
     if not total:
         wrong.append("no cases found")
     print("\n".join(wrong))
-    print(f"{passed.total()} of {total.total()} cases pass, {'FAILED' if wrong else 'as they should'}")
+    print(f"{passed.total()} of {total.total()} cases pass, {'FAILED' if wrong else 'ok'}")
     return 1 if wrong else 0
 
 

@@ -1,13 +1,13 @@
 """Run random programs in two builds, or on two paths of one build, and show the first difference.
 
 compare_builds.py --old ../before/src --new src --seconds 3600     two source trees, side by side
-compare_builds.py --seconds 600                                    this tree with and without what is there for speed,
+compare_builds.py --seconds 600                                    this tree with and without optimisations,
                                                                    and with searched contexts
-compare_builds.py --seed 17 --programs 1 --show                    print the program of a number
+compare_builds.py --seed 17 --programs 1 --show                    print the program with this number
 
-A program ends, whatever is drawn: goals call later goals only, waits are short.  What agents print has to be the same, in
-its order, and with one tree also what is told to people.  A program that differs is made smaller, line by line, and
-written with both outputs to the folder given by --into.
+Every program ends: goals call later goals only, and waits are short. The output of agents must be equal, in its order, and
+with one tree also the log. A program that differs is reduced line by line, and written with both outputs to the folder
+given by --into.
 """
 
 import argparse
@@ -24,17 +24,19 @@ from running_programs import Writer
 
 ROOT = Path(__file__).resolve().parent.parent
 PATIENCE = 8.0
-"""Seconds that a program may take; one that takes longer is passed over in both builds."""
+"""Time limit of a program in seconds; a slower program is skipped in both builds."""
 
 
 def work(path: str) -> None:
-    """Be a worker: read projects as lines, run each on one *path*, write what came of it as lines."""
+    """Be a worker: read projects as lines, run each on one *path*, write the results as lines."""
     from jacaros.testing import run_project
 
     if path == "plain":
         os.environ["JACAROS_PLAIN"] = "1"
     elif path == "searched":
-        from jacaros.bdi.fast.generated import conditions  # here: the other build may have it elsewhere
+        from jacaros.bdi.fast.generated import (
+            conditions,
+        )  # here: may differ in the other build
 
         conditions._MAX_LOOPS = 0
     answers, sys.stdout = sys.stdout, sys.stderr
@@ -52,14 +54,14 @@ def work(path: str) -> None:
 
 
 class Build:
-    """A process that runs programs in one build, on one path; started again when a program holds it up."""
+    """A process that runs programs in one build, on one path; restarted when a program blocks it."""
 
     def __init__(self, source: Path, path: str = "") -> None:
         self._source, self._path = source, path
         self._process: subprocess.Popen[str] | None = None
 
     def run(self, files: dict[str, str]) -> dict[str, object] | None:
-        """What came of a project; None when it took too long or ended the process."""
+        """Return the result of a project; None if it took too long or ended the process."""
         if self._process is None:
             command = (sys.executable, str(Path(__file__)), "--worker", self._path or "fast")
             self._process = subprocess.Popen(
@@ -106,8 +108,8 @@ class Comparison:
     """Runs each program in all builds.
 
     Args:
-        builds: where.
-        prints_only: compare what agents print; without it what people are told as well.
+        builds: builds to run.
+        prints_only: compare only the output of agents, not the log.
         into: folder for programs that differ.
 
     Attributes:
@@ -119,7 +121,7 @@ class Comparison:
         self.ran = self.late = self.different = 0
 
     def take(self, seed: int) -> None:
-        """Run the program of a number, and keep it if results differ."""
+        """Run the program with a number, and keep it if the results differ."""
         files = Writer(Random(seed)).files()
         self.ran += 1
         results = self._results(files)
@@ -135,7 +137,7 @@ class Comparison:
             build.close()
 
     def _results(self, files: dict[str, str]) -> list[dict[str, object]] | None:
-        """What came of a program in each build; None when it took too long in one of them."""
+        """Return the result of a program in each build; None if it took too long in one of them."""
         results = []
         for build in self._builds:
             found = build.run(files)
@@ -145,7 +147,7 @@ class Comparison:
         return [{"lines": each["lines"]} for each in results] if self._prints_only else results
 
     def _shrunk(self, files: dict[str, str]) -> dict[str, str]:
-        """Leave out lines of the programs while the results differ, for a minute at most."""
+        """Remove lines of the programs while the results differ, for at most a minute."""
         ends = time.monotonic() + 60
         for name in [name for name in files if name.endswith(".asl")]:
             lines, at = files[name].split("\n"), 0
@@ -183,7 +185,7 @@ def main() -> int:
     parser.add_argument("--programs", type=int, default=1_000_000_000)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--into", type=Path, default=ROOT / "runs" / "differences")
-    parser.add_argument("--show", action="store_true", help="print the programs in place of running them")
+    parser.add_argument("--show", action="store_true", help="print the programs instead of running them")
     parser.add_argument("--worker", help=argparse.SUPPRESS)
     given = parser.parse_args()
     if given.worker:

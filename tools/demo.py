@@ -1,4 +1,4 @@
-"""What `make demo` shows: the patrol on the embedded world, its summary, and its page."""
+"""The script of `make demo`: the patrol on the embedded world, its summary, and its page."""
 
 import contextlib
 import shlex
@@ -20,7 +20,7 @@ RECORD = "runs/patrol.jsonl"
 
 
 def main() -> int:
-    """Run the patrol as anybody can, then tell what happened."""
+    """Run the patrol as a user would, then print a summary."""
     RUNS.mkdir(exist_ok=True)
     command = ["run", PROJECT, "--clock", "fast", "--seed", "1", "--record", RECORD, "--replay", REPLAY]
     if sys.stderr.isatty():
@@ -39,28 +39,28 @@ def main() -> int:
 
 
 def show() -> None:
-    """Serve the page of the run until Ctrl+C; the last lines are its address and how to end it."""
+    """Serve the page of the run until Ctrl+C; the last lines are its address and how to stop it."""
     print(f"\n$ jacaros view {RECORD}\n", flush=True)
     with contextlib.suppress(KeyboardInterrupt):
         subprocess.run([str(Path(sys.executable).parent / "jacaros"), "view", RECORD], cwd=ROOT, check=False)
 
 
 def summarise(recording: Recording, took: float) -> None:
-    """Print what the robot did, as the world saw it."""
+    """Print what the robot did, according to the ground truth."""
     frames = recording.frames
     levels = [frame.robots[0][3] for frame in frames]
-    # Turning on the spot in the dock, it stands there a moment more, nearly full: that is no recharge.
+    # A robot that turns on the spot in the dock stays a moment longer, nearly full: this does not count as a recharge.
     charges = sum(1 for _, kind, data in recording.events if kind == "charging" and data["level"] < 50)
     bumps = sum(1 for _, kind, _ in recording.events if kind in ("bump", "collision"))
     print(f"""
-simulated time   {recording.duration:.0f} s in {took:.1f} s, {recording.duration / took:.0f} times as fast as life
+simulated time   {recording.duration:.0f} s in {took:.1f} s, {recording.duration / took:.0f} times real time
 driven           {driven(frames):.0f} m, {bumps} bumps
 battery          charged {charges} times at the dock, never below {min(levels):.0f} %
 replay           {REPLAY}  (open it in a browser)""")
 
 
 def driven(frames: Iterable[Frame]) -> float:
-    """Metres that the first robot went."""
+    """Return the distance that the first robot drove, in metres."""
     places = [frame.robots[0][:2] for frame in frames]
     return sum(hypot(bx - ax, by - ay) for (ax, ay), (bx, by) in pairwise(places))
 

@@ -1,12 +1,12 @@
-"""Give damaged files to their readers: each file is taken, or refused with a message of limited length in limited time.
+"""Give damaged files to their readers, which must accept or reject each with a message of limited length in limited time.
 
 fuzz.py [KIND ...] [--seed N] [--minutes M] [--files N] [--first N] [--findings DIR]
 
-Of the kind ``program`` are texts: soups of tokens, conformance programs with changes, and programs made by the grammar;
-what is a program is checked, formatted and run, too.  The other kinds are in `fuzzed_files.py`.  Without KIND all are
-examined, each for M minutes.  A file belongs to its kind, seed and number, so that a finding can be made again: `program
---seed 1 --first 4711 --files 1`.  Each finding is written to DIR (default runs/fuzz), the file beside the traceback.  Exit
-code 1 when there were findings.
+The kind ``program`` covers texts: random tokens, mutated conformance programs, and programs generated from the grammar;
+valid programs are also checked, formatted and run. The other kinds are in `fuzzed_files.py`. Without KIND all kinds are
+examined, each for M minutes. A file is determined by its kind, seed and number, so that a finding can be reproduced:
+`program --seed 1 --first 4711 --files 1`. Each finding is written to DIR (default runs/fuzz), the file next to the
+traceback. The exit code is 1 if there are findings.
 """
 
 import argparse
@@ -100,25 +100,25 @@ ODD = (
     ),
 )
 _DEFECT = re.compile(r"is given up|\b(?!Arithmetic)[A-Z][A-Za-z]+(Error|Fault): ")
-"""What an agent tells when something happened that no rule of the language foresees."""
+"""Log lines of an agent when something happened that no rule of the language covers."""
 PROGRAM = "program"
-"""The kind of the texts of programs."""
+"""The kind of program texts."""
 CYCLES = 600
 CROWD = 300
-"""How many intentions an agent may have before its life is long enough."""
+"""Number of intentions at which an agent has run long enough."""
 SECONDS = 20.0
 MEMORY = 6 * 2**30
 
 
 class TooLong(BaseException):
-    """A text takes longer than it may; no handler for exceptions can take it for something else."""
+    """Raised when a text exceeds its time; not an Exception, so that no handler catches it."""
 
 
 # texts
 
 
 def text_of(seed: int, number: int) -> tuple[str, str]:
-    """How the text of that number is made, and the text."""
+    """Return how the text with a number is made, and the text."""
     random = Random(f"{seed} {number}")
     how = random.choice(("soup", "changed", "changed", "made", "made", "made and changed"))
     if how == "soup":
@@ -130,18 +130,18 @@ def text_of(seed: int, number: int) -> tuple[str, str]:
 
 
 def soup(random: Random) -> str:
-    """Tokens in any order."""
+    """Return tokens in any order."""
     pieces = [piece(random) for _ in range(random.randint(1, 120))]
     return random.choice(("", " ", "")).join(pieces)
 
 
 def piece(random: Random) -> str:
-    """A token, or something that is none."""
+    """Return a token, or something that is not one."""
     return random.choice(ODD) if random.random() < 0.1 else random.choice(PIECES)
 
 
 def changed(text: str, random: Random) -> str:
-    """A program with some of its tokens or characters changed."""
+    """Return a program with some tokens or characters changed."""
     for _ in range(random.choice((1, 1, 2, 3, 8))):
         text = random.choice((_tokens_changed, _tokens_changed, _spliced, _characters_changed))(text, random)
     return text
@@ -176,11 +176,11 @@ def _characters_changed(text: str, random: Random) -> str:
     return text[:at] + inserted + text[at + random.randint(0, 3) :]
 
 
-# what is done with them
+# checks
 
 
 def examine(text: str) -> str:
-    """Load, check, format and run a text; ``refused`` or ``program``.  What escapes is a finding."""
+    """Load, check, format and run a text; return ``refused`` or ``program``. An exception is a finding."""
     program, diagnostics = read_program(SourceFile("fuzz.asl", text), _read)
     errors = [diagnostic for diagnostic in diagnostics if diagnostic.severity == "error"]
     _show((*diagnostics, *check(program, KnownActions(STANDARD), errors)), text)
@@ -195,7 +195,7 @@ def examine(text: str) -> str:
 
 
 def _show(diagnostics: Sequence[Diagnostic], text: str) -> None:
-    """Diagnostics have a place inside the text, and can be shown."""
+    """Check that diagnostics have a location inside the text, and can be shown."""
     for diagnostic in diagnostics:
         assert diagnostic.span is not None
         if diagnostic.span.file.name == "fuzz.asl":
@@ -211,7 +211,7 @@ def _read(path: str, including: str) -> tuple[str, str]:
 
 
 def live(program: Program) -> None:
-    """Let an agent with the program live for a while."""
+    """Run an agent with the program for a while."""
     host = RecordingHost(_done)
     host.agent = agent = Mind("fuzz", program, host)
     agent.start()
@@ -225,13 +225,13 @@ def live(program: Program) -> None:
 
 
 def _done(act: Act) -> Completion | None:
-    """Some actions succeed, some fail, some go on for ever."""
+    """Answer actions: some succeed, some fail, some never end."""
     return (Completion(True), Completion(False), None)[(act.id + act.functor.arity) % 3]
 
 
 @contextmanager
 def limited(seconds: float) -> Iterator[None]:
-    """Raise `TooLong` inside when it takes more processor time."""
+    """Raise `TooLong` in the current step after more processor time."""
 
     def ring(number: int, frame: object) -> None:
         raise TooLong
@@ -250,7 +250,7 @@ def limited(seconds: float) -> Iterator[None]:
 
 @dataclass
 class Tally:
-    """What came of the texts so far."""
+    """Results so far."""
 
     outcomes: Counter[str] = field(default_factory=Counter)
     findings: Counter[str] = field(default_factory=Counter)
@@ -260,7 +260,7 @@ class Tally:
 
 
 def fuzz(kind: str, seed: int, numbers: Iterable[int], seconds: float, findings: Path) -> Tally:
-    """Examine file after file of a kind until they, or the time, are over; in the current folder, where they may write."""
+    """Examine files of a kind until their number or the time is reached, in the current folder, where they may write."""
     tally = Tally()
     began = told = time.monotonic()
     suffix = ".asl" if kind == PROGRAM else KINDS[kind].suffix
@@ -272,7 +272,7 @@ def fuzz(kind: str, seed: int, numbers: Iterable[int], seconds: float, findings:
             with limited(SECONDS):
                 outcome = examined(kind, data)
             if how == "made" and outcome == "refused":
-                raise AssertionError("a right program is refused")
+                raise AssertionError("a valid program is rejected")
         except (Exception, TooLong) as fault:
             outcome = "finding"
             _keep(tally, findings / f"{kind}-{seed}-{number}{suffix}", data, fault)
@@ -288,7 +288,7 @@ def fuzz(kind: str, seed: int, numbers: Iterable[int], seconds: float, findings:
 
 
 def made(kind: str, seed: int, number: int) -> tuple[str, bytes]:
-    """Return how the file of that number is made, and the file."""
+    """Return how the file with a number is made, and the file."""
     if kind == PROGRAM:
         how, text = text_of(seed, number)
         return how, text.encode("utf-8", "surrogatepass")
@@ -296,14 +296,14 @@ def made(kind: str, seed: int, number: int) -> tuple[str, bytes]:
 
 
 def examined(kind: str, data: bytes) -> str:
-    """Return ``program``, ``taken`` or ``refused``.  What escapes is a finding."""
+    """Return ``program``, ``taken`` or ``refused``. An exception is a finding."""
     if kind == PROGRAM:
         return examine(data.decode("utf-8", "surrogatepass"))
     return KINDS[kind].examine(data, Path())
 
 
 def _keep(tally: Tally, file: Path, data: bytes, fault: BaseException) -> None:
-    """Write a finding down, unless there are some of its kind."""
+    """Write a finding, unless there are enough of its kind."""
     where = traceback.extract_tb(fault.__traceback__)[-1]
     kind = f"{type(fault).__name__} at {Path(where.filename).name}:{where.lineno}"
     tally.findings[kind] += 1
@@ -316,14 +316,14 @@ def _keep(tally: Tally, file: Path, data: bytes, fault: BaseException) -> None:
 
 
 def main(arguments: list[str]) -> int:
-    """Run as told; the exit code."""
+    """Run the fuzzer; return the exit code."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument(
         "kinds", nargs="*", metavar="KIND", help=f"{PROGRAM}, {', '.join(KINDS)} (default: all)"
     )
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--minutes", type=float, default=1.0, help="for each kind")
-    parser.add_argument("--files", type=int, default=sys.maxsize, help="how many files of each kind at most")
+    parser.add_argument("--minutes", type=float, default=1.0, help="minutes for each kind")
+    parser.add_argument("--files", type=int, default=sys.maxsize, help="maximum number of files of each kind")
     parser.add_argument("--first", type=int, default=1, help="number of the first file")
     parser.add_argument("--findings", type=Path, default=ROOT / "runs" / "fuzz", help="folder for findings")
     options = parser.parse_args(arguments)

@@ -1,6 +1,6 @@
-"""The kinds of files that `fuzz.py` changes, and their readers: each takes a file, or refuses it with its own error.
+"""The kinds of files that `fuzz.py` mutates, and their readers, which accept a file or reject it with their own error.
 
-Valid files are the seeds.  Their bytes, their words, their lines and, of JSON and CBOR, their values are changed.
+Valid files are the seeds. Their bytes, words, lines and, for JSON and CBOR, values are changed.
 """
 
 import json
@@ -32,9 +32,9 @@ from jacaros.sim.ground_truth import GroundTruth, Sample
 
 ROOT = Path(__file__).resolve().parent.parent
 SECONDS = 20.0
-"""Processor time that a file may take."""
+"""Maximum processor time for a file, in seconds."""
 LONGEST = 200_000
-"""Characters of all that is said about a file."""
+"""Maximum number of characters of all messages about a file."""
 
 _PIECE = re.compile(rb"[A-Za-z_][\w.]*|\d+|\s+|.", re.DOTALL)
 ODD = (
@@ -116,12 +116,12 @@ VALUES: tuple[Any, ...] = (
 
 @dataclass(frozen=True)
 class FileKind:
-    """A kind of files.
+    """A kind of file.
 
     Attributes:
-        suffix: of their names.
+        suffix: suffix of file names.
         seeds: valid files.
-        read: reads one; whatever it raises but a `JacarosError`, whose text is what people see, is a finding.
+        read: reads a file; any exception other than a `JacarosError`, whose text is shown to users, is a finding.
         tree: changes values of a file, if it has any.
     """
 
@@ -142,7 +142,7 @@ class FileKind:
         return "changed", data
 
     def examine(self, data: bytes, folder: Path) -> str:
-        """Read a file; ``taken`` or ``refused``.  What escapes is a finding."""
+        """Read a file; return ``taken`` or ``refused``. An exception is a finding."""
         path = folder / f"fuzz{self.suffix}"
         path.write_bytes(data)
         try:
@@ -216,7 +216,7 @@ def _spliced(data: bytes, random: Random, seeds: Sequence[bytes]) -> bytes:
 
 
 def _value_changed(value: Any, random: Random) -> Any:
-    """A JSON value with one of its parts changed."""
+    """Return a JSON value with one of its parts changed."""
     if isinstance(value, dict) and value and random.random() < 0.85:
         key = random.choice(list(value))
         if random.random() < 0.1:
@@ -251,10 +251,10 @@ def _json_lines_changed(data: bytes, random: Random) -> bytes:
 
 
 def _cbor_changed(data: bytes, random: Random) -> bytes:
-    """Values of a frame of either notation changed, and maybe its notation."""
+    """Change values of a frame of either notation, and possibly its notation."""
     try:
         value = _frame(data)
-    except Exception:  # junk: other bytes
+    except Exception:  # not a valid frame: change its bytes
         return data + random.randbytes(8)
     changed = _value_changed(value, random)
     try:

@@ -12,7 +12,7 @@ PATH=$PATH:/usr/sbin
 for name in "$@"; do
   if command -v "$name" >/dev/null; then say "$name: there"; exit 0; fi
 done
-command -v apt-get >/dev/null || refuse "this is no Debian system; install $package by hand"
+command -v apt-get >/dev/null || refuse "this is not a Debian system; install $package by hand"
 as_root=()
 if [ "$(id -u)" != 0 ]; then
   command -v sudo >/dev/null || refuse "not root, and there is no sudo"

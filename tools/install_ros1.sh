@@ -35,7 +35,7 @@ as_root() {
 }
 installed() { dpkg-query -W -f='${Status}\n' "${packages[@]}" 2>/dev/null | grep -c '^install ok installed$' || true; }
 
-command -v dpkg-query >/dev/null && command -v apt-get >/dev/null || refuse "this is no Debian system"
+command -v dpkg-query >/dev/null && command -v apt-get >/dev/null || refuse "this is not a Debian system"
 
 if [ "$(installed)" -lt "${#packages[@]}" ]; then
   say "installing ${#packages[@]} Debian packages and what they need (about 240 MB on disk)"

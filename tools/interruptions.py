@@ -2,11 +2,11 @@
 
     python tools/interruptions.py KIND --count N [--seed S]
 
-KIND is memory, ros1 (a master runs), ros2 or rosbridge (a server runs, ROS_DISTRO or ROS_MASTER_URI tell whose graph is
-listened to).  Each run is a process that gives velocities as fast as it can, and gets one or two of SIGINT, SIGTERM and
-SIGHUP: while it drives, or at any moment from its start.  A process with nothing of JaCaROS in it, written with rclpy or
-rospy, hears all of them.  On the graph inside the process nobody else can listen; there a second node writes what it
-receives to a pipe.
+KIND is memory, ros1 (with a running master), ros2 or rosbridge (with a running server; ROS_DISTRO or ROS_MASTER_URI select
+the graph to listen to). Each run is a process that commands velocities as fast as it can, and receives one or two of
+SIGINT, SIGTERM and SIGHUP: while it drives, or at any time from its start. A process without JaCaROS, written with rclpy
+or rospy, receives all velocities. On the in-process graph no other process can listen; a second node writes the messages
+that it receives to a pipe.
 """
 
 import argparse
@@ -54,11 +54,11 @@ MODULES = (
     "jacaros.sim.node",
 )
 QUIET = 0.3
-"""Seconds without a message after which none is on its way any more."""
+"""Seconds without a message after which no message can still be on its way."""
 START = 60.0
-"""Seconds in which a run gives its first command, also on a busy machine."""
+"""Time limit in seconds for the first command of a run, even on a busy machine."""
 END = 30.0
-"""Seconds in which an interrupted run ends."""
+"""Time limit in seconds for the end of an interrupted run."""
 
 
 class Velocities:
@@ -70,7 +70,7 @@ class Velocities:
         self.heard: list[float] = []
 
     def read(self, seconds: float) -> bool:
-        """Take what comes within *seconds*; False when nothing does, or the pipe is closed."""
+        """Read for *seconds*; return False if nothing arrives or the pipe is closed."""
         if not select.select([self._pipe], [], [], seconds)[0]:
             return False
         data = os.read(self._pipe, 65536)
@@ -80,14 +80,14 @@ class Velocities:
 
 
 def become_agents(kind: str, program: Path, pipe: int) -> int:
-    """Run the agents, which drive until they are interrupted; the exit code."""
+    """Run the agents, which drive until interrupted; return the exit code."""
     from jacaros.artifacts.robots.maneuver import Timed
     from jacaros.mas.console import StandardConsole
     from jacaros.mas.launch import launch
     from jacaros.mas.options import RunOptions
     from jacaros.mas.system import System
 
-    Timed.period = 1e-5  # as fast as the loop can
+    Timed.period = 1e-5  # as fast as the loop permits
 
     def listen(system: System) -> None:
         def hear(sample: Any) -> None:
@@ -101,10 +101,10 @@ def become_agents(kind: str, program: Path, pipe: int) -> int:
 
 
 def interrupt(kind: str, program: Path, listener: int | None, chance: random.Random) -> tuple[str, str]:
-    """Run the agents once; how it ended, and a complaint or nothing.
+    """Run the agents once; return how the run ended, and a complaint or "".
 
     Args:
-        listener: where the independent listener writes; None: the run's own observer does.
+        listener: output of the independent listener; None to use the observer of the run.
     """
     pipe, writing = os.pipe()
     process = os.fork()
@@ -146,7 +146,7 @@ def interrupt(kind: str, program: Path, listener: int | None, chance: random.Ran
 
 
 class Child(Exception):
-    """Raised in the process that becomes the agents, to leave everything of the parent's behind."""
+    """Raised in the process that becomes the agents, to leave all of the parent's code."""
 
 
 def main() -> int:
@@ -160,7 +160,7 @@ def main() -> int:
     arguments = parser.parse_args()
     kind, chance = arguments.kind, random.Random(arguments.seed)
     for module in (*MODULES, f"jacaros.ros.drivers.{kind}.backend"):
-        importlib.import_module(module)  # once for all runs, which are forks of this process
+        importlib.import_module(module)  # once for all runs, which fork this process
     listener = None
     if kind != "memory":
         graph = kind if kind != "rosbridge" else "ros1" if os.environ.get("ROS_MASTER_URI") else "ros2"
@@ -182,7 +182,7 @@ def main() -> int:
                 failures += 1
                 print(f"run {number}: {end}: {complaint}", flush=True)
     finally:
-        if os.getpid() == this:  # not in a fork that becomes the agents
+        if os.getpid() == this:  # not in a fork that runs the agents
             shutil.rmtree(program.parent)
             if listener is not None:
                 listener.kill()

@@ -1,4 +1,4 @@
-"""Draw the pictures of the documentation: runs of the examples, by the project's own recorder and page."""
+"""Draw the pictures of the documentation from runs of the examples, with the project's own recorder and page."""
 
 import asyncio
 import os
@@ -17,10 +17,10 @@ PICTURES = {
     "patrol.svg": ("examples/04_patrol/patrol.jcm", 75.0, 460),
     "house_cleaning.svg": ("examples/05_house_cleaning/house_cleaning.jcm", None, 560),
 }
-"""From the picture's name to project, seconds, and width in pixels."""
+"""Project, duration in seconds, and width in pixels of each picture."""
 
 LIVE_PAGE = ("page.png", "examples/09_three_robots/three_robots.jcm", 30.0)
-"""The picture of a live page: its name, the project, and the seconds of the run at which it is taken."""
+"""The picture of a live page: its name, the project, and the time in seconds at which it is taken."""
 
 
 def main() -> None:
@@ -48,7 +48,7 @@ def main() -> None:
 
 
 async def take_live_page(name: str, project: str, seconds: float) -> None:
-    """Take a picture of the live page of a run, with the browser that tests drive."""
+    """Take a picture of the live page of a run, with the browser used by the tests."""
     sys.path.append(str(ROOT / "tests" / "unit" / "inspector"))
     from devtools import chromium
 
@@ -58,7 +58,7 @@ async def take_live_page(name: str, project: str, seconds: float) -> None:
         *("run", ROOT / project, "--seed", "1", "--view"),
         stdout=asyncio.subprocess.DEVNULL,
         stderr=asyncio.subprocess.PIPE,
-        env={**os.environ, "BROWSER": "true"},  # a command that opens nothing
+        env={**os.environ, "BROWSER": "true"},  # a command that opens no browser
     )
     try:
         assert run.stderr is not None

@@ -93,6 +93,9 @@ def _usage(command: click.Command, context: click.Context) -> Iterator[str]:
     if options:
         yield "| option | meaning |\n|---|---|"
         yield "\n".join(map(_option, options)) + "\n"
+    if command.epilog:
+        _, _, examples = command.epilog.partition("Examples:\n")
+        yield f"```sh\n{textwrap.dedent(examples)}\n```\n"
 
 
 def _option(option: click.Option) -> str:

@@ -3,7 +3,7 @@
 measure_coverage.py                    unit tests, contracts without a real ROS, recorded cases; then the table
 measure_coverage.py COMMAND [ARGS]     one of them, such as `-m pytest tests/unit/env`; then the table
 
-Processes that tests start are measured, too. A test that fails does not stop the measurement: some look at which modules
+Processes started by tests are measured, too. A failing test does not stop the measurement: some tests check which modules
 are loaded, and coverage loads more.
 """
 
@@ -23,7 +23,7 @@ PARTS = (
     ("tools/check_conformance.py", "environment"),
 )
 APART = ("bdi/actions", "bdi/explaining", "bdi/fast", "bdi/rules", "bdi/state", "ros/drivers")
-"""Folders with a row of their own."""
+"""Folders with their own row."""
 
 
 def main(arguments: list[str]) -> int:

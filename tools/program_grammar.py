@@ -1,6 +1,6 @@
-"""Programs made by the grammar of the language: right ones, as strange as they may be.
+"""Programs generated from the grammar of the language: valid, however strange.
 
-Every choice is drawn from one generator, so that a program belongs to its number, and Hypothesis can make it smaller.
+All choices come from one generator, so that a number determines a program, and Hypothesis can shrink it.
 """
 
 from collections.abc import Callable
@@ -23,11 +23,11 @@ PATTERNS = ("dg(g)", "bdg(g)", "ebdg(g)", "mg(p(1))", "bc(g)", "smc(g, q)", "rc(
 
 
 class Grammar:
-    """Writes pieces of programs.
+    """Generates parts of programs.
 
     Args:
-        random: where choices come from.
-        depth: how deep terms, formulae and statements may be nested.
+        random: source of choices.
+        depth: maximum nesting of terms, formulae and statements.
     """
 
     def __init__(self, random: Random, depth: int = 4) -> None:

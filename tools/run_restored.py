@@ -1,8 +1,8 @@
-"""Run a project like `jacaros run`, but store each mind as JSON at random cycles and go on with a new one.
+"""Run a project like `jacaros run`, but store each mind as JSON at random cycles and continue with a restored one.
 
-run_restored.py PROJECT [--clock fast] …     options as of `jacaros run`; JACAROS_RESTORED_SEED chooses the cycles
+run_restored.py PROJECT [--clock fast] …     options of `jacaros run`; JACAROS_RESTORED_SEED sets the seed
 
-The new mind has plans of its own, so nothing that the old one compiled helps it.  A mind that cannot be stored goes on as
+The new mind has plans of its own, so nothing that the old one compiled helps it.  A mind that cannot be stored continues as
 it is; why is written to the file that the variable JACAROS_NOT_RESTORED names.
 """
 
@@ -20,7 +20,7 @@ from jacaros.cli.main import main
 from jacaros.mas.agent_host import AgentHost
 
 CHANCE = 0.2
-"""How likely a mind is exchanged after a few cycles."""
+"""Probability of restoring a mind after a few cycles."""
 FEW = 6
 random = Random(os.environ.get("JACAROS_RESTORED_SEED", "1"))
 reported: set[str] = set()
@@ -42,7 +42,7 @@ def run(host: AgentHost, fuel: int) -> bool:
 
 
 def exchange(host: AgentHost, old: Mind) -> None:
-    """Store a mind, and go on with what a new one reads."""
+    """Store a mind, and continue with the one restored from it."""
     try:
         text = json.dumps(stored(old))
     except NotStorable as why:
@@ -60,7 +60,7 @@ def exchange(host: AgentHost, old: Mind) -> None:
 
 
 def host_mind(host: AgentHost, mind: object) -> None:
-    """Have a mind exchanged from time to time."""
+    """Restore a mind from time to time."""
     HOSTED.fset(host, mind)
     if type(mind) is Mind:
         host.run = partial(run, host)
@@ -68,7 +68,7 @@ def host_mind(host: AgentHost, mind: object) -> None:
 
 HOSTED: Any = AgentHost.mind
 RESTORING: Any = property(HOSTED.fget, host_mind)
-"""To be put in the place of `AgentHost.mind`."""
+"""Replaces `AgentHost.mind`."""
 
 if __name__ == "__main__":
     AgentHost.mind = RESTORING  # type: ignore[method-assign]

@@ -1,6 +1,6 @@
-"""Random programs that run: every step does something that a print can show, and every program ends.
+"""Random programs that run: every step has an effect that output can show, and every program ends.
 
-Goals call later goals only, and waits are short.  A project belongs to its number.
+Goals call later goals only, and waits are short. A number determines a project.
 """
 
 import json
@@ -67,7 +67,7 @@ ATOMS = (
 
 
 class Writer:
-    """Writes programs whose every step does something that a print can show."""
+    """Writes programs whose steps all have an effect that output can show."""
 
     def __init__(self, random: Random) -> None:
         self._random = random

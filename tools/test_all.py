@@ -71,7 +71,7 @@ class Part:
     Attributes:
         name: what people call it.
         command: run in the project's folder, without standard input.
-        stage: ``install`` (one after the other), ``work`` and ``waiting`` (beside each other), ``real-time`` (alone).
+        stage: ``install`` (in turn), ``work`` and ``waiting`` (beside each other), ``real-time`` (alone).
         needs: a part that must have passed before.
         budget: seconds of processor time that it takes, processes that it starts included. The closing table shows
             where a part takes more, and one that takes `RUNAWAY` times as much is stopped.

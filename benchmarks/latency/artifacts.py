@@ -16,7 +16,7 @@ class Reply(RosArtifact):
 
     @operation
     def reply(self, number: float) -> None:
-        """Publish a command that says which message it answers."""
+        """Publish a command with the number of the message that it answers."""
         command = self._commands.message()
         command.linear.x = number
         self._commands.publish(command)
@@ -40,14 +40,14 @@ class Bumper(RosArtifact):
 
     @operation
     def stop(self, number: int) -> None:
-        """Publish a zero velocity; the roll rate, which no robot on wheels has, says which bump it answers."""
+        """Publish a zero velocity; the roll rate, unused by robots on wheels, holds the number of the answered bump."""
         command = self._commands.message()
         command.angular.x = float(number)
         self._commands.publish(command)
 
 
 class Load(RosArtifact):
-    """Signals that number of readings at once, which is acknowledged when they wait, and when all have been handled."""
+    """Signals a number of readings, acknowledged when they are queued, and when all have been handled."""
 
     def open(self) -> None:
         """Listen to the order, and open the topics of the acknowledgements."""

@@ -1,4 +1,4 @@
-"""A robot that bumps again and again, and how long its agent takes to stop the wheels: a measurement of ``reactivity.py``.
+"""A robot that bumps repeatedly, and the time until its agent stops the wheels: a measurement of ``reactivity.py``.
 
     bumps.py memory steady|burst COUNT PROGRAM   the agent and the robot, in this process
     bumps.py KIND steady|burst COUNT [URL]       the robot alone, on a real graph; URL: of a rosbridge server
@@ -32,7 +32,7 @@ INT32, SCAN, TWIST = "std_msgs/msg/Int32", "sensor_msgs/msg/LaserScan", "geometr
 BEAMS, HERTZ = 720, 40
 READINGS = 10_000
 PERIOD = 0.037
-"""Seconds between two bumps at least; no multiple of a scan's period, so that bumps fall anywhere between two scans."""
+"""Minimum seconds between two bumps; not a multiple of a scan's period, so that bumps fall anywhere between two scans."""
 
 WARM_UP = 10
 PATIENCE = 30.0
@@ -76,11 +76,11 @@ class Robot:
         self._clock.call_later(1 / HERTZ, self.scan)
 
     def knock(self) -> None:
-        """Bump without measuring, to see whether the agent is there."""
+        """Bump without measuring, to check that the agent is running."""
         self._bump("agent", 0)
 
     def beat(self, moment: float | None = None) -> None:
-        """Begin the next bump, unless the agent is still busy with the one before.
+        """Start the next bump, unless the agent is still busy with the last one.
 
         Args:
             moment: when the bump began, in seconds of ``time.perf_counter``; now by default.
@@ -94,7 +94,7 @@ class Robot:
             self._readings.publish(self._readings.message(data=READINGS))
 
     def report(self) -> str:
-        """The reaction times in seconds, and how many bumps were lost, as JSON."""
+        """Return the reaction times in seconds and the number of lost bumps, as JSON."""
         return json.dumps({"times": self.pings.times["agent"], "lost": self.pings.lost})
 
     def _bump(self, way: str, number: float) -> None:
@@ -110,7 +110,7 @@ class Robot:
 
 
 def in_process(burst: bool, count: int, program: Path) -> str:
-    """Measure on the graph inside this process; another process begins the bumps, as the loop is busy."""
+    """Measure on the in-process graph; another process triggers the bumps, because the loop is busy."""
     robots = []
 
     def started(mas: System) -> None:
@@ -122,7 +122,7 @@ def in_process(burst: bool, count: int, program: Path) -> str:
         robot.scan()
         beats(PERIOD, robot.beat, lambda: robot.done, mas)
 
-    launch(program, RunOptions(world=HERE / "nobody.yaml"), StandardConsole("error"), started)
+    launch(program, RunOptions(world=HERE / "no_robots.yaml"), StandardConsole("error"), started)
     return robots[0].report()
 
 

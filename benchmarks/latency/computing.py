@@ -1,4 +1,4 @@
-"""A thread that computes without end: what a bare echo has to live with where an agent is busy."""
+"""A thread that computes without end: the load next to a bare echo that corresponds to a busy agent."""
 
 import os
 import sys

@@ -138,7 +138,7 @@ def main() -> None:
     way = sys.argv[1] if len(sys.argv) > 1 else None
     assert way is None or way in WAYS
     measurement = InProcess(way)
-    world = Path(__file__).parent / "nobody.yaml"
+    world = Path(__file__).parent / "no_robots.yaml"
     options = RunOptions(world=world)
     program = "busy.asl" if way == "agent" else "echo.asl"
     launch(Path(__file__).parent / program, options, StandardConsole("error"), measurement.join)

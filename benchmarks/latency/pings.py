@@ -1,4 +1,4 @@
-"""Numbered odometry messages, one after the other, and how long each took to come back as a command."""
+"""Numbered odometry messages, sent in turn, and the time until each returns as a command."""
 
 import statistics
 from collections.abc import Callable, Sequence
@@ -12,10 +12,10 @@ PATIENCE = 1.0
 """Seconds after which a message counts as lost."""
 
 SECONDS = 3.0
-"""How long each way is tried flat out."""
+"""Duration in seconds for which each way is measured flat out."""
 
 WAYS = ("agent", "bare")
-"""Through the agent's plan, and through an echo written with the client library alone."""
+"""Through the agent's plan, or through an echo written with the client library alone."""
 
 
 class Pings:
@@ -55,7 +55,7 @@ class Pings:
 
     @property
     def under_way(self) -> bool:
-        """Whether a message may still come back; one that does not in time counts as lost."""
+        """Whether a message is still awaited; one that does not return in time counts as lost."""
         for way, (_, began) in list(self._sent.items()):
             if self._now() - began < self._patience:
                 return True
@@ -64,7 +64,7 @@ class Pings:
         return False
 
     def next(self, moment: float | None = None) -> None:
-        """Send the next message, unless the last one is still on its way.
+        """Send the next message, unless the last one is still awaited.
 
         Args:
             moment: when the message began, in seconds of the clock; now by default.
@@ -77,7 +77,7 @@ class Pings:
         self._send(way, float(self._number))
 
     def returned(self, way: str, number: float) -> None:
-        """Take a command; those that answer an earlier message do not count."""
+        """Receive a command; commands for earlier messages do not count."""
         arrived = self._now()
         sent = self._sent.get(way)
         if sent is not None and sent[0] == number:
@@ -86,7 +86,7 @@ class Pings:
                 self.times[way].append(arrived - sent[1])
 
     def report(self, kind: str) -> str:
-        """Two lines for people."""
+        """Return two lines of text."""
         lines = []
         for way in self._ways:
             times = sorted(self.times[way])
@@ -105,7 +105,7 @@ class Pings:
 
 
 class FlatOut:
-    """The next message as soon as the last one has come back: how many go there and back in a second, by each way in turn.
+    """Sends the next message as soon as the last one has returned: messages per second, for each way in turn.
 
     Args:
         now: seconds of a steady clock.
@@ -123,11 +123,11 @@ class FlatOut:
 
     @property
     def over(self) -> bool:
-        """Whether all ways have had their time."""
+        """Whether all ways have been measured."""
         return not self._ways
 
     def next(self) -> None:
-        """Look after the way that is being tried; called now and then."""
+        """Switch to the next way when it is time; call it regularly."""
         if self.over:
             return
         now = self._now()
@@ -141,7 +141,7 @@ class FlatOut:
             self._go(now)
 
     def returned(self, way: str, number: float) -> None:
-        """Take a command, and send the next message at once."""
+        """Receive a command, and send the next message immediately."""
         if self._began is not None and self._ways and way == self._ways[0] and number == self._number:
             self._back += 1
             now = self._now()
@@ -154,14 +154,14 @@ class FlatOut:
         self._send(self._ways[0], self._number)
 
     def report(self, kind: str) -> str:
-        """Two lines for people."""
+        """Return two lines of text."""
         return "\n".join(f"{kind:8} {way:6} flat out {self.rates[way]:8.0f} a second" for way in WAYS)
 
 
 def measurement(
     now: Callable[[], float], send: Callable[[str, float], None], busy: bool
 ) -> "Pings | Measurement":
-    """What to measure: beside busy ones only the latency."""
+    """Return what to measure: next to a busy load only the latency."""
     return Pings(now, send) if busy else Measurement(now, send)
 
 
@@ -177,7 +177,7 @@ class Measurement:
 
     @property
     def over(self) -> bool:
-        """Whether all is measured."""
+        """Whether everything is measured."""
         return self.pings.over and self.flat_out.over
 
     def next(self) -> None:
@@ -185,9 +185,9 @@ class Measurement:
         self._phase.next()
 
     def returned(self, way: str, number: float) -> None:
-        """Take a command."""
+        """Receive a command."""
         self._phase.returned(way, number)
 
     def report(self, kind: str) -> str:
-        """Four lines for people."""
+        """Return four lines of text."""
         return f"{self.pings.report(kind)}\n{self.flat_out.report(kind)}"

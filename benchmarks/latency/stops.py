@@ -1,4 +1,4 @@
-"""Where the time of a message goes in the agents' process on ROS 1: `jacaros run`, with a look at the clock at each stop.
+"""Where the time of a message is spent in the agents' process on ROS 1: `jacaros run`, with a time stamp at each stop.
 
 Started by ``latency.py ros1 --profile``; prints a table of medians when the run ends.
 """
@@ -32,7 +32,7 @@ STOPS: tuple[tuple[type, str, str], ...] = (
 """Class, method, and what has been done since the stop before when the method is called."""
 SENT = "write to the socket"
 SLEPT = 0.005
-"""Seconds without a message after which a message counts as one that found the process asleep."""
+"""Seconds without a message after which the next message finds the process asleep."""
 
 _journey: list[float] = []
 _ended: list[float] = [0.0]
@@ -67,7 +67,7 @@ def end() -> None:
 
 
 def table() -> str:
-    """Medians in microseconds: after a sleep, and one message after the other."""
+    """Return medians in microseconds: after a sleep, and for messages in a row."""
     names = [what for _, _, what in STOPS[1:]] + [SENT]
     columns = [
         [1e6 * statistics.median(steps) for steps in zip(*_journeys[slept], strict=True)]

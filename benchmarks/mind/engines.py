@@ -1,4 +1,4 @@
-"""The engines that are measured: each runs a workload in a process of its own and gives the figures of it."""
+"""The engines that are measured: each runs a workload in a separate process and reports its figures."""
 
 import json
 import os
@@ -19,21 +19,21 @@ PEER = HERE.parent.parent / ".venv-bench" / "bin" / "python"
 OURS, AGENTSPEAK, JASON = "jacaros", "agentspeak", "jason"
 NAMES = {OURS: "JaCaROS", AGENTSPEAK: "python-agentspeak", JASON: "Jason"}
 PATIENCE = {OURS: 120.0, AGENTSPEAK: 30.0, JASON: 120.0}
-"""Processor seconds after which an engine has taken for ever."""
+"""Processor seconds after which an engine is stopped."""
 
 WAITING = 4
-"""A process that waits, for another one or for ever, may take so many times as long by the clock."""
+"""Limit on wall time, as a multiple of the limit on processor time, for a process that waits."""
 
 MOST_TIMES = 10
 
 
 def available() -> list[str]:
-    """The engines of this machine: Jason where the variable JASON names its command."""
+    """Return the engines of this machine, including Jason if the variable JASON names its command."""
     return [OURS, *([AGENTSPEAK] if PEER.exists() else []), *([JASON] if os.environ.get("JASON") else [])]
 
 
 def run(engine: str, workload: Workload, n: int) -> dict[str, Any]:
-    """Run a workload at a size; its figures (see `marks.Marks.report`), or ``note``: why there are none."""
+    """Run a workload at a size; return its figures (see `marks.Marks.report`), or a ``note`` why there are not any."""
     times = _times(engine, workload, n)
     with tempfile.TemporaryDirectory() as scratch:
         folder = Path(scratch)
@@ -42,7 +42,7 @@ def run(engine: str, workload: Workload, n: int) -> dict[str, Any]:
 
 
 def _times(engine: str, workload: Workload, n: int) -> int:
-    """How often the work is done in the process: short work of ours more often; that of the peer takes long enough."""
+    """Return how often the process repeats the work: short work of ours more often; that of the peer takes long enough."""
     if engine == AGENTSPEAK:
         return 1
     return min(MOST_TIMES, max(TIMES, workload.n // n)) if engine == OURS else 3
@@ -60,7 +60,7 @@ def _command(engine: str, workload: Workload, project: Path) -> list[str]:
 
 
 def _measured(command: Sequence[str], patience: float) -> dict[str, Any]:
-    """What a measuring script printed, or what went wrong."""
+    """Return the output of a measuring script, or its error."""
     began = time.monotonic()
     with subprocess.Popen(
         command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True
@@ -81,7 +81,7 @@ def _measured(command: Sequence[str], patience: float) -> dict[str, Any]:
 
 
 def _spent(process: int) -> float:
-    """Processor seconds of a process that runs; zero where the system does not tell."""
+    """Return the processor seconds of a running process; zero where the system does not report them."""
     try:
         fields = Path(f"/proc/{process}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
     except OSError:
@@ -90,7 +90,7 @@ def _spent(process: int) -> float:
 
 
 def _late(patience: float, told: str) -> dict[str, Any]:
-    """The note of one that takes for ever; ``at_least`` is the time that it has spent on the work itself."""
+    """Return the note for an engine that was stopped; ``at_least`` is the time spent on the work itself."""
     begun = re.findall(r"^begin ([\d.]+)$", told, re.MULTILINE)
     note = {"note": f"> {patience:g} s"}
     return note | ({"at_least": patience - float(begun[-1])} if begun else {})

@@ -12,7 +12,7 @@ SAMPLES = 9
 
 
 def empty(first: object, second: object, third: object) -> None:
-    """What an empty call costs is the yardstick."""
+    """The cost of an empty call is the unit."""
 
 
 def seconds_for_a_call() -> float:
@@ -30,7 +30,7 @@ def seconds_for_a_call() -> float:
 
 
 class Marks:
-    """Takes what a program prints, and measures between the marks.
+    """Receives the output of a program, and measures between the marks.
 
     Attributes:
         seconds: processor time of each piece of work.
@@ -47,13 +47,13 @@ class Marks:
         self._began: float | None = None
 
     def take(self, text: str) -> None:
-        """Take a line that the program printed."""
+        """Process a line of output."""
         now = time.process_time()
         if text == "begin":
             gc.collect()
             self._call = seconds_for_a_call()
             self._began = time.process_time()
-            # For whoever waits in vain for the end.
+            # For the reader of the marks, who would otherwise wait in vain.
             print(f"begin {self._began:.3f}", file=sys.stderr, flush=True)
         elif text.startswith("end") and self._began is not None:
             spent = now - self._began
@@ -65,7 +65,7 @@ class Marks:
             self._began = None
 
     def report(self) -> dict[str, Any]:
-        """The figures: medians of all pieces of work but the first, which compiles the plans, where there are more."""
+        """Return the figures: medians of all repetitions but the first, which compiles the plans."""
         counted = slice(1, None) if len(self.seconds) > 1 else slice(None)
         seconds = median(self.seconds[counted])
         return {

@@ -1,4 +1,4 @@
-"""Let an agent believe and forget a million names of its own making, and compare its memory before and after.
+"""Let an agent add and remove beliefs with a million generated names, and compare its memory before and after.
 
     python benchmarks/mind/names.py [NAMES]
 

@@ -2,7 +2,7 @@
 
     on_agentspeak.py NAME=FILE[#COUNT] ...
 
-Runs in an environment of its own (``make bench`` makes it): the library is GPL and no part of JaCaROS.
+Runs in a separate environment (created by ``make bench``), because the library is GPL and not part of JaCaROS.
 """
 
 import json
@@ -37,7 +37,7 @@ def actions(marks: Marks) -> Any:
 
 
 class Environment(agentspeak.runtime.Environment):
-    """Names agents at once: the library tries all numbers, which takes minutes for 10,000 agents and is not the work."""
+    """Name agents directly: the library tries all numbers, which takes minutes for 10,000 agents and is not the work."""
 
     def _make_name(self, path: str) -> str:
         return path if path not in self.agents else f"{path}{len(self.agents)}"

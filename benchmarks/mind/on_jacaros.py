@@ -25,7 +25,7 @@ class Listener:
         self.marks.take(text)
 
     def log(self, text: str, level: str = "info") -> None:
-        """End at once when something is wrong: the program would wait for ever."""
+        """End the run on an error: the program would wait forever."""
         if level == "error":
             print(text, file=sys.stderr, flush=True)
             os._exit(1)

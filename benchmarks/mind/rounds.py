@@ -1,4 +1,4 @@
-"""Running workloads on all engines in turn, and what comes of it."""
+"""Run workloads on all engines in turn, and collect the results."""
 
 import sys
 from collections.abc import Callable, Sequence
@@ -14,7 +14,7 @@ Runner = Callable[[str, Workload, int], dict[str, Any]]
 
 @dataclass
 class Figures:
-    """What the runs of one program gave.
+    """The results of the runs of one program.
 
     Attributes:
         runs: by engine and size, the figures of each round.
@@ -25,7 +25,7 @@ class Figures:
     notes: dict[str, dict[str, Any]] = field(default_factory=dict)
 
     def median(self, engine: str, n: int, key: str) -> float | None:
-        """The middle of what the rounds gave; None where there were none."""
+        """Return the median of the rounds; None without rounds."""
         runs = self.runs.get((engine, n))
         return median(run[key] for run in runs) if runs else None
 
@@ -52,7 +52,7 @@ def measure(
 
 
 def turns(workload: Workload, engines: Sequence[str]) -> list[tuple[str, int]]:
-    """Who runs, at which size, in which order."""
+    """Return which engine runs at which size, in which order."""
     order = [(OURS, workload.n)]
     for engine in engines:
         if engine == OURS or engine in workload.lacks:
@@ -99,7 +99,7 @@ def row_of(workload: Workload, figures: Figures, engines: Sequence[str]) -> dict
 
 
 def _peer(workload: Workload, figures: Figures, engine: str) -> dict[str, Any]:
-    """How an engine did beside ours, or why it could not.  `ratio` is how many times as long it took."""
+    """Return the result of an engine relative to ours, or why it has no result. `ratio` is the relative time."""
     goal = workload.faster if engine == "agentspeak" else workload.faster_jason
     found: dict[str, Any] = {"goal": goal, "n": workload.size_on(engine)}
     if engine in workload.lacks:

@@ -1,4 +1,4 @@
-"""How the cost of a look-up, an event, a message grows with what else there is."""
+"""How the cost of a look-up, an event or a message grows with the size of its surroundings."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -53,13 +53,13 @@ def taking_turns(size: int) -> Workload:
 
 
 def messages(size: int) -> Workload:
-    """Messages between a hub and *size* other agents, by turns."""
+    """Messages between a hub and *size* other agents, in turn."""
     agents = (("spoke", "spoke", size), ("hub", "hub", 1))
     return Workload(f"messages, {size:,} agents", agents, 20_000, lambda n, k: n, k=size)
 
 
 def stamps(size: int) -> Workload:
-    """Beliefs that get *size* annotations one after the other, 20,000 in all."""
+    """Beliefs that get *size* annotations in turn, 20,000 in all."""
     return single(f"beliefs with {size:,} annotations", "stamps", 20_000 // size, lambda n, k: n * k, k=size)
 
 

@@ -1,4 +1,4 @@
-"""What is measured: the programs, their sizes, and what can run them."""
+"""The programs that are measured, with their sizes and the engines that can run them."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -8,7 +8,7 @@ from string import Template
 PROGRAMS = Path(__file__).parent / "programs"
 ARTIFACT = "board.py"
 TIMES = 4
-"""How often a program does its work in one process; the first time is not counted where there are more."""
+"""Number of repetitions in one process; with several, the first does not count."""
 
 
 @dataclass(frozen=True)
@@ -43,16 +43,16 @@ class Workload:
     artifact: bool = False
 
     def size_on(self, engine: str) -> int:
-        """``n`` on that engine."""
+        """Return ``n`` for an engine."""
         return self.sizes.get(engine, self.n)
 
     @property
     def count(self) -> int:
-        """Units of the work at the size of the table."""
+        """Return the units of work at the size of the table."""
         return self.units_of(self.n, self.k)
 
     def write(self, folder: Path, n: int | None = None, times: int = TIMES) -> Path:
-        """Write the project into *folder*; its .mas2j file."""
+        """Write the project to *folder*; return its .mas2j file."""
         values = {"n": self.n if n is None else n, "k": self.k, "times": times, "plans": self._plans()}
         for file in {file for _, file, _ in self.agents}:
             source = Template((PROGRAMS / f"{file}.asl").read_text(encoding="utf-8"))
@@ -69,7 +69,7 @@ class Workload:
         return project
 
     def _plans(self) -> str:
-        """What ``$plans`` stands for: plans by the dozen that nobody wants to read in the program."""
+        """Return the replacement of ``$plans``: dozens of plans that would clutter the program."""
         if self.artifact:
             return "\n".join(f"+value{i}(X) : X > 0 <- Y = X + 1." for i in range(10))
         return "\n".join(f"+!do(kind{i}, X)." for i in range(1, 101))
@@ -81,7 +81,7 @@ def single(name: str, file: str, n: int, units_of: Callable[[int, int], int], **
 
 
 def fibonacci_calls(n: int, k: int) -> int:
-    """How many calls the naive Fibonacci number of *n* takes."""
+    """Return the number of calls for the naive Fibonacci number of *n*."""
     return 1 if n < 2 else 1 + fibonacci_calls(n - 1, k) + fibonacci_calls(n - 2, k)
 
 

@@ -1,4 +1,4 @@
-"""The page docs/benchmarks.md: what stands between its marks is made from the figures, the rest is written by hand."""
+"""The page docs/benchmarks.md: the parts between its marks are generated from the figures, the rest is written by hand."""
 
 import re
 from collections.abc import Mapping

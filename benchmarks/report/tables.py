@@ -174,9 +174,7 @@ def robot(found: dict[str, Any]) -> str:
         ],
     ]
     if "reaction_rate" in observers:
-        rows.append(
-            ["the same, and each observer carries out a plan", figure(observers["reaction_rate"]), ""]
-        )
+        rows.append(["the same, and each observer runs a plan", figure(observers["reaction_rate"]), ""])
     return _table(("what", "an agent", "a bare callback"), rows)
 
 

@@ -1,8 +1,8 @@
-"""Figures as people read them."""
+"""Figures as text."""
 
 
 def figure(value: float) -> str:
-    """A number with two or three digits that count."""
+    """Return a number with two or three significant digits."""
     if value >= 100:
         digits = len(str(round(value))) - 3
         return f"{round(value, -max(0, digits)):,.0f}"

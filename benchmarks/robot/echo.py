@@ -16,7 +16,7 @@ WAYS = ("agent", "bare")
 
 
 def connect(mas: System, returned: Callable[[str, float], None]) -> Callable[[str, float], None]:
-    """Join the bare echo and whoever measures; gives what sends a numbered message by one of the `WAYS`."""
+    """Connect the bare echo to the measuring process; return a function that sends a numbered message in a given way."""
     echo, pinger = node(mas, "echo"), node(mas, "pinger")
     answers = echo.publisher("/bare/cmd_vel", TWIST)
 

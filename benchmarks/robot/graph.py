@@ -13,7 +13,7 @@ from jacaros.mas.system import System
 from jacaros.ros.backend import Backend
 from jacaros.ros.open import open_backend
 
-WORLD = "name: nobody\nrobots:\n  - {name: elsewhere, namespace: elsewhere}\n"
+WORLD = "name: no_robots\nrobots:\n  - {name: elsewhere, namespace: elsewhere}\n"
 """A world whose robot keeps out of the way: its topics are those of another namespace."""
 
 SETTLED = 0.5
@@ -26,7 +26,7 @@ def run(program: str, begin: Callable[[System], None], artifacts: str = "", fast
         source = Path(folder) / "agent.asl"
         source.write_text(program, encoding="utf-8")
         (Path(folder) / "artifacts.py").write_text(artifacts, encoding="utf-8")
-        world = Path(folder) / "nobody.yaml"
+        world = Path(folder) / "no_robots.yaml"
         world.write_text(WORLD, encoding="utf-8")
 
         def started(mas: System) -> None:

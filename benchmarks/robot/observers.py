@@ -1,7 +1,7 @@
 """How many updates of a property a second reach the beliefs of ten agents, as JSON.
 
 Each update is a step of its own.  In the first run, the agents have a plan for the event that is not applicable, as
-when a sensor shows nothing of interest; in the second, a plan that is carried out.
+when a sensor shows nothing of interest; in the second, a plan that is run.
 """
 
 import json

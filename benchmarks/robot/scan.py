@@ -15,7 +15,7 @@ from jacaros.mas.system import System
 
 BEAMS, HERTZ, SECONDS = 720, 40, 40
 SCANS = 20
-"""Different scans, one after the other again and again."""
+"""Different scans, published in a cycle."""
 WARM_UP = 2
 
 PROGRAM = """

@@ -108,4 +108,4 @@ class ActionClient:
         """Do nothing: rclpy's client asks by `server_is_ready`."""
 
     def server_went(self) -> None:
-        """Do nothing, as rclpy: the end of a goal is never told."""
+        """Do nothing, as rclpy: the end of a goal is never reported."""

@@ -5,7 +5,7 @@ from virtual_rclpy.node import Node
 
 
 class SingleThreadedExecutor:
-    """Runs the callbacks of its nodes one after the other."""
+    """Runs the callbacks of its nodes in turn."""
 
     def add_node(self, node: Node) -> None:
         """Do nothing: while time passes, callbacks of all nodes run."""

@@ -1,4 +1,4 @@
-"""The examples of a page that stand with what they print.
+"""The examples of a page that have an expected output.
 
 A block ``output`` shows what the file of the block before it prints when it is run with ``jacaros run FILE --clock fast
 --until-idle``, character by character; a block ``errors`` what that run tells besides. Without such a block nothing is
@@ -26,14 +26,14 @@ SHOWN = ("output", "errors")
 
 @dataclass(slots=True)
 class Example:
-    """A program with what it prints.
+    """A program with its expected output.
 
     Attributes:
         file: the name of the file that is run.
         line: where the block of that file begins.
         files: all files that stand on the page up to there.
         output: what the agents are said to print.
-        errors: what else is said to be told.
+        errors: other expected output.
     """
 
     file: str
@@ -78,7 +78,7 @@ def run(example: Example, folder: Path) -> RunResult:
 
 
 def shown(result: RunResult) -> tuple[str, str]:
-    """What a run printed and what it told besides, as pages show it."""
+    """Return the output and the log of a run, as pages show it."""
     return _text(result.lines), _text(result.errors)
 
 

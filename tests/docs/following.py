@@ -1,4 +1,4 @@
-"""Follows a page as its reader does: writes its files, makes its changes, runs its commands, presses Ctrl-C.
+"""Follow a page as its reader does: write its files, make its changes, run its commands, press Ctrl+C.
 
 Each command is run in a real shell; what earlier commands exported is there. What stands behind ``console``::
 
@@ -26,7 +26,7 @@ from typing import Any
 from pages import Block, blocks, is_file
 
 PATIENCE = 150.0
-"""Seconds after which what should come is given up; its being late is no mistake."""
+"""Time limit in seconds for expected output; slow output is not an error."""
 
 MEMORY = "memory"
 KINDS = (MEMORY, "ros1", "ros2")
@@ -35,7 +35,7 @@ CTRL_C = "^C\n"
 
 
 def commands(text: str) -> list[tuple[str, str]]:
-    """The commands of a console block, each with what it is said to print."""
+    """Return the commands of a console block, each with its expected output."""
     parts = re.split(r"^\$ ", text, flags=re.MULTILINE)
     assert not parts[0].strip(), "a console block begins with a command"
     found = []
@@ -57,7 +57,7 @@ def pattern(expected: str) -> str:
 
 
 class Command:
-    """A command in a shell of its own, with a process group of its own as in a terminal; its output is read along.
+    """A command in a separate shell and process group, as in a terminal; its output is read continuously.
 
     Args:
         command: for the shell.
@@ -89,7 +89,7 @@ class Command:
 
     @property
     def output(self) -> str:
-        """All that it has printed so far, errors included."""
+        """Return the output so far, including errors."""
         if not self._quiet:
             return self._text
         return "".join(line for line in self._text.splitlines(keepends=True) if not line.startswith("[ros]"))
@@ -101,18 +101,18 @@ class Command:
             time.sleep(0.05)
 
     def prints(self, expected: str) -> bool:
-        """Whether lines like these come."""
+        """Return whether lines like these appear."""
         found = re.compile(pattern(expected))
         self.until(lambda: found.match(self.output))
         return bool(found.match(self.output))
 
     def press_ctrl_c(self) -> None:
-        """Send what the terminal would."""
+        """Send what a terminal would send."""
         with contextlib.suppress(ProcessLookupError):
             os.killpg(self._process.pid, signal.SIGINT)
 
     def end(self) -> str:
-        """Wait for the end; the whole output."""
+        """Wait for the end; return the whole output."""
         self.until(lambda: False)
         if self._process.poll() is None:
             os.killpg(self._process.pid, signal.SIGKILL)
@@ -125,7 +125,7 @@ class Command:
 
 
 class Reader:
-    """Somebody who follows a page in a folder; a context manager, since terminals are closed in the end.
+    """A user who follows a page in a folder; a context manager that closes the terminals at the end.
 
     Args:
         folder: where the reader is.
@@ -148,7 +148,7 @@ class Reader:
         self._deaf: Any = None
 
     def follow(self, page: Path) -> None:
-        """Do all that a page says, and compare what comes with what it shows."""
+        """Do everything that a page says, and compare the output with what it shows."""
         for block in blocks(page):
             where = f"{page.name}:{block.line}"
             if block.language == "console":
@@ -186,7 +186,7 @@ class Reader:
             assert came, f"{where}: $ {command}\nprints\n{output}\nand not, before Ctrl-C,\n{before}"
         else:
             output = running.end()
-        # While the key is pressed agents may print further lines, and nobody else does.
+        # While the key is pressed, agents may print further lines, but nothing else does.
         meanwhile = r"(?:\[[^\n]*\n)*" if pressed else ""
         found = re.fullmatch(pattern(before) + meanwhile + pattern(after), output)
         assert found, f"{where}: $ {command}\nprints\n{output}\nand not\n{expected}"
@@ -201,7 +201,7 @@ class Reader:
         )
 
     def _change(self, block: Block, where: str) -> None:
-        """Change a file as a diff says; its lines must stand in the file, once."""
+        """Change a file by a diff, whose lines must appear in the file exactly once."""
         file = self._folder / block.purpose
         lines = block.text.splitlines(keepends=True)
         old = "".join(line[1:] for line in lines if line[0] in " -")

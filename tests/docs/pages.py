@@ -7,7 +7,7 @@ What stands behind the language of a block says what becomes of it::
                                    `following` tells of those that only some readers or other terminals run
     ```diff robot.yaml             what to change in a file
     ```output                      what the file before it prints (see `examples`)
-    ```errors                      what is told besides when that file is run
+    ```errors                      other output when that file is run
     ```sh                          commands that are only read: set-up, real robots
     ```agentspeak wrong CODE       a program for which `jacaros check` tells this code, and nothing else
     ```agentspeak right CODE       one for which it tells nothing

@@ -1,4 +1,4 @@
-"""Commands that the documentation only shows (set-up, real robots) name what there is."""
+"""Commands that the documentation only shows (setup, real robots) name existing things."""
 
 import re
 import shlex
@@ -42,7 +42,7 @@ def words_behind(program: str) -> list[tuple[str, list[str]]]:
 
 
 @pytest.mark.parametrize(("where", "words"), words_behind("jacaros"))
-def test_the_command_line_knows_what_pages_show(where: str, words: list[str]) -> None:
+def test_commands_on_pages_are_valid(where: str, words: list[str]) -> None:
     words = [word for word in words if ">" not in word]
     if has_ros_arguments(words):
         words = as_options(words, pytest.fail)
@@ -58,16 +58,16 @@ def test_the_command_line_knows_what_pages_show(where: str, words: list[str]) ->
 
 
 @pytest.mark.parametrize(("where", "words"), words_behind("make"))
-def test_make_knows_the_targets_that_pages_show(where: str, words: list[str]) -> None:
+def test_make_targets_on_pages_exist(where: str, words: list[str]) -> None:
     targets = [word for word in words if "=" not in word]
     done = subprocess.run(["make", "-n", *targets], cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0, f"{where}: {done.stderr}"
 
 
 @pytest.mark.parametrize(("where", "line"), LINES)
-def test_tools_that_pages_name_are_there(where: str, line: str) -> None:
+def test_tools_named_on_pages_exist(where: str, line: str) -> None:
     for tool in re.findall(r"(?<![\w/])tools/[\w.]+", line):
-        assert (ROOT / tool).is_file(), f"{where}: there is no {tool}"
+        assert (ROOT / tool).is_file(), f"{where}: {tool} does not exist"
 
 
 def test_the_pages_have_commands() -> None:

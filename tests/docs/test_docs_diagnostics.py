@@ -1,4 +1,4 @@
-"""The page about diagnostics: every code, with a program for which it is told and one for which nothing is."""
+"""The page about diagnostics: every code, with a program that triggers it and one that triggers nothing."""
 
 import json
 import re
@@ -70,6 +70,6 @@ def test_nesting_has_a_limit(
 
 
 def told(capsys: pytest.CaptureFixture[str]) -> list[tuple[str, str]]:
-    """Code and level of what there is to say about example.asl."""
+    """Return code and level of the diagnostics of example.asl."""
     call(["check", "example.asl", "--format", "json"])
     return [(each["code"], each["level"]) for each in json.loads(capsys.readouterr().out)["diagnostics"]]

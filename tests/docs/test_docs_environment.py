@@ -1,4 +1,4 @@
-"""Everything that agents and authors of artifacts can do with the environment is shown in an example that is run."""
+"""Everything that agents and authors of artifacts can do with the environment is shown in a tested example."""
 
 import re
 
@@ -17,7 +17,7 @@ from jacaros.project_modules import ProjectModules
 REFERENCE = ROOT / "docs" / "reference"
 
 SAME = {"printWithAgName": "print", "printlnWithAgName": "println"}
-"""Actions that do the same as others."""
+"""Actions equivalent to others."""
 
 REFUSED = {"crash", "createWorkspaceWithTopology", "linkRemoteWorkspace", "mountWorkspace", "spawnNode"}
 """Actions that can only fail."""

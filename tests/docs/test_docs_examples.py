@@ -24,7 +24,7 @@ def test_the_commands_of_a_page_print_what_it_says(page: Path, tmp_path: Path) -
 
 @pytest.mark.parametrize("page", PAGES, ids=name_of)
 def test_every_block_of_a_page_has_a_known_purpose(page: Path) -> None:
-    """A program that is neither run nor an excerpt could be wrong without anybody noticing."""
+    """A program that is neither run nor an excerpt could be wrong without being noticed."""
     for block in blocks(page):
         where = f"{name_of(page)}:{block.line}"
         assert block.language in LANGUAGES, f"{where}: language {block.language!r}"
@@ -46,7 +46,7 @@ def test_files_of_a_page_are_used_by_its_commands(page: Path) -> None:
 
 
 @pytest.mark.parametrize("page", PAGES, ids=name_of)
-def test_excerpts_stand_in_their_files(page: Path) -> None:
+def test_excerpts_appear_in_their_files(page: Path) -> None:
     for block in blocks(page):
         if not block.purpose.startswith("excerpt "):
             continue
@@ -57,6 +57,6 @@ def test_excerpts_stand_in_their_files(page: Path) -> None:
         for line in (line.strip() for line in block.text.splitlines()):
             if line in ("", "...", "# ..."):
                 continue
-            where = f"{name_of(page)}:{block.line}: {path.name} has no line (any more, or not in this order)"
+            where = f"{name_of(page)}:{block.line}: {path.name} lacks a line (or has it in another order)"
             assert line in source[place:], f"{where}\n{line}"
             place = source.index(line, place) + 1

@@ -1,4 +1,4 @@
-"""Every internal action and every function has its entry, and the entries say of them what the registry says."""
+"""Every internal action and every function has an entry, which agrees with the registry."""
 
 import math
 import re

@@ -1,4 +1,4 @@
-"""The page about the layout of programs shows what `jacaros fmt` makes."""
+"""The page about the layout of programs shows the output of `jacaros fmt`."""
 
 from pages import ROOT, blocks
 
@@ -13,5 +13,5 @@ def test_the_example_is_laid_out_as_the_page_says() -> None:
     assert format_program("example", example.text) == example.text
 
 
-def test_the_page_tells_the_right_width() -> None:
+def test_the_page_states_the_right_width() -> None:
     assert f"at most {WIDTH} characters" in PAGE.read_text(encoding="utf-8")

@@ -1,4 +1,4 @@
-"""Links lead somewhere, pictures are there, and the documentation is complete."""
+"""Links have targets, pictures exist, and the documentation is complete."""
 
 import re
 from pathlib import Path
@@ -12,7 +12,7 @@ from jacaros.cli.demo import PROGRAM
 
 
 def anchors(page: Path) -> set[str]:
-    """What can stand behind a # in a link to *page*."""
+    """Return the anchors in links to *page*."""
     found = set()
     for heading in re.findall(r"^#+ +(.+)$", page.read_text(encoding="utf-8"), flags=re.MULTILINE):
         words = re.sub(r"[^\w\- ]", "", heading.lower().replace("`", ""))
@@ -21,7 +21,7 @@ def anchors(page: Path) -> set[str]:
 
 
 @pytest.mark.parametrize("page", PAGES, ids=name_of)
-def test_links_lead_somewhere(page: Path) -> None:
+def test_links_have_a_target(page: Path) -> None:
     for link in links(page):
         if "://" in link:
             continue
@@ -39,7 +39,7 @@ def test_the_index_names_every_page() -> None:
     assert sorted(str(page) for page in pages - named) == []
 
 
-def test_pictures_are_drawings_that_need_nothing_else() -> None:
+def test_pictures_are_self_contained() -> None:
     pictures = sorted((ROOT / "docs" / "images").glob("*.svg"))
     assert pictures
     for picture in pictures:

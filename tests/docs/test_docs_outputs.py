@@ -1,4 +1,4 @@
-"""Every example that stands with its output prints exactly that."""
+"""Every example with an output prints exactly that output."""
 
 import difflib
 from pathlib import Path
@@ -11,9 +11,7 @@ WITH_OUTPUT = [page for page in PAGES if any(examples(page))]
 
 
 @pytest.mark.parametrize("page", WITH_OUTPUT, ids=name_of)
-def test_examples_print_what_stands_behind_them(
-    page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_examples_print_the_output_shown(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     wrong = []
     for example in examples(page):

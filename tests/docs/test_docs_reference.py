@@ -1,4 +1,4 @@
-"""The reference pages that follow from the code are up to date."""
+"""The generated reference pages are up to date."""
 
 import subprocess
 import sys
@@ -23,7 +23,7 @@ def fresh(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.parametrize("page", ["cli.md", "artifacts.md", "internal_actions/index.md"])
-def test_a_page_is_what_the_code_says(page: str, fresh: Path) -> None:
+def test_a_generated_page_is_up_to_date(page: str, fresh: Path) -> None:
     same = (REFERENCE / page).read_text(encoding="utf-8") == (fresh / page).read_text(encoding="utf-8")
     assert same, f"docs/reference/{page} is out of date: run `make reference`"
 

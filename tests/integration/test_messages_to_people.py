@@ -11,13 +11,13 @@ import pytest
 JACAROS = str(Path(sys.executable).parent / "jacaros")
 
 NO_ROSPY = """\
-jacaros: the ros1 backend needs the Python library rospy, which cannot be imported (No module named 'rospy'). \
+error: the ros1 backend needs the Python library rospy, which cannot be imported (No module named 'rospy'). \
 On Debian 12 install python3-rospy and the message packages with apt-get and use a venv made by \
 `/usr/bin/python3 -m venv --system-site-packages`; tools/install_ros1.sh does both. \
 On a robot with its own ROS 1, source its setup file first.
 """
 NO_RCLPY = """\
-jacaros: the ros2 backend needs the Python library rclpy, which cannot be imported (No module named 'rclpy'). \
+error: the ros2 backend needs the Python library rclpy, which cannot be imported (No module named 'rclpy'). \
 On Linux x86-64 run `pip install 'jacaros[ros2]'`; tools/install_ros2.sh makes a complete venv. \
 On a robot with its own ROS 2, source its setup file first.
 """
@@ -250,7 +250,7 @@ def test_an_unknown_option_of_an_artifact(project: Project) -> None:
 def test_a_mistake_in_the_projects_own_artifacts(project: Project) -> None:
     project.write("artifacts.py", COUNTER.replace("(Artifact):", "(Artifact)"))
     project.write("robot.asl", "!start. +!start <- .print(done).")
-    assert project.run_file("robot.asl") == told(1, "jacaros: artifacts.py:4: expected ':'\n")
+    assert project.run_file("robot.asl") == told(1, "error: artifacts.py:4: expected ':'\n")
 
 
 def test_an_operation_that_fails_reaches_the_plan_with_its_reason(project: Project) -> None:
@@ -295,7 +295,7 @@ def test_the_fast_clock_with_a_real_graph(project: Project) -> None:
     project.write("robot.asl", "!start. +!start <- .print(done).")
     assert project.run("run", "robot.asl", "--ros", "ros1", "--clock", "fast") == told(
         2,
-        "jacaros: --clock fast excludes a real ROS graph (--ros ros1), whose nodes run in real time; "
+        "error: --clock fast excludes a real ROS graph (--ros ros1), whose nodes run in real time; "
         "use --clock real\n",
     )
 
@@ -304,7 +304,7 @@ def test_a_file_that_is_not_there(project: Project) -> None:
     project.write("robot.asl", "!start. +!start <- .print(done).")
     assert project.run("run", "robott.asl") == told(
         2,
-        "jacaros: file not found: robott.asl; did you mean robot.asl?\n",
+        "error: file not found: `robott.asl`\n  = help: did you mean `robot.asl`?\n",
     )
 
 

@@ -1,4 +1,4 @@
-"""The repository as an ament_python package: what colcon would ask of it, without colcon."""
+"""The repository as an ament_python package: what colcon would require, without colcon."""
 
 import ast
 import shutil
@@ -52,7 +52,7 @@ def test_package_xml_is_what_the_ros_tools_expect(request: pytest.FixtureRequest
     assert warnings == []
 
 
-def test_setup_py_knows_the_package(tree: Path) -> None:
+def test_setup_py_contains_the_package(tree: Path) -> None:
     assert setup(tree, "--name") == "jacaros"
     assert setup(tree, "--version") == "0.1.0"
 
@@ -70,7 +70,7 @@ print(repr(data))
 """What colcon runs to learn about a package (colcon-python-setup-py 0.2.9), in few words."""
 
 
-def test_what_setup_py_says_of_itself_are_literals(tree: Path) -> None:
+def test_setup_py_uses_literals(tree: Path) -> None:
     call = [sys.executable, "-W", "ignore", "-c", READING]
     done = subprocess.run(call, cwd=tree, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr

@@ -83,7 +83,7 @@ def test_only_what_runs_now_is_a_context_variable() -> None:
     assert others_than(VARIABLES, lambda value: isinstance(value, ContextVar)) == []
 
 
-def test_only_tables_of_what_is_in_use_hold_weakly() -> None:
+def test_only_tables_of_objects_in_use_use_weak_references() -> None:
     kinds = (WeakKeyDictionary, WeakSet, WeakValueDictionary, Held)
     assert others_than(WEAK, lambda value: isinstance(value, kinds)) == []
 

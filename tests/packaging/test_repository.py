@@ -42,7 +42,7 @@ HOSTS = {
 
 
 def tracked() -> list[Path]:
-    """The files under version control, or all files where there is none."""
+    """Return the files under version control; all files without version control."""
     listing = subprocess.run(
         ["git", "-c", "safe.directory=*", "ls-files", "--cached", "--others", "--exclude-standard", "-z"],
         cwd=ROOT,
@@ -63,12 +63,12 @@ def texts() -> list[tuple[str, str]]:
     return found
 
 
-def test_nothing_names_a_workplace_or_a_package_host() -> None:
+def test_no_file_names_a_workplace_or_a_package_host() -> None:
     hits = [(path, word) for path, text in texts() for word in FOREIGN if word in text]
     assert hits == []
 
 
-def test_addresses_lead_to_known_hosts_only() -> None:
+def test_addresses_use_known_hosts_only() -> None:
     strange = {
         (path, host)
         for path, text in texts()
@@ -94,7 +94,7 @@ def test_the_licence_is_apache_2() -> None:
     assert "END OF TERMS AND CONDITIONS" in text
 
 
-def test_every_folder_of_tests_is_run_by_the_suite() -> None:
+def test_the_suite_runs_every_folder_of_tests() -> None:
     suite = (ROOT / "tools" / "test_all.py").read_text()
     folders = {path.relative_to(ROOT / "tests").parts[0] for path in (ROOT / "tests").rglob("test_*.py")}
     left_out = [folder for folder in sorted(folders) if f'"tests/{folder}"' not in suite]

@@ -55,7 +55,7 @@ def run(
     return call
 
 
-def test_a_suite_that_passes_ends_with_zero(run: Any) -> None:
+def test_a_passing_suite_exits_with_0(run: Any) -> None:
     code, verdicts, printed = run(("a", "echo 3 passed in 1.0s", {}), ("b", "true", {"stage": "real-time"}))
     assert code == 0
     assert verdicts == {"a": "ok", "b": "ok"}
@@ -80,14 +80,14 @@ def test_parts_of_all_stages_run(run: Any) -> None:
     assert verdicts == dict.fromkeys(stages, "ok")
 
 
-def test_what_cannot_run_here_is_told_loudly(run: Any) -> None:
+def test_what_cannot_run_here_is_reported_prominently(run: Any) -> None:
     code, verdicts, printed = run(("a", "exit 3", {"stage": "install"}), ("b", "true", {"needs": "a"}))
     assert code == 0
     assert verdicts == {"a": "NOT RUN", "b": "NOT RUN"}
     assert "!!!!! NOT RUN ON THIS MACHINE: a, b !!!!!" in printed
 
 
-def test_on_the_build_server_what_cannot_run_is_a_failure(run: Any) -> None:
+def test_on_the_build_server_a_part_that_cannot_run_fails(run: Any) -> None:
     code, verdicts, _ = run(
         ("a", "exit 3", {"stage": "install"}), ("b", "true", {"needs": "a"}), must_run=True
     )
@@ -108,7 +108,7 @@ def test_a_part_that_makes_no_progress_is_stopped(run: Any) -> None:
     assert "stopped: no output for 0.005 minutes" in printed
 
 
-def test_a_part_that_uses_processor_time_without_end_is_stopped(run: Any, tmp_path: Path) -> None:
+def test_a_part_that_uses_too_much_processor_time_is_stopped(run: Any, tmp_path: Path) -> None:
     # A child of a child, in a session of its own: all that a part starts counts.
     endless = "setsid sh -c 'echo $$ >endless; while :; do :; done' & wait"
     code, verdicts, printed = run(("a", endless, {"budget": 0.05}))
@@ -154,7 +154,7 @@ def test_properties_have_the_same_examples_in_every_run_however_slow_the_machine
     assert HealthCheck.too_slow in settings.default.suppress_health_check
 
 
-def test_unknown_parts_are_refused_with_the_known_ones(driver: ModuleType) -> None:
+def test_unknown_parts_are_rejected_with_the_known_ones(driver: ModuleType) -> None:
     with pytest.raises(SystemExit, match=r"no part nonsense; there are .*unit"):
         driver.choose(["nonsense"])
 

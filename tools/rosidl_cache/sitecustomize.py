@@ -1,8 +1,8 @@
-"""Have the ROS 2 interface generators do the same work once only, while our interfaces are built.
+"""Make the ROS 2 interface generators do repeated work only once while our interfaces are built.
 
-`tools/build_ros2_interfaces.sh` puts this folder on PYTHONPATH for the build.  Nothing installed is changed.  Each of the
-six generators parses each definition anew, and expands the same templates for every type, with a scanner that looks at
-every character in Python: together that is most of the build's time.  What is kept here depends on the text alone.
+`tools/build_ros2_interfaces.sh` puts this folder on PYTHONPATH for the build; no installed file is changed. Each of the six
+generators parses each definition again, and expands the same templates for every type, with a scanner in Python that
+inspects every character: together this is most of the build time. The cached data depends on the text alone.
 
 ROSIDL_CACHE names the folder for parsed definitions.
 """
@@ -12,7 +12,7 @@ import sys
 
 
 def _keep_tokens() -> None:
-    """Remember what templates are made of: the same text gives the same token, and running a token does not change it."""
+    """Cache the tokens of templates: the same text gives the same token, and running a token does not change it."""
     import em  # type: ignore[import-not-found]
 
     scan = em.Scanner.one
@@ -34,7 +34,7 @@ def _keep_tokens() -> None:
 
 
 def _keep_definitions(folder: str) -> None:
-    """Remember what parsed definitions say, for the next generator."""
+    """Cache parsed definitions for the next generator."""
     import hashlib
     import pickle
 
@@ -51,7 +51,7 @@ def _keep_definitions(folder: str) -> None:
         part = f"{path}.{os.getpid()}"
         with open(part, "wb") as file:
             pickle.dump(content, file)
-        os.replace(part, path)  # generators run side by side
+        os.replace(part, path)  # generators run in parallel
         return content
 
     parser.parse_idl_string = remembered

@@ -1,5 +1,6 @@
 """``jacaros check FILE|FOLDER...``."""
 
+import difflib
 import os
 import sys
 from collections import Counter
@@ -11,17 +12,26 @@ import click
 from jacaros.asl.diagnostics import KINDS, Diagnostic, Severity, bounded
 from jacaros.cli.files import existing, no_programs
 from jacaros.cli.reports import as_json, as_sarif
-from jacaros.errors import UsageError
+from jacaros.cli.usage import did_you_mean, examples, usage_error
 from jacaros.mas.checking import Findings, check_files
 from jacaros.text_files import is_file
 
 _KINDS = (".asl", ".mas2j", ".jcm", ".py", ".yaml", ".yml")
 MOST_NAMES = 8
-"""Skipped files that are named."""
+"""Number of skipped files listed in the note."""
 _COLOURS: dict[Severity, str] = {"error": "red", "warning": "yellow", "note": "cyan"}
 
 
-@click.command("check", short_help="Report problems in programs, projects and mappings.")
+@click.command(
+    "check",
+    short_help="Report problems in programs, projects and mapping files.",
+    epilog=examples(
+        "jacaros check robot.asl",
+        "jacaros check . --strict",
+        "jacaros check robot.asl --mapping robot.yaml",
+        "jacaros check . --format sarif > problems.sarif",
+    ),
+)
 @click.argument("files", metavar="FILE...", type=click.Path(path_type=Path), nargs=-1, required=True)
 @click.option(
     "--format",
@@ -29,7 +39,7 @@ _COLOURS: dict[Severity, str] = {"error": "red", "warning": "yellow", "note": "c
     type=click.Choice(["text", "json", "sarif"]),
     default="text",
     show_default=True,
-    help="Text for reading, JSON for programs, or SARIF 2.1.0 for editors and code hosts.",
+    help="Output format: text, json, or sarif (SARIF 2.1.0, for editors and code hosts).",
 )
 @click.option("--strict", is_flag=True, help="Exit with status 1 on warnings, too.")
 @click.option(
@@ -62,15 +72,19 @@ def command(
     """Report problems in each FILE: an agent program (.asl, or .py for an agent in Python), a project (.mas2j, .jcm)
     with the programs of its agents, a mapping file or a world file (.yaml), or a folder with any of them.
 
-    All problems are told at once. Each kind has a code; the reference page "Diagnostics" explains them. A comment
-    `// jacaros: ignore CODE` switches a warning off for its line, or, on a line of its own, for the clause below
-    it; `// jacaros: ignore-file CODE` for the file. The exit code is 1 if there is an error.
+    Every problem is reported in one pass, with its location and a suggested fix. Each kind has a code, explained on the
+    reference page "Diagnostics". The comment `// jacaros: ignore CODE` suppresses a warning: for its own line, or, on a
+    separate line, for the clause below. `// jacaros: ignore-file CODE` suppresses it for the whole file.
 
-    No Python code of the project is run, unless you give --import: what it declares is read from its source.
+    Python code of the project is read, not run, unless you give --import. The exit code is 1 if there is an error.
     """  # fmt: skip
     unknown = [code for code in ignore if code not in KINDS]
     if unknown:
-        raise UsageError(f"unknown code {unknown[0]}")
+        near = difflib.get_close_matches(unknown[0], KINDS, 1)
+        raise usage_error(
+            f"unknown code: `{unknown[0]}`",
+            did_you_mean(near) or 'the reference page "Diagnostics" lists the codes',
+        )
     supported = _supported(files)
     findings = check_files([existing(file, _KINDS) for file in supported], mappings, imports)
     if not findings.files and not findings.diagnostics:
@@ -79,7 +93,7 @@ def command(
         [each for each in findings.diagnostics if each.severity == "error" or each.code not in ignore]
     )
     if style == "text":
-        tell(findings)
+        report(findings)
     else:
         click.echo((as_json if style == "json" else as_sarif)(findings))
     counts = Counter(each.severity for each in findings.diagnostics)
@@ -87,17 +101,17 @@ def command(
 
 
 def _supported(files: Sequence[Path]) -> Sequence[Path]:
-    """Skip files of other kinds, which a shell's ``*`` names, too; but not if there is no other file."""
+    """Skip files of other types, which a shell's ``*`` also matches, unless there are no others."""
     foreign = [file for file in files if is_file(file) and file.suffix not in _KINDS]
     if not foreign or len(foreign) == len(files):
         return files
     names = ", ".join(map(str, foreign[:MOST_NAMES])) + (", ..." if len(foreign) > MOST_NAMES else "")
-    click.echo(f"note: skipped because of their file types: {names}", err=True)
+    click.echo(f"note: skipped unsupported file types: {names}", err=True)
     return [file for file in files if file not in foreign]
 
 
-def tell(findings: Findings) -> None:
-    """Print what was found, and how much."""
+def report(findings: Findings) -> None:
+    """Print the diagnostics, and their number on the standard error output."""
     coloured = has_colours()
     for diagnostic in findings.diagnostics:
         click.echo(_coloured(diagnostic) if coloured else diagnostic.render(with_code=True), color=coloured)
@@ -106,7 +120,7 @@ def tell(findings: Findings) -> None:
 
 
 def has_colours() -> bool:
-    """Whether the output may be coloured: it is a terminal, and nobody has asked for none (NO_COLOR)."""
+    """Return whether to colour the output: it is a terminal, and NO_COLOR is not set."""
     return sys.stdout.isatty() and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
 
 

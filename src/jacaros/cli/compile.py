@@ -13,19 +13,26 @@ from jacaros.bdi.engines import new_engine
 from jacaros.bdi.fast.generated.listing import Piece, listing, pieces
 from jacaros.bdi.state.plan import Plan
 from jacaros.bdi.state.plan_library import ProgramPlans
-from jacaros.cli.check import tell
+from jacaros.cli.check import report
 from jacaros.cli.files import existing
-from jacaros.errors import UsageError
+from jacaros.cli.usage import examples, usage_error
 from jacaros.mas.checking import check_files
 from jacaros.mas.programs import Programs
 from jacaros.mas.python_code import PythonCode
 from jacaros.project_modules import ProjectModules
 from jacaros.terms.text import text
 
+MOST_EVENTS = 8
+"""Number of events listed when a plan is unknown."""
 
-@click.command("compile", short_help="Show the Python code generated for a program.")
+
+@click.command(
+    "compile",
+    short_help="Show the Python code generated for a program.",
+    epilog=examples("jacaros compile robot.asl", "jacaros compile robot.asl --show --plan '+!go/2'"),
+)
 @click.argument("file", type=click.Path(path_type=Path))
-@click.option("--show", is_flag=True, help="Print the code, below its lines of the program.")
+@click.option("--show", is_flag=True, help="Print the generated code, each part below its source lines.")
 @click.option(
     "--plan",
     "wanted",
@@ -39,11 +46,11 @@ from jacaros.terms.text import text
     help="Run the Python files of the project to find all their declarations (default: read them only).",
 )
 def command(file: Path, show: bool, wanted: str | None, imports: bool) -> int:
-    """Compile all plans and rules of FILE, an agent program (.asl), and tell how much code they become.
+    """Compile all plans and rules of FILE, an agent program (.asl), and print the size of the generated code.
 
-    Nothing of that is needed to run a program: an agent compiles its plans while it has nothing to do, or when their first
-    event comes. What is wrong in the program is told as `jacaros check` tells it, with exit code 1. No Python code of the
-    project is run, unless you give --import.
+    You need not compile a program to run it: agents compile their plans when idle, or on the first event of a plan. Errors
+    in the program are reported as by `jacaros check`, with exit code 1. Python code of the project is read, not run,
+    unless you give --import.
     """  # fmt: skip
     program, code = _read(existing(file, (".asl",)), imports)
     if program is None:
@@ -70,19 +77,19 @@ def command(file: Path, show: bool, wanted: str | None, imports: bool) -> int:
 
 
 def _read(file: Path, imports: bool) -> tuple[nodes.Program | None, PythonCode]:
-    """The program, or None when something is wrong in it, which has been told."""
+    """Return the program, or None after reporting its errors."""
     findings = check_files([file], imports=imports)
     errors = [each for each in findings.diagnostics if each.severity == "error"]
     code = PythonCode(ProjectModules(file.parent, unseen=None if imports else set()))
     if errors:
         findings.diagnostics = bounded(errors)
-        tell(findings)
+        report(findings)
         return None, code
     return Programs((file.parent,), lambda _: None, code).read(file), code
 
 
 def _fault(piece: Piece) -> str | None:
-    """Why Python does not take a piece; None when it does."""
+    """Return why Python cannot compile a piece; None if it can."""
     try:
         piece.unit.code()
     except (SyntaxError, RecursionError) as fault:
@@ -91,10 +98,10 @@ def _fault(piece: Piece) -> str | None:
 
 
 def _chosen(all_: Sequence[Piece], wanted: str) -> list[tuple[Piece, Plan | None]]:
-    """What `--plan` means.
+    """Return the pieces that `--plan` selects.
 
     Raises:
-        UsageError: there is no such plan.
+        UsageError: no plan matches.
     """
     label = wanted.removeprefix("@")
     labelled = [(piece, plan) for piece in all_ for plan in piece.plans if text(plan.label) == label]
@@ -104,12 +111,13 @@ def _chosen(all_: Sequence[Piece], wanted: str) -> list[tuple[Piece, Plan | None
     found = [(piece, None) for piece in all_ if piece.plans and name in _names(piece)]
     if not found:
         events = sorted({_names(piece)[0] for piece in all_ if piece.plans})
-        raise UsageError(f"unknown plan {wanted}; the program has plans for {', '.join(events) or 'nothing'}")
+        shown = ", ".join(events[:MOST_EVENTS]) + (", ..." if len(events) > MOST_EVENTS else "")
+        raise usage_error(f"unknown plan: `{wanted}`", f"the program has plans for {shown or 'no event'}")
     return list(found)
 
 
 def _names(piece: Piece) -> list[str]:
-    """What the event of a piece may be called: with the number of its arguments, and without."""
+    """Return the names of a piece's event: with the number of its arguments, and without."""
     whole = piece.title.removeprefix("the plans for ").partition(" ")[0]
     return [whole, whole.partition("/")[0]]
 

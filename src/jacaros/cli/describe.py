@@ -8,6 +8,7 @@ from typing import Any
 
 import click
 
+from jacaros.cli.usage import examples, usage_error
 from jacaros.env.artifact import Artifact
 from jacaros.env.errors import UnknownArtifactType
 from jacaros.env.manual import Manual, describe
@@ -21,14 +22,20 @@ from jacaros.text_files import is_file
 PROJECT_FILES = (".asl", ".mas2j", ".jcm")
 
 
-@click.command("describe", short_help="Describe what an artifact type, a mapping or a project offers.")
+@click.command(
+    "describe",
+    short_help="Describe an artifact type, a mapping file or a project.",
+    epilog=examples(
+        "jacaros describe ArtCmdVel", "jacaros describe robot.yaml", "jacaros describe house.jcm --json"
+    ),
+)
 @click.argument("what")
 @click.option(
     "--project",
     type=click.Path(path_type=Path),
     default=Path(),
     metavar="FOLDER",
-    help="Folder of the project with artifacts of its own (default: the current folder).",
+    help="Folder with the project's own artifact types (default: the current folder).",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @click.option(
@@ -38,9 +45,10 @@ PROJECT_FILES = (".asl", ".mas2j", ".jcm")
     help="Run the Python files of the project to find all their declarations (default: read them only).",
 )
 def command(what: str, project: Path, as_json: bool, imports: bool) -> None:
-    """Describe what WHAT offers: an artifact type, a Python file or a mapping file of them, or a project file.
+    """Describe WHAT: an artifact type, a Python file or a mapping file with artifact types, or a project file.
 
-    No Python code of the project is run, unless you give --import: what it declares is read from its source.
+    For an artifact type: its options, observable properties, signals and operations. For a project: its agents,
+    workspaces and artifacts. Python code of the project is read, not run, unless you give --import.
     """
     unseen = None if imports else set[Path]()
     if what.endswith(PROJECT_FILES):
@@ -57,7 +65,7 @@ def command(what: str, project: Path, as_json: bool, imports: bool) -> None:
 
 
 def _kinds(what: str, project: Path, unseen: set[Path] | None) -> Sequence[type[Artifact]]:
-    """The artifact types that are meant."""
+    """Return the artifact types that *what* names."""
     if what.endswith(".py"):
         return _types_in(Path(what), unseen)
     if what.endswith((".yaml", ".yml")):
@@ -66,18 +74,18 @@ def _kinds(what: str, project: Path, unseen: set[Path] | None) -> Sequence[type[
 
 
 def _mapped_types(name: str, folder: Path, unseen: set[Path] | None) -> list[type[Artifact]]:
-    """The artifact types of a mapping file, in their order."""
-    # Imported here: mappings bring their own reader.
+    """Return the artifact types of a mapping file, in the order of the file."""
+    # Imported here: only for mapping files.
     from jacaros.artifacts.mapping.file import find_mapping, load_mapping
 
     path = find_mapping(name, (folder,))
     if path is None:
-        raise UsageError(f"mapping file not found: {name}")
+        raise usage_error(f"mapping file not found: `{name}`")
     return [_find(f"{path}#{each}", folder, unseen) for each in load_mapping(path).artifacts]
 
 
 def _for_people(manual: Manual) -> str:
-    """What a manual says, without the marks of docstrings around code."""
+    """Return a manual as text, without the backquotes of docstrings."""
     return str(manual).replace("`", "")
 
 
@@ -88,7 +96,7 @@ def _json(data: Any) -> str:
 
 
 def _find(name: str, folder: Path, unseen: set[Path] | None) -> type[Artifact]:
-    # Imported here: all built-in artifacts come with it.
+    # Imported here: it imports all built-in artifacts.
     from jacaros.artifacts.registry import type_finder
 
     try:
@@ -98,16 +106,18 @@ def _find(name: str, folder: Path, unseen: set[Path] | None) -> type[Artifact]:
 
 
 def _types_in(file: Path, unseen: set[Path] | None) -> list[type[Artifact]]:
-    """The artifact types of a Python file, in their order."""
+    """Return the artifact types of a Python file, in the order of the file."""
     if not is_file(file):
-        raise UsageError(f"file not found: {file}")
+        raise usage_error(f"file not found: `{file}`")
     modules = ProjectModules(file.parent, unseen=unseen)
     found = _own_types(modules, file.stem)
     if not found:
         for module in modules.load(file.stem):
             for name in [name for name, value in vars(module).items() if value is UNSEEN] or [file.stem]:
                 modules.require_seen(module, name)
-        raise UsageError(f"{file} has no artifact type (a class derived from jacaros.env.Artifact)")
+        raise usage_error(
+            f"no artifact type in `{file}`", "an artifact type is a class derived from jacaros.env.Artifact"
+        )
     return found
 
 
@@ -121,7 +131,7 @@ def _own_types(modules: ProjectModules, name: str) -> list[type[Artifact]]:
 
 
 class _Project:
-    """What a project consists of, and the types of its artifacts."""
+    """A project, and the types of its artifacts."""
 
     def __init__(self, deployment: Deployment, unseen: set[Path] | None) -> None:
         from jacaros.artifacts.registry import ARTIFACTS, type_finder
@@ -141,7 +151,7 @@ class _Project:
         self._manuals = [describe(kind) for kind in types]
 
     def lines(self) -> Iterator[str]:
-        """For people."""
+        """Yield the lines of the description."""
         deployment = self._deployment
         yield deployment.name
         for agent in deployment.agents:
@@ -160,7 +170,7 @@ class _Project:
             yield _for_people(manual)
 
     def data(self) -> dict[str, Any]:
-        """For programs."""
+        """Return the description as data for JSON."""
         deployment = self._deployment
         return {
             "name": deployment.name,

@@ -1,4 +1,4 @@
-"""Files and folders that a command line names."""
+"""Files and folders named on the command line."""
 
 import difflib
 from collections.abc import Iterable
@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from jacaros.cli.usage import did_you_mean, usage_error
 from jacaros.errors import UsageError
 from jacaros.text_files import is_file
 
@@ -17,44 +18,45 @@ _KINDS = (".asl", ".mas2j", ".jcm")
 
 
 def no_programs(named: Iterable[Path]) -> UsageError:
-    """The error of folders in which nothing is found: to look at nothing and be content would hide a wrong path."""
-    return UsageError(f"no agent programs in {', '.join(map(str, named))}")
+    """Return the error for folders without programs: success would hide a wrong path."""
+    return usage_error(f"no agent programs in {', '.join(f'`{path}`' for path in named)}")
 
 
 def existing(path: Path, kinds: tuple[str, ...] = _KINDS) -> Path:
-    """*path*, which must be a folder or a file of one of *kinds*.
+    """Return *path*, a folder or a file with one of the suffixes *kinds*.
 
     Raises:
-        UsageError: it is not; with the names of similar files beside it.
+        UsageError: the file does not exist (the error suggests similar names), or has another suffix.
     """
     if path.is_dir():
         return path
     if not is_file(path):
         beside = [each.name for each in path.parent.glob("*.*") if each.suffix in kinds]
         near = difflib.get_close_matches(path.name, beside, n=2)
-        help = f"; did you mean {' or '.join(str(path.parent / name) for name in near)}?" if near else ""
-        raise UsageError(f"file not found: {path}{help}")
+        raise usage_error(
+            f"file not found: `{path}`", did_you_mean([str(path.parent / name) for name in near])
+        )
     if path.suffix not in kinds:
-        raise UsageError(f"unsupported file type: {path} (expected {', '.join(kinds)})")
+        raise usage_error(f"unsupported file type: `{path}`", f"expected {', '.join(kinds)}")
     return path
 
 
 def read_recording(path: Path) -> "Recording":
-    """Read a recording of any name; what is wrong with it, but can be left out, is printed as warnings.
+    """Read a recording, whatever its suffix; print a warning for each part that is skipped because it is damaged.
 
     Raises:
-        UsageError: it does not exist or is a folder; with the names of similar files beside it.
-        JacarosError: it is not a recording.
-        OSError: it cannot be read.
+        UsageError: the file does not exist (the error suggests similar names), or is a folder.
+        JacarosError: the file is not a recording.
+        OSError: the file cannot be read.
     """
     if path.is_dir():
-        raise UsageError(f"error: `{path}` is a folder\n  = help: name a recording in it")
+        raise usage_error(f"`{path}` is a folder", "name a recording in it")
     if not is_file(path):
         beside = [each.name for each in path.parent.glob("*.*") if _RECORDINGS.intersection(each.suffixes)]
         near = difflib.get_close_matches(path.name, beside, n=1)
-        help = f"did you mean `{path.parent / near[0]}`?" if near else f"jacaros run FILE --record {path}"
-        raise UsageError(f"error: recording not found: `{path}`\n  = help: {help}")
-    from jacaros.inspector.recording import Recording  # here: numpy and the simulator come with it
+        help = did_you_mean([str(path.parent / name) for name in near[:1]])
+        raise usage_error(f"recording not found: `{path}`", help or f"jacaros run FILE --record {path}")
+    from jacaros.inspector.recording import Recording  # here: it imports numpy and the simulator
 
     recording = Recording.read(path)
     for warning in recording.warnings:
@@ -63,4 +65,4 @@ def read_recording(path: Path) -> "Recording":
 
 
 _RECORDINGS = {".jsonl", ".gz"}
-"""Suffixes that recordings usually have."""
+"""Usual suffixes of recordings."""

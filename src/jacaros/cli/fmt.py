@@ -14,14 +14,19 @@ from jacaros.asl.diagnostics import AslError, Diagnostic
 from jacaros.asl.formatting import format_program
 from jacaros.bdi.actions.internal_action import STANDARD
 from jacaros.cli.files import existing, no_programs
-from jacaros.errors import InternalError, UsageError
+from jacaros.cli.usage import examples, usage_error
+from jacaros.errors import InternalError
 from jacaros.mas.checking import files_below
 from jacaros.mas.programs import text_of
 
 _STANDARD_INPUT = Path("-")
 
 
-@click.command("fmt", short_help="Format programs in one style.")
+@click.command(
+    "fmt",
+    short_help="Format programs in one style.",
+    epilog=examples("jacaros fmt robot.asl", "jacaros fmt . --check"),
+)
 @click.argument("files", metavar="FILE...", type=click.Path(path_type=Path), nargs=-1, required=True)
 @click.option(
     "--check",
@@ -31,14 +36,14 @@ _STANDARD_INPUT = Path("-")
 )
 @click.option("--diff", "only_show", is_flag=True, help="Write nothing; print the changes.")
 def command(files: tuple[Path, ...], only_check: bool, only_show: bool) -> int:
-    """Lay each FILE out in one style: an agent program (.asl), or a folder with all programs in it. A `-` stands for
-    the standard input, whose layout goes to the standard output.
+    """Format each FILE in one style: an agent program (.asl), or all programs in a folder. `-` formats the standard
+    input to the standard output.
 
-    Programs mean the same afterwards, and comments stay. The exit code is 1 if a program has errors; it is left as
-    it is. The page "The layout of programs" shows the style.
+    Formatting keeps the meaning of programs, and all comments. A program with errors is reported and not changed, and
+    the exit code is 1. The page "The layout of programs" shows the style.
     """  # fmt: skip
     if _STANDARD_INPUT in files and len(files) > 1:
-        raise UsageError("'-' cannot be combined with files")
+        raise usage_error("`-` cannot be combined with files")
     code = 0
     changed = 0
     programs = list(_programs(files))
@@ -55,7 +60,7 @@ def command(files: tuple[Path, ...], only_check: bool, only_show: bool) -> int:
             code = 1
             continue
         except InternalError as defect:
-            click.echo(f"jacaros: this is a defect of jacaros, please report it: {defect}", err=True)
+            click.echo(f"internal error: {defect}; please file an issue with this program", err=True)
             code = 1
             continue
         changed += before != after
@@ -67,7 +72,7 @@ def command(files: tuple[Path, ...], only_check: bool, only_show: bool) -> int:
             try:
                 _replace(path, after)
             except OSError as fault:
-                click.echo(f"cannot write {path}: {fault.strerror}", err=True)
+                click.echo(f"error: cannot write `{path}`: {fault.strerror}", err=True)
                 code = 1
     if _STANDARD_INPUT not in files:
         click.echo(_summary(changed, len(programs), only_check or only_show), err=True)
@@ -84,7 +89,7 @@ def _standard_input() -> str:
 
 
 def _replace(path: Path, text: str) -> None:
-    """Write a program anew; whatever happens meanwhile, the old or the new one is there whole."""
+    """Replace a program atomically: after a crash, the file is the old or the new one, complete."""
     path = path.resolve()
     with NamedTemporaryFile("w", dir=path.parent, encoding="utf-8", newline="\n", delete=False) as file:
         beside = Path(file.name)

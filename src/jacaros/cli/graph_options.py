@@ -1,4 +1,4 @@
-"""Options of commands that join a ROS graph: which one, and under which names."""
+"""Options of commands that join a ROS graph: its address, and the names used in it."""
 
 import asyncio
 import sys
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from jacaros.errors import UsageError
+from jacaros.cli.usage import usage_error
 from jacaros.ros.middleware import ROS_KINDS
 
 if TYPE_CHECKING:
@@ -20,19 +20,23 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 
 class RosKind(click.Choice[str]):
-    """Takes a kind of graph, or a class for one's own as ``MODULE:NAME``."""
+    """Accepts a kind of graph, or the class of a custom backend as ``MODULE:NAME``."""
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """Give the name of a class as it is written."""
+        """Return the name of a class unchanged."""
         return value if ":" in value else super().convert(value, param, ctx)
 
 
 def ros_option(
-    told: str, kinds: Sequence[str] = ROS_KINDS, required: bool = False, but_with: str = ""
+    help: str, kinds: Sequence[str] = ROS_KINDS, required: bool = False, but_with: str = ""
 ) -> Callable[[F], F]:
-    """The option that says which kind of graph; *told* is its help, and it is ``memory`` unless it is required.
+    """Return the option ``--ros``.
 
-    With the flag *but_with* it is not.
+    Args:
+        help: help text of the option.
+        kinds: kinds of graph that the command accepts.
+        required: there is no default; otherwise the default is ``memory``.
+        but_with: a flag with which a required option may be omitted.
     """
 
     def needed(context: click.Context, option: click.Parameter, value: str | None) -> str | None:
@@ -48,7 +52,7 @@ def ros_option(
         envvar="JACAROS_ROS",
         show_default=not required,
         show_envvar=True,
-        help=told,
+        help=help,
     )
 
 
@@ -56,7 +60,7 @@ faults_option = click.option(
     "--faults",
     type=click.Path(path_type=Path),
     metavar="FILE",
-    help="File with faults of the world and their times.",
+    help="Fault file: what fails in the embedded world, and when.",
 )
 
 _ADDRESS = (
@@ -64,29 +68,29 @@ _ADDRESS = (
         "--domain-id",
         type=int,
         metavar="N",
-        help="Domain of the ROS 2 graph, instead of ROS_DOMAIN_ID.",
+        help="Domain of the ROS 2 graph (default: ROS_DOMAIN_ID).",
     ),
     click.option(
         "--master",
         metavar="URI",
-        help="Master of the ROS 1 graph, instead of ROS_MASTER_URI.",
+        help="Master of the ROS 1 graph (default: ROS_MASTER_URI).",
     ),
     click.option(
         "--bridge",
         metavar="URL",
-        help="Address of a rosbridge server, such as ws://robot.lab.example:9090, instead of ROSBRIDGE_URI.",
+        help="Address of a rosbridge server, such as ws://robot.lab.example:9090 (default: ROSBRIDGE_URI).",
     ),
 )
 _NAMESPACE = click.option("--namespace", default="", metavar="NAME", help="Prefix of relative ROS names.")
 _NAMES = (
     click.option(
-        "--node-name", metavar="NAME", help="Name of the ROS node (default: the name of the system)."
+        "--node-name", metavar="NAME", help="Name of the ROS node (default: the name of the agent system)."
     ),
     click.option(
         "--remap",
         multiple=True,
         metavar="FROM:=TO",
-        help="Use the topic or service TO instead of FROM. Repeatable.",
+        help="Use the name TO for the topic, service or action FROM. Repeatable.",
     ),
 )
 
@@ -95,52 +99,52 @@ _PARAMETERS = (
         "--param",
         multiple=True,
         metavar="NAME:=VALUE",
-        help="Value of a parameter that a mapping file or an artifact declares. Repeatable.",
+        help="Set a parameter declared by a mapping file or an artifact. Repeatable.",
     ),
     click.option(
         "--params-file",
         multiple=True,
         type=click.Path(path_type=Path),
         metavar="FILE",
-        help="ROS 2 parameter file with parameters of this node. Repeatable.",
+        help="ROS 2 parameter file for this node. Repeatable.",
     ),
 )
 
 
 def graph_options(command: F) -> F:
-    """Give a command the options that name a graph, our node in it, and other names for topics."""
+    """Add the options for the address of a graph, the name of our node, and remappings."""
     return _with(command, (*_ADDRESS, _NAMESPACE, *_NAMES))
 
 
 def address_options(command: F) -> F:
-    """Give a command the options that name a graph and the namespace of a node in it."""
+    """Add the options for the address of a graph and the namespace of our node."""
     return _with(command, (*_ADDRESS, _NAMESPACE))
 
 
 def world_options(command: F) -> F:
-    """The same without a namespace: a world file says those of its robots."""
+    """Add the same options as `graph_options` without the namespace: world files give each robot its own."""
     return _with(command, (*_ADDRESS, *_NAMES))
 
 
 def parameter_options(command: F) -> F:
-    """Give a command the options that give parameters to our node."""
+    """Add the options that set parameters of our node."""
     return _with(command, _PARAMETERS)
 
 
 def orphans_option(command: F) -> F:
-    """Give a command the option that says what becomes of goals of an earlier run."""
+    """Add the option ``--orphans``, for action goals that an earlier run left behind."""
     option = click.option(
         "--orphans",
         type=click.Choice(["cancel", "keep", "ask"]),
         default="cancel",
-        help="Action goals of an earlier run of this node, for example of one that was killed: cancel them "
-        "(default), keep them, or ask on the terminal.",
+        help="What to do with action goals that an earlier run of this node left behind, for example because it was "
+        "killed: cancel them (default), keep them, or ask on the terminal.",
     )
     return _with(command, (option,))
 
 
 def orphan_policy(written: str) -> "OrphanPolicy":
-    """Return what `--orphans` means; without a terminal, `ask` keeps goals and says so."""
+    """Return the policy for a value of ``--orphans``; without a terminal, ``ask`` keeps the goals."""
     if written == "cancel":
         return "cancel"
     if written == "keep" or not (sys.stdin.isatty() and sys.stderr.isatty()):
@@ -155,7 +159,7 @@ def orphan_policy(written: str) -> "OrphanPolicy":
 
 
 async def _ask(question: str) -> bool:
-    """Ask on the terminal, in a thread that does not keep the process from ending."""
+    """Ask on the terminal, in a daemon thread, so that the process can exit meanwhile."""
     loop = asyncio.get_running_loop()
     answer: asyncio.Future[str] = loop.create_future()
 
@@ -166,11 +170,11 @@ async def _ask(question: str) -> bool:
     def read() -> None:
         print(f"{question} [Y/n] ", end="", file=sys.stderr, flush=True)
         text = sys.stdin.readline()
-        with suppress(RuntimeError):  # the run has ended meanwhile
+        with suppress(RuntimeError):  # the run has ended
             loop.call_soon_threadsafe(settle, text)
 
     threading.Thread(target=read, name="orphans", daemon=True).start()
-    # At the end of the input there is nobody to ask: an empty answer without a line feed keeps the goal.
+    # At the end of the input no user can answer: an empty answer without a line feed keeps the goal.
     return (await answer).strip().lower() in ("y", "yes") or answer.result() == "\n"
 
 
@@ -181,19 +185,19 @@ def _with(command: F, options: tuple[Callable[[F], F], ...]) -> F:
 
 
 def read_remaps(written: tuple[str, ...]) -> dict[str, str]:
-    """Read ``FROM:=TO`` pairs, as ROS's own tools write them.
+    """Read remappings ``FROM:=TO``, in the notation of ROS's own tools.
 
     Raises:
-        UsageError: one is written in another way, or a name has two replacements.
+        UsageError: a remapping is malformed, or a name has two replacements.
     """
     remap: dict[str, str] = {}
     for each in written:
         old, sign, new = each.partition(":=")
         if not sign or not old or not new:
-            raise UsageError(
-                f"--remap is written FROM:=TO, such as --remap odom:=/robot_1/odom, not {each!r}"
+            raise usage_error(
+                f"invalid value of --remap: expected FROM:=TO, found `{each}`", "--remap odom:=/robot_1/odom"
             )
         if remap.get(old, new) != new:
-            raise UsageError(f"--remap gives {old!r} two other names: {remap[old]!r} and {new!r}")
+            raise usage_error(f"--remap gives `{old}` two new names: `{remap[old]}` and `{new}`")
         remap[old] = new
     return remap

@@ -8,6 +8,7 @@ from typing import Any
 import click
 
 from jacaros.cli.graph_options import address_options, ros_option
+from jacaros.cli.usage import examples
 from jacaros.clock import WallClock, run
 from jacaros.ros.middleware import ROS_KINDS
 
@@ -15,7 +16,11 @@ LEAST_TIMEOUT = 0.15
 """Seconds: three heartbeats."""
 
 
-@click.command("guard", short_help="Stop the robot when its agents no longer can.")
+@click.command(
+    "guard",
+    short_help="Stop the robot when its agents no longer can.",
+    epilog=examples("jacaros guard robot --ros ros2", "jacaros run robot.asl --ros ros2 --guard"),
+)
 @click.argument("name")
 @ros_option("ROS graph to join.", ROS_KINDS[1:], required=True)
 @address_options
@@ -28,7 +33,7 @@ LEAST_TIMEOUT = 0.15
     show_default=True,
     envvar="JACAROS_GUARD_TIMEOUT",
     show_envvar=True,
-    help="Seconds without a heartbeat after which the guard stops the robot. Larger values have fewer false alarms on "
+    help="Seconds without a heartbeat after which the guard stops the robot. Larger values cause fewer false alarms on "
     "a busy machine.",
 )
 @click.option("--once", is_flag=True, help="Exit when the agents have shut down, or when none connect.")
@@ -38,10 +43,10 @@ def command(
     once: bool,
     **graph: Any,
 ) -> None:
-    """Guard the robot of the agents whose node is called NAME, until Ctrl+C.
+    """Guard the robot of the agents whose node is named NAME, until you press Ctrl+C.
 
-    `jacaros run --guard` on the same machine and graph finds this guard and sends its heartbeat. When the heartbeat stops,
-    the guard cancels all goals of the actions that the agents use, and sends zero velocity to their topics until the
+    `jacaros run --guard` on the same machine and graph finds this guard and sends it heartbeats. When the heartbeats stop,
+    the guard cancels all goals of the actions that the agents use, and publishes zero velocity to their topics until the
     agents return.
     """  # fmt: skip
     from jacaros.ros.address import GraphAddress
@@ -61,7 +66,7 @@ def command(
 
 
 def _leave_output() -> None:
-    """Close the standard error inherited from agents that have died: a reader of their pipe waits for its end."""
+    """Close the standard error inherited from dead agents: a reader of their pipe waits until it is closed."""
     if not os.isatty(2):
         null = os.open(os.devnull, os.O_WRONLY)
         os.dup2(null, 2)
@@ -69,6 +74,6 @@ def _leave_output() -> None:
 
 
 def _log(text: str) -> None:
-    """Write a line; who reads it may have died with the agents."""
+    """Write a line; the reader may have died with the agents."""
     with suppress(OSError):
         os.write(sys.stderr.fileno(), f"[guard {os.getpid()}] {text}\n".encode())

@@ -1,7 +1,7 @@
-"""``jacaros COMMAND``: finds the command, and turns the user's mistakes into messages.
+"""``jacaros COMMAND``: finds the command, and turns exceptions into error messages and exit codes.
 
-Exit codes: 0 after a clean end, 1 after an error in a program or project, 2 for wrong usage, the program's
-own code after ``.stopMAS``; 130 and 143 when a signal (Ctrl-C, SIGTERM) ended the run.
+Exit codes: 0 after a normal end, 1 for an error in a program or project, 2 for wrong usage, 130 and 143 when a signal
+(Ctrl+C, SIGTERM) ended the run, and the code that the program passes to ``.stopMAS``.
 """
 
 import io
@@ -14,28 +14,29 @@ from importlib import import_module
 import click
 
 from jacaros.cli.outputs import OUTPUT_GONE
+from jacaros.cli.usage import did_you_mean, examples, usage_error
 from jacaros.errors import JacarosError, UsageError
-from jacaros.excerpts import help_line, printable
+from jacaros.excerpts import help_line
 from jacaros.output import PLAIN
 
 ENDED_BY_SIGNAL = (129, 130, 143, 149)
-"""Exit codes of a run that SIGHUP, Ctrl-C, SIGTERM or Ctrl-Break (Windows) ended."""
+"""Exit codes of runs ended by SIGHUP, Ctrl+C, SIGTERM or Ctrl+Break (Windows)."""
 
 COMMANDS = {
     "demo": ("jacaros.cli.demo", "Show a robot on patrol."),
     "run": ("jacaros.cli.run", "Run an agent program or a project."),
-    "check": ("jacaros.cli.check", "Report problems in programs, projects and mappings."),
+    "check": ("jacaros.cli.check", "Report problems in programs, projects and mapping files."),
     "fmt": ("jacaros.cli.fmt", "Format programs in one style."),
     "compile": ("jacaros.cli.compile", "Show the Python code generated for a program."),
     "view": ("jacaros.cli.view", "Show a recorded run on a page in the browser."),
-    "why": ("jacaros.cli.why", "Explain why something happened in a recorded run, or did not."),
-    "replay": ("jacaros.cli.replay", "Give a recorded run to a changed program, and compare its decisions."),
+    "why": ("jacaros.cli.why", "Explain why something did or did not happen in a recorded run."),
+    "replay": ("jacaros.cli.replay", "Replay a recorded run against a changed program."),
     "test": ("jacaros.cli.test", "Run the tests of agent programs."),
-    "sim": ("jacaros.cli.sim", "Run a robot world as a ROS node of its own."),
-    "world": ("jacaros.cli.world", "Check, show, make and export world files."),
+    "sim": ("jacaros.cli.sim", "Run a robot world as a separate ROS node."),
+    "world": ("jacaros.cli.world", "Check, show, create and export world files."),
     "guard": ("jacaros.cli.guard", "Stop the robot when its agents no longer can."),
     "ros": ("jacaros.cli.ros", "Inspect a live ROS graph, and write mapping files for it."),
-    "describe": ("jacaros.cli.describe", "Describe what an artifact type, a mapping or a project offers."),
+    "describe": ("jacaros.cli.describe", "Describe an artifact type, a mapping file or a project."),
     "metrics": ("jacaros.cli.metrics", "Count identifiers, lines and compressed bytes of programs."),
     "version": ("jacaros.cli.version", "Print the versions of jacaros and its dependencies."),
 }
@@ -43,14 +44,14 @@ COMMANDS = {
 
 
 class Commands(click.Group):
-    """The commands by name; the module of one is imported when it is called, not before."""
+    """The commands by name; the module of a command is imported when it is called."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        """The names, in the order of importance."""
+        """Return the names, most used first."""
         return list(COMMANDS)
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        """The command of that name."""
+        """Return the command, or None if the name is unknown."""
         if cmd_name not in COMMANDS:
             return None
         command: click.Command = import_module(COMMANDS[cmd_name][0]).command
@@ -59,7 +60,7 @@ class Commands(click.Group):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        """A file in the place of the command is run: ``jacaros hello.asl``."""
+        """Run a file given instead of a command: ``jacaros hello.asl``."""
         if args and args[0].endswith((".asl", ".py", ".mas2j", ".jcm")):
             args = ["run", *args]
         if args and not args[0].startswith("-") and args[0] not in COMMANDS:
@@ -76,11 +77,12 @@ def _unknown_command(name: str) -> UsageError:
     import difflib  # here: only for a command that does not exist
 
     near = difflib.get_close_matches(name, COMMANDS, 1)
-    help = f"did you mean `{near[0]}`?" if near else "`jacaros --help` lists the commands"
-    return UsageError(f"error: unknown command: `{printable(name)}`\n{help_line(help)}")
+    return usage_error(
+        f"unknown command: `{name}`", did_you_mean(near) or "`jacaros --help` lists the commands"
+    )
 
 
-def _tell_version(ctx: click.Context, _: click.Parameter, wanted: bool) -> None:
+def _print_version(ctx: click.Context, _: click.Parameter, wanted: bool) -> None:
     if wanted:
         from jacaros.cli.version import version_of
 
@@ -88,13 +90,22 @@ def _tell_version(ctx: click.Context, _: click.Parameter, wanted: bool) -> None:
         ctx.exit()
 
 
-@click.command(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})
+@click.command(
+    cls=Commands,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    epilog=examples(
+        "jacaros hello.asl                           run a program",
+        "jacaros run robot.asl --world house --view  watch a robot in the browser",
+        "jacaros check .                             find mistakes before the run",
+        "jacaros run --help                          list the options of a command",
+    ),
+)
 @click.option(
     "--version",
     is_flag=True,
     is_eager=True,
     expose_value=False,
-    callback=_tell_version,
+    callback=_print_version,
     help="Print the version and exit.",
 )
 def jacaros() -> None:
@@ -102,32 +113,32 @@ def jacaros() -> None:
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """The entry point of the ``jacaros`` command; ends the process."""
+    """Run the ``jacaros`` command and exit the process."""
     for stream in (sys.stdout, sys.stderr):
         # A console that lacks a character, as those of cp1252 lack arrows, must not end a command.
         if isinstance(stream, io.TextIOWrapper) and stream.errors in ("strict", "backslashreplace"):
             stream.reconfigure(errors=PLAIN)
     code = call(arguments)
-    if code in ENDED_BY_SIGNAL and _threads_go_on():
-        # Python would wait for them; Ctrl-C is not to be waited for.
+    if code in ENDED_BY_SIGNAL and _threads_are_left():
+        # Python would wait for these threads; after Ctrl+C the process must end immediately.
         sys.stdout.flush()
         sys.stderr.flush()
         os._exit(code)
     if code == OUTPUT_GONE:
-        # Otherwise the interpreter complains when it flushes the output at its end.
+        # Otherwise the interpreter prints an error when it flushes the output at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     sys.exit(code)
 
 
-def _threads_go_on() -> bool:
-    """Whether a thread of the project's own would keep the process from ending."""
+def _threads_are_left() -> bool:
+    """Return whether a thread started by the project would keep the process alive."""
     return any(
         thread is not threading.main_thread() and not thread.daemon for thread in threading.enumerate()
     )
 
 
 def call(arguments: list[str] | None = None) -> int:
-    """Carry a command out; the exit code."""
+    """Run a command; return its exit code."""
     try:
         arguments = _own(sys.argv[1:] if arguments is None else arguments)
         result = jacaros.main(args=arguments, prog_name="jacaros", standalone_mode=False)
@@ -139,32 +150,34 @@ def call(arguments: list[str] | None = None) -> int:
         wrong.show()
         return 2
     except UsageError as wrong:
-        return _tell(wrong, 2)
+        return _report(wrong, 2)
     except JacarosError as wrong:
-        return _tell(wrong, 1)
+        return _report(wrong, 1)
     except BrokenPipeError:
         return OUTPUT_GONE
     except Exception as defect:
         traceback.print_exception(defect)
-        print(f"jacaros: this is a defect of jacaros, please report it: {defect}", file=sys.stderr)
+        command = " ".join(["jacaros", *(sys.argv[1:] if arguments is None else arguments)])
+        print(f"internal error: {defect}; please file an issue", file=sys.stderr)
+        print(help_line(f"add the traceback above and this command: {command}"), file=sys.stderr)
         return 1
     return result if isinstance(result, int) else 0
 
 
 def _own(arguments: list[str]) -> list[str]:
-    """The arguments, with options of ours in place of what ``ros2 run``, rosrun and launch files have added."""
+    """Replace the arguments added by ``ros2 run``, rosrun and launch files by our own options."""
     if not any(":=" in each or each == "--ros-args" for each in arguments):
         return arguments
     from jacaros.cli.ros_arguments import as_options, has_ros_arguments  # here: few runs need it
 
     if not has_ros_arguments(arguments):
         return arguments
-    return as_options(arguments, lambda line: print(f"jacaros: {line}", file=sys.stderr))
+    return as_options(arguments, lambda line: print(f"warning: {line}", file=sys.stderr))
 
 
-def _tell(error: JacarosError, code: int) -> int:
-    # Diagnostics begin with file and line, where editors look for them.
+def _report(error: JacarosError, code: int) -> int:
+    # Diagnostics begin with the file and line, where editors look for them.
     located = hasattr(error, "diagnostics") or hasattr(error, "problems")
-    prefix = "" if located or str(error).startswith("error: ") else "jacaros: "
+    prefix = "" if located or str(error).startswith("error: ") else "error: "
     print(f"{prefix}{error}", file=sys.stderr)
     return code

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import click
 
-from jacaros.cli.outputs import check_output, wrong_output
-from jacaros.errors import UsageError
+from jacaros.cli.outputs import check_output
+from jacaros.cli.usage import examples, usage_error
 from jacaros.metrics import (
     MEASURES,
     ProgramMetrics,
@@ -22,7 +22,11 @@ from jacaros.metrics import (
 from jacaros.metrics.library import DEFAULT
 
 
-@click.command("metrics", short_help="Count identifiers, lines and compressed bytes of programs.")
+@click.command(
+    "metrics",
+    short_help="Count identifiers, lines and compressed bytes of programs.",
+    epilog=examples("jacaros metrics .", "jacaros metrics agents --baseline baseline.py --charts charts"),
+)
 @click.argument("folders", metavar="FOLDER...", type=click.Path(path_type=Path), nargs=-1, required=True)
 @click.option(
     "--baseline",
@@ -30,14 +34,14 @@ from jacaros.metrics.library import DEFAULT
     metavar="PATH",
     type=click.Path(path_type=Path),
     multiple=True,
-    help="Folder or file of a Python program to compare with; one for each FOLDER, in their order. Repeatable.",
+    help="Python program (file or folder) to compare with; give one for each FOLDER, in the same order. Repeatable.",
 )
 @click.option(
     "--library",
     "libraries",
     metavar="PACKAGE",
     multiple=True,
-    help="Installed Python package to count as library code where it is imported (default: py_trees). Repeatable.",
+    help="Installed Python package whose imported modules count as library code (default: py_trees). Repeatable.",
 )
 @click.option(
     "--format",
@@ -45,14 +49,14 @@ from jacaros.metrics.library import DEFAULT
     type=click.Choice(["text", "markdown", "csv"]),
     default="text",
     show_default=True,
-    help="Text for reading, Markdown for pages, or CSV for programs.",
+    help="Output format.",
 )
-@click.option("--files", is_flag=True, help="Show each file that was counted.")
+@click.option("--files", is_flag=True, help="List every counted file.")
 @click.option(
     "--charts",
     metavar="FOLDER",
     type=click.Path(path_type=Path),
-    help="Write a bar chart of each measure into FOLDER, as SVG.",
+    help="Write a bar chart of each measure to FOLDER, as SVG.",
 )
 def command(
     folders: tuple[Path, ...],
@@ -64,13 +68,13 @@ def command(
 ) -> None:
     """Count the program in each FOLDER: identifiers, physical lines, code lines, and bytes compressed by gzip.
 
-    Agents, artifacts, project files, world files and library code are counted apart. The total is that of agents and
-    artifacts. Tests are left out, and no code is run. The page "Metrics" has the rules.
+    Agents, artifacts, project files, world files and library code are counted separately; the total covers agents and
+    artifacts. Tests are not counted, and no code is run. The reference page "Metrics" gives the rules.
     """  # fmt: skip
     if baselines and len(baselines) != len(folders):
-        raise UsageError(
-            f"error: expected {len(folders)} baselines, found {len(baselines)}\n"
-            "  = help: give --baseline PATH once for each folder, in the order of the folders"
+        raise usage_error(
+            f"expected {len(folders)} baselines, found {len(baselines)}",
+            "give --baseline PATH once for each folder, in the order of the folders",
         )
     pictures = {name: charts / f"{name}.svg" for name in MEASURES} if charts is not None else {}
     for path in pictures.values():
@@ -97,4 +101,4 @@ def _write(path: Path, svg: str) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(svg, encoding="utf-8", newline="\n")
     except OSError as error:
-        raise wrong_output(f"cannot write `{path}`: {error.strerror}", "name another folder") from error
+        raise usage_error(f"cannot write `{path}`: {error.strerror}", "name another folder") from error

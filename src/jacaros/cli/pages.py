@@ -1,4 +1,4 @@
-"""Pages on the command line: where they are, and opening them in the browser."""
+"""Serve a page, print its address, and open it in the browser."""
 
 import os
 import sys
@@ -13,31 +13,37 @@ from jacaros.mas.system import System
 
 
 def serve_pages(mas: System, outputs: Outputs, console: Console) -> RunView:
-    """Make the live page of a run that has been started, print its address, and open it if there is a display.
+    """Serve the live page of a started run, print its address, and open it if there is a display.
 
     Raises:
-        UsageError: the address cannot be served.
+        UsageError: the page cannot be served at the address.
     """
     place = Place(outputs.view_address, outputs.view_port, outputs.view_token)
     view = RunView(mas, place)
-    tell_address(view.address, place.address, console.log)
+    log_address(view.address, place.address, console.log)
     view.awaited = open_page(view.address) is not None
     return view
 
 
-def tell_address(page: str, address: str, log: Callable[[str, str], object]) -> None:
-    """Print where a page is, and what it lets others do."""
+def log_address(page: str, address: str, log: Callable[[str, str], object]) -> None:
+    """Log the address of a page; warn if other machines can reach it.
+
+    Args:
+        page: URL of the page.
+        address: IP address or name that the page is served at.
+        log: takes a line and its level.
+    """
     log(f"view: {page}", "info")
     if address not in (LOOPBACK, "localhost", "::1"):
         log(
-            f"warning: all machines that reach {address} and know the token can see everything in this run, the programs "
-            "included, and can command its agents and robots; the connection is not encrypted",
+            f"warning: every machine that reaches {address} and knows the token can see everything in this run, including "
+            "the programs, and can command its agents and robots; the connection is not encrypted",
             "warning",
         )
 
 
 def open_page(page: str) -> threading.Thread | None:
-    """Open a page in the user's browser without waiting for it; return the thread, None on a machine without a display."""
+    """Open a page in the user's browser in a thread; return the thread, or None without a display."""
     if not has_display():
         return None
     opening = threading.Thread(target=webbrowser.open, args=(page,), name="jacaros browser", daemon=True)
@@ -46,7 +52,7 @@ def open_page(page: str) -> threading.Thread | None:
 
 
 def has_display() -> bool:
-    """Return whether a browser can show something, and somebody sits there to look: standard error is a terminal."""
+    """Return whether a user can see a browser: standard error is a terminal, on a machine with a display."""
     if sys.stderr is None or not sys.stderr.isatty():
         return False
     if sys.platform.startswith("linux"):

@@ -16,7 +16,7 @@ SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 
 
 def as_json(findings: Findings) -> str:
-    """The findings as one JSON object; lines and columns count from 1, the end column is exclusive."""
+    """Return the findings as one JSON object; lines and columns count from 1, and the end column is exclusive."""
     return json.dumps(
         {
             "version": 1,
@@ -45,7 +45,7 @@ def _plain(diagnostic: Diagnostic) -> Object:
 
 
 def as_sarif(findings: Findings) -> str:
-    """The findings as a SARIF log with one run."""
+    """Return the findings as a SARIF log with one run."""
     codes = sorted({diagnostic.code for diagnostic in findings.diagnostics})
     driver = {
         "name": "jacaros",

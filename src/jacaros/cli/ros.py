@@ -1,4 +1,4 @@
-"""``jacaros ros list|show|map|check``: looking at a live ROS graph."""
+"""``jacaros ros list|show|map|check``: inspect a live ROS graph."""
 
 import sys
 from collections.abc import Awaitable, Callable
@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 import click
 
 from jacaros.cli.graph_options import address_options, ros_option
-from jacaros.errors import UsageError
+from jacaros.cli.usage import examples, usage_error
 from jacaros.mas.options import RunOptions
 from jacaros.ros.middleware import MIDDLEWARES
 from jacaros.text_files import shown_from
@@ -17,13 +17,13 @@ F = TypeVar("F", bound=Callable[..., Any])
 T = TypeVar("T")
 
 _OPTIONS = (
-    ros_option("The ROS graph: that of the embedded world, or a real one."),
+    ros_option("ROS graph to inspect: that of the embedded world (memory), or a real one."),
     click.option(
         "--world",
         metavar="FILE",
         envvar="JACAROS_WORLD",
         show_envvar=True,
-        help="World file or name, with --ros memory.",
+        help="World file, or the name of a shipped world; with --ros memory only.",
     ),
     address_options,
     click.option(
@@ -32,13 +32,13 @@ _OPTIONS = (
         default=5.0,
         show_default=True,
         metavar="S",
-        help="Seconds to wait for nodes, answers and messages.",
+        help="Seconds to wait for nodes, replies and messages.",
     ),
 )
 
 
 def _asking(command: F) -> F:
-    """Give a command the options that say which graph is looked at."""
+    """Add the options that select the graph."""
     for option in reversed(_OPTIONS):
         command = option(command)
     return command
@@ -49,26 +49,30 @@ _INTERFACES = click.option(
     type=click.Path(exists=True, file_okay=False, path_type=Path),
     multiple=True,
     metavar="FOLDER",
-    help="Folder with definitions of types, PACKAGE/msg/NAME.msg and so on; not for ROS 2. Repeatable.",
+    help="Folder with interface definitions (PACKAGE/msg/NAME.msg and so on); not for ROS 2. Repeatable.",
 )
 
 
 @click.group("ros", short_help="Inspect a live ROS graph, and write mapping files for it.")
 def command() -> None:
-    """Look at a live ROS graph, and write and check mapping files for it.
+    """Inspect a live ROS graph, and write and check mapping files for it.
 
-    Without --ros it is the graph of the embedded world.
+    Without --ros, the commands inspect the graph of the embedded world.
     """  # fmt: skip
 
 
-@command.command("list", short_help="List topics, actions, services and nodes.")
+@command.command(
+    "list",
+    short_help="List topics, actions, services and nodes.",
+    epilog=examples("jacaros ros list --world house", "jacaros ros list --ros ros2 --rates"),
+)
 @_asking
-@click.option("--rates", is_flag=True, help="Listen for two seconds and print the rate of each topic.")
+@click.option("--rates", is_flag=True, help="Listen for 2 seconds and print the rate of each topic, in Hz.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def list_command(rates: bool, as_json: bool, **graph: Any) -> None:
     """List the topics, actions, services and nodes of the graph with their types.
 
-    On a terminal as tables, else a line for each thing.
+    Prints tables on a terminal, otherwise one line for each entry.
     """  # fmt: skip
     from jacaros.cli.graph import listening, listing
     from jacaros.cli.graph.joining import Joined
@@ -88,7 +92,13 @@ def list_command(rates: bool, as_json: bool, **graph: Any) -> None:
     _in_graph(look, **graph)
 
 
-@command.command("show", short_help="Show a topic, action, service, node or type.")
+@command.command(
+    "show",
+    short_help="Show a topic, action, service, node or type.",
+    epilog=examples(
+        "jacaros ros show /odom --world house", "jacaros ros show nav2_msgs/action/NavigateToPose --ros ros2"
+    ),
+)
 @click.argument("name")
 @_asking
 @_INTERFACES
@@ -96,9 +106,9 @@ def list_command(rates: bool, as_json: bool, **graph: Any) -> None:
 def show_command(name: str, as_json: bool, **graph: Any) -> None:
     """Show NAME: a topic, service, action or node of the graph, or a type such as nav_msgs/msg/Odometry.
 
-    Shows its fields with their types, bounds, units and constants, who is there with which quality of
-    service, a message that is just coming, and what a mapping file would say of it.
-    """
+    Prints the fields with types, bounds, units and constants, the publishers and subscriptions with their quality of
+    service, the next message, and the entry for a mapping file.
+    """  # fmt: skip
     from jacaros.cli.graph import showing
     from jacaros.cli.graph.joining import Joined
     from jacaros.cli.graph.kinds import find
@@ -118,7 +128,13 @@ def show_command(name: str, as_json: bool, **graph: Any) -> None:
     _in_graph(look, **graph)
 
 
-@command.command("map", short_help="Write a first mapping file.")
+@command.command(
+    "map",
+    short_help="Write a first mapping file.",
+    epilog=examples(
+        "jacaros ros map --ros ros2 -o robot.yaml", "jacaros ros map /odom /cmd_vel --ros ros2 -o robot.yaml"
+    ),
+)
 @click.argument("names", nargs=-1, metavar="[TOPIC|SERVICE|ACTION]...")
 @click.option(
     "-o",
@@ -133,10 +149,10 @@ def show_command(name: str, as_json: bool, **graph: Any) -> None:
 def map_command(
     names: tuple[str, ...], output: Path | None, force: bool, interfaces: tuple[Path, ...], **graph: Any
 ) -> None:
-    """Write a first mapping file for things of the graph; without names for the usual things of a robot.
+    """Write a mapping file for the named topics, services and actions; without names, for the usual ones of a robot.
 
-    These are odometry, scan, battery, bumpers, map, velocity, actions to drive and dock, and plain services. The file
-    is right at once; its comments say how agents use it.
+    The usual ones are odometry, laser scan, battery, bumpers, map, velocity, the actions to drive and dock, and services
+    without arguments. The file works as written; its comments show how agents use it.
     """  # fmt: skip
     from jacaros.cli.graph import first_mapping, listening
     from jacaros.cli.graph.joining import Joined, NothingThere
@@ -144,7 +160,7 @@ def map_command(
     from jacaros.cli.graph.standard_topics import left_out, usual_things
 
     if output is not None and output.exists() and not force:
-        raise UsageError(f"file exists: {output}; overwrite it with --force")
+        raise usage_error(f"file exists: `{output}`", "--force overwrites it")
     file = output if output is not None else Path("robot.yaml")
     folders = [shown_from(file.parent, folder) for folder in interfaces]
 
@@ -159,8 +175,8 @@ def map_command(
             frames = await listening.frames(joined)
             if not things:
                 raise NothingThere(
-                    "the graph has none of the usual topics of a robot (odometry, scan, cmd_vel, battery) or actions to "
-                    "drive; name topics, services and actions of `jacaros ros list`"
+                    "the graph has no odometry, scan, cmd_vel, battery or action to drive\n"
+                    "  = help: name topics, services or actions that `jacaros ros list` shows"
                 )
         return first_mapping.mapping_for(joined, things, frames, file.name, _written(**graph), left, folders)
 
@@ -172,13 +188,17 @@ def map_command(
     click.echo(f"wrote {output}; see `jacaros describe {output}`")
 
 
-@command.command("check", short_help="Check a mapping file against the graph.")
+@command.command(
+    "check",
+    short_help="Check a mapping file against the graph.",
+    epilog=examples("jacaros ros check robot.yaml --ros ros2"),
+)
 @click.argument("file", type=click.Path(path_type=Path))
 @_asking
 def check_command(file: Path, **graph: Any) -> int:
-    """Compare the mapping FILE with the graph: are its topics, servers, frames and parameters there and as it says?
+    """Check that the topics, servers, frames and parameters in the mapping FILE exist in the graph, with the same types.
 
-    Each problem is told with its line, what was found, and what to write. The exit code is 1 if there is one.
+    Each problem is reported with its line, what was found, and a suggested fix. The exit code is 1 if there is one.
     """  # fmt: skip
     from jacaros.artifacts.mapping.file import find_mapping, load_mapping
     from jacaros.cli.graph import listening
@@ -200,7 +220,7 @@ def check_command(file: Path, **graph: Any) -> int:
     for problem in problems:
         click.echo(shown(mapping.file, lines, problem))
     count = f"{len(problems)} problem{'s' if len(problems) != 1 else ''}"
-    click.echo(f"{count} with this graph" if problems else f"{file} suits this graph", err=bool(problems))
+    click.echo(f"{count} with this graph" if problems else f"{file} matches this graph", err=bool(problems))
     return 1 if problems else 0
 
 
@@ -210,7 +230,7 @@ def _in_graph(
     interfaces: tuple[Path, ...] = (),
     **graph: Any,
 ) -> T:
-    """Join the graph that the options say, and look at it."""
+    """Join the graph that the options select, and run *look* in it."""
     from jacaros.cli.graph.joining import clock_for, joined
     from jacaros.clock import run
 
@@ -227,7 +247,7 @@ def _in_graph(
 
 
 def _written(ros: str, world: str | None, **rest: Any) -> str:
-    """The options as they are written, for commands in comments."""
+    """Return the options as on the command line, for commands in comments."""
     parts = [f"--ros {ros}"] if ros != "memory" else []
     parts += [f"--world {world}"] if world is not None else []
     for kind in MIDDLEWARES.values():

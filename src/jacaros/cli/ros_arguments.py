@@ -1,7 +1,7 @@
-"""What ROS's own tools add to a command line, read as options of ours.
+"""Arguments that ROS's own tools add to a command line, translated to our options.
 
-``ros2 run`` and launch files of ROS 2 say names and parameters behind ``--ros-args`` (design.ros2.org, "ROS Command Line
-Arguments"); rosrun and roslaunch write ``name:=value`` between the others (wiki.ros.org, "Remapping Arguments").
+``ros2 run`` and launch files of ROS 2 pass names and parameters after ``--ros-args`` (design.ros2.org, "ROS Command Line
+Arguments"); rosrun and roslaunch mix ``name:=value`` with the other arguments (wiki.ros.org, "Remapping Arguments").
 """
 
 import os
@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from jacaros.cli.usage import usage_error
 from jacaros.errors import UsageError
 from jacaros.text_files import file_text
 
@@ -24,7 +25,7 @@ _ROS2_VALUES = {
     "-e": "",
     "--enclave": "",
 }
-"""Arguments of ROS 2 with a value, by the name under which it is read; those without a name have no effect here."""
+"""ROS 2 arguments that take a value, and our option for each; an empty name marks arguments without effect here."""
 _ROS2_FLAGS = {
     "--enable-rosout-logs": "--rosout",
     "--disable-rosout-logs": "--no-rosout",
@@ -38,23 +39,23 @@ _ROS1_WITHOUT_EFFECT = ("__log",)
 
 
 def has_ros_arguments(arguments: Sequence[str]) -> bool:
-    """Whether ROS's tools have added something to a command that joins a graph."""
+    """Return whether a command that joins a graph has arguments added by ROS's tools."""
     if not arguments or (arguments[0] not in ("run", "sim", "guard") and "." not in arguments[0]):
         return False
     return any(each == "--ros-args" for each in arguments) or any(_ros1_arguments(arguments))
 
 
 def as_options(arguments: Sequence[str], warn: Callable[[str], None]) -> list[str]:
-    """Give *arguments* with options of ours in place of what ROS's tools have added.
+    """Return *arguments* with the arguments of ROS's tools replaced by our options.
 
-    ``--ros ros2`` (or ``ros1``) is added where nothing says another kind of graph.
+    Adds ``--ros ros2`` (or ``ros1``) unless another kind of graph is selected.
 
     Args:
-        arguments: of the process, without its name.
-        warn: takes a line about something that has no effect.
+        arguments: command line without the program name.
+        warn: takes a warning about an argument without effect.
 
     Raises:
-        UsageError: an argument is not ROS's, or is not written as it should be.
+        UsageError: an argument of ROS is unknown or malformed.
     """
     own, of_ros2 = _divided(arguments)
     places = set(_ros1_arguments(own))
@@ -69,7 +70,7 @@ def as_options(arguments: Sequence[str], warn: Callable[[str], None]) -> list[st
 
 
 def _without_parameters(options: list[str], warn: Callable[[str], None]) -> list[str]:
-    """Leave out parameters: a world declares none, and its time is nobody else's."""
+    """Drop parameters: a world declares none, and keeps its own time."""
     kept: dict[str, list[str]] = {
         "--param": [],
         "--params-file": [],
@@ -86,19 +87,19 @@ def _without_parameters(options: list[str], warn: Callable[[str], None]) -> list
     given = read_parameters(kept["--param"], [Path(file) for file in kept["--params-file"]], node)
     for name in given:
         if name != "use_sim_time":
-            warn(f"the parameter {name} has no effect: a world declares none, its file says how it is")
+            warn(f"parameter `{name}` has no effect: worlds have no parameters; edit the world file instead")
     return rest
 
 
 def _paired(options: Iterable[str]) -> Iterator[tuple[str, str]]:
-    """Give options with their values; flags have none."""
+    """Yield each option with its value; the value of a flag is empty."""
     rest = iter(options)
     for option in rest:
         yield option, "" if option in _ROS2_FLAGS.values() else next(rest)
 
 
 def _divided(arguments: Sequence[str]) -> tuple[list[str], list[str]]:
-    """Divide what is ours from what stands between ``--ros-args`` and ``--``."""
+    """Separate our arguments from those between ``--ros-args`` and ``--``."""
     own: list[str] = []
     of_ros: list[str] = []
     within = False
@@ -117,7 +118,7 @@ def _given(own: Sequence[str], option: str) -> bool:
 
 
 def _ros1_arguments(arguments: Sequence[str]) -> Iterator[int]:
-    """Give the places of ``name:=value`` that are no values of ``--remap`` or ``--param``."""
+    """Yield the indices of ``name:=value`` arguments, except values of ``--remap`` and ``--param``."""
     for place, each in enumerate(arguments):
         if each == "--ros-args":
             return
@@ -126,7 +127,7 @@ def _ros1_arguments(arguments: Sequence[str]) -> Iterator[int]:
 
 
 def _is_value(arguments: Sequence[str], place: int) -> bool:
-    """Whether an argument is the value of an option of ours."""
+    """Return whether an argument is the value of one of our options."""
     return place > 0 and arguments[place - 1] in ("--remap", "--param")
 
 
@@ -138,9 +139,7 @@ def _ros1_options(written: Iterable[str]) -> Iterator[str]:
         elif name in _ROS1_WITHOUT_EFFECT:
             continue
         elif name.startswith("__"):
-            raise UsageError(
-                f"unsupported argument {each}; set the address with the variables ROS_IP and ROS_HOSTNAME"
-            )
+            raise usage_error(f"unsupported argument: `{each}`", "set ROS_IP or ROS_HOSTNAME for the address")
         elif name.startswith("_"):
             yield from ("--param", each[1:])
         else:
@@ -148,7 +147,7 @@ def _ros1_options(written: Iterable[str]) -> Iterator[str]:
 
 
 class _Ros2Arguments:
-    """What stands behind ``--ros-args``."""
+    """The arguments after ``--ros-args``."""
 
     def __init__(self, written: Sequence[str]) -> None:
         self._options: list[str] = []
@@ -163,22 +162,26 @@ class _Ros2Arguments:
                 self._take(each, _ROS2_VALUES[each], next(rest, None))
             else:
                 known = ", ".join([*_ROS2_VALUES, *_ROS2_FLAGS])
-                raise UsageError(
-                    f"unknown argument {each} after --ros-args; expected {known}, or -- before other arguments"
+                raise usage_error(
+                    f"unknown argument after --ros-args: `{each}`",
+                    f"expected {known}, or `--` before other arguments",
                 )
 
     def _take(self, written: str, name: str, value: str | None) -> None:
         if value is None:
-            raise UsageError(f"missing value after {written} of --ros-args")
+            raise usage_error(f"missing value after `{written}` of --ros-args")
         if name == "--params-file":
             self._files.append(value)
         elif name:
             left, sign, right = value.partition(_SIGN)
             if not sign or not left:
-                raise UsageError(f"{written} of --ros-args is written {written} NAME:=VALUE, not {value!r}")
+                raise usage_error(
+                    f"invalid value of {written} in --ros-args: expected NAME:=VALUE, found `{value}`"
+                )
             if ":" in left:
-                raise UsageError(
-                    f"{written} {value}: leave out the name of the node; this process has one node"
+                raise usage_error(
+                    f"unexpected node name: `{written} {value}`",
+                    f"this process has one node: {written} {value.partition(':')[2]}",
                 )
             if name == "--param":
                 self._parameters.append(value)
@@ -188,7 +191,7 @@ class _Ros2Arguments:
                 self._rules.append(value)
 
     def options(self) -> list[str]:
-        """Give our options for all of it."""
+        """Return our options for these arguments."""
         return [
             *self._options,
             *(part for rule in self._rules for part in ("--remap", rule)),
@@ -200,16 +203,16 @@ class _Ros2Arguments:
 def read_parameters(
     written: Sequence[str], files: Sequence[Path], node: str, separator: str = "."
 ) -> dict[str, Any]:
-    """Read all that is given; what is written alone goes before what stands in files, later files before earlier ones.
+    """Read the values of parameters. Single parameters override files, and later files override earlier ones.
 
     Args:
-        written: ``NAME:=VALUE``, the value being YAML.
-        files: of parameters.
-        node: the absolute name of our node.
-        separator: between the names of a mapping and of its parts: ``.``, on ROS 1 ``/``.
+        written: ``NAME:=VALUE`` with a YAML value.
+        files: ROS 2 parameter files.
+        node: absolute name of our node.
+        separator: separates the parts of a nested name: ``.``, or ``/`` on ROS 1.
 
     Raises:
-        UsageError: with what to write instead.
+        UsageError: a parameter or file is malformed, or a file does not exist.
     """
     found: dict[str, Any] = {}
     name = [part for part in node.split("/") if part]
@@ -221,7 +224,9 @@ def read_parameters(
 def _written(each: str) -> tuple[str, Any]:
     name, sign, value = each.partition(":=")
     if not sign or not name:
-        raise UsageError(f"--param is written NAME:=VALUE, such as --param speed:=0.5, not {each!r}")
+        raise usage_error(
+            f"invalid value of --param: expected NAME:=VALUE, found `{each}`", "--param speed:=0.5"
+        )
     return name, _yaml(value, f"--param {name}")
 
 
@@ -229,31 +234,33 @@ def _content(file: Path) -> Any:
     try:
         text = file_text(file)
     except FileNotFoundError as error:
-        raise UsageError(f"--params-file {file}: {error.strerror}") from None
+        raise usage_error(f"--params-file {file}: {error.strerror}") from None
     except (OSError, UnicodeError) as error:
-        raise UsageError(f"--params-file {file}: {error}") from None
+        raise usage_error(f"--params-file {file}: {error}") from None
     content = _yaml(text, f"--params-file {file}")
     if content is not None and not isinstance(content, Mapping):
-        raise UsageError(f"--params-file {file}: write NODE: {{ros__parameters: {{NAME: VALUE}}}}")
+        raise usage_error(
+            f"--params-file {file}: expected a mapping", "write NODE: {ros__parameters: {NAME: VALUE}}"
+        )
     return content
 
 
 def _flat(given: Iterable[tuple[str, Any]], separator: str) -> dict[str, Any]:
-    """Give parts of mappings by the names that parameters have."""
+    """Return the values by parameter name, nested mappings flattened."""
     found: dict[str, Any] = {}
     for name, value in given:
         if isinstance(value, Mapping):
             parts = ((f"{name}{separator}{part}", each) for part, each in value.items())
             found |= _flat(parts, separator)
         elif value is None:
-            raise UsageError(f"the parameter {name} has no value; for an empty text write \"''\"")
+            raise usage_error(f"parameter `{name}` has no value", "write \"''\" for an empty string")
         else:
             found[name] = value
     return found
 
 
 def _of_node(content: Any, path: list[str], node: list[str]) -> Iterator[tuple[str, Any]]:
-    """Give the parameters of *node* in a file, below names of namespaces and nodes."""
+    """Yield the parameters of *node* in a file, which nests namespaces and nodes."""
     if not isinstance(content, Mapping):
         return
     for key, value in content.items():
@@ -265,7 +272,7 @@ def _of_node(content: Any, path: list[str], node: list[str]) -> Iterator[tuple[s
 
 
 def _suits(pattern: list[str], node: list[str]) -> bool:
-    """Whether a node's name suits a pattern: ``*`` is one part of it, ``**`` any number of them."""
+    """Return whether a node name matches a pattern: ``*`` is one part of the name, ``**`` any number of parts."""
     if not pattern:
         return not node
     if pattern[0] == "**":
@@ -274,7 +281,7 @@ def _suits(pattern: list[str], node: list[str]) -> bool:
 
 
 def _yaml(text: str, where: str) -> Any:
-    # Here: only for those who have parameters.
+    # Here: only for runs with parameters.
     from jacaros.yaml_nodes import plain_values, shown
 
     value, wrong = plain_values(text)

@@ -21,8 +21,8 @@ from jacaros.cli.graph_options import (
     ros_option,
 )
 from jacaros.cli.outputs import OUTPUT_GONE, RECORD_LIMIT, Outputs
+from jacaros.cli.usage import did_you_mean, examples, usage_error
 from jacaros.cli.view_options import ViewCommand, view_options
-from jacaros.errors import UsageError
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.console import StandardConsole
 from jacaros.mas.deployment import Deployment
@@ -34,15 +34,26 @@ from jacaros.output import CLOSING, PATIENCE
 from jacaros.text_files import is_file
 
 FAST_PATIENCE = 1.0
-"""Seconds that a run on the virtual clock waits for a reader; its agents miss nothing meanwhile."""
+"""Seconds that a run on the virtual clock waits for a slow reader of its output; its agents miss nothing meanwhile."""
 HOW_TO_END = "press Ctrl+C to end the run, or start it with --until-idle"
 MOST_NAMES = 8
-"""Agents that wait, in the note that a run has nothing left to do."""
+"""Number of waiting agents named in the note that a run has nothing left to do."""
 SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
-"""Of files that can be run."""
+"""Suffixes of files that can be run."""
 
 
-@click.command("run", cls=ViewCommand, short_help="Run an agent program or a project.")
+@click.command(
+    "run",
+    cls=ViewCommand,
+    short_help="Run an agent program or a project.",
+    epilog=examples(
+        "jacaros run hello.asl",
+        "jacaros run robot.asl --world house --view",
+        "jacaros run house.jcm --clock fast --seed 1 --until-idle",
+        "jacaros run robot.asl --mapping robot.yaml --ros ros2 --guard",
+        "jacaros run house.jcm --record run.jsonl",
+    ),
+)
 @click.argument("file", type=click.Path(path_type=Path))
 @click.option(
     "--clock",
@@ -54,13 +65,13 @@ SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
 @click.option(
     "--seed", type=int, help="Seed for random numbers. With --clock fast, the whole run is reproducible."
 )
-@ros_option("ROS graph to use (default: memory, in-process).")
+@ros_option("ROS graph to join: memory (in-process), or a real one.")
 @click.option(
     "--world",
     metavar="FILE",
     envvar="JACAROS_WORLD",
     show_envvar=True,
-    help="World file, or the name of a world that comes with jacaros; `none`: a graph without a robot.",
+    help="World file, or the name of a shipped world; `none` for a graph without robots.",
 )
 @faults_option
 @click.option(
@@ -68,20 +79,20 @@ SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
     "mappings",
     metavar="FILE",
     multiple=True,
-    help="Mapping file of a robot; a lone program focuses its artifacts. Repeatable.",
+    help="Mapping file of a robot; a program without a project file focuses its artifacts. Repeatable.",
 )
 @click.option("--until-idle", is_flag=True, help="Exit once all agents are idle.")
 @click.option(
     "--fail-on-lost-goal",
     is_flag=True,
-    help="Exit with code 1 instead of 0 if a goal failed and no plan took over, or an exception ended an agent in Python.",
+    help="Exit with code 1 if a goal failed that no plan handled, or an exception ended an agent in Python.",
 )
 @click.option("--for", "seconds", type=float, metavar="S", help="Exit after S seconds of the run's clock.")
 @click.option(
     "--guard",
     is_flag=True,
-    help="Have a process of its own stop the robot if this one dies, freezes or is stuck (real graphs only). Uses the "
-    "`jacaros guard` of this node, or starts one.",
+    help="Start a separate process that stops the robot if this one dies, freezes or is stuck (real graphs only); a "
+    "running `jacaros guard` for this node is used instead.",
 )
 @graph_options
 @orphans_option
@@ -89,18 +100,18 @@ SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
 @click.option(
     "--rosout/--no-rosout",
     default=None,
-    help="Write output of agents, and warnings, to /rosout, too (default: on real graphs).",
+    help="Also publish the output of agents, and warnings, on /rosout (default: on real graphs).",
 )
 @click.option(
     "--diagnostics/--no-diagnostics",
     default=None,
-    help="Publish the state of agents and connection on /diagnostics (default: on real graphs).",
+    help="Publish the state of the agents and the connection on /diagnostics (default: on real graphs).",
 )
 @click.option(
     "--record",
     type=click.Path(path_type=Path),
     metavar="FILE",
-    help="Record the run as JSON lines; FILE.gz is compressed, and FILE.mcap is for Foxglove (extra mcap).",
+    help="Record the run to FILE: JSON lines, compressed (FILE.gz), or for Foxglove (FILE.mcap, needs jacaros[mcap]).",
 )
 @click.option(
     "--record-limit",
@@ -108,13 +119,13 @@ SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
     default=RECORD_LIMIT,
     metavar="MB",
     show_default=True,
-    help="Limit of the recording, in megabytes; FILE.1 has its older half.",
+    help="Size limit of the recording, in megabytes; the older half is in FILE.1.",
 )
 @click.option(
     "--replay",
     type=click.Path(path_type=Path),
     metavar="FILE.html",
-    help="Write the page of the run to FILE.html, which needs no server.",
+    help="Write the run as a page that needs no server.",
 )
 @click.option(
     "--ground-truth",
@@ -127,15 +138,14 @@ SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
     "restricted",
     is_flag=True,
     help="Forbid agents to take plans from others (tellHow), to use files (.include, .save_agent, .list_files, "
-    ".create_agent with a program) and to make Python objects (cartago.*): the step fails.",
+    ".create_agent with a program) and to create Python objects (cartago.*): such a step fails.",
 )
 @click.option(
     "--explain",
     "explained",
     metavar="EVENT",
     multiple=True,
-    help="Explain on the standard error output how EVENT is handled each time, such as '+alarm(_)' or '!go(dock)'. "
-    "Repeatable.",
+    help="Log how EVENT is handled each time, such as '+alarm(_)' or '!go(dock)'. Repeatable.",
 )
 @view_options
 @click.option("--quiet", is_flag=True, help="Print only warnings and errors.")
@@ -160,10 +170,10 @@ def command(
 ) -> int:
     """Run FILE: an agent program (.asl, or .py for an agent in Python) or a project (.mas2j, .jcm).
 
-    Output of agents goes to the standard output as `[agent] text`, everything else to the standard error output.
+    The output of agents goes to the standard output as `[agent] text`, everything else to the standard error output.
 
-    Compiled plans are kept in $XDG_CACHE_HOME/jacaros (default: ~/.cache/jacaros), so that the next start is faster. Set
-    JACAROS_CACHE to another folder, or to 0 to keep nothing. You can remove the folder at any time.
+    Compiled plans are cached in $XDG_CACHE_HOME/jacaros (default: ~/.cache/jacaros) to make the next start faster. Set
+    JACAROS_CACHE to another folder, or to 0 to disable the cache. You can delete the folder at any time.
     """  # fmt: skip
     check_file(file)
     outputs = Outputs(
@@ -191,7 +201,9 @@ def command(
         parameters = _parameters(project, param, params_file, options)
         simulated = parameters.pop("use_sim_time", False)
         if not isinstance(simulated, bool):
-            raise UsageError(f"the parameter use_sim_time is true or false, not {simulated!r}")
+            raise usage_error(
+                f"invalid parameter use_sim_time: expected true or false, found `{simulated!r}`"
+            )
         if simulated and clock is None and options.real_graph:
             clock = "ros"
         options = replace(options, parameters=parameters)
@@ -210,7 +222,7 @@ def command(
 def _parameters(
     project: Deployment, written: Sequence[str], files: Sequence[Path], options: RunOptions
 ) -> dict[str, Any]:
-    from jacaros.cli.ros_arguments import read_parameters  # here: few runs are given any
+    from jacaros.cli.ros_arguments import read_parameters  # here: few runs have parameters
     from jacaros.mas.ros_graph import node_name
 
     name = f"{options.namespace}/{options.node_name or node_name(project.name)}"
@@ -228,7 +240,7 @@ def _launch(
         if explained:
             _announce(mas, explained)
         if options.fast:
-            # As in `| head`: nobody wants the rest, and no robot depends on the agents.
+            # As in `| head`: no reader wants the rest, and no robot depends on the agents.
             loop = asyncio.get_running_loop()
             end = partial(mas.stop_system, 0.0, OUTPUT_GONE)
             console.when_gone(lambda: loop.call_soon_threadsafe(end))
@@ -238,7 +250,7 @@ def _launch(
     if not outputs.any:
         with console.with_prints():
             return launch(file, options, console, begin)
-    # Imported here: numpy, rich and the simulator are for those who want to see something.
+    # Imported here: numpy, rich and the simulator are needed only for views and recordings.
     from jacaros.cli.watching import Watching
 
     def begin_watched(mas: System) -> None:
@@ -250,7 +262,7 @@ def _launch(
 
 
 def _check_events(events: Sequence[str]) -> None:
-    """Refuse what `--explain` cannot explain, before the run.
+    """Check before the run that ``--explain`` can explain these events.
 
     Raises:
         UsageError: one of them is not an event, a goal or a belief.
@@ -271,7 +283,7 @@ def _announce(mas: System, events: Sequence[str]) -> None:
 def report_idleness(mas: System) -> None:
     """Log once that the run has nothing left to do, if nothing from outside can change that."""
     if mas.options.real_graph:
-        return  # any message may
+        return  # any message may wake an agent
 
     def idle() -> None:
         stop()
@@ -282,9 +294,8 @@ def report_idleness(mas: System) -> None:
 
 
 def _can_be_woken(mas: System) -> bool:
-    """Whether something else than the agents may give them something to do: the ROS graph, artifacts, the project's Python
-    code."""
-    from jacaros.env.standard_artifacts import DEFAULT_TYPES  # here: only for runs that get idle
+    """Return whether the ROS graph, an artifact or Python code of the project may wake an agent."""
+    from jacaros.env.standard_artifacts import DEFAULT_TYPES  # here: only for idle runs
 
     if mas.ros.joined is not None or any(type(host) is not AgentHost for host in mas.directory):
         return True
@@ -304,32 +315,31 @@ def _what_waits(mas: System) -> str:
 
 def _close(console: StandardConsole, code: int) -> None:
     if code > 128:
-        console.close(limit=CLOSING)  # a signal is not to be waited for
+        console.close(limit=CLOSING)  # after a signal, the process must end immediately
     elif sys.stderr is not None and sys.stderr.isatty():
-        console.close(patience=None)  # `| less`: you may read for as long as you like
+        console.close(patience=None)  # `| less`: the user may read for as long as they like
     else:
         console.close()
 
 
 def check_file(file: Path) -> None:
-    """Refuse a project file that is not there.
+    """Check that a file can be run.
 
     Raises:
-        UsageError: with the names of similar files beside it.
+        UsageError: the file does not exist (the error suggests similar names), or is of another kind.
     """
     if is_file(file):
         if file.suffix in (".yaml", ".yml"):
-            raise UsageError(
-                f"{file} is no program; a mapping file goes with one, jacaros run agent.asl --mapping {file}, and so "
-                "does a world: --world"
+            raise usage_error(
+                f"`{file}` is not a program or a project",
+                f"for a mapping file: jacaros run agent.asl --mapping {file}; for a world file: --world {file}",
             )
         return
     if file.is_dir():
-        raise UsageError(f"{file} is a folder; give a .asl, .py, .mas2j or .jcm file in it")
+        raise usage_error(f"`{file}` is a folder", "name a .asl, .py, .mas2j or .jcm file in it")
     beside = [each.name for each in file.parent.glob("*.*") if each.suffix in SUFFIXES]
-    import difflib  # here: only for a file that is not there
+    import difflib  # here: only for a missing file
 
     near = [f"{file.name}{suffix}" for suffix in SUFFIXES if f"{file.name}{suffix}" in beside]
     near = near or difflib.get_close_matches(file.name, beside, n=2)
-    help = f"; did you mean {' or '.join(str(file.parent / name) for name in near)}?" if near else ""
-    raise UsageError(f"file not found: {file}{help}")
+    raise usage_error(f"file not found: `{file}`", did_you_mean([str(file.parent / name) for name in near]))

@@ -9,16 +9,24 @@ import click
 
 from jacaros.cli.graph_options import faults_option, read_remaps, ros_option, world_options
 from jacaros.cli.outputs import check_output
+from jacaros.cli.usage import examples, usage_error
 from jacaros.clock import Clock, VirtualClock, WallClock, run
-from jacaros.errors import UsageError
 from jacaros.ros.address import GraphAddress
 from jacaros.sim.description import BatterySettings, WorldDescription
 from jacaros.text_files import is_file
 
 
-@click.command("sim", short_help="Run a robot world as a ROS node of its own.")
+@click.command(
+    "sim",
+    short_help="Run a robot world as a separate ROS node.",
+    epilog=examples(
+        "jacaros sim house --ros ros2",
+        "jacaros sim world.yaml --ros ros2 --speed 5",
+        "jacaros sim maze --hash",
+    ),
+)
 @click.argument("world")
-@ros_option("The ROS graph to join.", required=True, but_with="only_hash")
+@ros_option("ROS graph to join.", required=True, but_with="only_hash")
 @world_options
 @click.option("--for", "seconds", type=float, metavar="S", help="Exit after S seconds.")
 @click.option(
@@ -70,7 +78,7 @@ def command(
     speed: float | None,
     **graph: Any,
 ) -> None:
-    """Run WORLD (a world file, or the name of a world that comes with jacaros) until Ctrl-C."""  # fmt: skip
+    """Run WORLD (a world file, or the name of a shipped world) as a ROS node, until you press Ctrl+C."""  # fmt: skip
     from jacaros.sim import World
 
     loaded = World.load(Path(world) if is_file(Path(world)) else world, seed, faults)
@@ -85,17 +93,19 @@ def command(
     from jacaros.sim import serve
 
     if clock == "fast" and (ros != "memory" or seconds is None):
-        raise UsageError("--clock fast needs --ros memory and --for S; a real ROS graph runs in real time")
+        raise usage_error("--clock fast needs --ros memory and --for S", "a real ROS graph runs in real time")
     if clock == "fast" and speed is not None:
-        raise UsageError("--speed goes with --clock real; --clock fast is as fast as the machine can")
+        raise usage_error(
+            "--speed needs --clock real", "--clock fast already runs as fast as the machine can"
+        )
     time: Clock = VirtualClock() if clock == "fast" else WallClock(speed or 1.0)
-    assert ros is not None  # the option sees to it
+    assert ros is not None  # the option requires it
     address = GraphAddress(ros, remap=read_remaps(remap), **graph)
     address.check()
     if ground_truth is not None:
         check_output(ground_truth, "ground truth")
     loaded.ground_truth.keep = 1000
-    loaded.ground_truth.listen(told(lambda line: click.echo(line, err=True)))
+    loaded.ground_truth.listen(battery_warnings(lambda line: click.echo(line, err=True)))
 
     def tell() -> None:
         names = ", ".join(robot.name for robot in loaded.description.robots)
@@ -110,24 +120,28 @@ def command(
 
 
 LOW = 20
-"""Percent at which it is told, each time that a battery gets so low."""
+"""Battery level in percent at which a warning is logged, once for each discharge."""
 
 
 def with_full_batteries(world: WorldDescription) -> WorldDescription:
-    """Give the same world with batteries that stay full."""
+    """Return the same world with batteries that never discharge."""
     full = BatterySettings(level=100.0, drain_per_second=0.0, drain_per_metre=0.0, drain_per_radian=0.0)
     return replace(world, robots=tuple(replace(robot, battery=full) for robot in world.robots))
 
 
-def told(tell: Callable[[str], None]) -> Callable[[dict[str, Any]], None]:
-    """Give a listener of `GroundTruth.listen` that tells *tell* of batteries that have become low, or are empty."""
+def battery_warnings(log: Callable[[str], None]) -> Callable[[dict[str, Any]], None]:
+    """Return a listener for `GroundTruth.listen` that logs batteries that run low or are empty.
+
+    Args:
+        log: takes a line.
+    """
     low: set[str] = set()
 
     def listen(record: dict[str, Any]) -> None:
         if record.get("event") == "battery_empty":
-            tell(
-                f"the battery of {record['robot']} is empty, so it cannot drive. Restart the world; with "
-                "--full-battery it stays full"
+            log(
+                f"warning: the battery of `{record['robot']}` is empty, so it cannot drive\n"
+                "  = help: restart the world, with --full-battery to keep batteries full"
             )
         elif record.get("event") == "battery":
             robot, level = record["robot"], record["data"]["level"]
@@ -135,6 +149,6 @@ def told(tell: Callable[[str], None]) -> Callable[[dict[str, Any]], None]:
                 low.discard(robot)
             elif robot not in low:
                 low.add(robot)
-                tell(f"the battery of {robot} is at {level} %")
+                log(f"warning: the battery of `{robot}` is at {level} %")
 
     return listen

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from jacaros.cli.outputs import check_output
-from jacaros.errors import UsageError
+from jacaros.cli.usage import examples, usage_error
 
 if TYPE_CHECKING:
     from jacaros.testing.outcomes import SuiteOutcome
@@ -20,7 +20,19 @@ if TYPE_CHECKING:
 _COLOURS = {"passed": "green", "failed": "red", "place": "cyan"}
 
 
-@click.command("test", short_help="Run the tests of agent programs.")
+MOST_NAMES = 8
+"""Number of tests listed when none matches."""
+
+
+@click.command(
+    "test",
+    short_help="Run the tests of agent programs.",
+    epilog=examples(
+        "jacaros test",
+        "jacaros test tests/test_patrol.asl -k charging -v",
+        "jacaros test --junit results.xml",
+    ),
+)
 @click.argument("paths", nargs=-1, type=click.Path(path_type=Path), metavar="[FILE|FOLDER]...")
 @click.option(
     "-k",
@@ -28,14 +40,14 @@ _COLOURS = {"passed": "green", "failed": "red", "place": "cyan"}
     metavar="PATTERN",
     help="Run only tests whose FILE::NAME contains PATTERN; * matches anything.",
 )
-@click.option("-x", "first", is_flag=True, help="Exit after the first failed test.")
+@click.option("-x", "first", is_flag=True, help="Stop after the first failed test.")
 @click.option(
     "--timeout",
     type=click.FloatRange(0.0, min_open=True),
     default=60.0,
     show_default=True,
     metavar="S",
-    help="Time limit of a test, in seconds of the run's clock; the label [test, timeout(Ms)] overrides it.",
+    help="Time limit for each test, in seconds of the run's clock; the label [test, timeout(Ms)] overrides it.",
 )
 @click.option(
     "--cycles",
@@ -43,7 +55,7 @@ _COLOURS = {"passed": "green", "failed": "red", "place": "cyan"}
     default=1_000_000,
     show_default=True,
     metavar="N",
-    help="Limit of reasoning cycles of a test.",
+    help="Limit on the reasoning cycles of each test.",
 )
 @click.option(
     "--patience",
@@ -51,7 +63,7 @@ _COLOURS = {"passed": "green", "failed": "red", "place": "cyan"}
     default=300.0,
     show_default=True,
     metavar="S",
-    help="Limit of real time of a test, in seconds; 0: no limit.",
+    help="Limit on the real time of each test, in seconds; 0 for no limit.",
 )
 @click.option(
     "--clock",
@@ -64,38 +76,38 @@ _COLOURS = {"passed": "green", "failed": "red", "place": "cyan"}
 @click.option(
     "--world",
     metavar="FILE",
-    help="World file or name of a world to use instead of the project's; `none`: a graph without robots.",
+    help="World file or name of a shipped world, instead of the project's; `none` for a graph without robots.",
 )
 @click.option(
     "--mapping",
     "mappings",
     multiple=True,
     metavar="FILE",
-    help="Mapping file for all tests; the label [test, mapping(FILE)] adds one for a test. Repeatable.",
+    help="Mapping file for all tests; the label [test, mapping(FILE)] adds one for a single test. Repeatable.",
 )
 @click.option(
     "--shared",
     is_flag=True,
-    help="Run all tests of a file in one run, as Jason does (default: one run per test).",
+    help="Run all tests of a file in one run, as Jason does (default: a separate run for each test).",
 )
 @click.option(
     "--junit", type=click.Path(path_type=Path), metavar="FILE", help="Write the results to FILE as JUnit XML."
 )
 @click.option(
-    "--slowest", "slow", type=int, default=3, metavar="N", help="Number of slow tests to list (default 3)."
+    "--slowest", "slow", type=int, default=3, metavar="N", help="Number of slow tests to list (default: 3)."
 )
 @click.option(
     "--color",
     type=click.Choice(["auto", "always", "never"]),
     default="auto",
     show_default=True,
-    help="Colours in the report; auto: on a terminal, unless NO_COLOR is set.",
+    help="Whether to colour the report; auto: on a terminal, unless NO_COLOR is set.",
 )
 @click.option(
     "-v",
     "--verbose",
     is_flag=True,
-    help="Show the time of each test and the output of passed tests, too.",
+    help="Also show the time of each test and the output of passed tests.",
 )
 def command(
     paths: tuple[Path, ...],
@@ -108,12 +120,12 @@ def command(
     verbose: bool,
     **given: Any,
 ) -> int:
-    """Run the tests in files and folders (by default, in this folder).
+    """Run the tests in files and folders (default: the current folder).
 
-    A test is a plan whose label says so: `@charges[test] +!test_charging <- ...`. In folders all programs with such
-    plans are taken, and all projects called `test_...` or `..._test`.
+    A test is a plan with the label `test`: `@charges[test] +!test_charging <- ...`. In folders, jacaros runs all programs
+    with such plans, and all projects whose names begin with `test_` or end in `_test`. The exit code is 1 if a test fails.
     """  # fmt: skip
-    # Imported here: with it comes all that runs a system.
+    # Imported here: it imports all that runs a system.
     from jacaros.testing.outcomes import failures, slowest, summary, write_junit
     from jacaros.testing.suites import collect
     from jacaros.testing.trial import TrialOptions
@@ -135,12 +147,12 @@ def command(
         try:
             write_junit(junit, outcomes)
         except OSError as error:
-            raise UsageError(f"cannot write {junit}: {error}") from error
+            raise usage_error(f"cannot write `{junit}`: {error}") from error
     return 0 if all(outcome.passed for outcome in outcomes) else 1
 
 
 class _Paint:
-    """Colours, where they are wanted."""
+    """Colours, if enabled."""
 
     def __init__(self, color: str) -> None:
         if color == "auto":
@@ -157,7 +169,7 @@ class _Paint:
 
 
 class _Progress:
-    """Runs suites and tells each test as it ends."""
+    """Runs suites and prints each test as it ends."""
 
     def __init__(
         self, options: "TrialOptions", paint: _Paint, pattern: str | None, first: bool, verbose: bool
@@ -166,7 +178,7 @@ class _Progress:
         self._first, self._verbose = first, verbose
 
     def run(self, suites: "Sequence[Suite]") -> "list[SuiteOutcome]":
-        """Run all tests that the pattern means, or up to the first that fails."""
+        """Run all tests that match the pattern, or up to the first failed one."""
         from jacaros.testing.outcomes import SuiteOutcome
 
         outcomes = []
@@ -186,7 +198,7 @@ class _Progress:
         from jacaros.testing.trial import run_suite
 
         if suite.suite.error is not None:
-            click.echo(f"  {self._paint('ERROR ', 'failed')}  the file cannot be run", color=True)
+            click.echo(f"  {self._paint('ERROR ', 'failed')}  cannot run the file", color=True)
             return
         for outcome in run_suite(
             suite.suite, self._options, lambda test: _is_meant(suite.suite, test, self._pattern)
@@ -201,16 +213,16 @@ class _Progress:
 
 
 def _chosen(found: "list[Suite]", paths: Sequence[Path], pattern: str | None) -> "list[Suite]":
-    """The suites that have something to run.
+    """Return the suites with tests to run.
 
     Raises:
-        UsageError: there is nothing.
+        UsageError: no test is found, or none matches the pattern.
     """
     places = ", ".join(map(str, paths)) or "this folder"
     if not any(suite.tests or suite.error is not None for suite in found):
-        raise UsageError(
-            f"no tests in {places}; a test is a plan for a goal with the label test: "
-            "@name[test] +!goal <- ..."
+        raise usage_error(
+            f"no tests in {places}",
+            "a test is a plan for a goal with the label test: @name[test] +!goal <- ...",
         )
     chosen = [
         suite
@@ -219,7 +231,8 @@ def _chosen(found: "list[Suite]", paths: Sequence[Path], pattern: str | None) ->
     ]
     if not any(suite.tests for suite in chosen) and not any(suite.error is not None for suite in chosen):
         names = [f"{suite.path}::{test.name}" for suite in found for test in suite.tests]
-        raise UsageError(f"no test in {places} matches -k {pattern}; tests: {', '.join(names[:5])} ...")
+        shown = ", ".join(names[:MOST_NAMES]) + (", ..." if len(names) > MOST_NAMES else "")
+        raise usage_error(f"no test in {places} matches `-k {pattern}`", f"tests: {shown}")
     return chosen
 
 

@@ -18,7 +18,7 @@ def command() -> None:
 
 
 def version_of(library: str) -> str:
-    """The version of an installed package, or words that tell that there is none."""
+    """Return the version of an installed package, or "is not installed"."""
     try:
         return version(library)
     except PackageNotFoundError:

@@ -7,10 +7,15 @@ import click
 
 from jacaros.cli.files import read_recording
 from jacaros.cli.outputs import check_output, check_view
+from jacaros.cli.usage import examples
 from jacaros.cli.view_options import place_options
 
 
-@click.command("view", short_help="Show a recorded run on a page in the browser.")
+@click.command(
+    "view",
+    short_help="Show a recorded run on a page in the browser.",
+    epilog=examples("jacaros view run.jsonl", "jacaros view run.jsonl --output run.html"),
+)
 @click.argument("run", type=click.Path(path_type=Path))
 @click.option(
     "--output",
@@ -22,7 +27,7 @@ from jacaros.cli.view_options import place_options
 def command(
     run: Path, output: Path | None, view_port: int, view_address: str, view_token: str | None
 ) -> None:
-    """Show RUN, a recording (`jacaros run FILE --record RUN`), on the page of live runs, until Ctrl+C.
+    """Show RUN, a recording (`jacaros run FILE --record RUN`), on the same page as a live run, until you press Ctrl+C.
 
     The address of the page is printed to the standard error output.
     """  # fmt: skip
@@ -37,7 +42,7 @@ def command(
         write_replay(recording, output)
         click.echo(f"wrote {output}")
         return
-    from jacaros.cli.pages import open_page, tell_address
+    from jacaros.cli.pages import log_address, open_page
     from jacaros.inspector.live.access import Access
     from jacaros.inspector.live.recorded_view import RecordedView
     from jacaros.inspector.live.server import LiveServer, bound_socket
@@ -48,8 +53,8 @@ def command(
 
     async def serve() -> None:
         await server.start()
-        tell_address(server.address, view_address, lambda text, _: click.echo(text, err=True))
-        click.echo("press Ctrl+C to end", err=True)
+        log_address(server.address, view_address, lambda text, _: click.echo(text, err=True))
+        click.echo("press Ctrl+C to stop", err=True)
         open_page(server.address)
         try:
             await asyncio.get_running_loop().create_future()

@@ -1,4 +1,4 @@
-"""The options about the view of a run: a page in the browser, or the terminal."""
+"""Options of the view of a run: a page in the browser, or the terminal."""
 
 from collections.abc import Callable
 from typing import Any
@@ -20,8 +20,8 @@ _PLACE = (
         default=LOOPBACK,
         metavar="ADDRESS",
         show_default=True,
-        help="Address of this machine to serve the page at. Any but the default lets other machines see and change the "
-        "run, and needs a token.",
+        help="Address of this machine to serve the page at. Any other than the default lets other machines see and command "
+        "the run, and needs a token.",
     ),
     click.option(
         "--view-token",
@@ -34,26 +34,25 @@ _PLACE = (
 
 
 def place_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Give a command the options that say where a page is served."""
+    """Add the options that say where to serve a page."""
     for option in reversed(_PLACE):
         command = option(command)
     return command
 
 
 def view_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Give a command the options ``--view`` and `place_options`; its class must be `ViewCommand`."""
+    """Add the options ``--view`` and `place_options`; the command's class must be `ViewCommand`."""
     command = place_options(command)
     return click.option(
         "--view",
         type=click.Choice(["page", "terminal"]),
         metavar="[=terminal]",
-        help="Show the run on a page in the browser: `--view`; or in the terminal: `--view=terminal`.",
+        help="Show the run on a page in the browser (`--view`) or in the terminal (`--view=terminal`).",
     )(command)
 
 
 class ViewCommand(click.Command):
-    """A command whose option ``--view`` has a value only after ``=``: what follows it may be the file to run."""
+    """A command whose option ``--view`` takes a value only after ``=``: the next argument may be the file to run."""
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Parse the arguments."""
         return super().parse_args(ctx, ["--view=page" if each == "--view" else each for each in args])

@@ -7,7 +7,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING
 
 from jacaros.cli.outputs import Outputs
-from jacaros.errors import UsageError
+from jacaros.cli.usage import usage_error
 from jacaros.inspector.recorder import Recorder
 from jacaros.inspector.recording import Recording
 from jacaros.inspector.watch import Watch, Watcher
@@ -23,11 +23,11 @@ if TYPE_CHECKING:
 
 
 class Watching:
-    """The console of a run that is watched; passes everything on, to the watchers too.
+    """A console that also passes output to recordings and views.
 
     Args:
-        console: where the lines go.  The view is drawn on what the standard error output is now.
-        outputs: what else is to be made of the run.
+        console: takes the output. The view is drawn on the current standard error output.
+        outputs: recordings and views to make of the run.
     """
 
     def __init__(self, console: Console, outputs: Outputs) -> None:
@@ -43,10 +43,10 @@ class Watching:
         self._watch: Watch | None = None
 
     def begin(self, mas: System) -> None:
-        """Begin to watch a run that has been made.
+        """Begin to watch a run that has been created.
 
         Raises:
-            UsageError: the ground truth is asked for and there is no world to tell it.
+            UsageError: the ground truth is requested, but the run has no embedded world.
         """
         if self._outputs.ground_truth is not None:
             self._ground_truth = _ground_truth_file(
@@ -56,7 +56,7 @@ class Watching:
         if self._recorder is not None:
             watchers.append(self._recorder)
         if self._outputs.view == "terminal":
-            from jacaros.inspector.terminal_view import TerminalView  # here: rich comes with it
+            from jacaros.inspector.terminal_view import TerminalView  # here: it imports rich
 
             self._view = TerminalView(stream=self._terminal)
             watchers.append(self._view)
@@ -69,19 +69,19 @@ class Watching:
             pages.begin(self._watch)
 
     def _serve(self, mas: System) -> "RunView":
-        from jacaros.cli.pages import serve_pages  # here: a server comes with it
+        from jacaros.cli.pages import serve_pages  # here: it imports a server
 
         return serve_pages(mas, self._outputs, self._console)
 
     def print(self, agent: str, text: str) -> None:
-        """Show a line of an agent's output; a view that draws on the terminal shows it itself."""
+        """Print a line of an agent's output, unless the view shows it."""
         if self._watch is not None:
             self._watch.text(agent, text)
         if self._view is None or not self._view.takes_prints:
             self._console.print(agent, text)
 
     def log(self, text: str, level: str = "info") -> None:
-        """Tell people about what happens."""
+        """Log a line."""
         self._console.log(text, level)
 
     def __enter__(self) -> "Watching":
@@ -102,12 +102,12 @@ class Watching:
             self._ground_truth.__exit__(kind, error, trace)
 
     def _write_replay(self, recording: Recording, path: Path) -> None:
-        from jacaros.inspector.page import write_replay  # here: few runs make a page
+        from jacaros.inspector.page import write_replay  # here: few runs write a page
 
         try:
             write_replay(recording, path)
         except OSError as error:
-            self._warn(f"cannot write {path}: {error.strerror}")
+            self._warn(f"cannot write `{path}`: {error.strerror}")
 
     def _warn(self, text: str) -> None:
         self._console.log(f"warning: {text}", "warning")
@@ -117,8 +117,8 @@ def _ground_truth_file(
     path: Path, world: World | None, mas: System, warn: Callable[[str], None]
 ) -> GroundTruthFile:
     if world is None:
-        raise UsageError(
-            "the world of this run is a process of its own, or the real one; "
-            "jacaros sim has --ground-truth for a world that it runs"
+        raise usage_error(
+            "--ground-truth needs a world embedded in this run",
+            "give --ground-truth to the `jacaros sim` that runs the world",
         )
     return GroundTruthFile(path, world, mas.clock.now() - world.time, warn)

@@ -5,32 +5,36 @@ from pathlib import Path
 
 import click
 
-from jacaros.cli.outputs import check_output, wrong_output
-from jacaros.errors import UsageError
+from jacaros.cli.outputs import check_output
+from jacaros.cli.usage import examples, usage_error
 from jacaros.sim.description import WorldDescription, WorldError
 
 _IMAGES = (".pgm", ".png")
 _WIDTH = 640
-"""Pixels of a picture."""
+"""Default width of a picture, in pixels."""
 _RESOLUTION = 0.05
-"""Metres per pixel of an image without a map file."""
+"""Default resolution of an image without a map file, in metres per pixel."""
 _ROWS = 48
-"""Height of a text picture without a terminal, in lines."""
+"""Height of a picture in characters when the output is not a terminal, in lines."""
 
 
-@click.group("world", short_help="Check, show, make and export world files.")
+@click.group("world", short_help="Check, show, create and export world files.")
 def command() -> None:
-    """Check, show, make and export world files.
+    """Check, show, create and export world files.
 
-    WORLD is the path of a world file, of a map of ROS's map_server, or the name of a shipped world.
+    WORLD is a world file, a map file of ROS's map_server, or the name of a shipped world.
     """  # fmt: skip
 
 
-@command.command("check", short_help="Report all mistakes of world files.")
+@command.command(
+    "check",
+    short_help="Report all mistakes in world files.",
+    epilog=examples("jacaros world check world.yaml"),
+)
 @click.argument("worlds", metavar="WORLD...", nargs=-1, required=True)
 def check_command(worlds: tuple[str, ...]) -> int:
-    """Report all mistakes of each WORLD, or a summary. The exit code is 1 if there is a mistake."""
-    from jacaros.sim.files.world import load_world  # here: YAML takes its time to load
+    """Report all mistakes in each WORLD, or print a summary. The exit code is 1 if there is a mistake."""
+    from jacaros.sim.files.world import load_world  # here: YAML is slow to import
 
     code = 0
     for name in worlds:
@@ -42,7 +46,11 @@ def check_command(worlds: tuple[str, ...]) -> int:
     return code
 
 
-@command.command("show", short_help="Draw a world in the terminal, or as SVG or PNG.")
+@command.command(
+    "show",
+    short_help="Draw a world in the terminal, or as SVG or PNG.",
+    epilog=examples("jacaros world show house", "jacaros world show world.yaml --output world.svg"),
+)
 @click.argument("world")
 @click.option(
     "--output",
@@ -55,10 +63,10 @@ def check_command(worlds: tuple[str, ...]) -> int:
     type=click.IntRange(100, 10_000),
     default=_WIDTH,
     show_default=True,
-    help="Pixels of the picture.",
+    help="Width of the picture, in pixels.",
 )
 def show_command(world: str, output: Path | None, width: int) -> None:
-    """Draw WORLD in the terminal, with docks, closed doors and robots; or write a picture of it."""
+    """Draw WORLD in the terminal, with docks, closed doors and robots, or write a picture of it."""
     from jacaros.sim.files.world import load_world
 
     if output is None:
@@ -66,8 +74,9 @@ def show_command(world: str, output: Path | None, width: int) -> None:
         return
     kind = output.suffix.lower()
     if kind not in (".svg", ".png"):
-        raise wrong_output(
-            f"not the name of an SVG or PNG picture: `{output}`", f"--output {output.with_suffix('.svg')}"
+        raise usage_error(
+            f"expected a file name with the suffix .svg or .png, found `{output}`",
+            f"--output {output.with_suffix('.svg')}",
         )
     check_output(output, "picture")
     from jacaros.inspector.picture import picture_svg  # here: only for pictures
@@ -78,43 +87,46 @@ def show_command(world: str, output: Path | None, width: int) -> None:
 
 
 def _png(svg: str) -> bytes:
-    """An SVG picture as PNG."""
+    """Convert an SVG picture to PNG."""
     try:
         from resvg_py import svg_to_bytes  # here: an extra, and only for PNG
     except ImportError:
-        raise UsageError(
-            "error: resvg, which draws PNG pictures, is not installed\n  = help: pip install 'jacaros[maps]', or "
-            "--output FILE.svg"
+        raise usage_error(
+            "PNG pictures need resvg, which is not installed",
+            "pip install 'jacaros[maps]', or --output FILE.svg",
         ) from None
-    # The font that nearly every Linux has; elsewhere resvg's own choice is there.
+    # Nearly every Linux has this font; on other systems resvg chooses one.
     font = "DejaVu Sans" if sys.platform == "linux" else None
     return bytes(svg_to_bytes(svg_string=svg, background="white", sans_serif_family=font))
 
 
-@command.command("new", short_help="Write a new world file.")
+@command.command(
+    "new",
+    short_help="Write a new world file.",
+    epilog=examples("jacaros world new world.yaml", "jacaros world new lab.yaml --map map.yaml"),
+)
 @click.argument("file", type=click.Path(path_type=Path))
 @click.option(
     "--map",
     "map_file",
     type=click.Path(path_type=Path),
     metavar="MAP",
-    help="Build the world on a map: a file of ROS's map_server (.yaml) or its image (.pgm, .png).",
+    help="Use the walls of a map: a map file of ROS's map_server (.yaml) or an image (.pgm, .png).",
 )
 @click.option(
     "--resolution",
     type=click.FloatRange(0.001, 10.0),
     metavar="M",
-    help="Metres per pixel, with an image (default: 0.05).",
+    help="Resolution of the image, in metres per pixel (default: 0.05).",
 )
 def new_command(file: Path, map_file: Path | None, resolution: float | None) -> None:
-    """Write FILE, a commented world file to start from: two rooms, or the walls of a map.
+    """Write FILE, a commented world file to start from, with two rooms or the walls of a map.
 
-    For an image alone, FILE_map.yaml is written too; its lower left corner is the origin. No file is overwritten.
+    With an image, FILE_map.yaml is written as well; the origin is the lower left corner of the image. Existing files are
+    never overwritten.
     """  # fmt: skip
     if resolution is not None and (map_file is None or map_file.suffix not in _IMAGES):
-        raise UsageError(
-            "error: --resolution is for the image of a map\n  = help: --map MAP.pgm --resolution 0.05"
-        )
+        raise usage_error("--resolution needs the image of a map", "--map MAP.pgm --resolution 0.05")
     from jacaros.sim.files.template import described_map, new_world, world_of_map
 
     described, files = map_file, [file]
@@ -127,13 +139,20 @@ def new_command(file: Path, map_file: Path | None, resolution: float | None) -> 
     _write(file, new_world(file.stem) if described is None else world_of_map(file, described))
 
 
-@command.command("export", short_help="Write a world as a map of ROS's map_server.")
+@command.command(
+    "export",
+    short_help="Write a world as a map for ROS's map_server.",
+    epilog=examples("jacaros world export house house_map.yaml"),
+)
 @click.argument("world")
 @click.argument("file", metavar="FILE.yaml", type=click.Path(path_type=Path))
 def export_command(world: str, file: Path) -> None:
-    """Write the map of WORLD as FILE.yaml and FILE.pgm, as ROS's map_server reads them; doors are open in it."""
+    """Write the map of WORLD to FILE.yaml and FILE.pgm, in the format of ROS's map_server. Doors are open in the map."""
     if file.suffix not in (".yaml", ".yml"):
-        raise wrong_output(f"not the name of a map: `{file}`", f"name it {file.with_suffix('.yaml')}")
+        raise usage_error(
+            f"expected a file name with the suffix .yaml, found `{file}`",
+            f"name it {file.with_suffix('.yaml')}",
+        )
     image = file.with_suffix(".pgm")
     check_output(file, "map")
     check_output(image, "map image")
@@ -181,12 +200,11 @@ def _draw(world: WorldDescription) -> None:
 def _refuse_existing(paths: list[Path]) -> None:
     for path in paths:
         if path.exists():
-            raise wrong_output(
-                f"file exists, and is not overwritten: `{path}`", "name another file, or delete it"
-            )
+            raise usage_error(f"file exists: `{path}`", "name another file, or delete it")
         if path.suffix not in (".yaml", ".yml"):
-            raise wrong_output(
-                f"not the name of a world file: `{path}`", f"name it {path.with_suffix('.yaml')}"
+            raise usage_error(
+                f"expected a file name with the suffix .yaml, found `{path}`",
+                f"name it {path.with_suffix('.yaml')}",
             )
 
 
@@ -194,5 +212,5 @@ def _write(path: Path, content: str | bytes) -> None:
     try:
         path.write_bytes(content if isinstance(content, bytes) else content.encode())
     except OSError as error:
-        raise wrong_output(f"cannot write `{path}`: {error.strerror}", "name another file") from error
+        raise usage_error(f"cannot write `{path}`: {error.strerror}", "name another file") from error
     click.echo(f"wrote {path}")

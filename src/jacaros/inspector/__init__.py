@@ -1,4 +1,4 @@
-"""Watching a run: recorder, replay page, still picture, live pages, and a live view in the terminal."""
+"""Observe a run: recorder, replay page, still picture, live pages, and a live view in the terminal."""
 
 from importlib import import_module
 from typing import TYPE_CHECKING
@@ -28,7 +28,7 @@ _HOMES = {
     "write_picture": "jacaros.inspector.picture",
     "write_replay": "jacaros.inspector.page",
 }
-"""Modules by what they define: a run that is recorded needs no server, no terminal and no pictures."""
+"""The module of each name: recording a run must not import servers, terminals or pictures."""
 
 __all__ = [
     "Frame",
@@ -47,10 +47,10 @@ __all__ = [
 
 
 def __getattr__(name: str) -> object:
-    """Import what is asked for.
+    """Import a name on first use.
 
     Raises:
-        AttributeError: unknown name.
+        AttributeError: the name is unknown.
     """
     if name not in _HOMES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

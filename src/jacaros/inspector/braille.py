@@ -1,4 +1,4 @@
-"""A map of braille dots: two by four dots in every character cell."""
+"""A map of braille dots: two by four dots per character cell."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
@@ -8,36 +8,36 @@ _EMPTY = 0x2800
 
 
 class BrailleMap:
-    """A piece of the plane on character cells, as large as fits.
+    """A part of the plane on character cells, as large as possible.
 
     Attributes:
-        columns, rows: character cells that are used.
+        columns, rows: character cells in use.
 
     Args:
         bounds: left, bottom, right, top in metres.
-        columns, rows: character cells that are free.
+        columns, rows: available character cells.
     """
 
     def __init__(self, bounds: Iterable[float], columns: int, rows: int) -> None:
         self._left, bottom, right, self._top = bounds
         width, height = max(0.1, right - self._left), max(0.1, self._top - bottom)
-        # One dot is kept free at each edge, so that the border itself is seen.
+        # One dot stays free at each edge, so that the border is visible.
         self._scale = min((columns * 2 - 2) / width, (rows * 4 - 2) / height)
         self.columns = min(columns, int(width * self._scale) // 2 + 1)
         self.rows = min(rows, int(height * self._scale) // 4 + 1)
         self._cells: dict[tuple[int, int], int] = {}
 
     def dot_of(self, x: float, y: float) -> tuple[int, int]:
-        """Column and row of the dot for a point (metres); it may lie outside."""
+        """Return column and row of the dot for a point (metres); it may be outside."""
         return round((x - self._left) * self._scale), round((self._top - y) * self._scale)
 
     def cell_of(self, x: float, y: float) -> tuple[int, int]:
-        """Column and row of the character cell for a point; it may lie outside."""
+        """Return column and row of the character cell for a point; it may be outside."""
         column, row = self.dot_of(x, y)
         return column // 2, row // 4
 
     def cells_between(self, ax: float, ay: float, bx: float, by: float) -> set[tuple[int, int]]:
-        """The character cells of a straight line."""
+        """Return the character cells of a straight line."""
         return {(column // 2, row // 4) for column, row in self._dots_between(ax, ay, bx, by)}
 
     def point(self, x: float, y: float) -> None:
@@ -62,11 +62,11 @@ class BrailleMap:
             self._cells[cell] = self._cells.get(cell, 0) | _DOTS[row % 4][column % 2]
 
     def bits(self, column: int, row: int) -> int:
-        """The dots of a character cell, 0 for none."""
+        """Return the dots of a character cell, 0 for none."""
         return self._cells.get((column, row), 0)
 
     def text(self) -> str:
-        """The map as lines of text."""
+        """Return the map as lines of text."""
         return "\n".join(
             "".join(character(self.bits(column, row)) for column in range(self.columns))
             for row in range(self.rows)
@@ -74,12 +74,12 @@ class BrailleMap:
 
 
 def character(bits: int) -> str:
-    """The braille character with these dots; a blank for none."""
+    """Return the braille character with these dots; a blank for none."""
     return chr(_EMPTY | bits) if bits else " "
 
 
 def draw_world(world: Mapping[str, Any], columns: int, rows: int) -> BrailleMap:
-    """The walls and furniture of a drawn world."""
+    """Draw the walls and furniture of a world."""
     shown = BrailleMap(world["bounds"], columns, rows)
     for ax, ay, bx, by in world["walls"]:
         shown.line(ax, ay, bx, by)

@@ -1,4 +1,4 @@
-"""A run in the message types that Foxglove draws by itself, as data for JSON."""
+"""A run in the message types that Foxglove displays without configuration, as data for JSON."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -6,7 +6,7 @@ from typing import Any
 
 TRANSFORMS, SCENE, LOG = "foxglove.FrameTransforms", "foxglove.SceneUpdate", "foxglove.Log"
 WORLD = "map"
-"""The frame of the world; each robot has one of its own name."""
+"""Frame of the world; the frame of each robot has the robot's name."""
 _LINE_LIST = 2
 _INFO = 2
 _HEIGHT = 0.2
@@ -26,7 +26,7 @@ def _point(x: float, y: float, z: float = 0.0) -> dict[str, float]:
 
 
 def transforms(names: Sequence[str], rows: Sequence[Sequence[float]], t: float) -> dict[str, Any]:
-    """Return where robots are; *names* of those that were found late may be missing."""
+    """Return the poses of robots; *names* of robots discovered late may be missing."""
     found = []
     for index, (x, y, yaw, *_) in enumerate(rows):
         found.append(
@@ -87,5 +87,5 @@ def _entity(name: str, frame: str, t: float, shapes: Mapping[str, Any]) -> dict[
 
 
 def log_line(agent: str, text: str, t: float) -> dict[str, Any]:
-    """Return what an agent printed as a line of a log."""
+    """Return an agent's output as a log message."""
     return {"timestamp": _time(t), "level": _INFO, "message": text, "name": agent, "file": "", "line": 0}

@@ -1,4 +1,4 @@
-"""What a real graph tells of the world: its map, where the robots believe to be, and their batteries."""
+"""The world as visible in a real graph: its map, the estimated poses of robots, and their batteries."""
 
 import asyncio
 import contextlib
@@ -20,9 +20,9 @@ from jacaros.ros.qos import QoS
 from jacaros.sim.description import Rectangle, WorldDescription
 
 LOOK_PERIOD = 3.0
-"""Seconds between two looks for robots and maps that are new in the graph."""
+"""Seconds between two searches for new robots and maps."""
 MAP_PERIOD = 5.0
-"""A map that is being made is drawn anew so often, in seconds."""
+"""Minimum seconds between two drawings of a changing map."""
 MAP = "map"
 _ODOMETRY, _BATTERY, _GRID = (
     "nav_msgs/msg/Odometry",
@@ -30,10 +30,10 @@ _ODOMETRY, _BATTERY, _GRID = (
     "nav_msgs/msg/OccupancyGrid",
 )
 _RECORDED = {"scan": "sensor_msgs/msg/LaserScan", "plan": "nav_msgs/msg/Path"}
-"""Topics of a robot whose messages the history of the run records, as soon as our node receives them."""
+"""Topics of a robot whose messages are recorded in the history on arrival."""
 _LATCHED = QoS(durability="transient_local", depth=1)
 _NEWEST = QoS(reliability="best_effort", depth=1)
-"""Suits publishers that are reliable and those that are not."""
+"""Matches reliable and best-effort publishers."""
 _FLOOR = 3.0
 
 
@@ -41,8 +41,8 @@ class SeenRobot:
     """A robot whose odometry is in the graph.
 
     Attributes:
-        name: what it is called.
-        odometry, battery: the newest messages, None before the first ones.
+        name: name of the robot.
+        odometry, battery: newest messages; None before the first ones.
     """
 
     def __init__(self, name: str) -> None:
@@ -51,7 +51,7 @@ class SeenRobot:
         self.battery: Any = None
 
     def hear_odometry(self, sample: Sample) -> bool:
-        """Keep the newest message, unless one of its numbers is none; whether it was kept."""
+        """Keep the newest message unless it contains NaN or infinity; return whether it was kept."""
         if not_finite(sample) is not None:
             return False
         self.odometry = sample.message
@@ -62,7 +62,7 @@ class SeenRobot:
         self.battery = sample.message
 
     def pose(self, backend: Backend) -> Transform:
-        """Where it is: its odometry, put right by what localisation says, where there is one."""
+        """Return the pose: odometry, corrected by localisation if there is one."""
         message = self.odometry
         place, turn = message.pose.pose.position, message.pose.pose.orientation
         pose = Transform((place.x, place.y, place.z), (turn.x, turn.y, turn.z, turn.w))
@@ -74,7 +74,7 @@ class SeenRobot:
         return pose
 
     def view(self, backend: Backend) -> RobotView:
-        """How it is shown."""
+        """Return the robot as shown."""
         pose = self.pose(backend)
         x, y, _ = pose.translation
         return RobotView(self.name, x, y, pose.yaw, self._percent(), self._charging())
@@ -83,7 +83,7 @@ class SeenRobot:
         share = UNKNOWN if self.battery is None else float(self.battery.percentage)
         if not math.isfinite(share) or share < 0.0:
             return UNKNOWN
-        # By its definition 0 to 1; there are drivers that say percent.
+        # The definition says 0 to 1, but some drivers publish percent.
         return min(100.0, share if share > 1.0 else 100.0 * share)
 
     def _charging(self) -> bool:
@@ -94,12 +94,12 @@ class SeenRobot:
 
 
 class GraphScene:
-    """Looks at a real graph: ``map``, and for every ``odom`` a robot, its ``scan`` and its ``plan``, in any namespace.
+    """Observes a real graph: ``map``, and for each ``odom`` a robot with its ``scan`` and its ``plan``, in any namespace.
 
     Args:
-        backend: our node; it is started already.
-        clock: paces the looking.
-        name: what the drawing is called.
+        backend: our node; already started.
+        clock: sets the rate of observation.
+        name: name of the drawing.
     """
 
     def __init__(self, backend: Backend, clock: Clock, name: str = "") -> None:
@@ -114,7 +114,7 @@ class GraphScene:
         self._task = asyncio.get_running_loop().create_task(self._keep_looking())
 
     def drawing(self) -> Mapping[str, Any] | None:
-        """The map, drawn anew now and then while it changes, and the robots."""
+        """The map, redrawn from time to time while it changes, and the robots."""
         now = self._clock.now()
         if self._map is not self._drawn and abs(now - self._drawn_at) >= MAP_PERIOD:
             self._drawn, self._drawn_at = self._map, now
@@ -126,21 +126,21 @@ class GraphScene:
         return self._drawing
 
     def _floor(self) -> dict[str, Any]:
-        """Without a map: an open floor around where the first robot is."""
+        """Return the world without a map: an open floor around the first robot."""
         x, y, _ = self._shown[0].pose(self._backend).translation
         bounds = Rectangle(x - _FLOOR, y - _FLOOR, x + _FLOOR, y + _FLOOR)
         return WorldDescription(self._name, bounds, robots=()).drawing()
 
     def robots(self) -> list[RobotView]:
-        """The robots where they believe to be."""
+        """Return the robots at their estimated poses."""
         return [robot.view(self._backend) for robot in self._shown]
 
     def follow(self, moved: Callable[[], None]) -> bool:
-        """Messages come at any rate: nothing is followed."""
+        """Return False: messages arrive at any rate, so there is nothing to follow."""
         return False
 
     def close(self) -> None:
-        """Leave the topics."""
+        """Withdraw the subscriptions."""
         self._task.cancel()
         for subscription in self._subscriptions.values():
             subscription.close()
@@ -149,12 +149,12 @@ class GraphScene:
         if TRANSFORMS in self._backend.capabilities:
             self._backend.tf_listen()
         while True:
-            with contextlib.suppress(RosError):  # the graph may be gone for a while
+            with contextlib.suppress(RosError):  # the graph may be temporarily unreachable
                 self._join(await self._backend.contents())
             await self._clock.sleep(LOOK_PERIOD)
 
     def _join(self, contents: GraphContents) -> None:
-        """Listen to what is new."""
+        """Subscribe to new topics."""
         topics = contents.topics
         found = [name for name, info in sorted(topics.items()) if info.publishers]
         maps = [name for name in found if _GRID in topics[name].types and name.endswith("/map")]

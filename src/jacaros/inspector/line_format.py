@@ -7,11 +7,11 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 _MEMBER = 1 << 20
-"""Bytes of lines in one part of a compressed file that is readable by itself."""
+"""Size of the lines in one independently readable part of a compressed file, in bytes."""
 _LEVEL = 1
 _PIECE = 1 << 16
 _GZIP = 31
-"""Window of zlib for the format of gzip."""
+"""Window of zlib for the gzip format."""
 _BETWEEN = '}, {"kind": "'
 _encode = json.JSONEncoder(ensure_ascii=False, check_circular=False, default=str).encode
 
@@ -22,7 +22,9 @@ def lines_of(records: Sequence[Data]) -> str:
     """Return records as lines of JSON; each begins with its ``kind``."""
     # Encoding a list costs half as much as encoding its elements one by one.
     text = _encode(records)[1:-1]
-    if text.count(_BETWEEN) != len(records) - 1:  # something in a record looks like the next one
+    if (
+        text.count(_BETWEEN) != len(records) - 1
+    ):  # a record contains a text that looks like the start of the next
         text = "\n".join(map(_encode, records))
     else:
         text = text.replace(_BETWEEN, '}\n{"kind": "')
@@ -38,19 +40,19 @@ class Lines:
 
     def pack(self, records: Sequence[Data]) -> bytes:
         """Return lines."""
-        # A lone surrogate becomes an escape, as JSON has it, too.
+        # A lone surrogate is escaped, as in JSON.
         return lines_of(records).encode("utf-8", "backslashreplace")
 
     def end(self) -> bytes:
-        """Nothing is missing."""
+        """Return nothing: the file is complete."""
         return b""
 
 
 class CompressedLines(Lines):
-    """A file of lines in the format of gzip.
+    """A file of lines in the gzip format.
 
-    All that was packed can be read, wherever the file is cut off.  It consists of members of about 1 MB, which can be read
-    without those before them: a piece that a full disk has not taken costs one of them.
+    All packed records are readable wherever the file is truncated. The file consists of members of about 1 MB that are
+    readable independently: a part that a full disk has lost costs one of them.
     """
 
     def __init__(self) -> None:
@@ -76,17 +78,17 @@ class CompressedLines(Lines):
 
 
 MAGIC = b"\x1f\x8b\x08"
-"""With what a member of a compressed file begins."""
+"""First bytes of a member of a compressed file."""
 
 
 def unpacked(data: bytes, largest: int) -> tuple[bytes, bool]:
-    """Return the content of a compressed file, as far as it can be read, and whether something in it is broken.
+    """Return the readable content of a compressed file, and whether a part of it is damaged.
 
-    A file that is cut off is not broken.
+    A truncated file is not damaged.
 
     Args:
-        data: the file.
-        largest: bytes of the content that are read; the rest is left out.
+        data: file content.
+        largest: maximum number of bytes to decompress; the rest is skipped.
     """
     found: list[bytes] = []
     broken = False
@@ -96,19 +98,19 @@ def unpacked(data: bytes, largest: int) -> tuple[bytes, bool]:
         found.append(member.content)
         left -= len(member.content)
         if member.end is None:
-            found.append(b"\n")  # what is missing begins in the middle of a line
+            found.append(b"\n")  # the missing part begins in the middle of a line
         broken = broken or member.broken
         at = data.find(MAGIC, at + 1 if member.end is None else member.end)
     return b"".join(found), broken
 
 
 class _Member:
-    """What can be read of a member of a compressed file.
+    """The readable part of a member of a compressed file.
 
     Attributes:
-        content: of it.
-        end: where it ends in the file, None if it is cut off or broken.
-        broken: whether there is something in it that is not compressed data.
+        content: decompressed content.
+        end: position of its end in the file; None if it is truncated or damaged.
+        broken: whether it contains invalid data.
     """
 
     def __init__(self, data: bytes, start: int, largest: int) -> None:
@@ -132,7 +134,7 @@ class _Member:
             self._add(self._unpacker.decompress(piece, self._left))
         except zlib.error:
             self.broken = True
-            with contextlib.suppress(zlib.error):  # up to the byte that is wrong
+            with contextlib.suppress(zlib.error):  # up to the invalid byte
                 for at in range(len(piece)):
                     self._add(before.decompress(piece[at : at + 1], self._left))
         return not self.broken

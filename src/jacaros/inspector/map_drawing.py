@@ -1,4 +1,4 @@
-"""A map of the graph (``nav_msgs/msg/OccupancyGrid``) as the drawing of a world: walls to outline, boxes to fill."""
+"""A map of the graph (``nav_msgs/msg/OccupancyGrid``) as a drawing of a world: walls to outline, boxes to fill."""
 
 import math
 from typing import Any
@@ -7,12 +7,12 @@ from jacaros.sim.description import Rectangle, Segment, WorldDescription
 from jacaros.sim.files.map import FREE, OCCUPIED, UNKNOWN, OccupancyMap
 
 SOLID = 50
-"""Percent of certainty above which a cell counts as occupied."""
+"""Certainty in percent above which a cell counts as occupied."""
 _MEANINGS = bytes(UNKNOWN if value > 127 else OCCUPIED if value > SOLID else FREE for value in range(256))
 
 
 def can_be_drawn(message: Any) -> bool:
-    """Whether a map is one: it has as many cells as it says, of some size, somewhere."""
+    """Return whether a map is valid: the number of cells matches, and size and origin are finite."""
     info = message.info
     place, turn = info.origin.position, info.origin.orientation
     numbers = (info.resolution, place.x, place.y, turn.z, turn.w)
@@ -22,10 +22,10 @@ def can_be_drawn(message: Any) -> bool:
 
 
 def map_drawing(message: Any, name: str = "") -> dict[str, Any]:
-    """Draw a map: outlines of what is occupied as ``walls``, and what is occupied as ``boxes``.
+    """Draw a map: outlines of occupied areas as ``walls``, and occupied areas as ``boxes``.
 
-    ``bounds`` are those of the cells about which anything is known (SLAM publishes large empty margins); a map that is
-    turned in its frame has outlines alone, for boxes are upright.
+    ``bounds`` are those of the known cells (SLAM publishes large empty margins). A map that is rotated in its frame has
+    only outlines, because boxes are axis-aligned.
     """
     info = message.info
     cells = OccupancyMap(1.0, 0.0, 0.0, info.width, info.height, _bytes_of(message.data).translate(_MEANINGS))
@@ -50,7 +50,7 @@ def map_drawing(message: Any, name: str = "") -> dict[str, Any]:
 
 
 def _bytes_of(data: Any) -> bytes:
-    """The cells as bytes, those below 0 from 255 down: arrays of int8, as client libraries make them, without a loop."""
+    """Return the cells as bytes, negative ones from 255 down: int8 arrays of client libraries, without a loop."""
     try:
         view = memoryview(data)
     except TypeError:

@@ -1,4 +1,4 @@
-"""Records and messages of ROS in a file of MCAP, which Foxglove and ROS's tools open (the extra ``mcap``)."""
+"""Records and ROS messages in an MCAP file, which Foxglove and ROS's tools open (extra ``mcap``)."""
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
@@ -11,12 +11,12 @@ from jacaros.ros.message import plain
 from jacaros.version import VERSION as JACAROS
 
 _CHUNK = 1 << 16
-"""Bytes after which what was written can be read, whatever becomes of the process."""
+"""Chunk size in bytes: complete chunks are readable even after a crash."""
 _encode = json.JSONEncoder(ensure_ascii=False, check_circular=False, default=str).encode
 
 Data = Mapping[str, Any]
 Packed = tuple[str, str, Any]
-"""Topic, schema and content of a message of the file."""
+"""Topic, schema and content of a message in the file."""
 
 
 class McapFile:
@@ -24,7 +24,7 @@ class McapFile:
 
     Each kind of record has a channel ``/jacaros/KIND``, with JSON and a schema for it.  Robots are transforms, the world is
     a scene and what agents print is a log, as Foxglove shows them.  Messages of ROS keep their topics and types, as JSON.
-    Times are those of records, from 0 on.
+    Times are those of the records, starting at 0.
     """
 
     def __init__(self) -> None:
@@ -40,7 +40,7 @@ class McapFile:
         return self.pack([header])
 
     def pack(self, records: Sequence[Data]) -> bytes:
-        """Return what the writer has made of the records; the last ones may wait for a chunk to be full."""
+        """Return the bytes for the records; the last records may wait for a full chunk."""
         for record in records:
             self._t = float(record.get("t", self._t))
             moment = max(0, round(self._t * 1e9))
@@ -93,7 +93,7 @@ _NAMES = {bool: "boolean", int: "number", float: "number", str: "string"}
 
 
 def _schema_of(content: Any, name: str = "") -> dict[str, Any]:
-    """Return a JSON schema that content like this one fits; fields that are null may be anything."""
+    """Return a JSON schema that similar content matches; null fields may have any type."""
     if isinstance(content, Mapping):
         title = {"title": "time" if name == "timestamp" else "duration"} if name in _TIMES else {}
         fields = {str(key): _schema_of(each, str(key)) for key, each in content.items()}
@@ -106,7 +106,7 @@ def _schema_of(content: Any, name: str = "") -> dict[str, Any]:
 
 
 class _Taken:
-    """A stream that passes on what is written to it."""
+    """A stream that passes on the bytes written to it."""
 
     def __init__(self) -> None:
         self._pieces: list[bytes] = []
@@ -123,9 +123,9 @@ class _Taken:
         return self._size
 
     def flush(self) -> None:
-        """Nothing waits."""
+        """Do nothing: there is no buffer."""
 
     def take(self) -> bytes:
-        """Return what was written since the last time."""
+        """Return the bytes written since the last call."""
         pieces, self._pieces = self._pieces, []
         return b"".join(pieces)

@@ -1,4 +1,4 @@
-"""Joins the modules of the page into one script, for a file without a server.
+"""Bundle the modules of the page into one script, for a file without a server.
 
 Browsers refuse to load modules of a page that was opened as a file.  So each module becomes a function that returns what it
 exports, in an order in which each comes after those that it imports.  The modules keep to two forms::
@@ -18,10 +18,10 @@ _OTHER_FORM = re.compile(r"^(?:import|export)\b.*", re.MULTILINE)
 
 
 def bundle(folder: Path, entry: str) -> str:
-    """Return one script of the module *entry* (without its suffix) and all that it imports.
+    """Return one script with the module *entry* (without its suffix) and all modules that it imports.
 
     Raises:
-        JacarosError: a module has an import or export of another form, or modules import each other in a circle.
+        JacarosError: a module has an unsupported import or export, or the imports are circular.
         OSError: a module cannot be read.
     """
     parts: dict[str, str] = {}
@@ -37,7 +37,7 @@ def _add(folder: Path, name: str, parts: dict[str, str], importers: tuple[str, .
     source = (folder / f"{name}.js").read_text(encoding="utf-8")
     for found in _IMPORT.finditer(source):
         _add(folder, found[2], parts, (*importers, name))
-    # Only the entry, which nothing imports, may await at its top level.
+    # Only the entry, which no module imports, may await at its top level.
     parts[name] = _as_function(name, source, "" if importers else "async ")
 
 

@@ -1,4 +1,4 @@
-"""Makes one self-contained page of a recording: a file to open, to mail, to keep with a CI run.
+"""Create one self-contained page of a recording: a file to open, to mail, or to archive with a CI run.
 
 The page loads nothing.  It holds the modules of ``static/`` as one script, and the records, gzipped and base64-coded, which
 the browser unpacks with its own ``DecompressionStream``.  Its content security policy names the hashes of these style
@@ -21,7 +21,7 @@ from jacaros.inspector.modules import bundle
 from jacaros.inspector.recording import Recording
 
 STATIC = Path(__file__).parent / "static"
-"""The page and its modules; a server serves this folder as it is."""
+"""The page and its modules; a server serves this folder unchanged."""
 _VERSION = 2
 _PLACES = re.compile(
     r'<title>[^<]*</title>|<link rel="stylesheet" href="(\w+)\.css">|<script type="module" src="live\.js"></script>'
@@ -29,7 +29,7 @@ _PLACES = re.compile(
 
 
 def write_replay(recording: Recording, path: str | Path, title: str | None = None) -> None:
-    """Write the page; *title* is the name of the project, or of the world, by default.
+    """Write the page; *title* is the name of the project or the world by default.
 
     Raises:
         OSError: the file cannot be written.
@@ -57,18 +57,18 @@ def replay_html(recording: Recording, title: str | None = None) -> str:
             return f"<style>{styles[found[1]]}</style>"
         return parts[found[0].partition(" ")[0].partition(">")[0]]
 
-    # In one pass: a title may look like a place.
+    # In one pass, because a title may look like a placeholder.
     return _PLACES.sub(part, page)
 
 
 def title_of(recording: Recording) -> str:
-    """Return the name of the project, or else of the world."""
+    """Return the name of the project, or otherwise of the world."""
     names = (data.get("name") for _, kind, data in recording.events if kind == "run")
     return str(next(names, None) or recording.world.get("name") or "A run")
 
 
 def packed(recording: Recording) -> str:
-    """Return the records of a recording as the page holds them: a line of frames, then a line for each other record."""
+    """Return the records of a recording in the format of the page: a line of frames, then a line for each other record."""
     lines = "\n".join(
         json.dumps(record, separators=(",", ":"), ensure_ascii=False, default=str)
         for record in (frames(recording), *records(recording))
@@ -77,7 +77,7 @@ def packed(recording: Recording) -> str:
 
 
 def records(recording: Recording) -> Iterator[dict[str, Any]]:
-    """Yield the records of a recording but for the frames, in the order of time, as its file has them."""
+    """Yield the records of a recording except frames, in time order, as in its file."""
     yield {"kind": "world", "version": _VERSION, "world": recording.world}
     moments = [
         *(
@@ -94,9 +94,9 @@ def records(recording: Recording) -> Iterator[dict[str, Any]]:
 
 
 def frames(recording: Recording) -> dict[str, Any]:
-    """Return the frames as columns of differences of whole numbers (ms, mm, mrad, tenths of a percent).
+    """Return the frames as columns of differences of integers (ms, mm, mrad, tenths of a percent).
 
-    They are a tenth as large, compressed, as a record for each frame. A robot that was found late has shorter columns.
+    Compressed, they are a tenth of the size of a record per frame. A robot discovered late has shorter columns.
     """
     rows = [frame.robots for frame in recording.frames]
     robots = []

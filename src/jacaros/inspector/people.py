@@ -1,14 +1,14 @@
-"""Where the people of a watched world are: as the last event of each tells, straight on since then."""
+"""Positions of the people of an observed world, extrapolated from the last event of each."""
 
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 PERSON = "person_"
-"""Beginning of the kinds of their events."""
+"""Prefix of the kinds of their events."""
 
 
 class PersonView(NamedTuple):
-    """A person at one moment: place and radius in metres, the points of the path, and a colour ("" for any)."""
+    """A person at a time: position and radius in metres, the points of the path, and a colour ("" for any)."""
 
     name: str
     x: float
@@ -19,10 +19,10 @@ class PersonView(NamedTuple):
 
 
 class PeopleSeen:
-    """Follows the people of a world by their events.
+    """Tracks the people of a world by their events.
 
     Args:
-        drawing: the world, as `jacaros.sim.WorldDescription.drawing` gives it.
+        drawing: data of the world, from `jacaros.sim.WorldDescription.drawing`.
     """
 
     def __init__(self, drawing: Mapping[str, Any]) -> None:
@@ -39,7 +39,7 @@ class PeopleSeen:
         )
 
     def event(self, t: float, kind: str, data: Mapping[str, Any]) -> None:
-        """Take an event of the world, *t* seconds after the run began; those of others are ignored."""
+        """Process an event of the world, *t* seconds after the start of the run; other events are ignored."""
         if not kind.startswith(PERSON):
             return
         name = data["person"]
@@ -53,7 +53,7 @@ class PeopleSeen:
             self._moves[name] = (t, data.get("vx", 0.0), data.get("vy", 0.0))
 
     def at(self, t: float) -> list[PersonView]:
-        """Those who are there at a moment after the last event."""
+        """Return the people who are present at a time after the last event."""
         found = []
         for name, view in self._views.items():
             since, vx, vy = self._moves.get(name, (t, 0.0, 0.0))

@@ -1,6 +1,6 @@
-"""A still picture of a run as SVG: the world, the path coloured by time, docks, rooms and robots at the end.
+"""A still picture of a run as SVG: the world, the path coloured by time, and docks, rooms and robots at the end.
 
-It looks right on light and on dark pages, needs nothing else, and is the same for the same recording.
+It suits light and dark pages, needs no other files, and is identical for identical recordings.
 """
 
 import html
@@ -31,7 +31,7 @@ _STYLE = """
 _MARGIN = 0.15
 _PIECES = 160
 _RADIUS = 0.17
-"""Metres, of a robot of which only a real graph tells."""
+"""Radius in metres of a robot known only from a real graph."""
 _PATH_COLOURS = ("#1f6f8b", "#b4572e", "#6b5aa8", "#3f7d3a", "#a83e6b", "#7a6a1e")
 
 
@@ -45,7 +45,7 @@ def write_picture(recording: Recording, path: str | Path, width: int = 640) -> N
 
 
 def picture_svg(recording: Recording, width: int = 640) -> str:
-    """The SVG text."""
+    """Return the SVG text."""
     sheet = _Sheet(recording, width)
     parts = [
         *_floor(sheet, recording.drawing),
@@ -71,7 +71,7 @@ def picture_svg(recording: Recording, width: int = 640) -> str:
 
 
 class _Sheet:
-    """From metres to pixels: y grows downwards there."""
+    """Converts metres to pixels; y grows downwards in pixels."""
 
     def __init__(self, recording: Recording, width: int) -> None:
         left, bottom, right, top = recording.drawing["bounds"]
@@ -116,7 +116,7 @@ def _floor(sheet: _Sheet, world: dict[str, Any]) -> Iterator[str]:
 
 
 def _dirt(sheet: _Sheet, recording: Recording) -> Iterator[str]:
-    """The dirt that is left at the end, the darker the more."""
+    """Draw the remaining dirt at the end; darker means more."""
     left = {
         (data["room"], data["dirt"]): data["grams"] for _, kind, data in recording.events if kind == "cleaned"
     }
@@ -137,7 +137,7 @@ def _docks(sheet: _Sheet, world: dict[str, Any]) -> Iterator[str]:
 
 
 def _doors(sheet: _Sheet, recording: Recording) -> Iterator[str]:
-    """The doors as they are at the end."""
+    """Draw the doors in their state at the end."""
     doors = {door["name"]: door for door in recording.drawing["doors"]}
     moves = {
         data["door"]: kind for _, kind, data in recording.events if kind in ("door_opened", "door_closed")
@@ -150,7 +150,7 @@ def _doors(sheet: _Sheet, recording: Recording) -> Iterator[str]:
 
 
 def _objects(sheet: _Sheet, recording: Recording) -> Iterator[str]:
-    """The objects where they lie at the end; a robot has what is not there."""
+    """Draw the objects on the floor at the end, without those that robots carry."""
     places = {each["name"]: each["place"] for each in recording.drawing["objects"]}
     for _, kind, data in recording.events:
         if kind == "placed":
@@ -166,7 +166,7 @@ def _objects(sheet: _Sheet, recording: Recording) -> Iterator[str]:
 
 
 def _people(sheet: _Sheet, recording: Recording) -> Iterator[str]:
-    """The people who are there at the end, with their paths."""
+    """Draw the people who are present at the end, with their paths."""
     seen = PeopleSeen(recording.drawing)
     for event in recording.events:
         seen.event(*event)
@@ -217,7 +217,7 @@ def _paths(sheet: _Sheet, recording: Recording) -> Iterator[str]:
 
 
 def _thinned(points: list[tuple[float, float]]) -> list[tuple[float, float]]:
-    """Without points that repeat the one before."""
+    """Remove points equal to the previous one."""
     return [point for index, point in enumerate(points) if index == 0 or point != points[index - 1]]
 
 
@@ -229,7 +229,7 @@ def _room_names(sheet: _Sheet, recording: Recording) -> Iterator[str]:
 
 
 def _place_for(sheet: _Sheet, recording: Recording, area: Any, width: float) -> tuple[float, float]:
-    """Where in a room a name of so many pixels covers the least of furniture, docks and paths."""
+    """Return the place in a room where a name of that width in pixels covers least furniture, docks and paths."""
     ax, ay, bx, by = area
     left, right = sheet.x(ax) + 12, sheet.x(bx) - 12 - width
     top, bottom = sheet.y(by) + 24, sheet.y(ay) - 12
@@ -273,7 +273,7 @@ def _robots(sheet: _Sheet, recording: Recording) -> Iterator[str]:
 
 
 def _outline(robot: Mapping[str, Any], edge: str) -> str:
-    """A robot of radius 1, looking right."""
+    """Draw a robot of radius 1, facing right."""
     radius, footprint = robot.get("radius", _RADIUS), robot.get("footprint")
     if not footprint or not radius:
         return f'<circle class="robot" r="1" stroke-width=".12"{edge}/>'
@@ -286,7 +286,7 @@ STOPS = ((74, 98, 190), (38, 146, 158), (120, 172, 84), (226, 160, 48), (205, 84
 
 
 def colour_at(part: float) -> tuple[int, int, int]:
-    """Red, green and blue (0 to 255) at *part* (0 to 1) of the way."""
+    """Return red, green and blue (0 to 255) at *part* (0 to 1) of the path."""
     place = min(0.9999, max(0.0, part)) * (len(STOPS) - 1)
     index = int(place)
     rest = place - index

@@ -1,6 +1,6 @@
-"""Records a run: the world, frames of its robots, agents' prints, and events.
+"""Record a run: the world, frames of its robots, the output of agents, and events.
 
-``docs/reference/recordings.md`` has the format.
+The format is described in ``docs/reference/recordings.md``.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -17,14 +17,14 @@ from jacaros.ros.message import type_of
 
 MCAP = ".mcap"
 LIMIT = 500_000_000
-"""Bytes that a recording may have."""
+"""Default size limit of a recording, in bytes."""
 
 
 def format_of(path: Path) -> Callable[[], Format]:
-    """Return what makes the format that the name of a file asks for.
+    """Return the format for a file name.
 
     Raises:
-        UsageError: the library for it is not installed.
+        UsageError: the library for the format is not installed.
     """
     if path.suffix == MCAP:
         try:
@@ -39,23 +39,23 @@ def format_of(path: Path) -> Callable[[], Format]:
 
 
 class Recorder:
-    """Writes a recording while the run goes on.
+    """Writes a recording during the run.
 
-    Frames in which nothing has changed are left out, but for the one before the next change, so that a
-    reader that interpolates sees a robot rest and then move, not creep.
+    Frames without changes are left out, except for the one before the next change, so that a reader that interpolates
+    sees a robot rest and then move, not creep.
 
     Args:
-        path: the file to write; None keeps the recording in memory only.
-        keep: keep it in memory as well, as `recording`.
-        warn: takes a line about a file that cannot be written; the run goes on without it.
-        limit: bytes that the file and its older part may have together.  A file that has half of that becomes ``FILE.1``,
-            in place of an older part, and a new one begins, with ``"part": 2``; `Recording.read` reads both.
+        path: file to write; None to keep the recording only in memory.
+        keep: keep the recording in memory as well, as `recording`.
+        warn: takes a warning that the file cannot be written; the run continues without it.
+        limit: maximum size in bytes of the file and its older part together. A file of half that size becomes ``FILE.1``,
+            replacing an older part, and a new one begins, with ``"part": 2``; `Recording.read` reads both.
 
     Attributes:
-        takes_messages: whether messages of ROS are written, too, by `message`: to a file of MCAP.
+        takes_messages: whether ROS messages are recorded, too (`message`), which MCAP files support.
 
     Raises:
-        OSError: the file cannot be written.
+        OSError: the file cannot be opened.
         UsageError: the library for its format is not installed.
     """
 
@@ -76,19 +76,19 @@ class Recorder:
         self._seen: tuple[RobotView, ...] | None = None
         self._last: tuple[tuple[Any, ...], ...] | None = None
         self._rested: float | None = None
-        """When the robots were last seen to be where they are in `_last`."""
+        """Time at which the robots were last seen at the poses in `_last`."""
 
     def world(self, drawing: Mapping[str, Any]) -> None:
-        """The world, as `jacaros.sim.WorldDescription.drawing` gives it, before everything else; the last one counts."""
+        """Record the world (see `jacaros.sim.WorldDescription.drawing`), before everything else; the last call wins."""
         self.recording.world = dict(drawing)
         self._write({"kind": "world", "version": VERSION, "world": self.recording.world})
 
     def frame(self, t: float, robots: Iterable[RobotView]) -> None:
-        """The robots at a moment, in the order of the world."""
+        """Record the robots at a time, in the order of the world."""
         if self._file is not None:
             self._file.flush()
         robots = tuple(robots)
-        if robots == self._seen:  # the common case of a robot that rests
+        if robots == self._seen:  # the common case: robots at rest
             self._rested = t
             return
         self._seen = robots
@@ -113,20 +113,20 @@ class Recorder:
             self._file.write({"kind": "frame", "t": t, "robots": rows})
 
     def text(self, t: float, agent: str, text: str) -> None:
-        """What an agent printed."""
+        """Record a line of an agent's output."""
         if self._keep:
             self.recording.texts.append((t, agent, text))
         self._write({"kind": "text", "t": round(t, 3), "agent": agent, "text": text})
 
     def event(self, t: float, kind: str, data: Mapping[str, Any]) -> None:
-        """Something that happened at a whole millisecond; *data* is plain JSON data, which nobody changes."""
+        """Record an event at a whole millisecond; *data* is plain JSON data that must not change afterwards."""
         if self._keep:
             self.recording.events.append((t, kind, dict(data)))
         if self._file is not None:
             self._file.write({"kind": "event", "t": t, "event": kind, "data": data})
 
     def message(self, t: float, topic: str, message: Any) -> None:
-        """A message of ROS that had an effect."""
+        """Record a ROS message that had an effect."""
         if self.takes_messages:
             kind = type_of(message)
             self._write(
@@ -134,7 +134,7 @@ class Recorder:
             )
 
     def close(self) -> None:
-        """Write the last frame and close the file; closing twice does no harm."""
+        """Write the last frame and close the file; closing twice is harmless."""
         self._take_rest()
         if self._file is not None:
             self._file.close()
@@ -146,12 +146,12 @@ class Recorder:
 
 
 def _row(robot: RobotView) -> tuple[Any, ...]:
-    """Millimetres are fine enough for a picture, and a third of the bytes."""
+    """Round to millimetres: enough for a picture, and a third of the bytes."""
     _, x, y, yaw, battery, charging, touching = robot
     return _short(x), _short(y), _short(yaw), _short(battery), int(charging), int(touching)
 
 
 def _short(value: float) -> float:
-    """Return a number with three digits after the point."""
-    # `round` to digits takes five times as long.
+    """Return a number with three decimals."""
+    # `round` with digits takes five times as long.
     return round(value * 1e3) / 1e3 if isfinite(value) else value

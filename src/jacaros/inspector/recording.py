@@ -1,4 +1,4 @@
-"""A recorded run in memory: read from a recorder's file, or made from a ground truth."""
+"""A recorded run in memory, read from a recorder's file or made from a ground truth."""
 
 import json
 from dataclasses import dataclass, field
@@ -12,16 +12,16 @@ from jacaros.sim import GroundTruth, Sample
 from jacaros.text_files import file_bytes, text_of
 
 VERSION = 2
-"""Of the format that is written; all until this one are read, and of newer ones what is known."""
+"""Version of the written format; older versions are read completely, and known records of newer ones."""
 LARGEST_RECORDING = 2**32
-"""Bytes of a recording that is read, without compression."""
+"""Maximum size of a recording to read, in bytes before compression."""
 
 _COLUMNS = 6
 _LARGEST = 1e15
 
 
 class Frame(NamedTuple):
-    """The robots at a moment: rows of x, y, yaw, battery, charging, touching."""
+    """The robots at a time: rows of x, y, yaw, battery, charging, touching."""
 
     t: float
     robots: tuple[tuple[Any, ...], ...]
@@ -46,19 +46,19 @@ _NOWHERE: dict[str, Any] = {
         )
     },
 }
-"""The drawing of a world of which nothing is known."""
+"""The drawing of an unknown world."""
 
 
 @dataclass
 class Recording:
-    """A run as it was recorded.
+    """A recorded run.
 
     Attributes:
-        world: the drawing of the world; empty when nothing was known of it.
-        frames: the robots over time.
-        texts: prints of agents as (t, agent, text).
+        world: data of the world; empty if nothing is known about it.
+        frames: robots over time.
+        texts: output of agents as (t, agent, text).
         events: events as (t, kind, data).
-        warnings: lines about what could not be read; empty for a recording of this version.
+        warnings: warnings about unreadable parts; empty for a complete recording of this version.
     """
 
     world: dict[str, Any] = field(default_factory=dict)
@@ -69,7 +69,7 @@ class Recording:
 
     @property
     def duration(self) -> float:
-        """Seconds from the beginning to the last thing recorded."""
+        """Seconds from the start to the last record."""
         ends = [frame.t for frame in self.frames[-1:]]
         ends += [t for t, *_ in self.texts[-1:]] + [t for t, *_ in self.events[-1:]]
         return max(ends, default=0.0)
@@ -81,11 +81,11 @@ class Recording:
 
     @property
     def drawing(self) -> dict[str, Any]:
-        """The drawing of the world, with all that viewers look for."""
+        """The drawing of the world, with everything that viewers expect."""
         return {**_NOWHERE, **self.world}
 
     def rows(self) -> list[list[tuple[Any, ...]]]:
-        """The rows of each robot, one for each frame; a robot that was found late stands before that where it was found."""
+        """The rows of each robot, one per frame; before its discovery, a robot stays where it was discovered."""
         found = []
         for index in range(max((len(frame.robots) for frame in self.frames), default=0)):
             rows = [frame.robots[index] if index < len(frame.robots) else None for frame in self.frames]
@@ -97,11 +97,11 @@ class Recording:
     def read(cls, path: str | Path) -> "Recording":
         """Read a recorder's file, plain or compressed, and the older part of a long one.
 
-        Lines cut off by a crash or a full disk are left out, and of a newer version what is not known; see `warnings`.
+        Lines truncated by a crash or a full disk, and unknown records of newer versions, are skipped; see `warnings`.
 
         Raises:
             OSError: the file cannot be read.
-            JacarosError: it is not a recording.
+            JacarosError: the file is not a recording.
         """
         recording, path = cls(), Path(path)
         lines = _lines(path, recording.warnings)
@@ -151,7 +151,7 @@ class Recording:
 
     @classmethod
     def of_ground_truth(cls, truth: GroundTruth) -> "Recording":
-        """Make a recording (without agents) of what truly happened, for example in a served world."""
+        """Make a recording (without agents) from a ground truth, for example of a served world."""
         recording = cls(world=dict(truth.world))
         recording.events = [(e.time, e.kind, {"robot": e.robot, **e.data}) for e in truth.events]
         paths = [[*truth.path(robot), truth.latest(robot)] for robot in truth.robots]
@@ -168,7 +168,7 @@ class Recording:
 
 
 def _reason(error: Exception) -> str:
-    """Return what is wrong with a line, in words."""
+    """Return the error in a line, as text."""
     if isinstance(error, KeyError):
         return f"the key {error} is missing"
     if isinstance(error, json.JSONDecodeError):
@@ -177,7 +177,7 @@ def _reason(error: Exception) -> str:
 
 
 def _number(value: Any) -> float:
-    """Return a number of a recording, which pages and pictures can scale."""
+    """Return a number of a recording that pages and pictures can scale."""
     if not isinstance(value, int | float) or not -_LARGEST < value < _LARGEST:
         raise TypeError(f"a number is expected, not {str(value)[:40]}")
     return value
@@ -196,7 +196,7 @@ def _mapping(value: Any) -> dict[str, Any]:
 
 
 def _row(values: Any, width: int | None = _COLUMNS) -> tuple[Any, ...]:
-    """Return a robot's row of a frame; without *width* it may have more columns, which are left out."""
+    """Return a robot's row of a frame; without *width*, further columns are dropped."""
     row = tuple(map(_number, values))
     if len(row) < _COLUMNS or (width is not None and len(row) != width):
         raise TypeError(f"a robot has {_COLUMNS} numbers, not {len(row)}")
@@ -204,7 +204,7 @@ def _row(values: Any, width: int | None = _COLUMNS) -> tuple[Any, ...]:
 
 
 def _world(drawing: Any) -> dict[str, Any]:
-    """Return the drawing of a world, which viewers can draw."""
+    """Return a drawing of the world that viewers can draw."""
     world = _mapping(drawing)
     for robot in world.get("robots", []):
         _text(_mapping(robot)["name"])
@@ -217,11 +217,11 @@ def _world(drawing: Any) -> dict[str, Any]:
 
 
 _BEGINNING = '{"kind": '
-"""Of a line of a recording."""
+"""Maximum size of a line."""
 
 
 def older_part(path: Path) -> Path:
-    """The file that a recorder makes of *path* before it begins a new one."""
+    """Return the file that holds the older part of *path*."""
     return path.with_name(f"{path.name}.1")
 
 
@@ -241,12 +241,12 @@ def _lines(path: Path, warnings: list[str]) -> list[str]:
         lines = text_of(whole).split("\n") if end else []
     except UnicodeError as error:
         raise _not_a_recording(str(path), str(error)) from None
-    # The last line may be cut off in the middle of a character.
+    # The last line may be truncated in the middle of a character.
     return [*lines, cut_off.decode("utf-8", "replace")] if cut_off else lines
 
 
 def _header_of(line: str) -> dict[str, Any]:
-    """Return version and part of a file, by its first line; empty for a line that has no whole numbers there."""
+    """Return version and part of a file from its first line; empty for a line without these integers."""
     try:
         header = json.loads(line)
         return {key: header[key] for key in ("version", "part") if type(header.get(key)) is int}

@@ -1,7 +1,7 @@
-"""The file of a recording: records are packed some at a time, on the loop that makes them.
+"""The file of a recording: records are packed in batches, on the loop that creates them.
 
-A thread that packed them all made the run slower than the packing is: 600 s of the patrol took 2.9 s instead of 2.1.  One
-that packs what a loop has left behind costs nothing, and saves the last records of a loop that is stuck.
+Packing all records in a thread slowed the run by more than the packing costs: 600 s of the patrol took 2.9 s instead of
+2.1 s. A thread for the records that a loop has left behind costs nothing, and saves the last records of a blocked loop.
 """
 
 import threading
@@ -16,40 +16,40 @@ from jacaros.inspector.recording import older_part
 from jacaros.output import CLOSING, PATIENCE, Output
 
 FLUSH = 0.2
-"""Seconds after which a record is in the file: as much is lost when the process is killed."""
+"""Maximum seconds until a record is in the file, and is safe from a kill of the process."""
 _BATCH = 64
-"""Records that are packed together at most: to pack many costs less, and to keep many more memory."""
+"""Maximum number of records packed together: more would save time, but cost memory."""
 
 Data = Mapping[str, Any]
 
 
 class Format(Protocol):
-    """How records become bytes; one object for one file."""
+    """Converts records to bytes; one object for each file."""
 
     def begin(self, header: Data) -> bytes:
-        """Return what a file begins with; *header* is the newest record of kind ``world``."""
+        """Return the first bytes of a file; *header* is the newest record of kind ``world``."""
 
     def pack(self, records: Sequence[Data]) -> bytes:
-        """Return records as bytes, so that a file that ends behind them can be read."""
+        """Return records as bytes, so that a file that ends after them is readable."""
 
     def end(self) -> bytes:
-        """Return what a file ends with."""
+        """Return the last bytes of a file."""
 
 
 class RecordingFile:
-    """Writes records to a file; a file that has half of the limit becomes ``FILE.1``, and a new one begins.
+    """Writes records to a file; a file of half the limit becomes ``FILE.1``, and a new one begins.
 
-    Records are changed by nobody after `write`.  Nothing here raises an error or waits for a disk: see
+    Records must not change after `write`.  Nothing here raises an error or waits for a disk: see
     `jacaros.output.Output`.
 
     Args:
-        path: the file.
-        make_format: makes the format of a file; called again for each further part.
-        warn: takes a line about a file that cannot be written.
-        limit: bytes that the file and its older part may have together.
+        path: output file.
+        make_format: creates the format of a file; called again for each further part.
+        warn: takes a warning that the file cannot be written.
+        limit: maximum size in bytes of the file and its older part together.
 
     Raises:
-        OSError: the file cannot be written.
+        OSError: the file cannot be opened.
     """
 
     def __init__(
@@ -69,13 +69,13 @@ class RecordingFile:
         self._closing = threading.Event()
         self._thread: threading.Thread | None = None
         self._packed = time.monotonic()
-        """When records were packed last, on a clock of real time."""
+        """Time of the last packing, on a clock of real time."""
         self._file: FileIO | None = None
         self._output: Output | None = None
         self._open()
 
     def write(self, record: Data) -> None:
-        """Have *record* written soon: with others, by the next `flush` that is due, or by the thread."""
+        """Queue a record, to be written by the next due `flush`, or by the thread."""
         self._pending.append(record)
         if len(self._pending) >= self._batch:
             self._pack_pending(FLUSH)
@@ -84,12 +84,12 @@ class RecordingFile:
             self._thread.start()
 
     def flush(self) -> None:
-        """Write what waits if that was last done half of `FLUSH` ago; to be called several times a second."""
+        """Write the queue if half of `FLUSH` has passed since the last time; call it several times a second."""
         if self._pending and time.monotonic() - self._packed >= 0.5 * FLUSH:
             self._pack_pending(0.0)
 
     def close(self) -> None:
-        """Write what waits and close the file; closing twice does no harm."""
+        """Write the queue and close the file; closing twice is harmless."""
         self._closing.set()
         if self._thread is not None:
             self._thread.join(CLOSING)
@@ -106,7 +106,7 @@ class RecordingFile:
                 self._pack_pending(FLUSH)
 
     def _pack_pending(self, patience: float) -> bool:
-        """Write what waits; False when another thread still does that after *patience* seconds."""
+        """Write the queue; return False if another thread is still doing that after *patience* seconds."""
         if not self._packing.acquire(timeout=patience):
             return False
         try:
@@ -123,7 +123,7 @@ class RecordingFile:
                 self._header = record
         data = self._format.pack(batch)
         self._send(data)
-        if self._size + len(data) > self._limit // 2:  # the next ones are about as large
+        if self._size + len(data) > self._limit // 2:  # later batches are about as large
             self._begin_part()
 
     def _send(self, data: bytes) -> None:
@@ -145,7 +145,7 @@ class RecordingFile:
             self._output = self._file = None
 
     def _begin_part(self) -> None:
-        """Make the file the older part, and begin a new one; a device or a pipe has no parts."""
+        """Make the file the older part, and begin a new one; devices and pipes have no parts."""
         self._size = 0
         if not self._path.is_file():
             return

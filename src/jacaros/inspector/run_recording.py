@@ -1,4 +1,4 @@
-"""Recording a system that runs inside a Python program."""
+"""Record a system that runs inside a Python program."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -15,7 +15,7 @@ from jacaros.mas.embedding.mas import Mas
 def record(
     mas: Mas, path: str | Path | None = None, replay: str | Path | None = None
 ) -> Iterator[Recording | None]:
-    """Record what happens inside a ``with``: the world and its robots, what agents print and pursue.
+    """Record a run inside a ``with``: the world and its robots, and the output and goals of agents.
 
     ::
 
@@ -25,15 +25,15 @@ def record(
 
     Args:
         mas: the running system.
-        path: file for the recording, as ``jacaros run --record`` writes it; None for none.
-        replay: file for a page that shows it in a browser; None for none.
+        path: file for the recording, as for ``jacaros run --record``; None for no file.
+        replay: file for a page that shows it in a browser; None for no page.
 
     Returns:
-        The recording, which grows; None when only a file is written.
+        The recording, which grows; None if only a file is written.
 
     Raises:
-        OSError: a file cannot be opened, or the page not written.  Later trouble with the recording is logged.
-        RunEnded: the system does not run.
+        OSError: a file cannot be opened, or the page cannot be written. Later errors of the recording are logged.
+        RunEnded: the system is not running.
     """
     keep = replay is not None or path is None
     recorder = Recorder(path, keep, lambda text: mas.system.console.log(f"warning: {text}", "warning"))

@@ -1,4 +1,4 @@
-"""What there is to see of a run, and of its robots: the embedded world, or whatever a real graph tells."""
+"""The visible part of a run and its robots: the embedded world, or the robots of a real graph."""
 
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple, Protocol
@@ -6,13 +6,13 @@ from typing import Any, NamedTuple, Protocol
 from jacaros.sim import World
 
 UNKNOWN = -1.0
-"""The level of a battery that nobody tells of."""
+"""Battery level that is shown if none is published."""
 
 
 class RobotView(NamedTuple):
-    """A robot at one moment: pose (metres, radians), battery (percent, or `UNKNOWN`) and what happens to it.
+    """A robot at a time: pose (metres, radians), battery (percent, or `UNKNOWN`) and its contacts.
 
-    Of the embedded world the true pose, of a robot on a real graph the one that it believes in.
+    In the embedded world the true pose, on a real graph the estimated one.
     """
 
     name: str
@@ -25,8 +25,8 @@ class RobotView(NamedTuple):
 
 
 def views_of(world: World) -> list[RobotView]:
-    """All robots of *world* as they are now."""
-    # Not by RobotView(...), which takes twice as long: a recording calls this several times a second.
+    """Return all robots of *world* in their current state."""
+    # Not with RobotView(...), which takes twice as long: a recording calls this several times per second.
     return [
         tuple.__new__(
             RobotView,
@@ -45,27 +45,27 @@ def views_of(world: World) -> list[RobotView]:
 
 
 class Scene(Protocol):
-    """A world with robots that is looked at."""
+    """An observed world with robots."""
 
     def drawing(self) -> Mapping[str, Any] | None:
-        """The world, as `jacaros.sim.WorldDescription.drawing` gives it: the same object while nothing has changed, None
+        """The world, as `jacaros.sim.WorldDescription.drawing` describes it: the same object until something changes, None
         while nothing is known."""
 
     def robots(self) -> list[RobotView]:
-        """All robots as they are now, in an order to which new ones are added at the end."""
+        """Return all robots in their current state; new robots are appended."""
 
     def follow(self, moved: Callable[[], None]) -> bool:
-        """Have *moved* called ten times a second while robots move; False if that is not known, or not yet."""
+        """Call *moved* ten times per second while robots move; return False if their motion is not (yet) known."""
 
     def close(self) -> None:
-        """Look no more."""
+        """Stop looking."""
 
 
 class EmbeddedScene:
-    """The embedded world, whose truth is known.
+    """The embedded world, with true poses.
 
     Args:
-        find: gives the world; None until an agent needs a robot. A project without robots never has one.
+        find: returns the world; None until an agent needs a robot. A project without robots never has one.
     """
 
     def __init__(self, find: Callable[[], World | None]) -> None:
@@ -74,25 +74,25 @@ class EmbeddedScene:
         self._stop_following: Callable[[], None] | None = None
 
     def drawing(self) -> Mapping[str, Any] | None:
-        """The world, which does not change; None while there is none."""
+        """The world, which does not change; None without a world."""
         if self._drawing is None and (world := self._find()) is not None:
             self._drawing = world.description.drawing()
         return self._drawing
 
     def robots(self) -> list[RobotView]:
-        """The robots where they truly are."""
+        """Return the robots at their true poses."""
         world = self._find()
         return views_of(world) if world is not None else []
 
     def follow(self, moved: Callable[[], None]) -> bool:
-        """Have *moved* called when the world has noted where its robots are; False while there is no world."""
+        """Call *moved* when the world has recorded the poses of its robots; return False while there is no world."""
         world = self._find()
         if world is not None and self._stop_following is None:
             self._stop_following = world.when_moved(moved)
         return world is not None
 
     def close(self) -> None:
-        """Follow no longer."""
+        """Stop following."""
         if self._stop_following is not None:
             self._stop_following()
             self._stop_following = None

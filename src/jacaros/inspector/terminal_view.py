@@ -1,8 +1,8 @@
-"""A live view of a run in the terminal: a map of braille dots with the robots, batteries, goals and prints.
+"""A live view of a run in the terminal: a map of braille dots with the robots, batteries, goals and output.
 
-It goes to standard error, ten pictures a second on the wall at most and never for more than a tenth of the
-time, so that it does not slow a virtual run, which may do hundreds of seconds between two pictures.  Where
-standard error is no terminal, it is a line now and then.
+It is drawn on standard error, at most ten times per second of real time and for at most a tenth of the time, so that it
+does not slow a virtual run, which may simulate hundreds of seconds between two pictures. Without a terminal, it prints
+plain lines at intervals.
 """
 
 import io
@@ -24,20 +24,20 @@ from jacaros.inspector.scene import UNKNOWN, RobotView
 from jacaros.output import Output
 
 FRAME_PERIOD = 0.1
-"""Seconds between two pictures, on the wall."""
+"""Seconds of real time between two pictures."""
 LINE_PERIOD = 5.0
-"""Seconds between two lines where there is no terminal."""
+"""Seconds between two lines without a terminal."""
 _ARROWS = "→↗↑↖←↙↓↘"
 _COLOURS = ("cyan", "magenta", "green", "yellow", "blue", "red")
 _PRINTS = 5
 _DOOR = ("▒", "bold yellow")
 _OPEN = ("pursued", "resumed", "suspended")
 _INTENTIONS = 4
-"""Rows for the intentions of one agent."""
+"""Maximum number of intentions shown for one agent."""
 
 
 class Screen(io.TextIOBase):
-    """A terminal as a file for Rich.  Drawing never waits for it: a terminal that nobody reads must not stop agents.
+    """A terminal as a file for Rich.  Drawing never waits for it: a blocked terminal must not stop agents.
 
     Args:
         stream: standard error, or another stream.
@@ -49,16 +49,16 @@ class Screen(io.TextIOBase):
 
     @property
     def lagging(self) -> bool:
-        """Whether the terminal has not taken the last picture yet."""
+        """Whether the terminal has not accepted the last picture yet."""
         return self._output.waiting
 
     @property
     def encoding(self) -> str:  # type: ignore[override]
-        """The encoding of the stream."""
+        """Encoding of the stream."""
         return self._stream.encoding
 
     def write(self, text: str) -> int:
-        """Write *text*, or queue what the terminal does not take now."""
+        """Write *text*, or queue the part that the terminal does not accept now."""
         self._output.write(text)
         return len(text)
 
@@ -67,17 +67,17 @@ class Screen(io.TextIOBase):
         return self._stream.isatty()
 
     def end(self) -> None:
-        """Write what waits, as long as the terminal takes it."""
+        """Write the queue, as long as the terminal accepts it."""
         self._output.close()
 
 
 class TerminalView:
-    """Shows a run; told of it like a recorder, see `jacaros.inspector.watch.Watcher`.
+    """Shows a run; receives records like a recorder, see `jacaros.inspector.watch.Watcher`.
 
     Args:
-        console: where to draw; *stream* by default, without waiting for a reader.
-        wall: seconds on the wall.
-        stream: the terminal; standard error by default.
+        console: where to draw; by default *stream*, without waiting for a reader.
+        wall: returns seconds of real time.
+        stream: terminal; standard error by default.
     """
 
     def __init__(
@@ -99,7 +99,7 @@ class TerminalView:
         self._t = 0.0
         self._robots: Sequence[RobotView] = ()
         self._goals: dict[tuple[str, object], tuple[str, object]] = {}
-        """Open goals by agent and id: what is shown, and the intention."""
+        """Open goals by agent and id: the text shown, and the intention."""
         self._prints: deque[tuple[str, str]] = deque(maxlen=_PRINTS)
         self._drawn_at = wall()
         self._drawn_t = 0.0
@@ -108,18 +108,18 @@ class TerminalView:
 
     @property
     def takes_prints(self) -> bool:
-        """True when agents' prints must go through `text` alone, since stdout is the terminal drawn on."""
+        """Whether the output of agents must go through `text`, because stdout is the terminal drawn on."""
         return self._console.is_terminal and sys.stdout.isatty()
 
     def world(self, drawing: Mapping[str, Any]) -> None:
-        """The world; when it is another one than before, the path so far is lost."""
+        """Show the world; when it changes to another one, the path so far is lost."""
         self._drawing = drawing
         self._open = {door["name"]: door["open"] for door in drawing.get("doors", ())}
         self._people = PeopleSeen(drawing)
         self._size = (0, 0)
 
     def frame(self, t: float, robots: Sequence[RobotView]) -> None:
-        """The robots at a moment; most calls draw nothing."""
+        """Show the robots at a time; most calls draw nothing."""
         self._t, self._robots = t, robots
         if self._trail is not None:
             for robot in robots:
@@ -134,14 +134,14 @@ class TerminalView:
             self._cost = self._wall() - self._drawn_at
 
     def text(self, t: float, agent: str, text: str) -> None:
-        """What an agent printed."""
+        """Show a line of an agent's output."""
         self._prints.append((agent, text))
         if self.takes_prints:
             # Above the picture, where it scrolls like any output.
             self._console.print(Text(f"[{agent}] {text}"), soft_wrap=True)
 
     def event(self, t: float, kind: str, data: Mapping[str, Any]) -> None:
-        """Something that happened; goals, doors and people are shown."""
+        """Process an event; goals, doors and people are shown."""
         self._people.event(t, kind, data)
         if kind in ("door_opened", "door_closed"):
             self._open[data["door"]] = kind == "door_opened"
@@ -157,7 +157,7 @@ class TerminalView:
         self._goals[key] = (goal + (" (suspended)" if state == "suspended" else ""), data.get("intention"))
 
     def close(self) -> None:
-        """Draw the end and leave the terminal; closing twice does no harm."""
+        """Draw the final state and release the terminal; closing twice is harmless."""
         if self._live is not None:
             self._draw()
             self._live.stop()
@@ -182,7 +182,7 @@ class TerminalView:
         self._live.update(self.picture(), refresh=True)
 
     def line(self) -> Text:
-        """The run in one line."""
+        """Return the run in one line."""
         robots = "  ".join(
             f"{robot.name} ({robot.x:.2f}, {robot.y:.2f})"
             + (f" {robot.battery:.0f} %" if robot.battery != UNKNOWN else "")
@@ -193,10 +193,10 @@ class TerminalView:
         )
 
     def picture(self) -> Group:
-        """The whole view."""
+        """Return the whole view."""
         head = Text(f"{self._drawing.get('name', '')}  ", style="bold")
         head.append(f"{_minutes(self._t)}  ×{self._factor:.0f}", style="not bold dim")
-        # Where nothing is known of a world, goals and prints are worth a look all the same.
+        # Without a known world, goals and output are still useful.
         rows = [head, self.map()] if self._drawing else [head]
         rows += [self._gauge(robot, i) for i, robot in enumerate(self._robots)]
         rows += [Text(row, style="dim", no_wrap=True, overflow="ellipsis") for row in self._pursued()]
@@ -205,12 +205,12 @@ class TerminalView:
         return Group(*rows)
 
     def _pursued(self) -> list[str]:
-        """A row for each intention of each agent, what it is at first: a row is cut off where the terminal ends."""
+        """Return a row for each intention of each agent, its state first, because rows are cut at the terminal's edge."""
         agents: dict[str, dict[object, list[str]]] = {}
         for (agent, _), (goal, intention) in self._goals.items():
             stacks = agents.setdefault(agent, {})
             stack = stacks.pop(intention, [])
-            stacks[intention] = [goal, *stack]  # the one that was at work last is the last one
+            stacks[intention] = [goal, *stack]  # the intention that ran last is the last one
         rows = []
         for agent, stacks in sorted(agents.items()):
             who = "pursuing" if len(agents) == 1 else f"{agent} pursues"
@@ -221,7 +221,7 @@ class TerminalView:
         return rows
 
     def map(self) -> Text:
-        """The map alone, with docks, closed doors and robots."""
+        """Return the map alone, with docks, closed doors and robots."""
         self._fit()
         assert self._walls is not None
         assert self._trail is not None
@@ -240,7 +240,7 @@ class TerminalView:
         )
 
     def _fit(self) -> None:
-        """Make the maps anew when the terminal has another size; the path so far is lost then."""
+        """Recreate the maps when the terminal size changes; the path so far is lost."""
         size = (self._console.width, self._console.height)
         if self._size == size:
             return
@@ -251,7 +251,7 @@ class TerminalView:
         self._trail = BrailleMap(self._drawing["bounds"], max(20, size[0] - 2), rows)
 
     def _marks(self, shown: BrailleMap) -> dict[tuple[int, int], tuple[str, str]]:
-        """Characters that stand in place of dots: doors that are closed, docks, people, and robots over them."""
+        """Return the characters shown instead of dots: closed doors, docks, people, and robots over them."""
         marks = {}
         for door in self._drawing.get("doors", ()):
             if not self._open[door["name"]]:

@@ -1,4 +1,4 @@
-"""Looks at a running world many times a second of the run's clock, for a recorder and views."""
+"""Samples a running world many times per second of the run's clock, for a recorder and views."""
 
 from collections.abc import Callable, Mapping
 from typing import Any, Protocol, runtime_checkable
@@ -8,49 +8,49 @@ from jacaros.inspector.scene import RobotView, Scene
 from jacaros.mas.history.history import History
 
 PERIOD, LIVE_PERIOD = 0.3, 0.05
-"""Seconds between two frames of a recording, and of a run in real time that is seen on a live page.
+"""Seconds between two frames of a recording, and of a run in real time shown on a live page.
 
-Readers interpolate: a TurtleBot at full speed in its tightest curve is 11 mm off then."""
+Readers interpolate: a TurtleBot at full speed in its tightest curve is then off by 11 mm."""
 REST = 1.0
-"""Seconds between two frames of robots that rest, in a world that tells when they move."""
+"""Seconds between two frames of robots at rest, in a world that reports motion."""
 
 
 class Watcher(Protocol):
-    """What is told of a run: a `jacaros.inspector.recorder.Recorder` or a view."""
+    """Receives the records of a run: a `jacaros.inspector.recorder.Recorder` or a view."""
 
     def world(self, drawing: Mapping[str, Any]) -> None:
-        """The world, before everything else; once more when more of it is known."""
+        """Receive the world, before everything else, and again when more of it is known."""
 
     def frame(self, t: float, robots: list[RobotView]) -> None:
-        """The robots at a moment, *t* seconds after the run began."""
+        """Receive the robots at a time, *t* seconds after the start of the run."""
 
     def text(self, t: float, agent: str, text: str) -> None:
-        """What an agent printed."""
+        """Receive a line of an agent's output."""
 
     def event(self, t: float, kind: str, data: Mapping[str, Any]) -> None:
-        """Something that happened."""
+        """Receive an event."""
 
 
 @runtime_checkable
 class MessageWatcher(Protocol):
-    """A watcher that takes messages of ROS, too, while `takes_messages` is true."""
+    """A watcher that also receives ROS messages while `takes_messages` is true."""
 
     takes_messages: bool
 
     def message(self, t: float, topic: str, message: Any) -> None:
-        """A message that had an effect."""
+        """Receive a message that had an effect."""
 
 
 class Watch:
-    """Feeds watchers with frames of a world, with prints of agents, and with the history of the run.
+    """Feeds watchers with frames of a world, output of agents, and the history of the run.
 
-    It reads only: a run is the same with and without it.
+    It only reads: a run is the same with and without it.
 
     Args:
-        clock: the run's clock; ``t`` counts from the beginning of the history, without one from now.
-        watchers: who is told.
-        scene: the world that is looked at, None when there is none; it is closed at the end.
-        history: whose records are passed on while the watch is on, None for none.
+        clock: clock of the run; ``t`` counts from the start of the history, or from now without one.
+        watchers: receive the records.
+        scene: the world to look at, None without a world; it is closed at the end.
+        history: history whose records are forwarded; None for none.
         period: seconds between two frames.
     """
 
@@ -72,7 +72,7 @@ class Watch:
         self._stop_listening: list[Callable[[], None]] = []
 
     def start(self) -> None:
-        """Begin to look."""
+        """Start sampling."""
         self._drawing = self._scene.drawing() if self._scene is not None else None
         self._show_world(self._drawing or {})
         self._look()
@@ -90,18 +90,18 @@ class Watch:
             watcher.world(drawing)
 
     def _look(self) -> None:
-        # On the virtual clock a timer costs as much as all else that a frame needs.
+        # On the virtual clock a timer costs as much as the rest of a frame.
         follows = self.clock.virtual and self._scene is not None and self._scene.follow(self._look_if_due)
         self._timer = self.clock.call_later(REST if follows else self._period, self._look)
         self._look_if_due()
 
     def _look_if_due(self) -> None:
-        """Look if the last look is a period ago: the world calls ten times a second while robots move."""
+        """Sample if the last sample is a period ago: the world calls this ten times per second while robots move."""
         if self.clock.elapsed - self._looked > 0.9 * self._period:
             self.look()
 
     def look(self) -> None:
-        """Show the robots as they are now, also between two frames."""
+        """Sample the robots now, between two frames."""
         self._looked = self.clock.elapsed
         robots: list[RobotView] = []
         if self._scene is not None:
@@ -115,21 +115,21 @@ class Watch:
             watcher.frame(t, robots)
 
     def t(self) -> float:
-        """Seconds since the run began."""
+        """Seconds since the start of the run."""
         return self.clock.now() - self.beginning
 
     def text(self, agent: str, text: str) -> None:
-        """Pass on what an agent printed now."""
+        """Forward a line of an agent's output."""
         for watcher in self.watchers:
             watcher.text(self.t(), agent, text)
 
     def event(self, t: float, kind: str, data: Mapping[str, Any]) -> None:
-        """Pass on something that happened, such as ``goal``."""
+        """Forward an event, such as ``goal``."""
         for watcher in self.watchers:
             watcher.event(t, kind, data)
 
     def stop(self) -> None:
-        """Look once more and then no more; watchers are closed by who made them."""
+        """Sample a last time, and stop; the owner of the watchers closes them."""
         if self._timer is not None:
             self._timer.cancel()
             self._timer = None

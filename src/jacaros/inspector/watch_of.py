@@ -1,4 +1,4 @@
-"""The watch of a run: over the embedded world, or over what a real graph tells."""
+"""The watch of a run, on the embedded world or on a real graph."""
 
 from jacaros.inspector.scene import EmbeddedScene, Scene
 from jacaros.inspector.watch import LIVE_PERIOD, PERIOD, Watch, Watcher
@@ -6,11 +6,11 @@ from jacaros.mas.system import System
 
 
 def watch_of(mas: System, watchers: list[Watcher], live: bool = False) -> Watch:
-    """Make the watch of a system that has been started; its embedded world may come into being later.
+    """Create the watch of a started system; its embedded world may be created later.
 
     Args:
         mas: the system.
-        watchers: who is told.
+        watchers: receive the records.
         live: whether a live page is among the watchers.
     """
     period = LIVE_PERIOD if live and not mas.clock.virtual else PERIOD

@@ -1,6 +1,6 @@
-"""The size of programs: identifiers, lines and compressed bytes, counted as docs/reference/metrics.md says.
+"""The size of programs: identifiers, lines and compressed bytes, by the rules in docs/reference/metrics.md.
 
-`measure` counts whole programs, `measure_table` and `measure_chart` show the counts.
+`measure` counts whole programs; `measure_table` and `measure_chart` show the counts.
 """
 
 from jacaros.metrics.charts import Series, bar_chart, measure_chart

@@ -1,4 +1,4 @@
-"""The agent programs of a folder, with the files that they include and the names that are in each."""
+"""The agent programs of a folder, with included files and the names in each file."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
@@ -22,7 +22,7 @@ _LIBRARY: Final = "$jacaros/"
 
 @dataclass
 class AgentFile:
-    """A file of programs: identifiers and names in it, from every program that it is a part of."""
+    """A file of programs, with the identifiers and names in it, over all programs that include it."""
 
     path: Path
     identifiers: set[str] = field(default_factory=set)
@@ -31,13 +31,13 @@ class AgentFile:
 
 @dataclass(frozen=True)
 class AgentProgram:
-    """A program with all that it includes.
+    """A program with its included files.
 
     Attributes:
-        path: of its file.
-        tree: all of its clauses.
-        included: the other files, as messages call them; those of the package begin with ``$jacaros/``.
-        problems: what is wrong with it.
+        path: path of its file.
+        tree: all its clauses.
+        included: included files, named as in messages; those of the package begin with ``$jacaros/``.
+        problems: errors in the program.
     """
 
     path: Path
@@ -47,22 +47,22 @@ class AgentProgram:
 
     @property
     def is_test(self) -> bool:
-        """Whether it is a test of other programs: it includes the library for tests."""
+        """Whether the program tests other programs: it includes the library for tests."""
         return any(name.removeprefix(_LIBRARY) in TEST_LIBRARY for name in self.included)
 
     @property
     def artifact_types(self) -> list[str]:
-        """The types of artifacts that it makes, as far as they are written in it."""
+        """Types of the artifacts that it creates, as far as they are literals."""
         return artifact_types(self.tree)
 
 
 def read_agent(path: Path, folders: Sequence[Path], sources: Sources) -> AgentProgram | None:
-    """Read a program; None after reporting that its file cannot be read.
+    """Read a program; return None after reporting that its file cannot be read.
 
     Args:
-        path: of its file.
-        folders: where included files are looked for, apart from beside it.
-        sources: takes the report.
+        path: path of its file.
+        folders: folders to search for included files, in addition to its own.
+        sources: collects the report.
     """
     text = sources.text(path)
     if text is None:
@@ -78,7 +78,7 @@ def read_agent(path: Path, folders: Sequence[Path], sources: Sources) -> AgentPr
         return found, content
 
     tree, problems = read_program(SourceFile(path.as_posix(), text), include, code.functions, code.actions)
-    # Our files that stand for those of other systems are read without being asked for.
+    # Our replacements for files of other systems are read implicitly.
     included.update(
         span.file.name
         for clause, _ in clauses_of(tree)
@@ -91,8 +91,8 @@ class AgentFiles:
     """Collects the files of programs.
 
     Attributes:
-        own: files of the user, by their resolved paths.
-        library: files that come with the package.
+        own: files of the user, by resolved path.
+        library: files of the package.
     """
 
     def __init__(self) -> None:
@@ -100,11 +100,11 @@ class AgentFiles:
         self.library: dict[Path, AgentFile] = {}
 
     def add(self, program: AgentProgram) -> None:
-        """Add a program and all that it includes, with the names that are in each file."""
+        """Add a program and its included files, with the names in each."""
         files = {str(program.path): self._file(str(program.path))}
         files.update((name, self._file(name)) for name in program.included)
         for clause, is_goal in clauses_of(program.tree):
-            # The clauses of patterns may come from texts within a directive.
+            # The clauses of patterns may come from strings in a directive.
             where = "" if clause.span is None else clause.span.file.name
             file = files.get(where, files[str(program.path)])
             file.identifiers |= identifiers_of(clause, is_goal)
@@ -117,7 +117,7 @@ class AgentFiles:
 
 
 def counted_agents(files: Iterable[AgentFile], sources: Sources) -> list[CountedFile]:
-    """The files with what is counted in them."""
+    """Return the files with their counts."""
     return [
         sources.agentspeak(each.path, frozenset(each.identifiers), frozenset(each.names)) for each in files
     ]

@@ -21,7 +21,7 @@ def identifiers_of(clause: nodes.Node, is_goal: bool = False) -> frozenset[str]:
 
 
 def names_of(clause: nodes.Node, is_goal: bool = False) -> frozenset[str]:
-    """The `identifiers_of` a clause, and its names of beliefs, rules, labels and variables."""
+    """Return the `identifiers_of` a clause, and its names of beliefs, rules, labels and variables."""
     return frozenset((*_goals_events_operations(clause, is_goal), *_other_names(clause)))
 
 
@@ -34,7 +34,7 @@ def _goals_events_operations(clause: nodes.Node, is_goal: bool) -> Iterator[str]
         elif isinstance(node, nodes.Achieve):
             yield from _functor(node.goal)
         elif isinstance(node, nodes.Test):
-            # The test of a condition that is made of several posts no goal.
+            # The test of a compound condition posts no goal.
             yield from _functor(node.formula)
         elif isinstance(node, nodes.ExternalAction):
             yield from _functor(node.action)
@@ -65,13 +65,13 @@ def _other_names(clause: nodes.Node) -> Iterator[str]:
 
 
 def _functor(node: object) -> Iterator[str]:
-    """The name of a literal; nothing for a variable or a relation, or for ``true``."""
+    """Return the name of a literal; none for a variable, a relation, or ``true``."""
     if isinstance(node, nodes.Literal) and node.functor not in ("true", "false"):
         yield node.functor.strip("'")
 
 
 def clauses_of(program: nodes.Program) -> Iterator[tuple[nodes.Node, bool]]:
-    """All clauses of a program, each with whether it is an initial goal."""
+    """Yield all clauses of a program, each with whether it is an initial goal."""
     for clause in (*program.beliefs, *program.plans, *program.derived, *program.histories):
         yield clause, False
     for goal in program.goals:
@@ -79,9 +79,9 @@ def clauses_of(program: nodes.Program) -> Iterator[tuple[nodes.Node, bool]]:
 
 
 def comments_of(file: SourceFile) -> list[Stretch]:
-    """The comments of a program, as pairs of offsets in its text."""
+    """Return the comments of a program, as pairs of offsets in its text."""
     comments: list[Comment] = []
-    tokenize(file, lambda _: None, comments)  # a program with wrong characters is not counted
+    tokenize(file, lambda _: None, comments)  # a program with invalid characters is not counted
     starts = line_starts(file.text)
     return [
         (start, start + len(each.text))

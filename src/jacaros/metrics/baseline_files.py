@@ -1,4 +1,4 @@
-"""The files of a baseline: a program without agents that does the same as one with agents."""
+"""The files of a baseline: a program without agents with the same behaviour."""
 
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -16,12 +16,12 @@ from jacaros.text_files import is_file
 def read_baseline(
     paths: Iterable[Path], sources: Sources, library: Library
 ) -> dict[Group, tuple[CountedFile, ...]]:
-    """The Python files of a baseline by group; what is wrong with them has been reported.
+    """Return the Python files of a baseline by group, after reporting their errors.
 
     Args:
-        paths: folders, of which all Python files count but tests and launch files; and files, which count with those beside
-            them that they import.
-        sources: reads the files, and takes the reports.
+        paths: folders, whose Python files count except for tests and launch files; and files, which count together with the
+            neighbouring files that they import.
+        sources: reads the files and collects the reports.
         library: finds library code.
     """
     found: dict[Path, CountedFile] = {}
@@ -55,7 +55,7 @@ def _files(path: Path, sources: Sources) -> list[Path]:
 
 
 def _beside(path: Path, file: PythonFile) -> Iterator[Path]:
-    """The files that a file imports from its own folder, or by relative names."""
+    """Return the files that a file imports from its own folder, or by relative names."""
     for name, level in python_source.imports_of(file.tree):
         folder = path.resolve().parents[max(0, level - 1)]
         parts = name.split(".")

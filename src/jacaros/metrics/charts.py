@@ -1,6 +1,6 @@
-"""Bar charts as SVG, as figures 8.7 to 8.9 of the thesis.
+"""Bar charts as SVG, in the style of figures 8.7 to 8.9 of the thesis.
 
-They look right on light and on dark pages, need nothing else, and are the same for the same numbers.
+They suit light and dark pages, need no other files, and are identical for identical numbers.
 """
 
 import html
@@ -22,27 +22,27 @@ _STYLE: Final = """
 """
 _COLOURS: Final = 6
 _LEFT, _RIGHT, _TOP, _BOTTOM = 56, 12, 64, 28
-"""Margins in pixels; the title and the legend are in the upper one."""
+"""Margins in pixels; the upper one holds the title and the legend."""
 _HEIGHT: Final = 240
-"""Pixels of the plot."""
+"""Size of the plot in pixels."""
 _CATEGORY: Final = 128
-"""Pixels of a category, enough for the name of a program."""
+"""Width of a category in pixels, enough for the name of a program."""
 _NARROWEST: Final = 480
 _GAP: Final = 0.3
-"""The part of a category that stays free."""
+"""Empty fraction of a category."""
 _TICKS: Final = 5
 
 
 @dataclass(frozen=True)
 class Series:
-    """One colour of a chart: a name for the legend, and a value for each category."""
+    """A series of a chart: its name in the legend, and a value for each category."""
 
     name: str
     values: tuple[int, ...]
 
 
 def measure_chart(programs: Sequence[ProgramMetrics], measure: str) -> str:
-    """The SVG text of the chart of one measure: for each program the artifacts on top of the agents, beside the baseline.
+    """Return the chart of one measure as SVG: for each program, artifacts on top of agents, next to the baseline.
 
     Args:
         programs: the categories.
@@ -59,13 +59,13 @@ def measure_chart(programs: Sequence[ProgramMetrics], measure: str) -> str:
 
 
 def bar_chart(title: str, categories: Sequence[str], stacks: Sequence[Sequence[Series]]) -> str:
-    """The SVG text of a bar chart.
+    """Return a bar chart as SVG.
 
     Args:
-        title: above it.
+        title: title above the chart.
         categories: names below the bars.
-        stacks: bars beside each other in each category; the series of a stack stand on top of each other, the first one
-            below. Series of zeros only are left out of the legend.
+        stacks: bars next to each other in each category; the series of a stack are stacked, the first one at the bottom.
+            Series of zeros are left out of the legend.
     """
     width = max(_NARROWEST, _LEFT + _RIGHT + _CATEGORY * len(categories))
     height = _TOP + _HEIGHT + _BOTTOM
@@ -87,7 +87,7 @@ def bar_chart(title: str, categories: Sequence[str], stacks: Sequence[Sequence[S
 
 @dataclass(frozen=True)
 class _Plot:
-    """Where things are in the plot: *step* is the value of one tick of the axis."""
+    """The layout of the plot; *step* is the value of one tick of the axis."""
 
     width: float
     categories: int
@@ -101,7 +101,7 @@ class _Plot:
         return round(_LEFT + self.width * (category + 0.5) / self.categories, 1)
 
     def bar(self, category: int, stack: int) -> tuple[float, float]:
-        """The left side and the width of a bar."""
+        """Return the left side and the width of a bar."""
         size = self.width / self.categories * (1 - _GAP)
         left = self.middle(category) - size / 2 + size * stack / self.stacks
         return round(left + 1, 1), round(size / self.stacks - 2, 1)
@@ -112,7 +112,7 @@ def _height(stack: Sequence[Series], category: int) -> int:
 
 
 def _step(highest: int) -> int:
-    """A round number, of which a few make the highest value."""
+    """Return a round step, of which a few reach the highest value."""
     least = max(1, math.ceil(highest / _TICKS))
     power = int(10 ** math.floor(math.log10(least)))
     return next(power * factor for factor in (1, 2, 3, 4, 5, 6, 8, 10) if power * factor >= least)
@@ -129,7 +129,7 @@ def _legend(stacks: Sequence[Sequence[Series]]) -> Iterator[str]:
 
 
 def _colour(stack: int, level: int) -> str:
-    """The class of a colour; each stack has two similar ones."""
+    """Return the class of a colour; each stack has two similar ones."""
     return f"c{(2 * stack + level) % _COLOURS}"
 
 

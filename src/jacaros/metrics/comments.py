@@ -1,9 +1,9 @@
-"""Where comments are in a text whose language tells where its tokens are."""
+"""Find the comments of a text, given its tokens."""
 
 from collections.abc import Iterable, Iterator
 
 Stretch = tuple[int, int]
-"""A part of a text: the offset of its first character, and the offset behind its last one."""
+"""A part of a text: the offset of its first character, and the offset after its last one."""
 
 
 def line_starts(text: str) -> list[int]:
@@ -15,7 +15,7 @@ def line_starts(text: str) -> list[int]:
 
 
 def between(text: str, tokens: Iterable[Stretch]) -> Iterator[Stretch]:
-    """Yield what is between tokens and not blank: there, only comments can be."""
+    """Yield the non-blank text between tokens, which can only be comments."""
     at = 0
     for start, stop in (*tokens, (len(text), len(text))):
         gap = text[at : max(at, start)]

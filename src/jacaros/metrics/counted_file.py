@@ -1,4 +1,4 @@
-"""One source file with what is counted in it, and the counts of a group of files."""
+"""A source file with its counts, and the counts of a group of files."""
 
 import gzip
 from collections.abc import Iterable, Mapping, Sequence
@@ -11,7 +11,7 @@ from typing import Final
 from jacaros.metrics.comments import Stretch
 
 _LEVEL: Final = 9
-"""Compression level of gzip, its highest."""
+"""Compression level of gzip (the highest)."""
 
 MEASURES: Final[Mapping[str, str]] = MappingProxyType(
     {
@@ -23,19 +23,19 @@ MEASURES: Final[Mapping[str, str]] = MappingProxyType(
         "gzip_code_bytes": "Bytes of code compressed by gzip",
     }
 )
-"""The fields of `Counts` with their titles, in the order of tables."""
+"""Fields of `Counts` with their titles, in the order of tables."""
 
 
 @dataclass(frozen=True)
 class Counts:
-    """The size of some source files.  docs/reference/metrics.md has the rules.
+    """The size of source files, by the rules in docs/reference/metrics.md.
 
     Attributes:
-        identifiers: distinct names; of agents those of goals, events and operations.
-        names: the same, but of agents those of beliefs, variables and labels, too.
-        lines: physical lines, blank lines and comments included.
+        identifiers: number of distinct names; for agents, names of goals, events and operations.
+        names: the same, but for agents also names of beliefs, variables and labels.
+        lines: physical lines, including blank lines and comments.
         code_lines: lines without blank lines, comments and docstrings.
-        gzip_bytes: size of the files, one after the other, compressed together.
+        gzip_bytes: size of all files, concatenated and compressed.
         gzip_code_bytes: size of their code lines, compressed together.
         files: number of files.
     """
@@ -49,7 +49,7 @@ class Counts:
     files: int = 0
 
     def __add__(self, other: "Counts") -> "Counts":
-        """The sum, as a total of groups; a name in both groups counts twice, as in the thesis."""
+        """Return the sum, as a total of groups; a name in both groups counts twice, as in the thesis."""
         return Counts(*(getattr(self, name) + getattr(other, name) for name in Counts.__dataclass_fields__))
 
 
@@ -58,12 +58,12 @@ class CountedFile:
     """A source file.
 
     Attributes:
-        path: of the file.
-        data: its content, as it is on the disk.
-        text: its content as text, with line feeds as ends of lines.
-        comments: its comments and docstrings, in their order.
-        identifiers: the names that `Counts.identifiers` counts.
-        names: the names that `Counts.names` counts.
+        path: path of the file.
+        data: content as bytes.
+        text: content as text, with line feeds as line ends.
+        comments: comments and docstrings, in order.
+        identifiers: names counted by `Counts.identifiers`.
+        names: names counted by `Counts.names`.
     """
 
     path: Path
@@ -75,16 +75,16 @@ class CountedFile:
 
     @property
     def lines(self) -> int:
-        """The number of physical lines; the last one need not end with a line feed."""
+        """Number of physical lines; the last one need not end with a line feed."""
         return self.text.count("\n") + (self.text[-1:] not in ("", "\n"))
 
     @cached_property
     def code(self) -> str:
-        """The code lines: the text without comments, docstrings, blank lines and blanks at the ends of lines."""
+        """The code lines: the text without comments, docstrings, blank lines and trailing blanks."""
         pieces: list[str] = []
         at = 0
         for start, stop in self.comments:
-            # What stands before and behind a long comment stays on lines of its own.
+            # Code before and after a long comment stays on separate lines.
             pieces += (self.text[at:start], "\n" * self.text.count("\n", start, stop))
             at = stop
         pieces.append(self.text[at:])
@@ -93,18 +93,18 @@ class CountedFile:
 
     @property
     def counts(self) -> Counts:
-        """The counts of this file alone."""
+        """Counts of this file alone."""
         return counts_of([self])
 
 
 def counts_of(files: Iterable[CountedFile]) -> Counts:
     """Count a group of files.
 
-    A name in several of them counts once, and they are compressed together: it does not matter into how many files a
-    program is split.
+    A name in several files counts once, and the files are compressed together, so that counts do not depend on how a
+    program is split into files.
 
     Args:
-        files: in the order in which they are compressed.
+        files: files in the order of compression.
     """
     group = list(files)
     if not group:

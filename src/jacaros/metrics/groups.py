@@ -8,7 +8,7 @@ from jacaros.metrics.counted_file import CountedFile, Counts, counts_of
 
 
 class Group(StrEnum):
-    """What source files are for."""
+    """The role of source files."""
 
     AGENTS = "agents"
     """Agent programs (.asl), and Python files with agents."""
@@ -23,13 +23,13 @@ class Group(StrEnum):
     """World files and fault files."""
 
     LIBRARY = "library"
-    """What the program uses of the artifacts and plans that come with jacaros, and of other libraries."""
+    """Parts of the artifacts and plans of jacaros, and of other libraries, that the program uses."""
 
     BASELINE = "baseline"
-    """Python files of a program without agents that does the same."""
+    """Python files of a program without agents and with the same behaviour."""
 
     BASELINE_LIBRARY = "baseline_library"
-    """What the baseline uses of libraries."""
+    """Library code that the baseline uses."""
 
 
 @dataclass(frozen=True)
@@ -37,18 +37,18 @@ class ProgramMetrics:
     """A program with its files.
 
     Attributes:
-        name: of its folder.
-        files: by group, each group sorted by paths; groups without files may be missing.
+        name: name of its folder.
+        files: files by group, sorted by path; groups without files may be missing.
     """
 
     name: str
     files: Mapping[Group, tuple[CountedFile, ...]]
 
     def counts(self, group: Group) -> Counts:
-        """The counts of one group."""
+        """Return the counts of one group."""
         return counts_of(self.files.get(group, ()))
 
     @property
     def total(self) -> Counts:
-        """What the author of the program wrote in code: agents and artifacts, as in the thesis; no configuration."""
+        """Counts of the code that the program author wrote: agents and artifacts, as in the thesis; no configuration."""
         return self.counts(Group.AGENTS) + self.counts(Group.ARTIFACTS)

@@ -1,4 +1,4 @@
-"""The modules of libraries that a program imports, and those that they import in turn."""
+"""The library modules that a program imports, directly or indirectly."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from importlib.util import find_spec
@@ -10,10 +10,10 @@ from jacaros.metrics import python_source
 from jacaros.metrics.sources import PythonFile, Sources
 
 OWN: Final = ("jacaros.artifacts", "jacaros.behaviour_trees")
-"""Our packages that a program could bring along itself.  Language, middleware and simulator are the platform."""
+"""Our packages that a program could contain itself. Language, middleware and simulator are the platform."""
 
 DEFAULT: Final = ("py_trees",)
-"""Packages of others that count as library code unless the caller names some."""
+"""Third-party packages that count as library code by default."""
 
 
 class Library:
@@ -21,7 +21,7 @@ class Library:
 
     Args:
         sources: reads the files.
-        packages: names of installed top-level packages that count, beside `OWN`.
+        packages: names of installed top-level packages that count, in addition to `OWN`.
 
     Attributes:
         missing: packages that a program imports and that are not installed.
@@ -35,10 +35,10 @@ class Library:
         self.missing: set[str] = set()
 
     def files(self, modules: Iterable[str]) -> Iterator[PythonFile]:
-        """Yield the library files behind the names of modules, and behind all that they import within the libraries.
+        """Yield the library files of modules, and of everything that they import within the libraries.
 
         Args:
-            modules: as a program imports them; the last part may be a name in a module.
+            modules: names as in the program; the last part may be a name in a module.
         """
         seen: set[Path] = set()
         wanted = sorted(modules, reverse=True)
@@ -54,7 +54,7 @@ class Library:
                     wanted += (each.absolute(package) for each in python_source.imports_of(file.tree))
 
     def _found(self, name: str) -> Iterator[tuple[str, Path]]:
-        """The modules that are imported with *name*, as Python does: the packages that it is in, and itself."""
+        """Return the modules imported with *name*, as Python does: its packages, and itself."""
         for package, folder in self._folders.items():
             if name != package and not name.startswith(f"{package}."):
                 continue
@@ -73,7 +73,7 @@ class Library:
 
 
 def _folder(package: str) -> Path | None:
-    """The folder of an installed package, or the path of a single module without its suffix; nothing is imported."""
+    """Return the folder of an installed package, or the path of a single module without its suffix; imports nothing."""
     try:
         spec = find_spec(package)
     except (ImportError, ValueError):

@@ -15,7 +15,7 @@ from jacaros.metrics.sources import Sources
 
 
 class MetricsError(JacarosError):
-    """Source files that cannot be counted.  ``diagnostics`` holds all errors, ``str()`` shows them."""
+    """Raised for source files that cannot be counted. ``diagnostics`` holds all errors, ``str()`` shows them."""
 
     def __init__(self, diagnostics: Sequence[Diagnostic]) -> None:
         self.diagnostics = tuple(diagnostics)
@@ -27,16 +27,16 @@ def measure(
     baselines: Sequence[Iterable[Path]] = (),
     libraries: Sequence[str] = DEFAULT,
 ) -> list[ProgramMetrics]:
-    """Count the programs in folders, each beside its baseline.
+    """Count the programs in folders, each next to its baseline.
 
     Args:
-        folders: one for each program.
-        baselines: for each program, the files and folders of its baseline; empty for no baselines at all.
-        libraries: names of installed Python packages that count as library code when a program imports them.
+        folders: folders of the programs.
+        baselines: files and folders of the baseline of each program; empty for no baselines at all.
+        libraries: names of installed Python packages that count as library code if a program imports them.
 
     Raises:
-        ValueError: there are baselines, but not one for each program.
-        MetricsError: with the errors in all programs and baselines, and folders that do not exist or have no programs.
+        ValueError: the number of baselines differs from that of programs, and is not 0.
+        MetricsError: there are errors in programs or baselines; folders do not exist or have no programs.
     """
     if baselines and len(baselines) != len(folders):
         raise ValueError(f"expected {len(folders)} baselines, found {len(baselines)}")
@@ -80,7 +80,7 @@ def _no_folder(path: Path) -> Diagnostic:
 
 
 def _name(folder: Path, folders: Sequence[Path]) -> str:
-    """The name of a folder, or all of its path if another folder has the same name."""
+    """Return the name of a folder, or its path if another folder has the same name."""
     name = folder.resolve().name
     return str(folder) if [each.resolve().name for each in folders].count(name) > 1 else name
 

@@ -1,4 +1,4 @@
-"""The files of the program in a folder, by what they are for."""
+"""The files of the program in a folder, by role."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
@@ -31,12 +31,12 @@ _TEST_MODULES: Final = ("jacaros.testing", "pytest", "unittest")
 
 
 def is_test(file: PythonFile) -> bool:
-    """Whether a Python file tests or judges programs: it imports a library for that."""
+    """Return whether a Python file tests or evaluates programs: it imports a library for that."""
     return _imports(file, _TEST_MODULES)
 
 
 def is_launch_file(file: PythonFile) -> bool:
-    """Whether a Python file is a launch file of ROS 2."""
+    """Return whether a Python file is a launch file of ROS 2."""
     return _imports(file, ("launch",))
 
 
@@ -49,12 +49,12 @@ def _imports(file: PythonFile, packages: Iterable[str]) -> bool:
 
 
 def absolute_imports(file: PythonFile) -> Iterator[str]:
-    """The names of imports that are not relative."""
+    """Yield the names of absolute imports."""
     return (each.name for each in python_source.imports_of(file.tree) if not each.level)
 
 
 def source_files(folder: Path, suffixes: Sequence[str]) -> list[Path]:
-    """The files of these kinds below a folder, without those in folders for tests."""
+    """Yield the files of these kinds below a folder, without those in test folders."""
     return [
         path
         for path in files_below(folder, suffixes)
@@ -66,8 +66,8 @@ class ProgramFiles:
     """Collects the files of one program.
 
     Args:
-        folder: of the program.
-        sources: reads them, and takes the reports.
+        folder: folder of the program.
+        sources: reads the files and collects the reports.
         library: finds library code.
     """
 
@@ -79,7 +79,7 @@ class ProgramFiles:
         self._modules: set[str] = set()
 
     def read(self) -> dict[Group, tuple[CountedFile, ...]]:
-        """The files by group; what is wrong with them has been reported."""
+        """Return the files by group, after reporting their errors."""
         projects = list(self._projects())
         deployments = [reading.deployment for _, reading in projects]
         programs = {each.path.resolve(): each for each in self._programs(deployments)}
@@ -107,7 +107,7 @@ class ProgramFiles:
         self._files[group].update((each.path.resolve(), each) for each in files)
 
     def _finish(self) -> None:
-        """Add what is known only when all has been read."""
+        """Add what is known only after reading everything."""
         self._add(Group.AGENTS, *counted_agents(self._agents.own.values(), self._sources))
         self._add(Group.LIBRARY, *counted_agents(self._agents.library.values(), self._sources))
         self._add(Group.LIBRARY, *(each.counted for each in self._library.files(self._modules)))
@@ -125,7 +125,7 @@ class ProgramFiles:
             yield path, reading
 
     def _is_test_project(self, reading: Reading, programs: dict[Path, AgentProgram]) -> bool:
-        """Whether all agents of a project are tests."""
+        """Return whether all agents of a project are tests."""
         agents = [programs.get(each.source_path.resolve()) for each in reading.deployment.agents]
         return bool(agents) and all(each is not None and each.is_test for each in agents)
 
@@ -152,7 +152,7 @@ class ProgramFiles:
     # agents
 
     def _programs(self, deployments: Sequence[Deployment]) -> Iterator[AgentProgram]:
-        """All programs; those of projects with what is wrong with them, others if no program includes them."""
+        """Return all programs: those of projects with their errors, and others unless a program includes them."""
         read: dict[Path, AgentProgram] = {}
         for agent, folders in _declared(deployments):
             key = agent.source_path.resolve()
@@ -169,7 +169,7 @@ class ProgramFiles:
                     lone[path.resolve()] = program
         included = _included([*read.values(), *lone.values()])
         roots = (each for key, each in lone.items() if key not in included)
-        included = _included([*read.values(), *roots])  # without those that only include each other
+        included = _included([*read.values(), *roots])  # without files that only include each other
         for path, program in lone.items():
             if path not in included:
                 self._report(program)
@@ -201,7 +201,7 @@ class ProgramFiles:
             return
         if is_world(path) or is_fault_file(path):
             self._add_world(path)
-        elif is_mapping(path):  # other programs have YAML files, too
+        elif is_mapping(path):  # other programs use YAML files, too
             self._add_mapping(path, Group.ARTIFACTS)
 
     def _add_world(self, path: Path) -> None:
@@ -226,7 +226,7 @@ class ProgramFiles:
     # the library
 
     def _add_types(self, names: Sequence[str], folders: Sequence[Path]) -> None:
-        """Note the modules behind types of artifacts, and add mapping files, of the package or elsewhere."""
+        """Record the modules of artifact types, and add mapping files, of the package or elsewhere."""
         modules = ProjectModules(*folders, unseen=set())
         for name in dict.fromkeys(names):
             file = name.partition("#")[0]
@@ -235,7 +235,7 @@ class ProgramFiles:
                 self._add_mapping(path, Group.LIBRARY if shipped else Group.ARTIFACTS)
             try:
                 made = type_finder(modules)(name)
-            except Exception:  # what is wrong with a type is for `jacaros check`
+            except Exception:  # `jacaros check` reports errors in types
                 continue
             self._modules |= {each.__module__ for each in made.__mro__}
 

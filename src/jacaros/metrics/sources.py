@@ -1,4 +1,4 @@
-"""Source files, read once however many programs use them."""
+"""Source files, read once for all programs that use them."""
 
 import ast
 from pathlib import Path
@@ -14,17 +14,17 @@ from jacaros.text_files import file_bytes
 
 
 class PythonFile(NamedTuple):
-    """A Python file that has been parsed."""
+    """A parsed Python file."""
 
     counted: CountedFile
     tree: ast.Module
 
 
 class Sources:
-    """Reads source files, and keeps what is wrong with them.
+    """Reads source files, and collects their errors.
 
     Attributes:
-        problems: the errors of all files that were read, in this order, each once.
+        problems: errors of all files in the order of reading, without repetition.
     """
 
     def __init__(self) -> None:
@@ -32,11 +32,11 @@ class Sources:
         self._python: dict[Path, PythonFile | None] = {}
 
     def report(self, *problems: Diagnostic) -> None:
-        """Keep the errors among *problems*."""
+        """Add the errors among *problems*."""
         self.problems.update(dict.fromkeys(each for each in problems if each.severity == "error"))
 
     def text(self, path: Path) -> str | None:
-        """The text of a file; None after reporting that it cannot be read, or is not text."""
+        """Return the text of a file; None after reporting that it is unreadable or not text."""
         try:
             return text_of(path)
         except AslError as error:
@@ -44,7 +44,7 @@ class Sources:
             return None
 
     def python(self, path: Path) -> PythonFile | None:
-        """A Python file; None after reporting that it is not Python."""
+        """Return a Python file; None after reporting that it is not Python."""
         key = path.resolve()
         if key not in self._python:
             self._python[key] = self._parsed(path)
@@ -63,7 +63,7 @@ class Sources:
         return PythonFile(counted(path, text, python_source.comments_of(tree, text), names, names), tree)
 
     def agentspeak(self, path: Path, identifiers: frozenset[str], names: frozenset[str]) -> CountedFile:
-        """The file of a program that has been parsed."""
+        """Return the file of a parsed program."""
         text = text_of(path)
         return counted(
             path, text, agentspeak.comments_of(SourceFile(path.as_posix(), text)), identifiers, names
@@ -73,5 +73,5 @@ class Sources:
 def counted(
     path: Path, text: str, comments: list[Stretch], identifiers: frozenset[str], names: frozenset[str]
 ) -> CountedFile:
-    """A file with what is counted in it."""
+    """Return a file with its counts."""
     return CountedFile(path, file_bytes(path), text, tuple(comments), identifiers, names)

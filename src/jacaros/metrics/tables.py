@@ -1,4 +1,4 @@
-"""Tables of counts: one for each measure, as tables 8.1 to 8.3 of the thesis, of all groups, or of all files."""
+"""Tables of counts: one per measure, as tables 8.1 to 8.3 of the thesis, or of all groups, or of all files."""
 
 import csv
 import io
@@ -27,26 +27,26 @@ _COLUMNS: Final = (
 
 @dataclass(frozen=True)
 class Table:
-    """A table with a title; the cells of its first column are texts."""
+    """A table with a title; the first column is text."""
 
     title: str
     header: tuple[str, ...]
     rows: tuple[tuple[Cell, ...], ...]
 
     def with_column(self, name: str, cells: Sequence[Cell]) -> "Table":
-        """The table with one more column at the right, such as figures of others.
+        """Return the table with another column at the right.
 
         Raises:
-            ValueError: the number of cells is not that of the rows.
+            ValueError: the number of cells differs from the number of rows.
         """
         rows = tuple((*row, cell) for row, cell in zip(self.rows, cells, strict=True))
         return replace(self, header=(*self.header, name), rows=rows)
 
 
 def measure_table(programs: Sequence[ProgramMetrics], measure: str) -> Table:
-    """The table of one measure: a row for each program, a column for each group and the total of code.
+    """Return the table of one measure: a row for each program, a column for each group and for the total of code.
 
-    Columns of baselines are left out if no program has one.
+    Columns of baselines are left out if no program has a baseline.
 
     Args:
         programs: the rows.
@@ -61,7 +61,7 @@ def measure_table(programs: Sequence[ProgramMetrics], measure: str) -> Table:
 
 
 def group_table(programs: Sequence[ProgramMetrics]) -> Table:
-    """The table of all measures: a row for each group of each program that has files, and for its total."""
+    """Return the table of all measures: a row for each non-empty group of each program, and for its total."""
     columns = ("files", *MEASURES)
     rows = tuple(
         (program.name, str(column), *(getattr(counts, each) for each in columns))
@@ -73,7 +73,7 @@ def group_table(programs: Sequence[ProgramMetrics]) -> Table:
 
 
 def file_table(programs: Sequence[ProgramMetrics]) -> Table:
-    """The table of all files: a row for each file of each program."""
+    """Return the table of all files: a row for each file of each program."""
     rows = tuple(
         (program.name, str(group), str(file.path), *(getattr(file.counts, each) for each in MEASURES))
         for program in programs
@@ -92,7 +92,7 @@ def _has_baseline(programs: Sequence[ProgramMetrics]) -> bool:
 
 
 def as_text(table: Table) -> str:
-    """The table for a terminal: aligned columns below the title."""
+    """Return the table for a terminal: aligned columns below the title."""
     lines = [table.header, *(tuple(map(str, row)) for row in table.rows)]
     widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
     numeric = _numeric(table)
@@ -105,7 +105,7 @@ def _aligned(line: Sequence[str], widths: Sequence[int], numeric: Sequence[bool]
 
 
 def _numeric(table: Table) -> list[bool]:
-    """Which columns have numbers only, which stand at the right."""
+    """Return which columns contain only numbers, and are aligned to the right."""
     return [
         bool(table.rows) and all(isinstance(row[column], int) for row in table.rows)
         for column in range(len(table.header))
@@ -113,14 +113,14 @@ def _numeric(table: Table) -> list[bool]:
 
 
 def as_markdown(table: Table) -> str:
-    """The table in Markdown, without its title."""
+    """Return the table in Markdown, without its title."""
     rule = ["---:" if right else "---" for right in _numeric(table)]
     lines = [table.header, rule, *(tuple(map(str, row)) for row in table.rows)]
     return "\n".join("| " + " | ".join(cell.replace("|", "\\|") for cell in line) + " |" for line in lines)
 
 
 def as_csv(table: Table) -> str:
-    """The table as CSV with a line for the header; lines end with a line feed."""
+    """Return the table as CSV with a header line; lines end with a line feed."""
     written = io.StringIO()
     writer = csv.writer(written, lineterminator="\n")
     writer.writerow(table.header)

@@ -11,15 +11,15 @@ from jacaros.metrics.comments import Stretch, between
 
 
 def comments_of(text: str) -> list[Stretch]:
-    """The comments of a YAML text without mistakes."""
+    """Return the comments of a valid YAML text."""
     tokens = YAML(typ="safe", pure=True).scan(StringIO(text))
-    # The ends of blocks have no text: they are where the next thing begins.
+    # Block ends have no text: they are at the start of the next token.
     places = ((each.start_mark.index, each.end_mark.index) for each in tokens)
     return list(between(text, (place for place in places if place[0] < place[1])))
 
 
 def mapping_names(mapping: MappingFile) -> frozenset[str]:
-    """What a mapping file gives names to: artifacts, properties, signals, operations and their parameters."""
+    """Return the names defined in a mapping file: artifacts, properties, signals, operations and their parameters."""
     return frozenset(name for part in mapping.artifacts.values() for name in _names(part))
 
 
@@ -34,7 +34,7 @@ def _names(part: ArtifactPart) -> Iterator[str]:
 
 
 def named_things(value: Any) -> Iterator[str]:
-    """The values of the keys ``name`` in a document: rooms, docks, doors, robots and other things of a world."""
+    """Return the values of the keys ``name`` in a document: rooms, docks, doors, robots and so on."""
     if isinstance(value, dict):
         if isinstance(name := value.get("name"), str):
             yield name

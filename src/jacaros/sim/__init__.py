@@ -1,4 +1,4 @@
-"""The embedded robot world: TurtleBot-like robots on a plane, reached over ROS topics only."""
+"""The embedded robot world: TurtleBot-like robots on a plane, reached through ROS topics only."""
 
 from jacaros.sim.description import PersonDescription, WorldDescription, WorldError
 from jacaros.sim.files.world import read_world, shipped_worlds

@@ -1,4 +1,4 @@
-"""Robots that clean: the running tool of each, and the dirt that it removes."""
+"""Robots that clean: the running tool of each robot, and the dirt that it removes."""
 
 from collections.abc import Callable
 from typing import Any
@@ -9,17 +9,17 @@ from jacaros.sim.robot.robot import Robot
 
 
 class Cleaning:
-    """The dirt of a world and the tools that are at work.
+    """The dirt of a world and the running tools.
 
     Args:
         description: the world.
-        room_at: gives the room at a point, in metres.
-        tell: takes the events ``tool_started``, ``tool_stopped`` (tool) and ``cleaned`` (room, dirt, grams and percent
-            that are left) of a robot; ``cleaned`` at each whole percent, and when the tool stops.
+        room_at: returns the room at a point, in metres.
+        tell: takes the events ``tool_started``, ``tool_stopped`` (tool) and ``cleaned`` (room, dirt, remaining grams and
+            percent) of a robot; ``cleaned`` at each whole percent, and when the tool stops.
 
     Attributes:
         fields: all dirt of the world, in the order of the file.
-        at_work: the tools at work, by the robot's name.
+        at_work: running tools, by robot name.
     """
 
     def __init__(
@@ -33,10 +33,10 @@ class Cleaning:
         ]
         self.at_work: dict[str, ToolAtWork] = {}
         self._room_at, self._tell = room_at, tell
-        self._told = {field: (field.percent, field.grams) for field in self.fields}
+        self._reported = {field: (field.percent, field.grams) for field in self.fields}
 
     def use(self, robot: Robot, name: str) -> None:
-        """Start a tool of *robot*, and stop the one before; a name that none of its tools has only stops."""
+        """Start a tool of *robot*, and stop its running tool; an unknown name only stops."""
         before = self.at_work.get(robot.name)
         if before is not None:
             if before.tool.name == name:
@@ -50,7 +50,7 @@ class Cleaning:
                 self._tell(robot, "tool_started", {"tool": name})
 
     def step(self, dt: float, robots: dict[str, Robot]) -> None:
-        """Let the tools at work clean for *dt* seconds; a robot with an empty battery does not clean."""
+        """Run the tools for *dt* seconds; a robot with an empty battery does not clean."""
         for name, work in self.at_work.items():
             robot = robots[name]
             if not robot.battery.empty and work.step(dt, robot.x, robot.y, self._room_at(robot.x, robot.y)):
@@ -58,17 +58,17 @@ class Cleaning:
 
     def _tell_removed(self, robot: Robot, work: "ToolAtWork", at_the_end: bool) -> None:
         for field in work.fields:
-            percent, grams = self._told[field]
+            percent, grams = self._reported[field]
             if field.percent != percent or (at_the_end and field.grams != grams):
-                self._told[field] = (field.percent, field.grams)
+                self._reported[field] = (field.percent, field.grams)
                 left = {"grams": field.grams, "percent": field.percent}
                 self._tell(robot, "cleaned", {"room": field.room, "dirt": field.kind, **left})
 
 
 class ToolAtWork:
-    """A tool that is switched on.
+    """A running tool.
 
-    It removes dirt of the room that the robot is in only: there are walls between rooms.
+    It removes dirt only in the room that contains the robot, because walls separate rooms.
 
     Attributes:
         tool: the tool.
@@ -80,10 +80,10 @@ class ToolAtWork:
         self.fields = [field for field in fields if field.kind in tool.removes]
         self._place: tuple[float, float, str | None] | None = None
         self._near: list[tuple[float, int, int]] = []
-        """Cells in reach of the place, as squared distance, number of the field and cell; the nearest one last."""
+        """Cells in reach, as squared distance, number of the field and cell; the nearest one last."""
 
     def step(self, dt: float, x: float, y: float, room: str | None) -> bool:
-        """Clean for *dt* seconds at a place (metres) of a room; gives whether there was something to remove."""
+        """Clean for *dt* seconds at a point (metres) of a room; return whether there was dirt to remove."""
         if (x, y, room) != self._place:
             self._place, self._near = (x, y, room), self._cells_near(x, y, room)
         if not self._near:

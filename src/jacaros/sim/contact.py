@@ -1,7 +1,7 @@
-"""Contact of robots with walls and with each other: push-out along the normal, nothing else.
+"""Contact of robots with walls and with each other: push-out along the normal, and no other effect.
 
-Simplified physics: only robots are pushed away, nothing slips, and a robot must move less than its
-radius in a step (at 50 Hz and 0.65 m/s it moves 13 mm).
+Simplified physics: only robots are pushed, nothing slips, and a robot must move less than its radius in a step (at 50 Hz
+and 0.65 m/s it moves 13 mm).
 """
 
 import math
@@ -11,17 +11,17 @@ from jacaros.sim.description import Pose, Segment
 from jacaros.sim.trigonometry import sine_cosine
 
 CELL = 0.5
-"""Side of a cell of the index of walls, in metres."""
+"""Side of a cell of the wall index, in metres."""
 TOUCHING = 0.001
-"""A robot so near to a thing (metres) touches it, though nothing is pushed; keeps a bump from flickering."""
+"""Distance in metres at which a robot touches an object without being pushed; keeps bumps from flickering."""
 _MARGIN = 0.02
 
 Wall = tuple[float, float, float, float, float]
-"""A wall made ready for nearest points: its first end, its direction, and the squared length."""
+"""A wall prepared for nearest-point queries: its first end, its direction, and the squared length."""
 
 
 class WallIndex:
-    """Which walls a robot can touch, by the cell its centre is in; built once for robots up to *radius*."""
+    """The walls that a robot can touch, by the cell of its centre; built once for robots up to *radius*."""
 
     def __init__(self, segments: Iterable[Segment], radius: float) -> None:
         cells: dict[tuple[int, int], list[Wall]] = {}
@@ -35,7 +35,7 @@ class WallIndex:
         self._cells = {cell: tuple(walls) for cell, walls in cells.items()}
 
     def near(self, x: float, y: float) -> tuple[Wall, ...]:
-        """The walls that a robot with its centre at the point may touch."""
+        """Return the walls that a robot with its centre at the point may touch."""
         return self._cells.get((_cell(x), _cell(y)), ())
 
 
@@ -49,7 +49,7 @@ def push_out(
     """Move a disc out of *walls*.
 
     Returns:
-        The new centre and the unit vector towards the last wall that was touched, or None.
+        The new centre, and the unit vector towards the last wall touched, or None.
     """
     towards = None
     for ax, ay, dx, dy, length2 in walls:
@@ -60,7 +60,7 @@ def push_out(
         if distance2 >= (radius + TOUCHING) * (radius + TOUCHING):
             continue
         distance = math.sqrt(distance2)
-        if distance == 0.0:  # on the wall itself: either side will do, but always the same one
+        if distance == 0.0:  # on the wall: either side is correct, but it must always be the same one
             distance = math.sqrt(length2)
             ex, ey = -dy, dx
             nearness = radius
@@ -77,16 +77,16 @@ def push_out(
 def push_out_rectangle(
     pose: Pose, half_length: float, half_width: float, walls: Iterable[Wall]
 ) -> tuple[float, float, tuple[float, float] | None]:
-    """Move a rectangle that looks along *pose* out of *walls*, by the shortest way (the separating axis theorem).
+    """Move a rectangle with heading *pose* out of *walls*, by the shortest way (separating axis theorem).
 
     Returns:
-        As `push_out`.
+        The same as `push_out`.
     """
     x, y, yaw = pose
     sine, cosine = sine_cosine(yaw)
     towards = None
     for ax, ay, dx, dy, length2 in walls:
-        # The wall as the rectangle sees it: ahead and to the left of its centre.
+        # The wall in the frame of the rectangle: ahead and to the left of its centre.
         px, py = (ax - x) * cosine + (ay - y) * sine, (ay - y) * cosine - (ax - x) * sine
         ex, ey = dx * cosine + dy * sine, dy * cosine - dx * sine
         length = math.sqrt(length2)
@@ -105,7 +105,7 @@ def push_out_rectangle(
 
 
 def _overlap(a: float, b: float, half: float, to_x: float, to_y: float) -> tuple[float, float, float]:
-    """How deep a wall from *a* to *b* reaches into -*half* to *half*, and the direction in which it lies."""
+    """Return how far a wall from *a* to *b* extends into -*half* to *half*, and its direction."""
     ahead, behind = half - min(a, b), max(a, b) + half
     return (ahead, to_x, to_y) if ahead <= behind else (behind, -to_x, -to_y)
 
@@ -113,7 +113,7 @@ def _overlap(a: float, b: float, half: float, to_x: float, to_y: float) -> tuple
 def _across(
     aside: float, reach: float, length: float, normal_x: float, normal_y: float
 ) -> tuple[float, float, float]:
-    """The same across the wall, whose line is *aside* / *length* away along its normal."""
+    """Return the same across the wall, whose line is *aside* / *length* away along its normal."""
     depth = (reach - abs(aside)) / length
     sign = 1.0 if aside >= 0.0 else -1.0
     return depth, sign * normal_x / length, sign * normal_y / length
@@ -122,11 +122,11 @@ def _across(
 def push_apart(
     ax: float, ay: float, bx: float, by: float, distance: float
 ) -> tuple[float, float, float, float] | None:
-    """Part two discs whose centres are nearer than *distance*, each by half.
+    """Separate two discs whose centres are nearer than *distance*, moving each by half.
 
     Returns:
-        How the first is to be moved (the second goes the other way) and the unit vector from the first to the
-        second; None when they do not touch.
+        The displacement of the first disc (that of the second is the opposite), and the unit vector from the first to the
+        second; None if they do not touch.
     """
     ex, ey = bx - ax, by - ay
     apart2 = ex * ex + ey * ey

@@ -1,7 +1,7 @@
-"""What a world consists of, as plain data: metres, radians, seconds, percent.
+"""A world as plain data, in metres, radians, seconds and percent.
 
-A world file (`jacaros.sim.files.world`) is read into these; the running `jacaros.sim.world.World` is made from
-them, and viewers draw them.
+World files (`jacaros.sim.files.world`) are read into these classes; `jacaros.sim.world.World` runs them, and viewers draw
+them.
 """
 
 import math
@@ -14,7 +14,7 @@ from jacaros.yaml_nodes import Problem, YamlFileError
 
 
 class Segment(NamedTuple):
-    """A straight piece of wall, in metres; it has no thickness."""
+    """A straight piece of wall, in metres, without thickness."""
 
     ax: float
     ay: float
@@ -22,7 +22,7 @@ class Segment(NamedTuple):
     by: float
 
     def distance(self, x: float, y: float) -> float:
-        """Metres from a point to the nearest one of it."""
+        """Return the distance in metres from a point to the segment."""
         dx, dy = self.bx - self.ax, self.by - self.ay
         place = ((x - self.ax) * dx + (y - self.ay) * dy) / (dx * dx + dy * dy)
         place = 0.0 if place < 0.0 else 1.0 if place > 1.0 else place
@@ -30,7 +30,7 @@ class Segment(NamedTuple):
         return math.sqrt(ex * ex + ey * ey)
 
     def gap(self, other: "Segment") -> float:
-        """Metres between the nearest points of two pieces; 0 where they cross."""
+        """Return the smallest distance in metres between two segments; 0 if they cross."""
         if self.crosses(other):
             return 0.0
         return min(
@@ -41,11 +41,11 @@ class Segment(NamedTuple):
         )
 
     def crosses(self, other: "Segment") -> bool:
-        """Whether two pieces cross."""
+        """Return whether two segments cross."""
         return self._parts(other) and other._parts(self)
 
     def _parts(self, other: "Segment") -> bool:
-        """Whether the ends of another piece are on different sides of the line through this one."""
+        """Return whether the ends of *other* are on different sides of the line through this segment."""
         dx, dy = self.bx - self.ax, self.by - self.ay
         of_a = dx * (other.ay - self.ay) - dy * (other.ax - self.ax)
         of_b = dx * (other.by - self.ay) - dy * (other.bx - self.ax)
@@ -53,7 +53,7 @@ class Segment(NamedTuple):
 
 
 class Rectangle(NamedTuple):
-    """An upright rectangle, in metres."""
+    """An axis-aligned rectangle, in metres."""
 
     x_min: float
     y_min: float
@@ -61,17 +61,17 @@ class Rectangle(NamedTuple):
     y_max: float
 
     def contains(self, x: float, y: float) -> bool:
-        """True when the point lies inside or on the edge."""
+        """Return whether a point is inside or on the edge."""
         return self.x_min <= x <= self.x_max and self.y_min <= y <= self.y_max
 
     def edges(self) -> tuple[Segment, Segment, Segment, Segment]:
-        """The four sides, counter-clockwise."""
+        """Return the four sides, counter-clockwise."""
         a, b, c, d = self
         return Segment(a, b, c, b), Segment(c, b, c, d), Segment(c, d, a, d), Segment(a, d, a, b)
 
 
 class Pose(NamedTuple):
-    """Where a robot is: metres, and the heading in radians, counter-clockwise from +x."""
+    """The pose of a robot: metres, and the heading in radians, counter-clockwise from +x."""
 
     x: float
     y: float
@@ -84,7 +84,7 @@ DEFAULT_BOUNDS = Rectangle(-3.0, -3.0, 3.0, 3.0)
 
 @dataclass(frozen=True, slots=True)
 class Furniture:
-    """A box of which more is known: what it is ("" if unknown), and its colour as ``#rrggbb`` ("" for that of boxes)."""
+    """A box with a kind ("" if unknown) and a colour as ``#rrggbb`` ("" for the colour of boxes)."""
 
     area: Rectangle
     kind: str = ""
@@ -93,7 +93,7 @@ class Furniture:
 
 @dataclass(frozen=True, slots=True)
 class Dirt:
-    """Dirt of one kind in a room, in grams, spread evenly over *area* (None: the floor of the room, furniture excepted)."""
+    """Dirt of one kind in a room, in grams, evenly spread over *area* (None: the floor of the room without furniture)."""
 
     kind: str
     grams: float
@@ -102,14 +102,14 @@ class Dirt:
 
 @dataclass(frozen=True, slots=True)
 class Room:
-    """A named part of the floor; rooms may not say anything about walls."""
+    """A named part of the floor; it need not have walls."""
 
     name: str
     area: Rectangle
     dirt: tuple[Dirt, ...] = ()
 
     def drawing(self) -> dict[str, Any]:
-        """The room as plain JSON data; dirt only where there is some."""
+        """Return the room as JSON data, with dirt only if there is some."""
         shown = [
             {"kind": dirt.kind, "grams": dirt.grams, "area": list(dirt.area or self.area)}
             for dirt in self.dirt
@@ -119,7 +119,7 @@ class Room:
 
 @dataclass(frozen=True, slots=True)
 class Dock:
-    """A charging station: a robot whose centre stands still within ``radius`` metres of it is charged."""
+    """A charging station: it charges a robot whose centre rests within ``radius`` metres of it."""
 
     name: str
     pose: Pose
@@ -128,7 +128,7 @@ class Dock:
 
 @dataclass(frozen=True, slots=True)
 class Door:
-    """A piece of wall that is there while the door is closed; ``open`` says how it is at first."""
+    """A piece of wall that exists while the door is closed; ``open`` is the initial state."""
 
     name: str
     segment: Segment
@@ -137,9 +137,9 @@ class Door:
 
 @dataclass(frozen=True, slots=True)
 class BatterySettings:
-    """How a battery drains and charges; levels are percent, 0 to 100.
+    """Discharge and charge rates of a battery; levels are in percent, 0 to 100.
 
-    The defaults last about two hours of driving, as a TurtleBot does.
+    The defaults last about two hours of driving, as for a TurtleBot.
     """
 
     level: float = 100.0
@@ -151,11 +151,11 @@ class BatterySettings:
 
 @dataclass(frozen=True, slots=True)
 class OdometrySettings:
-    """Where odometry counts from and how much it errs.
+    """The origin of odometry and its errors.
 
-    ``per_metre`` and ``per_radian`` are the standard deviations of the distance after one metre and of the
-    angle after one radian (both grow with the square root of the way); 0 is a perfect wheel encoder.
-    ``turn_per_metre`` is the heading error (radians) that one metre of driving brings along.
+    ``per_metre`` and ``per_radian`` are the standard deviations of the distance after one metre and of the angle after one
+    radian (both grow with the square root of the distance); 0 is a perfect encoder. ``turn_per_metre`` is the heading error
+    (radians) per metre driven.
     """
 
     from_start: bool = False
@@ -165,17 +165,16 @@ class OdometrySettings:
 
     @property
     def noisy(self) -> bool:
-        """True when any of the errors is on."""
+        """Whether any error is not zero."""
         return self.per_metre > 0.0 or self.per_radian > 0.0 or self.turn_per_metre > 0.0
 
 
 @dataclass(frozen=True, slots=True)
 class LaserSettings:
-    """The laser range finder; it sits at the centre of the robot and looks ahead.
+    """The laser range finder, at the centre of the robot, facing ahead.
 
-    ``beams_per_turn`` fixes the step between beams, ``field`` (radians) how much of the turn is swept, and
-    ``noise`` the half width (metres) of the uniform error of a range.  ``always`` makes it publish even when
-    the middleware can tell that nobody listens.
+    ``beams_per_turn`` sets the step between beams, ``field`` (radians) the field of view, and ``noise`` the half width
+    (metres) of the uniform error of a range. With ``always`` it publishes even without subscriptions.
     """
 
     enabled: bool = True
@@ -189,7 +188,7 @@ class LaserSettings:
 
 @dataclass(frozen=True, slots=True)
 class RobotLimits:
-    """What the base can do: metres and radians, per second and per second squared (TurtleBot)."""
+    """Limits of the base: metres and radians, per second and per second squared (TurtleBot)."""
 
     speed: float = 0.65
     turn_rate: float = PI
@@ -200,7 +199,7 @@ class RobotLimits:
 
 @dataclass(frozen=True, slots=True)
 class NavigationSettings:
-    """Whether the robot offers navigation and docking, and its speed then (m/s)."""
+    """Whether the robot offers navigation and docking, and its speed in m/s."""
 
     enabled: bool = True
     speed: float = 0.4
@@ -210,7 +209,7 @@ class NavigationSettings:
 class CleaningTool:
     """A tool that removes dirt of some kinds (``removes``) within ``reach`` metres of the robot's centre.
 
-    It takes ``rate`` grams a second, the nearest dirt first, as a brush does that is led by hand or by an arm.
+    It removes ``rate`` grams per second, the nearest dirt first, as a brush guided by hand or by an arm.
     """
 
     name: str
@@ -221,7 +220,7 @@ class CleaningTool:
 
 @dataclass(frozen=True, slots=True)
 class ObjectDescription:
-    """A round thing that lies on the floor and can be carried; ``color`` is ``#rrggbb``, or "" if unknown."""
+    """A round object on the floor that can be carried; ``color`` is ``#rrggbb``, or "" if unknown."""
 
     name: str
     x: float
@@ -232,11 +231,11 @@ class ObjectDescription:
 
 @dataclass(frozen=True, slots=True)
 class RobotDescription:
-    """One robot: its name, the namespace of its topics ("" for none), where it starts and how it is made.
+    """A robot: its name, the namespace of its topics ("" for none), its initial pose and its properties.
 
-    ``footprint`` is the length and width of a rectangular robot; ``radius`` is then that of the circle round it, which is
-    what others, lasers and navigation take it for.
-    ``gripper_reach`` is how far from the robot's centre its gripper takes objects (metres), 0 without a gripper.
+    ``footprint`` is the length and width of a rectangular robot; ``radius`` is then that of the circumscribed circle, which
+    other robots, lasers and navigation use. ``gripper_reach`` is the reach of the gripper, in metres from the robot's
+    centre; 0 without a gripper.
     """
 
     name: str = "turtlebot"
@@ -255,10 +254,10 @@ class RobotDescription:
 
 @dataclass(frozen=True, slots=True)
 class PersonDescription:
-    """A person walking from point to point of a path (metres), with a pause (seconds) at each.
+    """A person who walks from point to point of a path (metres), with a pause (seconds) at each.
 
-    ``loop`` leads from the last point back to the first; without it the person stays at the last.  A ``careless`` person
-    does not stop before robots.  ``color`` is ``#rrggbb``, "" for any.
+    With ``loop`` the path continues from the last point to the first; otherwise the person stays at the last point. A
+    ``careless`` person does not stop in front of robots. ``color`` is ``#rrggbb``, or "" for any.
     """
 
     name: str
@@ -271,12 +270,12 @@ class PersonDescription:
     color: str = ""
 
     def legs(self) -> tuple[Segment, ...]:
-        """The straight pieces of the path."""
+        """Return the segments of the path."""
         ends = (*self.path[1:], self.path[0]) if self.loop else self.path[1:]
         return tuple(Segment(*a, *b) for a, b in zip(self.path, ends, strict=False) if a != b)
 
     def drawing(self) -> dict[str, Any]:
-        """All that a viewer needs, as plain JSON data."""
+        """Return the data for a viewer, as JSON data."""
         return {
             "name": self.name,
             "radius": self.radius,
@@ -290,8 +289,8 @@ class PersonDescription:
 class WorldDescription:
     """A whole world.
 
-    ``segments`` are all walls, those of ``boxes`` (solid furniture) included and ``doors`` not; ``furniture`` are those of
-    the boxes that have a kind or a colour.  Over ``cliffs`` there is no floor.
+    ``segments`` are all walls, including those of ``boxes`` (solid furniture), without ``doors``; ``furniture`` are the
+    boxes with a kind or a colour. Over ``cliffs`` there is no floor.
     """
 
     name: str = "empty"
@@ -309,7 +308,7 @@ class WorldDescription:
     seed: int = 0
 
     def without_noise(self) -> "WorldDescription":
-        """The same world, whose robots measure exactly: for tests to the millimetre."""
+        """Return the same world with exact sensors, for tests to the millimetre."""
         robots = (
             replace(
                 robot,
@@ -321,7 +320,7 @@ class WorldDescription:
         return replace(self, robots=tuple(robots))
 
     def drawing(self) -> dict[str, Any]:
-        """All that a viewer needs to draw the world, as plain JSON data."""
+        """Return the data for a viewer to draw the world, as JSON data."""
         return {
             "name": self.name,
             "bounds": list(self.bounds),
@@ -359,15 +358,15 @@ __all__ = ["Problem", "UnknownWorld", "WorldError"]
 
 
 class WorldError(YamlFileError):
-    """A wrong world file."""
+    """Raised for a world file with mistakes."""
 
 
 class UnknownWorld(WorldError):
-    """A name that is neither that of a file nor that of a shipped world.
+    """Raised for a name that is neither a file nor a shipped world.
 
     Attributes:
-        message: what is wrong, without the help.
-        help: the world that was probably meant, or the known ones.
+        message: the error, without the help.
+        help: the similar world, or the list of shipped worlds.
     """
 
     def __init__(self, name: str, help: str) -> None:

@@ -1,4 +1,4 @@
-"""Dirt on the floor: a field of cells of some 10 cm for each kind of dirt in a room."""
+"""Dirt on the floor: a grid of cells of about 10 cm for each kind of dirt in a room."""
 
 import math
 from collections.abc import Sequence
@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from jacaros.sim.description import Dirt, Rectangle, Room
 
 CELL = 0.1
-"""Side of a cell in metres, about: a whole number of cells fills the area."""
+"""Approximate side of a cell, in metres: a whole number of cells fills the area."""
 
 
 class DirtField:
@@ -14,12 +14,12 @@ class DirtField:
 
     Attributes:
         room: name of the room.
-        kind: of the dirt.
-        grams: its remaining amount.
+        kind: kind of dirt.
+        grams: remaining amount.
     """
 
     def __init__(self, room: Room, dirt: Dirt, boxes: Sequence[Rectangle] = ()) -> None:
-        """*boxes* is the furniture: dirt without a place of its own does not lie below it."""
+        """Create the field; dirt without an area of its own is not spread below the furniture *boxes*."""
         self.room, self.kind, self.grams = room.name, dirt.kind, dirt.grams
         self._all = dirt.grams
         self._area = dirt.area or room.area
@@ -33,11 +33,11 @@ class DirtField:
 
     @property
     def percent(self) -> int:
-        """Percent that is left, rounded up: 0 means that it is clean."""
+        """Remaining percent, rounded up: 0 means clean."""
         return math.ceil(100.0 * self.grams / self._all) if self.grams > 0.0 else 0
 
     def near(self, x: float, y: float, reach: float) -> list[tuple[float, int]]:
-        """The dirty cells with their centre within *reach* metres of a point, as squared distance and number."""
+        """Return the dirty cells with their centres within *reach* metres of a point, as squared distance and number."""
         if not self._cells:
             self._spread()
         area, columns = self._area, self._columns
@@ -56,7 +56,7 @@ class DirtField:
         return found
 
     def take(self, cell: int, most: float) -> float:
-        """Remove the dirt of a cell, *most* grams of it; gives the grams that were removed."""
+        """Remove up to *most* grams of dirt from a cell; return the amount removed, in grams."""
         here = self._cells[cell]
         if here > most:
             self._cells[cell] = here - most
@@ -65,16 +65,16 @@ class DirtField:
         if here > 0.0:
             self._cells[cell] = 0.0
             self._dirty -= 1
-            # Exactly nothing, whatever the rounding of so many differences.
+            # Exactly 0: repeated differences leave rounding errors.
             self.grams = self.grams - here if self._dirty else 0.0
         return here
 
     def is_clean(self, cell: int) -> bool:
-        """Whether nothing is left in a cell."""
+        """Return whether a cell is clean."""
         return self._cells[cell] <= 0.0
 
     def _spread(self) -> None:
-        """Make the cells when a tool comes near: fields without cleaning cost nothing."""
+        """Create the cells when a tool comes near: fields that are never cleaned cost nothing."""
         centres = [
             (self._area.x_min + (column + 0.5) * self._width, self._area.y_min + (row + 0.5) * self._height)
             for row in range(self._rows)

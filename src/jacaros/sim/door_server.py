@@ -1,4 +1,4 @@
-"""The doors of the world in the graph: a service that moves each, and a topic with its state."""
+"""Doors in the ROS graph: a service that moves each door, and a topic with its state."""
 
 from jacaros.ros.backend import Backend, Publisher
 from jacaros.ros.qos import QoS
@@ -11,13 +11,13 @@ _LATCHED = QoS(durability="transient_local", depth=1)
 class DoorServer:
     """One door.
 
-    Service ``/doors/NAME/open`` (``std_srvs/srv/SetBool``: true opens, false closes; refused while a robot is in it), topic
+    Service ``/doors/NAME/open`` (``std_srvs/srv/SetBool``: true opens, false closes; fails while a robot is in it), topic
     ``/doors/NAME/is_open`` (``std_msgs/msg/Bool``, latched).
 
     Args:
-        time: the world, on a clock.
-        name: of the door.
-        backend: the graph; it is started already.
+        time: the world on a clock.
+        name: name of the door.
+        backend: graph; already started.
     """
 
     def __init__(self, time: WorldTime, name: str, backend: Backend) -> None:
@@ -38,13 +38,13 @@ class DoorServer:
         return problem
 
     def publish(self) -> None:
-        """Publish whether the door is open, if that has changed."""
+        """Publish the state of the door if it has changed."""
         now = self._time.world.doors[self._name]
         if now is not self._published:
             self._published = now
             self._publisher.publish(self._publisher.message(data=now))
 
     def close(self) -> None:
-        """Leave the topic and the service."""
+        """Withdraw the topic and the service."""
         self._publisher.close()
         self._service.close()

@@ -1,4 +1,4 @@
-"""A world's fingerprint: a hash of a run without agents, equal on every machine."""
+"""The fingerprint of a world: a hash of a run without agents, equal on every machine."""
 
 import hashlib
 import random
@@ -13,14 +13,14 @@ _TURN_PERIOD = 2.0
 
 
 def fingerprint(world: World, seconds: float) -> str:
-    """Let all robots drive about, bump and turn, by the seed of the world, and hash where they are and what they see.
+    """Drive all robots at random, seeded by the world, and hash their poses and measurements.
 
     Args:
-        world: as it begins.
-        seconds: of the world, ten scans in each.
+        world: world at its start.
+        seconds: duration in seconds of the world, with ten scans per second.
 
     Returns:
-        SHA-256 of all poses, odometry and laser ranges, in hexadecimal digits.
+        SHA-256 of all poses, odometry and laser ranges, as hexadecimal digits.
     """
     draw = random.Random(f"{world.description.seed}/fingerprint").random
     content, rates = hashlib.sha256(), dict.fromkeys(world.robots, 0.0)
@@ -42,7 +42,7 @@ def fingerprint(world: World, seconds: float) -> str:
 
 
 def _drive(robot: Robot, rates: dict[str, float], chance: float, turns: bool) -> None:
-    """Command a robot: back off and turn from what it touches, else ahead in a curve that changes now and then."""
+    """Command a robot: back off and turn on contact, otherwise drive ahead in a curve that changes from time to time."""
     if robot.touching:
         rates[robot.name] = 1.0 if chance > 0.0 else -1.0
     elif turns:

@@ -1,8 +1,8 @@
-"""The ground truth of a world: events with the true pose, and the path of every robot.
+"""The ground truth of a world: events with true poses, and the path of every robot.
 
-Checkers of scenarios judge from this alone, never from what an agent or its odometry believes.  The same
-object is filled by a running `jacaros.sim.world.World` or read back from the file that
-`jacaros.sim.process.serve` writes, so one checker judges runs of both kinds.
+Checkers of scenarios use only the ground truth, never what an agent or its odometry believes. A running
+`jacaros.sim.world.World` fills it, or `read` reads it from the file that `jacaros.sim.process.serve` writes, so one
+checker evaluates both kinds of runs.
 """
 
 import hashlib
@@ -20,17 +20,17 @@ Record = dict[str, Any]
 
 
 class Event(NamedTuple):
-    """Something that happened to a robot, ``time`` seconds after the world began; the pose is the true one.
+    """An event of a robot, ``time`` seconds after the start of the world, with the true pose.
 
-    Kinds, with what their data hold: ``docked`` and ``undocked`` (dock), ``charging``, ``charged``,
-    ``battery_empty`` and ``battery`` at each whole percent (level), ``bump`` against a wall (side),
-    ``collision`` (with, side), ``command_timeout`` and ``bad_command`` (speed, turn_rate), ``task`` (task as
-    text, room), ``tool_started`` and ``tool_stopped`` (tool), ``cleaned`` at each whole percent of a room's dirt, and
-    when the tool stops (room, dirt, and what is left: grams, percent), ``fell`` down a cliff (nothing),
-    ``lights`` (colors) and ``sound`` (notes, append), ``picked`` and ``placed`` (object, and its place: x, y).  Of no robot
-    (``""``): ``door_opened`` and ``door_closed`` (door), in the middle of the door; ``person_walks`` (velocity: vx, vy),
-    ``person_stands`` (waits_for: a robot, a door or ""), ``person_comes`` and ``person_goes``, each with person, x and y.
-    A person stands before its first event, at the beginning of its path.
+    Kinds, with their data: ``docked`` and ``undocked`` (dock), ``charging``, ``charged``, ``battery_empty`` and
+    ``battery`` at each whole percent (level), ``bump`` against a wall (side), ``collision`` (with, side),
+    ``command_timeout`` and ``bad_command`` (speed, turn_rate), ``task`` (task as text, room), ``tool_started`` and
+    ``tool_stopped`` (tool), ``cleaned`` at each whole percent of a room's dirt, and when the tool stops (room, dirt,
+    and the rest: grams, percent), ``fell`` down a cliff (no data), ``lights`` (colors) and ``sound`` (notes, append),
+    ``picked`` and ``placed`` (object, and its place: x, y). Events without a robot (``""``): ``door_opened`` and
+    ``door_closed`` (door), at the middle of the door; ``person_walks`` (velocity: vx, vy), ``person_stands``
+    (waits_for: a robot, a door or ""), ``person_comes`` and ``person_goes``, each with person, x and y. Before its
+    first event a person stands at the start of its path.
     """
 
     time: float
@@ -43,7 +43,7 @@ class Event(NamedTuple):
 
 
 class Sample(NamedTuple):
-    """One point of a robot's path; ``odometer`` is the true distance driven so far, in metres."""
+    """A point of a robot's path; ``odometer`` is the true distance driven so far, in metres."""
 
     time: float
     x: float
@@ -60,10 +60,10 @@ class GroundTruth:
 
     Attributes:
         events: all events, oldest first.
-        world: the drawing of the world (see `jacaros.sim.description.WorldDescription.drawing`).
-        dirt: grams of dirt that are left, by room and kind: ``dirt["kitchen", "stains"]``.
-        keep: how many points of each path and how many events are kept at least, None for all.  Set it for
-            worlds that run for days; listeners still receive every event.
+        world: data of the world (see `jacaros.sim.description.WorldDescription.drawing`).
+        dirt: remaining dirt in grams, by room and kind: ``dirt["kitchen", "stains"]``.
+        keep: minimum number of points of each path and of events to keep; None to keep all. Set it for worlds that run for
+            days; listeners still receive every event.
     """
 
     def __init__(self, robots: Iterable[str] = (), world: Record | None = None) -> None:
@@ -86,28 +86,28 @@ class GroundTruth:
         return list(self._paths)
 
     def path(self, robot: str | None = None) -> list[Sample]:
-        """The path of *robot* (by default the first): ten samples a second in motion, one at rest."""
+        """Return the path of *robot* (default: the first): ten samples per second in motion, one at rest."""
         return self._paths[robot or self._first()]
 
     def latest(self, robot: str | None = None) -> Sample:
-        """The newest sample of *robot* (of the first one when not named)."""
+        """Return the newest sample of *robot* (default: the first)."""
         return self._latest[robot or self._first()]
 
     def pose(self, robot: str | None = None) -> Pose:
-        """Where *robot* truly is now, or was at the end of the file."""
+        """Return the true pose of *robot*, now or at the end of the file."""
         latest = self.latest(robot)
         return Pose(latest.x, latest.y, latest.yaw)
 
     def odometer(self, robot: str | None = None) -> float:
-        """Metres that *robot* has truly driven."""
+        """Return the true distance that *robot* has driven, in metres."""
         return self.latest(robot).odometer
 
     def battery(self, robot: str | None = None) -> float:
-        """The level of *robot*'s battery, in percent."""
+        """Return the battery level of *robot*, in percent."""
         return self.latest(robot).battery
 
     def events_of(self, *kinds: str, robot: str | None = None) -> list[Event]:
-        """The events of the given kinds (of all kinds when none is given), of one robot or of all."""
+        """Return the events of the given kinds (default: all), of one robot or of all."""
         return [
             event
             for event in self.events
@@ -115,7 +115,7 @@ class GroundTruth:
         ]
 
     def digest(self) -> str:
-        """A hash of everything that happened: equal for equal runs, on any machine."""
+        """Return a hash of all events and paths: equal for equal runs, on every machine."""
         content = hashlib.sha256()
         for event in self.events:
             content.update(repr(tuple(event)).encode())
@@ -126,17 +126,17 @@ class GroundTruth:
         return content.hexdigest()
 
     def listen(self, listener: Callable[[Record], None]) -> Callable[[], None]:
-        """Have *listener* called with every record from now on; returns what takes it off again."""
+        """Call *listener* with every record from now on; return a function that removes it."""
         self._listeners.append(listener)
         return lambda: self._listeners.remove(listener)
 
     def listen_to_events(self, listener: Callable[[Record], None]) -> Callable[[], None]:
-        """Have *listener* called with the record of every event from now on; returns what takes it off again."""
+        """Call *listener* with the record of every event from now on; return a function that removes it."""
         self._event_listeners.append(listener)
         return lambda: self._event_listeners.remove(listener)
 
     def record_event(self, event: Event) -> None:
-        """Take note of an event."""
+        """Record an event."""
         self.events.append(event)
         if event.kind == "cleaned":
             self.dirt[event.data["room"], event.data["dirt"]] = event.data["grams"]
@@ -157,11 +157,11 @@ class GroundTruth:
             self._tell({"kind": "sample", "robot": robot, **sample._asdict()})
 
     def update_latest(self, robot: str, sample: Sample) -> None:
-        """Say where *robot* is now without adding a point to its path."""
+        """Update the pose of *robot* without adding a point to its path."""
         self._latest[robot] = sample
 
     def _forget(self, items: list[Any]) -> None:
-        """Drop old records, rarely enough to cost nothing."""
+        """Drop old records, in batches to keep the cost low."""
         if self.keep is not None and len(items) >= 2 * self.keep:
             del items[: -self.keep]
 
@@ -174,21 +174,21 @@ class GroundTruth:
 
     @classmethod
     def read(cls, path: str | Path) -> "GroundTruth":
-        """Read a ground truth file; lines that a crash or a full disk has cut off are left out.
+        """Read a ground truth file, without lines truncated by a crash or a full disk.
 
         Raises:
-            JacarosError: when the file does not begin with a ``world`` record.
+            JacarosError: the file does not begin with a ``world`` record.
         """
         try:
             return cls._of_records(_records(path))
         except (ValueError, LookupError, TypeError, AttributeError, RecursionError, OverflowError) as error:
-            told = f"{path} is not a ground truth file: {type(error).__name__}: {str(error)[:200]}"
-            raise JacarosError(told) from None
+            message = f"not a ground truth file: `{path}`: {type(error).__name__}: {str(error)[:200]}"
+            raise JacarosError(message) from None
 
     @classmethod
     def _of_records(cls, records: list[Record]) -> "GroundTruth":
         if not records or records[0].get("kind") != "world":
-            raise ValueError("its first line describes no world")
+            raise ValueError("its first line does not describe a world")
         truth = cls([robot["name"] for robot in records[0]["world"]["robots"]], records[0]["world"])
         for record in records[1:]:
             truth._take(record)
@@ -211,17 +211,17 @@ def _records(path: str | Path) -> list[Record]:
         try:
             records.append(json.loads(line))
         except json.JSONDecodeError:
-            # A crash cuts the last line off, and a full disk any line.
+            # A crash truncates the last line, and a full disk any line.
             if number < len(lines) and not line.startswith("{"):
                 raise
     return records
 
 
 def event_record(event: Event) -> Record:
-    """The record of an event."""
+    """Return the record of an event."""
     return {**event._asdict(), "kind": "event", "event": event.kind}
 
 
 def header(world: Record, seed: int, epoch: float) -> Record:
-    """The first record of a file; *epoch* is the clock's time (seconds) at which the world's time was 0."""
+    """Return the first record of a file; *epoch* is the clock's time (seconds) at which the world's time was 0."""
     return {"kind": "world", "world": world, "seed": seed, "epoch": epoch}

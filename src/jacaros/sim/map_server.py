@@ -1,4 +1,4 @@
-"""The map of the world on ``/map``, and as a service."""
+"""The map of the world, on ``/map`` and as a service."""
 
 from collections.abc import Callable, Iterable
 from typing import Any
@@ -16,16 +16,16 @@ _SERVICE = "nav_msgs/srv/GetMap"
 
 
 class MapServer:
-    """Publishes the map when it gets its first subscription.
+    """Publishes the map at the first subscription.
 
     Topics ``/map`` and, for robots with a namespace, ``/robot_1/map`` (``nav_msgs/msg/OccupancyGrid``, latched); service
     ``/map_server/map`` (on ROS 1 ``/static_map``, ``nav_msgs/srv/GetMap``).
 
     Args:
-        backend: the graph; it is started already.
-        prefixes: of the robots' names.
+        backend: graph; already started.
+        prefixes: prefixes of the robots' names.
         grid: returns the grid; called on first use.
-        now: the stamp for the map, in seconds.
+        now: returns the stamp of the map, in seconds.
     """
 
     def __init__(
@@ -53,7 +53,7 @@ class MapServer:
                 publisher.publish(self.map())
 
     def map(self) -> Any:
-        """The map, as a message."""
+        """Return the map as a message."""
         if self._message is None:
             grid = self._grid()
             message = self._backend.message(_GRID, data=grid.occupancy())
@@ -67,7 +67,7 @@ class MapServer:
         return self._message
 
     def close(self) -> None:
-        """Leave the topics and the service."""
+        """Withdraw the topics and the service."""
         for publisher in self._publishers:
             publisher.close()
         if self._service is not None:

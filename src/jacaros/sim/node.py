@@ -1,4 +1,4 @@
-"""The world as a ROS node: all its robots over any backend, in the time of any clock."""
+"""The world as a ROS node: all its robots, on any backend and any clock."""
 
 import math
 from collections.abc import Sequence
@@ -23,8 +23,8 @@ class SimNode:
     """Runs a world on a clock and a ROS graph; agents access it over topics only.
 
     Args:
-        world: the world; its time continues.
-        backend: the graph; it must be started before `start`, and is not closed by `close`.
+        world: world; its time continues.
+        backend: graph; must be started before `start`, and is not closed by `close`.
         clock: the clock that the world follows.
     """
 
@@ -44,11 +44,11 @@ class SimNode:
         self._ticks = 0
 
     def start(self) -> None:
-        """Join the graph and let the time of the world run, from now on.
+        """Join the graph, and let the time of the world run from now on.
 
         Raises:
-            RosError: the backend is not started, or a namespace or message type does not suit it.
-            UsageError: a fault concerns a topic or an action that the world does not have.
+            RosError: the backend is not started, or does not support a namespace or a message type.
+            UsageError: a fault affects an unknown topic or action.
         """
         self.time = WorldTime(self.world, self.clock)
         self.robots = [RobotNode(self.time, robot, self.backend) for robot in self.world.robots.values()]
@@ -71,7 +71,7 @@ class SimNode:
         self._wait_for_tick()
 
     def beliefs(self) -> dict[str, tuple[float, float, float]]:
-        """Where each robot believes to be, by its name: metres on the map, and radians."""
+        """Return the estimated pose of each robot, by name: metres on the map, and radians."""
         found = {}
         for each in self.robots:
             x, y, cosine, sine = each.localisation.belief(self.world.time)
@@ -79,11 +79,11 @@ class SimNode:
         return found
 
     def paths(self) -> dict[str, Sequence[tuple[float, float]]]:
-        """The points of the path that each robot follows, by its name: metres on the map; empty without a goal."""
+        """Return the points of the path of each robot, by name, in metres on the map; empty without a goal."""
         return {each.name: each.path for each in self.navigation}
 
     def grid(self) -> Grid:
-        """The map of the world, made on first use."""
+        """Return the map of the world, created on first use."""
         if self._grid is None:
             self._grid = Grid(self.world.description)
         return self._grid
@@ -92,11 +92,11 @@ class SimNode:
         period = 1.0 / TICKS_PER_SECOND
         delay = period
         if not self.clock.virtual:
-            # From the start, not from the last tick: delays of the loop must not add up.  Ticks that were
-            # missed (the process was held up, the computer slept) are left out, not made up for in a burst.
+            # From the start, not from the last tick: delays of the loop must not add up. Missed ticks (the process
+            # was blocked, or the computer slept) are dropped, not repeated in a burst.
             passed = self.time.passed()
             self._ticks = max(self._ticks + 1, math.floor(passed / period) + 1)
-            # A clock that was set back must not keep the world waiting.
+            # A clock that was set back must not stop the world.
             delay = min(max(0.0, self._ticks * period - passed), 2.0 * period)
         self._timer = self.clock.call_later(delay, self._tick)
 
@@ -111,14 +111,14 @@ class SimNode:
             self._map.publish()
 
     def stop(self) -> None:
-        """Stop the world; its topics stay."""
+        """Stop the world; its topics remain."""
         if self._timer is not None:
             self._timer.cancel()
             self._timer = None
             self.time.catch_up()
 
     def close(self) -> None:
-        """Stop the world and leave its topics."""
+        """Stop the world and withdraw its topics."""
         self.stop()
         for navigation in self.navigation:
             navigation.close()

@@ -1,6 +1,6 @@
-"""Objects that robots carry: the place of each, and the robot that holds it.
+"""Objects that robots carry: their places, and the robots that hold them.
 
-They block neither robots nor lasers: only grippers touch them.
+They block neither robots nor lasers; only grippers touch them.
 """
 
 from collections.abc import Callable, Iterable
@@ -11,15 +11,15 @@ from jacaros.sim.robot.robot import Robot
 from jacaros.sim.trigonometry import sine_cosine
 
 _BEFORE = 0.05
-"""Metres from a robot's rim to the middle of what it carries or puts down."""
+"""Distance in metres from the edge of a robot to the centre of an object that it carries or puts down."""
 
 
 class Thing:
     """An object of the world.
 
     Attributes:
-        description: how it is made.
-        carrier: the robot that has it, or None.
+        description: description from the world file.
+        carrier: robot that holds it, or None.
     """
 
     def __init__(self, description: ObjectDescription) -> None:
@@ -30,12 +30,12 @@ class Thing:
 
     @property
     def width(self) -> float:
-        """Metres that a gripper must open to take it."""
+        """Width that a gripper must open to take it, in metres."""
         return 2.0 * self.description.radius
 
     @property
     def place(self) -> tuple[float, float]:
-        """Where its middle is, in metres."""
+        """Position of its centre, in metres."""
         if self.carrier is None:
             return self._place
         sine, cosine = sine_cosine(self.carrier.yaw)
@@ -43,7 +43,7 @@ class Thing:
         return self.carrier.x + ahead * cosine, self.carrier.y + ahead * sine
 
     def lie(self) -> None:
-        """Stay where it is now."""
+        """Stay at the current position."""
         self._place, self.carrier = self.place, None
 
 
@@ -51,12 +51,12 @@ class Objects:
     """All objects of a world.
 
     Args:
-        descriptions: how they are made.
+        descriptions: objects of the world file.
         note: takes the events ``picked`` and ``placed`` of a robot.
-        closed_doors: gives the doors that are closed; no gripper reaches through one.
+        closed_doors: returns the closed doors; grippers do not reach through them.
 
     Attributes:
-        by_name: the objects, in the order of the file.
+        by_name: objects, in the order of the file.
     """
 
     def __init__(
@@ -69,11 +69,11 @@ class Objects:
         self._note, self._closed_doors = note, closed_doors
 
     def held_by(self, robot: Robot) -> Thing | None:
-        """What a robot carries."""
+        """Return the object that a robot carries."""
         return next((each for each in self.by_name.values() if each.carrier is robot), None)
 
     def before(self, robot: Robot) -> Thing | None:
-        """The nearest object that lies within a robot's reach, at most 45 degrees to the left or right of ahead."""
+        """Return the nearest object within a robot's reach, at most 45 degrees to the left or right of straight ahead."""
         sine, cosine = sine_cosine(robot.yaw)
         nearest, least = None, robot.description.gripper_reach * robot.description.gripper_reach
         for each in self.by_name.values():
@@ -94,7 +94,7 @@ class Objects:
         thing.carrier = robot
 
     def put_down(self, robot: Robot, thing: Thing) -> None:
-        """Lay an object before the robot that carries it."""
+        """Put an object down in front of the robot that carries it."""
         thing.lie()
         self._tell(robot, "placed", thing)
 

@@ -1,6 +1,6 @@
-"""Round things that somebody put on the floor during a run: robots and people cannot pass, and lasers see them.
+"""Round obstacles put on the floor during a run, which block robots, people and lasers.
 
-The map of the robots does not have them.
+They are not on the robots' map.
 """
 
 import math
@@ -26,7 +26,7 @@ class Obstacles:
     """The obstacles of a world.
 
     Attributes:
-        by_name: the obstacles.
+        by_name: obstacles by name.
     """
 
     def __init__(self) -> None:
@@ -34,17 +34,17 @@ class Obstacles:
         self._count = 0
 
     def add(self, x: float, y: float, radius: float) -> Obstacle:
-        """Put an obstacle at a point, and give it a name."""
+        """Add an obstacle at a point; return it with its new name."""
         self._count += 1
         obstacle = Obstacle(f"obstacle_{self._count}", x, y, radius)
         self.by_name[obstacle.name] = obstacle
         return obstacle
 
     def remove(self, name: str) -> Obstacle:
-        """Take an obstacle away.
+        """Remove an obstacle.
 
         Raises:
-            UsageError: it does not exist.
+            UsageError: the obstacle does not exist.
         """
         if name not in self.by_name:
             raise UsageError(f"unknown obstacle: `{name}`")

@@ -1,7 +1,7 @@
-"""People walking through a world, from point to point of their paths.
+"""People who walk through a world, from point to point of their paths.
 
-A person stops in front of a closed door, and of a robot: 0.3 m away, or on contact if careless.  People pass
-through each other.  A robot that drives into a person is held like by a wall.
+A person stops in front of a closed door, and of a robot: at 0.3 m, or on contact if careless. People pass through each
+other. A person blocks a robot like a wall.
 """
 
 import math
@@ -14,9 +14,9 @@ from jacaros.sim.description import Door, PersonDescription
 from jacaros.sim.robot.robot import Robot
 
 DISTANCE = 0.3
-"""Metres that a careful person keeps from robots in front, and each person from closed doors."""
+"""Distance in metres that a careful person keeps from robots in front, and every person from closed doors."""
 _ELBOW = 0.05
-"""Metres by which a careful person passes robots at its side."""
+"""Distance in metres at which a careful person passes robots at its side."""
 _AHEAD = 0.01
 
 
@@ -25,10 +25,10 @@ class Person:
 
     Attributes:
         description: name, size and path.
-        x, y: where it is, in metres.
-        vx, vy: its velocity, in m/s; 0 while it stands.
-        direction: where it walks next, as a unit vector.
-        waits_for: name of the robot or door that it stops for, "" for none.
+        x, y: position, in metres.
+        vx, vy: velocity, in m/s; 0 while standing.
+        direction: direction of the next step, as a unit vector.
+        waits_for: name of the robot or door that blocks the person, "" for none.
     """
 
     def __init__(self, description: PersonDescription) -> None:
@@ -43,7 +43,7 @@ class Person:
         self._walks = self._turn()
 
     def step(self, dt: float, in_the_way: Callable[["Person"], str]) -> bool:
-        """Walk for *dt* seconds, if nothing is *in_the_way* (its name, or ""); gives whether the velocity has changed."""
+        """Walk for *dt* seconds unless *in_the_way* names an obstacle; return whether the velocity has changed."""
         before = (self.vx, self.vy)
         self.waits_for = ""
         self.vx = self.vy = 0.0
@@ -67,7 +67,7 @@ class Person:
         self._walks = self._turn()
 
     def _turn(self) -> bool:
-        """Set out for the next point; False at the end of the path."""
+        """Turn to the next point; return False at the end of the path."""
         path = self.description.path
         if self._next + 1 == len(path) and not self.description.loop:
             return False
@@ -83,12 +83,12 @@ class People:
     """The people of a world.
 
     Args:
-        descriptions: the people at the start.
+        descriptions: people at the start.
         tell: takes the events of a person: ``person_walks`` (vx, vy), ``person_stands`` (waits_for),
             ``person_comes`` (radius, color, path, loop) and ``person_goes``.
 
     Attributes:
-        by_name: the present people.
+        by_name: people who are present.
     """
 
     def __init__(
@@ -100,19 +100,19 @@ class People:
         self._tell = tell
 
     def add(self, description: PersonDescription) -> Person:
-        """Let a person come.
+        """Add a person.
 
         Raises:
-            UsageError: there is a person of that name.
+            UsageError: the name is taken.
         """
         if description.name in self.by_name:
-            raise UsageError(f"there is a person '{description.name}' already")
+            raise UsageError(f"duplicate name of a person: '{description.name}'")
         person = self.by_name[description.name] = Person(description)
         self._tell(person, "person_comes", description.drawing())
         return person
 
     def remove(self, name: str) -> None:
-        """Let a person go.
+        """Remove a person.
 
         Raises:
             UsageError: the person is unknown.
@@ -122,11 +122,11 @@ class People:
         self._tell(self.by_name.pop(name), "person_goes", {})
 
     def circles(self) -> list[tuple[float, float, float]]:
-        """Where people are, as lasers see them: centres and radii, in metres."""
+        """Return the circles that lasers see: centres and radii, in metres."""
         return [(each.x, each.y, each.description.radius) for each in self.by_name.values()]
 
     def step(self, dt: float, robots: Sequence[Robot], doors: Sequence[Door], walls: WallIndex) -> None:
-        """Let all walk for *dt* seconds, and hold robots off them; *doors* are those that are closed."""
+        """Let everyone walk for *dt* seconds, and push robots away; *doors* are the closed doors."""
 
         def in_the_way(person: Person) -> str:
             return _robot_before(person, robots) or _door_before(person, doors)
@@ -142,7 +142,7 @@ class People:
 
 
 def _robot_before(person: Person, robots: Sequence[Robot]) -> str:
-    """Return the name of the robot ahead that is too near, "" for none; robots behind do not count."""
+    """Return the name of the robot ahead that is too near, "" for none; robots behind are ignored."""
     across, up = person.direction
     distance, elbow = (TOUCHING, 0.0) if person.description.careless else (DISTANCE, _ELBOW)
     for robot in robots:
@@ -159,7 +159,7 @@ def _robot_before(person: Person, robots: Sequence[Robot]) -> str:
 
 
 def _door_before(person: Person, doors: Sequence[Door]) -> str:
-    """The name of the door in front that is too near, "" for none."""
+    """Return the name of the door ahead that is too near, "" for none."""
     across, up = person.direction
     for door in doors:
         near = door.segment.distance(person.x, person.y)

@@ -1,6 +1,6 @@
-"""The world as a process of its own on a ROS graph, with a file of what truly happens in it.
+"""The world as a separate process on a ROS graph, with a ground truth file.
 
-Its time goes out on ``/clock``, for nodes that live in simulated time (ROS's ``use_sim_time``).
+Its time is published on ``/clock``, for nodes in simulated time (ROS's ``use_sim_time``).
 """
 
 import asyncio
@@ -21,19 +21,19 @@ from jacaros.sim.node import SimNode
 from jacaros.sim.world import World
 
 _FLUSH = 0.2
-"""Seconds until a record is in the file."""
+"""Maximum delay in seconds until a record is in the file."""
 
 
 class GroundTruthFile:
-    """Writes the ground truth of a world as JSON lines while it runs; a line is in the file 0.2 s later.
+    """Writes the ground truth of a running world as JSON lines; a line is in the file after at most 0.2 s.
 
-    A context manager; the file ends with an ``end`` record when the world was stopped in good order.
+    A context manager; the file ends with an ``end`` record if the world was stopped normally.
 
     Args:
-        path: of the file.
+        path: output file.
         world: the world.
         epoch: the clock's time (seconds) at which the world's time was 0.
-        warn: takes a line about a file that cannot be written; by default the standard error output.
+        warn: takes a warning that the file cannot be written (default: print it on the standard error output).
 
     Raises:
         OSError: the file cannot be opened.
@@ -49,7 +49,7 @@ class GroundTruthFile:
         self._write(header(truth.world, world.description.seed, epoch))
         for robot in truth.robots:
             self._write({"kind": "sample", "robot": robot, **truth.latest(robot)._asdict()})
-        for event in truth.events:  # faults that are there from the beginning
+        for event in truth.events:  # faults that started with the world
             self._write(event_record(event))
         self._stop_listening = truth.listen(self._write)
 
@@ -86,20 +86,20 @@ async def serve(
     publish_clock: bool = False,
     when_open: Callable[[], None] | None = None,
 ) -> None:
-    """Run *world* as a node of its own until a signal ends it, or for *duration* seconds of the clock.
+    """Run *world* as a separate node until a signal ends it, or for *duration* seconds of the clock.
 
     Args:
         world: the world.
-        backend: a backend of its own; it is started and closed here.
-        clock: the clock that the world follows.
-        duration: seconds, or None for no end.
-        ground_truth_path: file to write; `jacaros.sim.ground_truth.GroundTruth.read` reads it.
-        publish_clock: whether *clock* goes to ``/clock``, for nodes in simulated time.
-        when_open: called as soon as the robots are in the graph.
+        backend: backend for this node; it is started and closed here.
+        clock: clock that the world follows.
+        duration: seconds; None for no limit.
+        ground_truth_path: file to write, for `jacaros.sim.ground_truth.GroundTruth.read`.
+        publish_clock: whether to publish *clock* on ``/clock``, for nodes in simulated time.
+        when_open: called as soon as the robots have joined the graph.
 
     Raises:
         OSError: the file cannot be written.
-        RosError: the backend refuses a name or a type.
+        RosError: the backend rejects a name or a type.
     """
     stop = asyncio.Event()
     loop = asyncio.get_running_loop()
@@ -151,11 +151,11 @@ PERIOD = 0.01
 
 
 class ClockPublisher:
-    """Publishes ``rosgraph_msgs/msg/Clock`` on ``/clock``, a hundred times a second.
+    """Publishes ``rosgraph_msgs/msg/Clock`` on ``/clock``, 100 times per second.
 
     Args:
-        clock: the clock that the world follows.
-        backend: the graph; it is started already.
+        clock: clock that the world follows.
+        backend: graph; already started.
     """
 
     def __init__(self, clock: Clock, backend: Backend) -> None:
@@ -167,14 +167,14 @@ class ClockPublisher:
 
     def _tick(self) -> None:
         self._timer = self._clock.call_later(PERIOD, self._tick)
-        # A clock must not run back, whatever the machine's does.
+        # This clock must not go back, even if that of the machine does.
         self._last = max(self._last, self._clock.now())
         message = self._publisher.message()
         stamp(message.clock, self._last)
         self._publisher.publish(message)
 
     def close(self) -> None:
-        """Leave the topic."""
+        """Withdraw the topic."""
         if self._timer is not None:
             self._timer.cancel()
         self._publisher.close()

@@ -1,4 +1,4 @@
-"""Switches of the world in the graph: doors and faults."""
+"""Switches of the world in the ROS graph: doors and faults."""
 
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -14,9 +14,9 @@ class SwitchService:
     """A service of type ``std_srvs/srv/SetBool``; where that type is not installed, log a warning and offer nothing.
 
     Args:
-        time: the world, on a clock.
-        backend: the graph; it is started already.
-        name: of the service.
+        time: the world on a clock.
+        backend: graph; already started.
+        name: name of the service.
         switch: switches on (True) or off; returns why it cannot, or None.
     """
 

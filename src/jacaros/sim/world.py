@@ -1,6 +1,6 @@
 """The running world: robots on a plane with walls, stepped at a fixed rate.
 
-It knows no clock, no middleware and no agents: `jacaros.sim.node` joins it to those.  The same description
+It is independent of clocks, middleware and agents: `jacaros.sim.node` connects it to those.  The same description
 and seed and the same commands at the same steps give the same run, to the last bit.
 """
 
@@ -29,31 +29,31 @@ STEP = 0.02
 """Length of a step in seconds: 50 Hz."""
 SAMPLES_PER_SECOND = 10
 DOOR_ROOM = 0.25
-"""Metres that a robot must be off a door that is to be closed."""
+"""Metres that a robot must be away from a door for it to close."""
 
 
 class World:
     """A world and its robots.
 
     Attributes:
-        description: what it was made from.
-        time: seconds since it began.
-        robots: the robots by name, in the order of the file.
-        doors: whether the doors, by name, are open.
-        segments: all walls, and the doors that are closed.
-        cleaning: the dirt, and the robots' tools that are at work.
-        people: the people who walk about, by name.
-        obstacles: what was put on the floor during the run.
-        objects: what robots with a gripper can carry.
-        faults: what may go wrong.
-        dead_docks: names of docks that give no current.
-        stuck_doors: doors with a fault, and whether the next request to move them fails.
+        description: the description that it was made from.
+        time: seconds since the start of the world.
+        robots: robots by name, in the order of the file.
+        doors: whether each door, by name, is open.
+        segments: all walls and closed doors.
+        cleaning: the dirt, and the running cleaning tools.
+        people: people who walk about, by name.
+        obstacles: obstacles put on the floor during the run.
+        objects: objects that grippers can carry.
+        faults: faults of the fault file.
+        dead_docks: names of docks without charging current.
+        stuck_doors: stuck doors, and whether the next request to move each fails.
     """
 
     def __init__(
         self, description: WorldDescription, seed: int | None = None, faults: Iterable[Fault] = ()
     ) -> None:
-        """*seed* replaces the one of the description; *faults* may happen."""
+        """Make a world from its description; *seed* overrides that of the description, and *faults* can be triggered."""
         self.description = description if seed is None else replace(description, seed=seed)
         self.time = 0.0
         self.robots = {
@@ -85,12 +85,12 @@ class World:
         """Make a world from a file, from the name of a shipped world, or from the text of a world file.
 
         Args:
-            source: of the world.
-            seed: in place of the file's.
-            faults: a fault file, or its text; None: nothing goes wrong.
+            source: path, name or text of the world.
+            seed: seed for noise, instead of that in the file.
+            faults: path or text of a fault file; None for no faults.
 
         Raises:
-            WorldError: a file is missing or wrong.
+            WorldError: a file does not exist or has mistakes.
         """
         text = isinstance(source, str) and "\n" in source
         description = read_world(str(source)) if text else load_world(str(source))
@@ -98,11 +98,13 @@ class World:
             return cls(description, seed)
         from jacaros.sim.faults.file import load_faults, read_faults
 
-        told = str(faults)
+        fault_text = str(faults)
         return cls(
             description,
             seed,
-            read_faults(told, description) if "\n" in told else load_faults(told, description),
+            read_faults(fault_text, description)
+            if "\n" in fault_text
+            else load_faults(fault_text, description),
         )
 
     @property
@@ -120,31 +122,31 @@ class World:
         return self._truth.events
 
     def robot(self, name: str | None = None) -> Robot:
-        """The robot of that name; the first one when none is given.
+        """Return the robot with that name; the first one by default.
 
         Raises:
-            UsageError: there is no such robot.
+            UsageError: the name is unknown.
         """
         if name is None and self._row:
             return self._row[0]
         if name not in self.robots:
             raise UsageError(
-                f"world '{self.description.name}' has no robot '{name}', only: {', '.join(self.robots)}"
+                f"unknown robot '{name}' in world '{self.description.name}'; robots: {', '.join(self.robots)}"
             )
         return self.robots[name]
 
     def room_at(self, x: float, y: float) -> str | None:
-        """Name of the room at a point, None outside of all; the first one of the file where two overlap."""
+        """Return the name of the room at a point; None outside all rooms, the first of the file where two overlap."""
         return next((room.name for room in self.description.rooms if room.area.contains(x, y)), None)
 
     def command(self, name: str, speed: float, turn_rate: float) -> None:
-        """Command a robot (m/s, rad/s); the next step obeys."""
+        """Command a robot (m/s, rad/s); takes effect at the next step."""
         self.robot(name).command(speed, turn_rate)
 
     def log_task(self, name: str, text: str) -> None:
-        """Take note that the robot says it does a cleaning task, with the room it truly is in.
+        """Record the task that a robot announces, with the room that it is in.
 
-        The first word of *text* names the tool that it uses from now on, if it has such a tool.
+        If the first word of *text* names a cleaning tool of the robot, start that tool.
         """
         robot = self.robot(name)
         self._note(robot, "task", {"task": text, "room": self.room_at(robot.x, robot.y)})
@@ -155,7 +157,7 @@ class World:
         self._note(self.robot(name), kind, data)
 
     def use_tool(self, name: str, tool: str) -> None:
-        """Start a cleaning tool of a robot, instead of the one before; "", or what is not a tool of it, stops."""
+        """Start a cleaning tool of a robot, instead of the running one; "" or an unknown name only stops it."""
         self.cleaning.use(self.robot(name), tool)
 
     def _put_up_walls(self) -> None:
@@ -170,14 +172,14 @@ class World:
         """Open or close a door.
 
         Returns:
-            Why it cannot be closed: a robot or a person is in it, or almost; None when it is done.
+            Why the door cannot close (a robot or a person is in the way); None on success.
 
         Raises:
-            UsageError: there is no such door.
+            UsageError: the door is unknown.
         """
         door = next((door for door in self.description.doors if door.name == name), None)
         if door is None:
-            raise UsageError(f"world '{self.description.name}' has no door '{name}'")
+            raise UsageError(f"unknown door '{name}' in world '{self.description.name}'")
         if self.doors[name] == opened:
             return None
         if not opened:
@@ -196,12 +198,12 @@ class World:
         return None
 
     def scan(self, name: str) -> list[float]:
-        """The ranges (metres) that a robot's laser measures now."""
+        """Return the ranges that a robot's laser measures now, in metres."""
         robot = self.robot(name)
         return self.laser(name).scan(robot.x, robot.y, robot.yaw, self.others(robot))
 
     def others(self, robot: Robot) -> list[Circle]:
-        """All other robots, people and obstacles: what *robot*'s laser sees where no wall hides it (metres)."""
+        """Return all other robots, people and obstacles (metres): what *robot*'s laser sees unless a wall hides it."""
         others = [(other.x, other.y, other.description.radius) for other in self._row if other is not robot]
         if self.people:
             others += self._people.circles()
@@ -210,7 +212,7 @@ class World:
         return others
 
     def laser(self, name: str) -> Laser:
-        """A robot's laser, made when it is first asked for."""
+        """Return a robot's laser, created on first use."""
         if name not in self._lasers:
             settings = self.robot(name).description.laser
             seed = f"{self.description.seed}/{name}/laser"
@@ -218,33 +220,33 @@ class World:
         return self._lasers[name]
 
     def add_person(self, description: PersonDescription) -> Person:
-        """Let a person come, who stands at the first point of the path.
+        """Add a person at the first point of the path.
 
         Raises:
             UsageError: a person or a robot has that name, or a robot stands there.
         """
         if description.name in self.robots:
-            raise UsageError(f"there is a robot '{description.name}' already")
+            raise UsageError(f"the name '{description.name}' belongs to a robot")
         x, y = description.path[0]
         for robot in self._row:
             dx, dy, reach = robot.x - x, robot.y - y, robot.description.radius + description.radius
             if dx * dx + dy * dy < reach * reach:
-                raise UsageError(f"{robot.name} stands where '{description.name}' is to come")
+                raise UsageError(f"no room for '{description.name}': {robot.name} is in the way")
         return self._people.add(description)
 
     def remove_person(self, name: str) -> None:
-        """Let a person go.
+        """Remove a person.
 
         Raises:
-            UsageError: there is no such person.
+            UsageError: the person is unknown.
         """
         self._people.remove(name)
 
     def place(self, name: str, x: float, y: float, yaw: float | None = None) -> None:
-        """Put a robot down at another place, in metres and radians; the heading stays unless *yaw* is given.
+        """Put a robot down at another place, in metres and radians; the heading is kept unless *yaw* is given.
 
         Raises:
-            UsageError: the robot does not exist, or something is in the way there.
+            UsageError: the robot is unknown, or something is in the way.
         """
         robot = self.robot(name)
         self.check_room(x, y, robot.description.radius, robot.name)
@@ -256,10 +258,10 @@ class World:
         """Put a round obstacle on the floor, in metres.
 
         Raises:
-            UsageError: the radius is not in 0.02 to 2, or something is in the way there.
+            UsageError: the radius is not between 0.02 and 2, or something is in the way.
         """
         if not 0.02 <= radius <= 2.0:
-            raise UsageError("the radius of an obstacle must be in 0.02 to 2 metres")
+            raise UsageError("the radius of an obstacle must be between 0.02 and 2 metres")
         self.check_room(x, y, radius)
         obstacle = self.obstacles.add(x, y, radius)
         data = {"obstacle": obstacle.name, "x": x, "y": y, "radius": radius}
@@ -267,7 +269,7 @@ class World:
         return obstacle
 
     def remove_obstacle(self, name: str) -> None:
-        """Take an obstacle away.
+        """Remove an obstacle.
 
         Raises:
             UsageError: it does not exist.
@@ -281,20 +283,20 @@ class World:
         """Set the level of a robot's battery, in percent.
 
         Raises:
-            UsageError: the robot does not exist, or the level is not in 0 to 100.
+            UsageError: the robot is unknown, or the level is not between 0 and 100.
         """
         robot = self.robot(name)
         if not 0.0 <= level <= 100.0:
-            raise UsageError("the level of a battery must be in 0 to 100 percent")
+            raise UsageError("the level of a battery must be between 0 and 100 percent")
         robot.battery.level = level
         robot.battery.feed(robot.battery.charging)
         self._note(robot, "battery_set", {"level": level})
 
     def check_room(self, x: float, y: float, radius: float, but_for: str = "") -> None:
-        """Refuse a place for something round.
+        """Check that there is room for something round at a point.
 
         Raises:
-            UsageError: it is outside of the world, in a wall or a box, or something else is there.
+            UsageError: the point is outside of the world, in a wall or a box, or something is in the way.
         """
         if not self.description.bounds.contains(x, y):
             raise UsageError(f"({x:.2f}, {y:.2f}) is outside of the world")
@@ -309,7 +311,7 @@ class World:
             raise UsageError(f"no room at ({x:.2f}, {y:.2f}): {name} is in the way")
 
     def step(self, dt: float = STEP) -> None:
-        """Let *dt* seconds pass."""
+        """Advance the world by *dt* seconds."""
         # Rounded to a nanosecond: fifty steps make a second, not almost a second.
         self.time = round(self.time + dt, 9)
         if self.time >= self.faults.next:
@@ -335,7 +337,7 @@ class World:
             self._sample_robots(all_of_them=False)
 
     def run(self, seconds: float) -> None:
-        """Make as many steps as *seconds* have; commands stay as they are, and time out."""
+        """Advance the world by *seconds*; commands stay unchanged, and time out."""
         for _ in range(round(seconds / STEP)):
             self.step()
 
@@ -375,7 +377,7 @@ class World:
             moved()
 
     def when_moved(self, moved: Callable[[], None]) -> Callable[[], None]:
-        """Have *moved* called ten times a second, when it has been noted where the robots are; returns what ends that."""
+        """Call *moved* ten times a second after the poses of robots were recorded; return a function that stops this."""
         self._move_listeners = (*self._move_listeners, moved)
 
         def end() -> None:
@@ -387,13 +389,13 @@ class World:
         self._truth.record_event(Event(self.time, robot.name, kind, robot.x, robot.y, robot.yaw, data))
 
     def note_fault(self, name: str, data: dict[str, Any]) -> None:
-        """Take note that a fault begins or ends; *name* is of the robot that it happens to, "" for none."""
+        """Record that a fault starts or ends; *name* is the affected robot, "" for none."""
         if name:
             self._note(self.robot(name), "fault", data)
         else:
             self._truth.record_event(Event(self.time, "", "fault", 0.0, 0.0, 0.0, data))
 
     def _note_person(self, person: Person, kind: str, data: dict[str, Any]) -> None:
-        # The place is in the data too: those who watch a run are not told the poses of events.
+        # The place is in the data too: observers of a run do not receive the poses of events.
         where = {"person": person.name, "x": person.x, "y": person.y}
         self._truth.record_event(Event(self.time, "", kind, person.x, person.y, 0.0, {**where, **data}))

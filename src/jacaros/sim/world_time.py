@@ -1,4 +1,4 @@
-"""Joins a world to a clock: on each access, the world makes all steps that are due."""
+"""Connects a world to a clock: on each access, the world makes all steps that are due."""
 
 import math
 
@@ -6,18 +6,18 @@ from jacaros.clock import Clock
 from jacaros.sim.world import STEP, World
 
 SET_BACK = 0.1
-"""Seconds by which a clock is behind the world when it was set back; rounding is less."""
+"""Seconds that a clock must be behind the world to count as set back; rounding errors are smaller."""
 
 _NEARLY = 1e-3
-"""Part of a step by which a float's error may make a step seem not yet due."""
+"""Fraction of a step by which a rounding error may make a step seem not yet due."""
 
 
 class WorldTime:
     """The time of a world on a clock.
 
-    A world cannot be seen but through its messages, so it is stepped just before something is published or
-    commanded, several steps of 20 ms at once: a command applies at the first step after the moment it came,
-    exactly as if the steps had been made one by one, and a virtual run need not stop fifty times a second.
+    A world is visible only through its messages. It is therefore stepped just before a message is published or a command
+    arrives, several steps of 20 ms in a row. A command takes effect at the first step after its arrival, exactly as if the
+    steps had been made one by one, and a virtual run need not stop fifty times a second.
 
     Attributes:
         world: the world.
@@ -36,7 +36,7 @@ class WorldTime:
             self.world.step()
 
     def passed(self) -> float:
-        """Seconds since the world began; when the clock was set back the world goes on from where it is."""
+        """Seconds since the world began; if the clock is set back, the world continues from its current state."""
         passed = self.clock.now() - self.epoch
         if passed < self.world.time - SET_BACK:
             self.epoch = self.clock.now() - self.world.time
@@ -44,5 +44,5 @@ class WorldTime:
         return passed
 
     def now(self) -> float:
-        """When the present state of the world was, on the clock (seconds): the stamp of its messages."""
+        """Time of the current state on the clock (seconds): the stamp of its messages."""
         return self.epoch + self.world.time

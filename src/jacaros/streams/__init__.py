@@ -5,9 +5,9 @@ docs/reference/derived_events.md defines them.
 ============================================== =======================================================================
 file                                           what it holds
 ============================================== =======================================================================
-`schema`                                       operators with their options; what is wrong with a declaration
+`schema`                                       operators with their options; checks of declarations
 `pattern`                                      one derived event: puts late events in order, drives an operator
-`operator`, `condition`                        what operators share
+`operator`, `condition`                        the interface and conditions of operators
 `counting`, `aggregates`, `share`              sliding windows
 `states`, `area`                               hysteresis, debounce, held, delayed; inside an area
 `order`                                        sequence, absence
@@ -15,5 +15,5 @@ file                                           what it holds
 `together`, `interpolated`                     samples with nearby stamps; values at the stamps of another stream
 ============================================== =======================================================================
 
-The package knows no clock: the host passes times, and asks `Pattern.deadline` when to call `Pattern.advance` next.
+The package has no clock: the host passes times, and calls `Pattern.advance` at `Pattern.deadline`.
 """

@@ -1,6 +1,6 @@
 """Mean, minimum, maximum and slope of the numbers in a sliding window.
 
-The value is that of the window which ends with the newest event; it is withdrawn when that event leaves the window.
+The result is that of the window that ends with the newest event; it is withdrawn when that event leaves the window.
 """
 
 import math
@@ -11,12 +11,12 @@ from jacaros.streams.operator import Emit, Operator, Values, number_at
 
 
 class Aggregate(Operator):
-    """A number that is worked out of the window.
+    """A number computed from the window.
 
     Args:
-        within: seconds of the window.
-        place: which of an event's values counts, from 0.
-        condition: show a state while it holds of the number; an open one shows the number.
+        within: length of the window, in seconds.
+        place: index of the value of an event to use, from 0.
+        condition: show a state while it holds for the number; an open condition shows the number.
     """
 
     __slots__ = ("_condition", "_place", "_within")
@@ -44,7 +44,7 @@ class Aggregate(Operator):
         self.hide()
 
     def add(self, time: float, value: float) -> float | None:
-        """Put a number into the window and return the aggregate; None if there is none."""
+        """Put a number into the window and return the aggregate; None without a value."""
         raise NotImplementedError
 
     def clear(self) -> None:
@@ -53,7 +53,7 @@ class Aggregate(Operator):
 
 
 class Extreme(Aggregate):
-    """The maximum (*sign* 1) or minimum (-1): candidates in a deque, each beyond those behind it."""
+    """The maximum (*sign* 1) or minimum (-1): candidates in a deque, each beyond those after it."""
 
     __slots__ = ("_candidates", "_sign")
 
@@ -77,10 +77,10 @@ class Extreme(Aggregate):
 
 
 class Summed(Aggregate):
-    """An aggregate of running sums.
+    """An aggregate computed from running sums.
 
-    The sums are worked out anew whenever as many numbers have left the window as are in it, so that rounding errors do
-    not add up; for each number that is a constant effort.
+    The sums are recomputed whenever as many numbers have left the window as are in it, so that rounding errors do not
+    accumulate; this costs constant time per number.
     """
 
     __slots__ = ("_left", "_samples")
@@ -113,7 +113,7 @@ class Summed(Aggregate):
         self._samples.clear()
 
     def begin(self, time: float, value: float) -> None:
-        """Begin with empty sums, relative to this time and value."""
+        """Reset the sums, relative to this time and value."""
         raise NotImplementedError
 
     def count(self, time: float, value: float, sign: float) -> None:

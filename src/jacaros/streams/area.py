@@ -15,13 +15,13 @@ class Circle:
     radius: float
 
     def distance(self, x: float, y: float) -> float:
-        """Return the metres to the area, 0 in it."""
+        """Return the distance to the area in metres, 0 inside."""
         return max(0.0, math.hypot(x - self.x, y - self.y) - self.radius)
 
 
 @dataclass(frozen=True, slots=True)
 class Rectangle:
-    """A rectangle with its sides along the axes, in metres."""
+    """An axis-aligned rectangle, in metres."""
 
     left: float
     bottom: float
@@ -29,14 +29,14 @@ class Rectangle:
     top: float
 
     def distance(self, x: float, y: float) -> float:
-        """Return the metres to the area, 0 in it."""
+        """Return the distance to the area in metres, 0 inside."""
         across = max(self.left - x, 0.0, x - self.right)
         along = max(self.bottom - y, 0.0, y - self.top)
         return math.hypot(across, along)
 
 
 class Inside(Operator):
-    """Begins when the first two values are in the area, ends when they are more than *margin* metres outside."""
+    """Starts when the first two values are in the area, ends when they are more than *margin* metres outside."""
 
     __slots__ = ("_area", "_margin", "_place")
 

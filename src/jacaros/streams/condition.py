@@ -5,7 +5,7 @@ from typing import Final
 
 
 class _Anything:
-    """Stands for "no value is required"."""
+    """Marks that no value is required."""
 
 
 ANYTHING: Final = _Anything()
@@ -13,11 +13,11 @@ ANYTHING: Final = _Anything()
 
 @dataclass(frozen=True, slots=True)
 class Condition:
-    """What a value must satisfy; every part that is given must hold.
+    """A condition on a value; all given parts must hold.
 
     Attributes:
-        above, below: limits that the number must exceed, or stay under; None for no limit.
-        equals: the value itself.
+        above, below: exclusive limits; None for no limit.
+        equals: required value.
     """
 
     above: float | None = None
@@ -26,11 +26,11 @@ class Condition:
 
     @property
     def is_open(self) -> bool:
-        """Whether every value satisfies it."""
+        """Whether every value satisfies the condition."""
         return self.above is None and self.below is None and self.equals is ANYTHING
 
     def holds(self, value: object) -> bool:
-        """Whether *value* satisfies the condition; values that are not numbers never exceed a limit."""
+        """Return whether *value* satisfies the condition; values that are not numbers never exceed a limit."""
         if self.equals is not ANYTHING and value != self.equals:
             return False
         if self.above is None and self.below is None:

@@ -1,4 +1,4 @@
-"""How many events are in a sliding window; whether each of several streams has one there."""
+"""The number of events in a sliding window, and whether each of several streams has one there."""
 
 import math
 from collections import deque
@@ -10,8 +10,8 @@ class Count(Operator):
     """The number of events in the window.
 
     Args:
-        within: seconds of the window.
-        at_least: show a state while there are that many; None: show the number.
+        within: length of the window, in seconds.
+        at_least: show a state while there are that many events; None to show the number.
     """
 
     __slots__ = ("_at_least", "_times", "_within")
@@ -27,7 +27,7 @@ class Count(Operator):
         times = self._times
         times.append(time)
         if self._at_least is not None and len(times) > self._at_least:
-            times.popleft()  # whether there are enough depends on the newest ones alone
+            times.popleft()  # only the newest events decide whether there are enough
         self._look(time)
 
     def advance(self, time: float) -> None:
@@ -51,7 +51,7 @@ class All(Operator):
 
     Args:
         count: number of streams.
-        within: seconds of the window.
+        within: length of the window, in seconds.
     """
 
     __slots__ = ("_newest", "_within")

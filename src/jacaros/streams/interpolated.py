@@ -1,4 +1,4 @@
-"""The values of streams at the times of another one: a pose at the stamp of a scan."""
+"""The values of streams at the times of another stream: a pose at the stamp of a scan."""
 
 import math
 from bisect import bisect_left, bisect_right
@@ -11,16 +11,16 @@ from jacaros.streams.operator import Emit, Values, number_at
 class Interpolated(Joining):
     """Shows, for samples of the first stream, their values and those of the other streams at the same time.
 
-    Numbers are interpolated linearly between the samples before and after, of which neither may be further away than
-    *within*; other values are those of the sample before.  A sample waits until those after it have come.  Samples of the
-    first stream that are older than one that was shown are dropped.
+    Numbers are interpolated linearly between the samples before and after, neither of which may be further away than
+    *within*; other values are those of the sample before. A sample waits until the samples after it have arrived. Samples
+    of the first stream that are older than one already shown are dropped.
 
     Args:
         count: number of streams.
-        within: seconds to the samples before and after, at most.
-        lateness: seconds for which a sample waits beyond that.
-        turns: of each value of the others, one stream behind the other, the whole turn of an angle in its unit; 0, or
-            nothing, for values that are not angles.
+        within: maximum seconds to the samples before and after.
+        lateness: further seconds for which a sample waits.
+        turns: for each value of the other streams, in order, the full turn of an angle in its unit; 0 or nothing for other
+            values.
     """
 
     __slots__ = ("_turns", "_within")
@@ -32,7 +32,7 @@ class Interpolated(Joining):
         self._within, self._turns = within, tuple(turns)
 
     def join(self, source: int, place: int, time: float) -> None:
-        """Show the samples of the first stream for which all that is needed has come, in their order."""
+        """Show the samples of the first stream whose neighbours have all arrived, in order."""
         for due, values in list(zip(self._times[0], self._values[0], strict=True)):
             made = self._made(due, values)
             if made is not None:
@@ -71,7 +71,7 @@ class Interpolated(Joining):
 
 
 def _on_the_way(first: float, last: float, part: float, turn: float) -> float:
-    """The number between two; of angles on the shorter way, within half a turn of zero."""
+    """Return the value between two numbers; for angles on the shorter arc, within half a turn of zero."""
     if not turn:
         return first + part * (last - first)
     way = math.remainder(last - first, turn)

@@ -1,4 +1,4 @@
-"""What operators share that join samples of several streams by their times: the samples that still count."""
+"""The buffers of operators that join samples of several streams by time."""
 
 import math
 from bisect import bisect_left, bisect_right
@@ -8,10 +8,10 @@ from jacaros.streams.operator import Emit, Operator, Values
 
 
 class Joining(Operator):
-    """Keeps the samples of each stream, in the order of their times, for as long as a partner may come.
+    """Keeps the samples of each stream in time order, for as long as a partner may arrive.
 
     Args:
-        retention: for each stream, the seconds that a sample is kept after the newest one of all.
+        retention: for each stream, the seconds that a sample is kept after the newest sample of all streams.
     """
 
     ordered = False
@@ -48,11 +48,11 @@ class Joining(Operator):
         self.deadline = math.inf
 
     def join(self, source: int, place: int, time: float) -> None:
-        """Show what follows from a new sample, which is at *place* among those of its stream."""
+        """Emit the consequences of a new sample, which is at *place* among those of its stream."""
         raise NotImplementedError
 
     def use(self, source: int, place: int) -> None:
-        """Use a sample: it and those before it are not used again."""
+        """Use a sample: it and earlier ones are not used again."""
         self._used[source] = self._times[source][place]
         del self._times[source][: place + 1], self._values[source][: place + 1]
 

@@ -1,4 +1,4 @@
-"""What all operators share: the port to their pattern."""
+"""The interface of all operators to their pattern."""
 
 import math
 from collections.abc import Callable
@@ -6,24 +6,24 @@ from collections.abc import Callable
 Values = tuple[object, ...]
 
 SHOW, HIDE, OCCUR = "show", "hide", "occur"
-"""Kinds of output: the derived state begins or changes its values, it ends, or something happened."""
+"""Kinds of output: the derived state begins or changes its values; it ends; an occurrence."""
 
 Emit = Callable[[str, Values], None]
 """Takes the kind of an output and its values (empty for `HIDE`)."""
 
 
 class Operator:
-    """Takes events in the order of their times and emits what follows from them.
+    """Takes events in time order and emits their consequences.
 
-    The pattern calls `advance` for each deadline before it passes a later event.
+    The pattern calls `advance` at each deadline before it passes a later event.
 
     Args:
         emit: takes the outputs.
 
     Attributes:
-        ordered: whether events must come in the order of their times; otherwise the operator orders them itself.
-        deadline: when the output may change without an event, in seconds; infinite for never.
-        shown: values of the state that holds, None when it does not.
+        ordered: whether events must arrive in time order; otherwise the operator orders them itself.
+        deadline: time in seconds at which the output may change without an event; infinite for never.
+        shown: values of the current state, None without one.
     """
 
     ordered = True
@@ -36,21 +36,21 @@ class Operator:
         self.shown: Values | None = None
 
     def take(self, source: int, time: float, values: Values | None) -> None:
-        """Take an event.
+        """Process an event.
 
         Args:
-            source: the number of its stream.
-            time: seconds since the beginning of the pattern.
-            values: of the event; None when the state that the stream shows ended.
+            source: number of its stream.
+            time: seconds since the start of the pattern.
+            values: values of the event; None if the state shown by the stream ended.
         """
         raise NotImplementedError
 
     def advance(self, time: float) -> None:
-        """Let time pass until *time*, at which `deadline` is reached."""
+        """Advance to *time*, at which `deadline` is reached."""
         raise NotImplementedError
 
     def show(self, values: Values) -> None:
-        """Emit that the state holds with *values*, unless it does already."""
+        """Emit that the state holds with *values*, unless it already does."""
         if values != self.shown:
             self.shown = values
             self._emit(SHOW, values)
@@ -74,7 +74,7 @@ class Operator:
 
 
 def number_at(values: Values | None, place: int) -> float | None:
-    """Return the finite number at *place*; None if there is none."""
+    """Return the finite number at *place*; None otherwise."""
     if values is None or place >= len(values):
         return None
     value = values[place]

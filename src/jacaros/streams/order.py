@@ -1,4 +1,4 @@
-"""Events one after the other, and events that do not come."""
+"""Sequences of events, and events that do not come."""
 
 import math
 from collections import deque
@@ -8,14 +8,14 @@ from jacaros.streams.operator import Emit, Operator, Values
 
 
 class Chain(Operator):
-    """One event after the other; occurs with the last one, if the first was less than *within* seconds before.
+    """A sequence of events; occurs with the last one, if the first was less than *within* seconds before.
 
-    Of all chains that end with an event, the one that began last counts; no event is used up.  For that, the latest
-    beginning of each part of the chain is all that must be kept.
+    Of all chains that end with an event, the one with the latest start counts; events can be used repeatedly. Therefore
+    only the latest start of each prefix of the chain is stored.
 
     Args:
-        steps: the numbers of the streams, in the order of the chain.
-        within: seconds.
+        steps: numbers of the streams, in the order of the chain.
+        within: maximum duration in seconds.
     """
 
     __slots__ = ("_begun", "_steps", "_within")
@@ -40,7 +40,7 @@ class Chain(Operator):
 
 
 class Absent(Operator):
-    """Holds while the newest event, or the beginning of the pattern, is *lasting* seconds or longer ago."""
+    """Holds while the newest event, or the start of the pattern, is *lasting* seconds or longer ago."""
 
     __slots__ = ("_lasting",)
 

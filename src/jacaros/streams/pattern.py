@@ -1,4 +1,4 @@
-"""One derived event: takes events of its streams, puts late ones in order, and drives its operator."""
+"""One derived event: takes events of its streams, sorts late ones, and drives its operator."""
 
 import heapq
 import itertools
@@ -15,17 +15,17 @@ _DATA = (bool, int, float, str, tuple, list, deque, type(None))
 class Pattern:
     """The incremental evaluation of one declaration.
 
-    Event times are seconds of any clock. The *watermark* is the event time up to which everything is known: the time of
-    the newest event or of the last `advance`, whichever is later, minus the lateness. Events are evaluated in the order
-    of their times when the watermark reaches them; those older than the watermark are dropped.
+    Event times are seconds of any clock. The *watermark* is the event time up to which all events are known: the time
+    of the newest event or of the last `advance`, whichever is later, minus the lateness. Events are evaluated in time
+    order when the watermark reaches them; events older than the watermark are dropped.
 
     Args:
-        spec: what is declared, without mistakes.
-        start: the time at which the pattern begins.
+        spec: a valid declaration.
+        start: start time of the pattern.
         emit: takes the outputs, in order.
 
     Attributes:
-        dropped: how many events came too late.
+        dropped: number of events that arrived too late.
     """
 
     __slots__ = ("_dropped", "_early", "_lateness", "_mark", "_numbers", "_operator", "_start", "spec")
@@ -46,12 +46,12 @@ class Pattern:
 
     @property
     def dropped(self) -> int:
-        """How many events came too late."""
+        """Number of events that arrived too late."""
         return self._dropped + int(getattr(self._operator, "dropped", 0))
 
     @property
     def deadline(self) -> float:
-        """When `advance` is to be called, if no event comes before; infinite for never."""
+        """Time of the next call of `advance`, unless an event arrives before; infinite for never."""
         if not self._early:
             return self._start + self._operator.deadline + self._lateness
         return self._start + self._due() + self._lateness
@@ -62,12 +62,12 @@ class Pattern:
         return self._early[0][0] if self._early and self._early[0][0] < due else due
 
     def take(self, source: int, time: float, values: Values | None) -> None:
-        """Take an event.
+        """Process an event.
 
         Args:
-            source: the number of its stream among `Spec.streams`.
-            time: of the event, in seconds.
-            values: of the event; None when the state that the stream shows ended.
+            source: number of its stream in `Spec.streams`.
+            time: time of the event, in seconds.
+            values: values of the event; None if the state shown by the stream ended.
         """
         time -= self._start
         operator = self._operator
@@ -85,7 +85,7 @@ class Pattern:
             operator.take(source, time, values)
 
     def state(self) -> dict[str, Any]:
-        """Return all that the past has left, as numbers, tuples, lists and dictionaries."""
+        """Return the state of the evaluation, as numbers, tuples, lists and dictionaries."""
         early = [tuple(each) for each in self._early]
         own = {"start": self._start, "mark": self._mark, "early": early, "dropped": self._dropped}
         return {**own, "operator": {name: _plain(value) for name, value in _kept(self._operator)}}
@@ -100,9 +100,9 @@ class Pattern:
             setattr(self._operator, name, deque(value) if isinstance(before, deque) else value)
 
     def advance(self, now: float) -> None:
-        """Let time pass until *now* on the clock of the event times."""
+        """Advance to *now* on the clock of the event times."""
         mark = now - self._start - self._lateness
-        # What is due at *now* is due, whatever was lost by rounding on the way there and back.
+        # Deadlines at *now* are due, despite rounding in the conversion of times.
         self._release(max(mark, self._due()) if self.deadline <= now else mark)
 
     def _release(self, mark: float) -> None:
@@ -116,21 +116,21 @@ class Pattern:
         self._pass(mark)
 
     def _pass(self, time: float) -> None:
-        """Let the operator meet its deadlines up to *time*."""
+        """Advance the operator through its deadlines up to *time*."""
         operator = self._operator
         while (due := operator.deadline) <= time:
             operator.advance(due)
-            if operator.deadline <= due:  # an operator that does not move on would hold everybody up
+            if operator.deadline <= due:  # an operator that makes no progress would block all others
                 operator.deadline = math.nextafter(due, math.inf)
 
 
 def _kept(operator: Operator) -> list[tuple[str, Any]]:
-    """The attributes of an operator that are data."""
+    """Return the attributes of an operator that are data."""
     names = [name for kind in type(operator).__mro__ for name in getattr(kind, "__slots__", ())]
     found = [(name, getattr(operator, name)) for name in names]
     return [(name, value) for name, value in found if isinstance(value, _DATA)]
 
 
 def _plain(value: Any) -> Any:
-    """Data with lists in the place of deques."""
+    """Return data with lists instead of deques."""
     return list(value) if isinstance(value, deque) else value

@@ -1,4 +1,4 @@
-"""The operators by name: what each needs, what is wrong with a declaration, and the making of an operator.
+"""The operators by name: their options, the checks of declarations, and the creation of operators.
 
 Mapping files and programs declare the same operators with the same options, and both are checked here.
 """
@@ -21,10 +21,10 @@ from jacaros.streams.states import Debounce, Delayed, Held, Hysteresis
 from jacaros.streams.together import Together
 
 LONGEST: Final = 86_400.0
-"""Seconds that a window, or a wait for late events, may last: memory is bounded by the window."""
+"""Maximum duration in seconds of a window, or of waiting for late events: the window bounds memory."""
 
 STATE, VALUE, OCCURRENCE = "state", "value", "occurrence"
-"""What an operator gives: a state without values, one with values, or something that happens at a moment."""
+"""Kinds of output: a state without values, a state with values, or an occurrence."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,12 +32,12 @@ class Spec:
     """A declaration.
 
     Attributes:
-        operator: its name, of `OPERATORS`.
-        sources: the streams by name, in the order of the declaration; a chain may name one several times.
+        operator: name in `OPERATORS`.
+        sources: streams by name, in the order of the declaration; a sequence may repeat a stream.
         options: times in seconds.
-        place: which of an event's values counts, from 0.
+        place: index of the value of an event to use, from 0.
         lateness: seconds for which the evaluation waits for late events.
-        turns: for `interpolated`, which values of the streams behind the first are angles: their whole turn, or 0.
+        turns: for `interpolated`, the full turn of each value of the streams after the first that is an angle, or 0.
     """
 
     operator: str
@@ -49,23 +49,23 @@ class Spec:
 
     @property
     def streams(self) -> tuple[str, ...]:
-        """The streams, each once; events are passed with the number of their stream here."""
+        """The streams without repetition; events carry the index of their stream."""
         return tuple(dict.fromkeys(self.sources))
 
     @property
     def gives(self) -> str:
-        """What it gives: `STATE`, `VALUE` or `OCCURRENCE`."""
+        """Kind of output: `STATE`, `VALUE` or `OCCURRENCE`."""
         shape = OPERATORS[self.operator]
         return STATE if shape.gives == VALUE and shape.limits & self.options.keys() else shape.gives
 
 
 class Fault(NamedTuple):
-    """What is wrong with a declaration.
+    """An error in a declaration.
 
     Attributes:
-        option: the option that is wrong; empty for the whole.
-        message: what is wrong.
-        help: what to do about it.
+        option: the invalid option; empty for the whole declaration.
+        message: the error.
+        help: the suggested fix.
     """
 
     option: str
@@ -75,14 +75,14 @@ class Fault(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Shape:
-    """What an operator needs.
+    """The requirements of an operator.
 
     Attributes:
-        meaning: in a few words.
+        meaning: short description.
         gives: `STATE`, `VALUE` or `OCCURRENCE`.
         required, optional: names of options.
-        several: whether it takes a list of two streams or more.
-        limits: options that make a state of the value.
+        several: whether it takes a list of two or more streams.
+        limits: options that turn the value into a state.
     """
 
     meaning: str
@@ -126,7 +126,7 @@ OPERATORS: Final[dict[str, Shape]] = {
     "inside": Shape("a pose is in an area", STATE, (), ("circle", "rectangle", "margin")),
     "absent": Shape("no event for a while", STATE, ("for",)),
     "missing": Shape("an event did not follow another", OCCURRENCE, ("after", "within")),
-    "sequence": Shape("events one after the other", OCCURRENCE, ("within",), several=True),
+    "sequence": Shape("events in this order", OCCURRENCE, ("within",), several=True),
     "all": Shape("an event of each stream in a window", STATE, ("within",), several=True),
     "together": Shape("samples with stamps near each other", VALUE, ("within",), several=True),
     "interpolated": Shape("values at the stamps of the first stream", VALUE, ("within",), several=True),
@@ -134,34 +134,34 @@ OPERATORS: Final[dict[str, Shape]] = {
 """All operators by name."""
 
 PARTNERS_WAIT: Final = 0.5
-"""Seconds of lateness, unless given, where samples of several topics are joined: each topic has a delay of its own."""
+"""Default lateness in seconds where samples of several topics are joined, because the delays of topics differ."""
 
 JOINING: Final = ("together", "interpolated")
 """Operators that join samples by their stamps."""
 
 _ONCE: Final = ("all", "together", "interpolated")
-"""Operators that may not name a stream twice."""
+"""Operators that must not name a stream twice."""
 
 VALUED: Final = frozenset({"mean", "min", "max", "slope", "share", "hysteresis", "held", "inside"})
-"""Operators for which it matters which of an event's values counts."""
+"""Operators that use one value of an event."""
 
 
 def unknown(operator: str) -> Fault:
-    """Return the fault of an operator that does not exist."""
-    from difflib import get_close_matches  # here: only for declarations that are wrong
+    """Return the error for an unknown operator."""
+    from difflib import get_close_matches  # here: only for invalid declarations
 
     near = get_close_matches(operator, OPERATORS, 1)
-    told = f"did you mean `{near[0]}`?" if near else f"operators: {', '.join(OPERATORS)}"
-    return Fault("", f"unknown operator `{operator}`", told)
+    help = f"did you mean `{near[0]}`?" if near else f"operators: {', '.join(OPERATORS)}"
+    return Fault("", f"unknown operator `{operator}`", help)
 
 
 def faults(operator: str, sources: Sequence[str], options: Mapping[str, object]) -> Iterator[Fault]:
-    """Yield all that is wrong with a declaration.
+    """Yield all errors of a declaration.
 
     Args:
         operator: a name of `OPERATORS`.
         sources: as in `Spec`, without the stream of ``after``.
-        options: as they are written, times in seconds.
+        options: options as written, times in seconds.
     """
     shape = OPERATORS[operator]
     if shape.several and len(sources) < 2:
@@ -178,11 +178,11 @@ def faults(operator: str, sources: Sequence[str], options: Mapping[str, object])
             yield Fault("", f"`{operator}` needs `{name}`", _NEEDED[name])
     for name, value in options.items():
         if name not in known:
-            from difflib import get_close_matches  # here: only for declarations that are wrong
+            from difflib import get_close_matches  # here: only for invalid declarations
 
             near = get_close_matches(name, known, 1)
-            told = f"did you mean `{near[0]}`?" if near else f"options: {', '.join(known)}"
-            yield Fault(name, f"`{operator}` has no option `{name}`", told)
+            help = f"did you mean `{near[0]}`?" if near else f"options: {', '.join(known)}"
+            yield Fault(name, f"`{operator}` has no option `{name}`", help)
         elif (fault := _KINDS[name](name, value)) is not None:
             yield fault
     yield from _CHECKS.get(operator, _none)(options)
@@ -191,7 +191,7 @@ def faults(operator: str, sources: Sequence[str], options: Mapping[str, object])
 _NEEDED: Final = {
     "within": "give the length of the window, so that its memory is bounded",
     "for": "give the time that must pass",
-    "by": "give the time that the values are to be old",
+    "by": "give the age of the values",
     "after": "name the stream after which the event is expected",
 }
 
@@ -204,7 +204,7 @@ def _seconds(name: str, value: object) -> Fault | None:
     if isinstance(value, float) and value == math.inf:
         return Fault(name, f"`{name}` is unbounded", "give a finite time: memory is bounded by the window")
     if not _is_number(value):
-        return Fault(name, f"`{name}` must be a time", "write a number above zero")
+        return Fault(name, f"`{name}` must be a duration", "write a number above zero")
     assert isinstance(value, int | float)
     if value <= 0.0:
         return Fault(name, f"`{name}` must be above zero", "write a positive time")
@@ -333,7 +333,7 @@ _CHECKS: Final[dict[str, Callable[[Mapping[str, object]], Iterator[Fault]]]] = {
 
 
 def make(spec: Spec, emit: Emit) -> Operator:
-    """Make the operator of a declaration without mistakes."""
+    """Create the operator of a valid declaration."""
     return _MAKERS[spec.operator](spec, emit)
 
 

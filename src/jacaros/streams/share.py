@@ -7,19 +7,19 @@ from jacaros.streams.condition import Condition
 from jacaros.streams.operator import Emit, Operator, Values
 
 TOLERANCE = 1e-6
-"""Error of the share that rounding may cause, as a part of the window."""
+"""Maximum error of the share caused by rounding, as a fraction of the window."""
 
 
 class Share(Operator):
-    """The share of the known time: that since the first event, at most the window.
+    """The share of the known time, which begins with the first event and is limited to the window.
 
-    Between two events the condition is what it was at the first of them.
+    Between two events, the condition has its value at the first of them.
 
     Args:
-        within: seconds of the window.
-        place: which of an event's values counts, from 0.
-        condition: on that value; an open one holds while the stream shows anything.
-        at_least: show a state while the share is that large; None: show the share, at each event.
+        within: length of the window, in seconds.
+        place: index of the value of an event to use, from 0.
+        condition: condition on that value; an open one holds while the stream shows anything.
+        at_least: show a state while the share is that large; None to show the share at each event.
     """
 
     __slots__ = ("_at_least", "_condition", "_first", "_past", "_place", "_since", "_sum", "_within")
@@ -68,7 +68,7 @@ class Share(Operator):
         self.deadline = self._next(time, held - self._at_least * known)
 
     def _held(self, time: float) -> float:
-        """Return the seconds in the window that ends at *time* for which the condition held."""
+        """Return the seconds for which the condition held in the window that ends at *time*."""
         past, start = self._past, time - self._within
         while past and past[0][1] <= start:
             began, ended = past.popleft()
@@ -81,7 +81,7 @@ class Share(Operator):
         return held
 
     def _next(self, time: float, margin: float) -> float:
-        """Return when the margin crosses zero, or changes its rate, whatever is first."""
+        """Return when the margin crosses zero or changes its rate, whichever is first."""
         assert self._first is not None
         assert self._at_least is not None
         start = time - self._within

@@ -1,4 +1,4 @@
-"""States of one stream: hysteresis, a condition that has held for a while, debouncing, values of some time ago."""
+"""States of one stream: hysteresis, a condition held for a while, debouncing, delayed values."""
 
 import math
 from collections import deque
@@ -8,12 +8,12 @@ from jacaros.streams.operator import Emit, Operator, Values, number_at
 
 
 class Hysteresis(Operator):
-    """Begins when the number passes one limit and ends when it passes another.
+    """Starts when the number passes one limit and ends when it passes another.
 
     Args:
-        place: which of an event's values counts, from 0.
-        on, off: the limits.
-        rising: the state begins above *on* and ends below *off*; otherwise it begins below and ends above.
+        place: index of the value of an event to use, from 0.
+        on, off: limits.
+        rising: the state starts above *on* and ends below *off*; otherwise it starts below and ends above.
     """
 
     __slots__ = ("_off", "_on", "_place", "_sign")
@@ -41,7 +41,7 @@ class Hysteresis(Operator):
 
 
 class Held(Operator):
-    """Holds when the condition has held without a break for *lasting* seconds."""
+    """Holds once the condition has held for *lasting* seconds without a break."""
 
     __slots__ = ("_condition", "_lasting", "_place", "_since")
 
@@ -103,7 +103,7 @@ class Delayed(Operator):
         past = self._past
         while past and past[0][0] + self._by <= time:
             _, values = past.popleft()
-            if not past or past[0][0] + self._by > time:  # of events at one time the last counts
+            if not past or past[0][0] + self._by > time:  # of simultaneous events the last one counts
                 if values is None:
                     self.hide()
                 else:
@@ -112,7 +112,7 @@ class Delayed(Operator):
 
 
 def _satisfies(values: Values | None, place: int, condition: Condition) -> bool:
-    """Whether the stream shows something, and its value at *place* satisfies the condition."""
+    """Return whether the stream shows something, and its value at *place* satisfies the condition."""
     if values is None:
         return False
     return condition.is_open or (place < len(values) and condition.holds(values[place]))

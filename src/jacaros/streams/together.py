@@ -1,4 +1,4 @@
-"""Several streams as one: samples whose stamps are near each other, as message_filters' ApproximateTime gives them."""
+"""Join samples of several streams with nearby stamps, like ApproximateTime of message_filters."""
 
 from bisect import bisect_left
 
@@ -7,15 +7,15 @@ from jacaros.streams.operator import Emit
 
 
 class Together(Joining):
-    """Shows the values of one sample of each stream, one behind the other, when their times are within a bound.
+    """Shows the values of one sample of each stream, concatenated, if their times are close enough.
 
-    A set is made as soon as one can be: of the sample that has just come and the nearest ones of the other streams.  No
-    sample is used twice, and none that is older than one used before.
+    A set is formed as soon as possible, from the new sample and the nearest ones of the other streams. No sample is used
+    twice, nor after a newer one of its stream.
 
     Args:
         count: number of streams.
-        within: seconds between the first and the last sample of a set, at most.
-        lateness: seconds for which a sample waits for those of other streams beyond that.
+        within: maximum seconds between the first and the last sample of a set.
+        lateness: further seconds for which a sample waits for those of other streams.
     """
 
     __slots__ = ("_within",)
@@ -35,7 +35,7 @@ class Together(Joining):
         self.show(tuple(made))
 
     def _nearest(self, source: int, place: int, time: float) -> list[int] | None:
-        """Return the place of one sample in each stream; None unless they are within the bound."""
+        """Return the index of one sample in each stream; None unless they are close enough."""
         chosen: list[int] = []
         first = last = time
         for number, times in enumerate(self._times):
@@ -48,7 +48,7 @@ class Together(Joining):
 
 
 def _nearest_to(times: list[float], time: float) -> int | None:
-    """Return the place of the time nearest to *time*, the earlier one of two; None if there is none."""
+    """Return the index of the time nearest to *time*, the earlier of two; None without times."""
     if not times:
         return None
     place = bisect_left(times, time)

@@ -1,6 +1,6 @@
-"""For tests of agent programs and projects.
+"""Tests of agent programs and projects.
 
-Each name is imported when it is first used: pytest imports this package whenever it starts, for `pytest_plugin`.
+Names are imported on first use: pytest imports this package at every start, for `pytest_plugin`.
 """
 
 from importlib import import_module

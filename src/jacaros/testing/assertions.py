@@ -1,7 +1,7 @@
-"""The internal actions behind ``$jacaros/test_assert.asl``: what the assertion goals of tests do.
+"""The internal actions behind the assertion goals of ``$jacaros/test_assert.asl``.
 
-An assertion that fails is told to whoever tests the agent, else to people, and the plan goes on: as on Jason, one test may
-tell several failures.  What needs a test raises `ActionError` where nobody tests the agent.
+An assertion that fails is reported to the test of the agent, or logged outside of a test. The plan continues, as in Jason,
+so one test may report several failures. Actions that need a test raise `ActionError` outside of one.
 """
 
 import operator
@@ -20,16 +20,16 @@ from jacaros.terms.values import FALSE, TRUE, Term, functor_of, is_list, list_it
 from jacaros.testing.probe import Asserting, Probe
 
 _SHOWN = 8
-"""Number of beliefs, or lines, that are shown beside an assertion that does not hold."""
+"""Number of beliefs or lines shown for a failed assertion."""
 _SHOWN_MESSAGES = 5
-"""Number of different messages that are shown."""
+"""Number of different messages shown."""
 
 _Function = Callable[..., None]
 _declared: dict[str, tuple[_Function, tuple[object, ...], int | tuple[int, int]]] = {}
 
 
 def _action(name: str, arity: int | tuple[int, int], *given: object) -> Callable[[_Function], _Function]:
-    """Declare a function, with what it is given before the arguments of a call, as the internal action ``jacaros.NAME``."""
+    """Declare a function as the internal action ``jacaros.NAME``; *given* are passed before the arguments of a call."""
 
     def declare(function: _Function) -> _Function:
         _declared[f"jacaros.{name}"] = (function, given, arity)
@@ -39,10 +39,10 @@ def _action(name: str, arity: int | tuple[int, int], *given: object) -> Callable
 
 
 def actions(probes: Mapping[str, Probe]) -> dict[str, InternalAction]:
-    """Return the internal actions of tests for the agents of one run.
+    """Return the internal actions of tests, for the agents of one run.
 
     Args:
-        probes: the test that looks on, by the name of the agent; looked up at each call.
+        probes: the test that observes each agent, by agent name; looked up at each call.
     """
 
     def bound(function: _Function, given: tuple[object, ...]) -> Callable[..., None]:
@@ -58,7 +58,7 @@ def actions(probes: Mapping[str, Probe]) -> dict[str, InternalAction]:
 
 
 def _holds(ctx: Context, formula: Term) -> bool:
-    """Whether a formula holds; nothing stays bound."""
+    """Return whether a formula holds, without binding its variables."""
     mark = len(ctx.trail)
     try:
         return ctx.succeeds(formula)
@@ -77,7 +77,7 @@ def _is_in(item: Term, items: Iterable[Term]) -> bool:
 
 
 def _same(expected: Term, actual: Term) -> bool:
-    """Equality of assertions: as ``==``, but lists need only have the same elements, in any order, as on Jason."""
+    """Compare as ``==``, but for lists ignore the order of elements, as Jason does."""
     if is_list(expected) and is_list(actual):
         left, right = list(list_items(expected)), list(list_items(actual))
         return all(_is_in(item, right) for item in left) and all(_is_in(item, left) for item in right)
@@ -85,15 +85,15 @@ def _same(expected: Term, actual: Term) -> bool:
 
 
 def _believed(ctx: Context, formula: Term) -> str:
-    """What is believed of the predicate of a formula, for people."""
+    """Return the beliefs of the predicate of a formula, for a message."""
     symbol = functor_of(formula)
     if symbol is None or symbol.kind or symbol in (TRUE, FALSE):
         return "it does not hold"
     held = [text(literal) for literal in ctx.agent.beliefs.literals() if _alike(functor_of(literal), symbol)]
     if not held:
-        return f"there is no belief {symbol!r}"
+        return f"no belief {symbol!r}"
     more = f" and {len(held) - _SHOWN} more" if len(held) > _SHOWN else ""
-    return f"believed is {', '.join(held[:_SHOWN])}{more}"
+    return f"the agent believes {', '.join(held[:_SHOWN])}{more}"
 
 
 def _alike(one: Term, other: Term) -> bool:
@@ -104,92 +104,91 @@ def _alike(one: Term, other: Term) -> bool:
 def assert_equals(call: Asserting, expected: Term, actual: Term, tolerance: Term = None) -> None:
     """``jacaros.assert_equals(Expected, Actual [,Tolerance])``; see `_same` for what is equal."""
     if tolerance is None:
-        call.tell(_same(expected, actual), text(expected), f"was {text(actual)}")
+        call.report(_same(expected, actual), text(expected), f"was {text(actual)}")
         return
     numbers = (expected, actual, tolerance)
     passed = (
         all(isinstance(n, float) for n in numbers) and expected - tolerance <= actual <= expected + tolerance
     )
-    call.tell(passed, f"{text(expected)} +/- {text(tolerance)}", f"was {text(actual)}")
+    call.report(passed, f"{text(expected)} +/- {text(tolerance)}", f"was {text(actual)}")
 
 
 @_action("assert_not_equals", 2)
 def assert_not_equals(call: Asserting, unwanted: Term, actual: Term) -> None:
-    """``jacaros.assert_not_equals(Unwanted, Actual)``."""
-    call.tell(not _same(unwanted, actual), f"anything but {text(unwanted)}", f"was {text(actual)}")
+    call.report(not _same(unwanted, actual), f"anything but {text(unwanted)}", f"was {text(actual)}")
 
 
 @_action("assert_true", 1, True)
 @_action("assert_false", 1, False)
 def _assert_that(call: Asserting, wanted: bool, formula: Term) -> None:
-    """The formula holds now, or does not."""
+    """Assert that a formula holds, or does not hold, now."""
     expected = text(formula) if wanted else f"not {text(formula)}"
     try:
         passed = _holds(call.ctx, formula) is wanted
     except InternalError:
         raise
     except Exception as fault:
-        # The assertion fails where the test makes it.
-        call.tell(False, expected, f"it cannot be evaluated: {fault or type(fault).__name__}")
+        # Report the failure where the test makes the assertion.
+        call.report(False, expected, f"cannot evaluate it: {fault or type(fault).__name__}")
         return
     found = "" if passed else _believed(call.ctx, formula) if wanted else "it holds"
-    call.tell(passed, expected, found)
+    call.report(passed, expected, found)
 
 
 @_action("assert_contains", 2, True)
 @_action("assert_not_contains", 2, False)
 def _assert_contents(call: Asserting, wanted: bool, collection: Term, item: Term) -> None:
-    """An element of the list, set or queue unifies with *item*, or none does."""
+    """Assert that an element of a list, set or queue unifies with *item*, or that no element does."""
     try:
         items: list[Term] | None = members(collection, "the collection")
     except WrongArguments:
         items = None
     passed = items is not None and _is_in(item, items) is wanted
-    told = "is no list or set" if items is None else "does not contain it" if wanted else "contains it"
+    actual = "is not a list or set" if items is None else "does not contain it" if wanted else "contains it"
     expected = text(item) if wanted else f"no {text(item)}"
-    call.tell(passed, expected, f"{text(collection)} {told}")
+    call.report(passed, expected, f"{text(collection)} {actual}")
 
 
 @_action("assert_greater_than", 2, operator.gt, "more than {}")
 @_action("assert_greater_than_equals", 2, operator.ge, "{} or more")
 def _assert_greater(
-    call: Asserting, compare: Callable[[Term, Term], bool], told: str, left: Term, right: Term
+    call: Asserting, compare: Callable[[Term, Term], bool], expected: str, left: Term, right: Term
 ) -> None:
-    """The arguments are numbers, and compare so."""
+    """Assert that two numbers compare as declared."""
     passed = isinstance(left, float) and isinstance(right, float) and compare(left, right)
-    call.tell(passed, told.format(text(right)), f"was {text(left)}")
+    call.report(passed, expected.format(text(right)), f"was {text(left)}")
 
 
 @_action("assert_between", 3)
 def assert_between(call: Asserting, value: Term, least: Term, most: Term) -> None:
-    """``jacaros.assert_between(X, Least, Most)``: numbers, both bounds included."""
+    """``jacaros.assert_between(X, Least, Most)``: both bounds are included."""
     passed = all(isinstance(n, float) for n in (value, least, most)) and least <= value <= most
-    call.tell(passed, f"{text(least)} to {text(most)}", f"was {text(value)}")
+    call.report(passed, f"{text(least)} to {text(most)}", f"was {text(value)}")
 
 
 @_action("force_pass", 0)
 def force_pass(call: Asserting) -> None:
-    """``jacaros.force_pass``: an assertion that holds."""
-    call.tell(True, "")
+    """``jacaros.force_pass``: an assertion that always holds."""
+    call.report(True, "")
 
 
 @_action("force_failure", 1)
 def force_failure(call: Asserting, message: Term) -> None:
-    """``jacaros.force_failure(Message)``: an assertion that fails."""
+    """``jacaros.force_failure(Message)``: an assertion that always fails."""
     shown = str(message) if isinstance(message, str) else text(message)
-    call.tell(False, "", shown)
+    call.report(False, "", shown)
 
 
 @_action("assert_fail", 2)
 def assert_fail(call: Asserting, goal: Term, failed: Term) -> None:
-    """``jacaros.assert_fail(Goal, failed|achieved)``: how a goal that ought to fail has ended."""
+    """``jacaros.assert_fail(Goal, failed|achieved)``: the outcome of a goal that should fail."""
     passed = text(failed) == "failed"
-    call.tell(passed, f"!{text(goal)} to fail", "" if passed else "it was achieved")
+    call.report(passed, f"!{text(goal)} to fail", "" if passed else "it was achieved")
 
 
 @_action("fake", (1, 2))
 def fake(call: Asserting, action: Term, outcome: Term = None) -> None:
-    """``jacaros.fake(Action [,Outcome])``: the test answers this external action in place of the environment."""
+    """``jacaros.fake(Action [,Outcome])``: answer an external action instead of the environment."""
     try:
         call.probe("fake_action").fakes.add(action, outcome)
     except ValueError as wrong:
@@ -198,32 +197,32 @@ def fake(call: Asserting, action: Term, outcome: Term = None) -> None:
 
 @_action("assert_did", (1, 2))
 def assert_did(call: Asserting, action: Term, times: Term = None) -> None:
-    """``jacaros.assert_did(Action [,Times])``: the agent has begun an external action that matches (so many times)."""
+    """``jacaros.assert_did(Action [,Times])``: the agent has started a matching external action, *Times* times if given."""
     acts = call.probe("assert_did").fakes.acts
-    told = f"it did {', '.join(map(text, acts))}" if acts else "it did nothing"
+    actual = f"it did {', '.join(map(text, acts))}" if acts else "it did nothing"
     if times is None:
-        call.tell(_is_in(action, acts), text(action), told)
+        call.report(_is_in(action, acts), text(action), actual)
     else:
         count = sum(_is_in(action, [act]) for act in acts)
-        call.tell(float(count) == times, f"{text(times)} times {text(action)}", told)
+        call.report(float(count) == times, f"{text(times)} times {text(action)}", actual)
 
 
 @_action("assert_printed", 1)
 def assert_printed(call: Asserting, part: Term) -> None:
-    """``jacaros.assert_printed(Text)``: a line that the agent has printed has this in it."""
+    """``jacaros.assert_printed(Text)``: a line that the agent has printed contains *Text*."""
     shown = display(part)
     prints = call.probe("assert_printed").prints()
-    told = (
+    actual = (
         f"it printed {', '.join(repr(line) for line in prints[-_SHOWN:])}" if prints else "it printed nothing"
     )
-    call.tell(any(shown in line for line in prints), f"the print {shown!r}", told)
+    call.report(any(shown in line for line in prints), f"output containing {shown!r}", actual)
 
 
 @_action("assert_not_did", 1)
 def assert_not_did(call: Asserting, action: Term) -> None:
-    """``jacaros.assert_not_did(Action)``: the agent has begun no external action that matches."""
+    """``jacaros.assert_not_did(Action)``: the agent has started no matching external action."""
     acts = call.probe("assert_not_did").fakes.acts
-    call.tell(not _is_in(action, acts), f"no {text(action)}", f"it did {', '.join(map(text, acts))}")
+    call.report(not _is_in(action, acts), f"no {text(action)}", f"it did {', '.join(map(text, acts))}")
 
 
 # ---- the rest of the ROS graph
@@ -231,7 +230,7 @@ def assert_not_did(call: Asserting, action: Term) -> None:
 
 @_action("fake_message", (2, 3))
 def fake_message(call: Asserting, topic: Term, first: Term, second: Term = None) -> None:
-    """``jacaros.fake_message(Topic [,Type], Fields)``: somebody publishes a message."""
+    """``jacaros.fake_message(Topic [,Type], Fields)``: publish a message from a fake node."""
     type_name, fields = ("", first) if second is None else (display(first), second)
     with call.others("fake_message") as others:
         others.publish(display(topic), display(fields), type_name)
@@ -239,41 +238,41 @@ def fake_message(call: Asserting, topic: Term, first: Term, second: Term = None)
 
 @_action("fake_subscriber", 2)
 def fake_subscriber(call: Asserting, topic: Term, type_name: Term) -> None:
-    """``jacaros.fake_subscriber(Topic, Type)``: somebody listens to a topic."""
+    """``jacaros.fake_subscriber(Topic, Type)``: subscribe a fake node to a topic."""
     with call.others("fake_subscriber") as others:
         others.hear(display(topic), display(type_name))
 
 
 @_action("fake_service", 3)
 def fake_service(call: Asserting, service: Term, type_name: Term, fields: Term) -> None:
-    """``jacaros.fake_service(Name, Type, Fields)``: somebody offers a service, and gives this response."""
+    """``jacaros.fake_service(Name, Type, Fields)``: offer a service that returns this response."""
     with call.others("fake_service") as others:
         others.answer(display(service), display(type_name), display(fields))
 
 
 @_action("assert_published", (2, 3))
 def assert_published(call: Asserting, topic: Term, fields: Term, times: Term = None) -> None:
-    """``jacaros.assert_published(Topic, Fields [,Times])``: the run has published such a message (so many times)."""
+    """``jacaros.assert_published(Topic, Fields [,Times])``: the run has published matching messages (*Times*)."""
     with call.others("assert_published") as others:
-        _tell_count(call, others.count_published, "a message on", topic, fields, times)
+        _report_count(call, others.count_published, "a message on", topic, fields, times)
 
 
 @_action("assert_not_published", 1)
 def assert_not_published(call: Asserting, topic: Term) -> None:
-    """``jacaros.assert_not_published(Topic)``: the run has published nothing on a topic."""
+    """``jacaros.assert_not_published(Topic)``: the run has published nothing on the topic."""
     with call.others("assert_not_published") as others:
         count, found = others.count_published(display(topic), "")
-        call.tell(not count, f"no message on {display(topic)}", f"there were {_listed(found)}")
+        call.report(not count, f"no message on {display(topic)}", f"found {_listed(found)}")
 
 
 @_action("assert_called", (2, 3))
 def assert_called(call: Asserting, service: Term, fields: Term, times: Term = None) -> None:
-    """``jacaros.assert_called(Service, Fields [,Times])``: a faked service was asked this (so many times)."""
+    """``jacaros.assert_called(Service, Fields [,Times])``: a fake service has received matching requests (*Times*)."""
     with call.others("assert_called") as others:
-        _tell_count(call, others.count_asked, "a request to", service, fields, times)
+        _report_count(call, others.count_asked, "a request to", service, fields, times)
 
 
-def _tell_count(
+def _report_count(
     call: Asserting,
     counted: Callable[[str, str], tuple[int, list[str]]],
     what: str,
@@ -285,12 +284,12 @@ def _tell_count(
     passed = count > 0 if times is None else float(count) == times
     often = "" if times is None else f"{display(times)} times "
     wanted = f" with {display(fields)}" if display(fields) else ""
-    told = f"there were {_listed(found)}" if found else "there was none"
-    call.tell(passed, f"{often}{what} {display(name)}{wanted}", told)
+    actual = f"found {_listed(found)}" if found else "found none"
+    call.report(passed, f"{often}{what} {display(name)}{wanted}", actual)
 
 
 def _listed(found: list[str]) -> str:
-    """Messages for people, the newest last; of those that are alike in a row one, with their number."""
+    """Return messages as text, oldest first; equal neighbours become one with their number."""
     rows = [(text, len(list(alike))) for text, alike in groupby(found)]
     shown = [text if count == 1 else f"{count} times {text}" for text, count in rows[-_SHOWN_MESSAGES:]]
     more = f", and {len(rows) - _SHOWN_MESSAGES} before" if len(rows) > _SHOWN_MESSAGES else ""
@@ -298,4 +297,4 @@ def _listed(found: list[str]) -> str:
 
 
 UNTESTED: Final = actions(MappingProxyType({}))
-"""The internal actions for programs that run outside of a test: their assertions are told to people."""
+"""The internal actions for programs that run outside of a test: failed assertions are logged."""

@@ -1,4 +1,4 @@
-"""The rest of the ROS graph in a test: it sends messages, hears what is published, and answers services."""
+"""The rest of the ROS graph in a test: publishes messages, receives what the run publishes, and answers services."""
 
 import difflib
 import math
@@ -17,14 +17,14 @@ from jacaros.ros.qos import LATCHED, QoS
 from jacaros.yaml_nodes import Problem, read_document
 
 NODE = "test"
-"""Name of the node that stands for everybody else."""
+"""Name of the fake node."""
 _ALL = QoS("best_effort", depth=10_000)
 _TOLERANCE = 1e-6
 
 
 @contextmanager
-def _told() -> Iterator[None]:
-    """Raise what the graph refuses as ValueError."""
+def _graph_errors() -> Iterator[None]:
+    """Raise errors of the graph as ValueError."""
     try:
         yield
     except RosError as wrong:
@@ -32,12 +32,12 @@ def _told() -> Iterator[None]:
 
 
 class FakeGraph:
-    """Stands for the robot in a test on the graph inside the process.
+    """The other nodes of the in-process graph, played by a test.
 
-    Messages are given as mapping files have them, as text such as ``{pose.position.x: 1, header.stamp: now}``, or as
-    nested Python mappings.
+    Messages are written as in mapping files, such as ``{pose.position.x: 1, header.stamp: now}``, or as nested Python
+    mappings.
 
-    Sending, hearing and counting raise ValueError for a wrong name, type or field; the text says why.
+    Methods raise ValueError for an invalid name, type or field; the text says why.
     """
 
     def __init__(self, graph: RosGraph) -> None:
@@ -50,14 +50,14 @@ class FakeGraph:
         self._asked: dict[str, list[Any]] = {}
         self.node.graph.watch_publishers(self._listen_to)
 
-    @_told()
+    @_graph_errors()
     def publish(self, topic: str, fields: str | Mapping[str, Any] = "", type_name: str = "") -> None:
         """Publish a message.
 
         Args:
-            topic: its name; a relative one is below ``/``.
-            fields: of the message; others stay zero or empty.
-            type_name: of the message; without it that of those who listen.
+            topic: name; a relative name is below ``/``.
+            fields: values of fields; other fields are zero or empty.
+            type_name: message type; default: the type of the topic's subscriptions.
         """
         name = self.node.resolve(topic)
         full = message_type(type_name) if type_name else self._type_of(name)
@@ -67,9 +67,9 @@ class FakeGraph:
         publisher = self._publishers[name]
         publisher.publish(publisher.message(**given))
 
-    @_told()
+    @_graph_errors()
     def answer(self, service: str, type_name: str, fields: str | Mapping[str, Any] = "") -> None:
-        """Offer a service that always gives the same response; a later answer replaces it."""
+        """Offer a service that always returns the same response; a second call replaces the response."""
         name, full = self.node.resolve(service), service_type(type_name)
         response = self._fields(fields, response_type(full))
         if name in self._services:
@@ -82,39 +82,39 @@ class FakeGraph:
         self._services[name] = self.node.service(name, full, handle)
 
     def published(self, topic: str) -> list[Any]:
-        """The messages that agents' artifacts published on a topic, oldest first."""
+        """Return the messages that artifacts of the run published on a topic, oldest first."""
         return self._heard.get(self.node.resolve(topic), [])
 
     def asked(self, service: str) -> list[Any]:
-        """The requests to a service of `answer`, oldest first."""
+        """Return the requests received by a service of `answer`, oldest first."""
         return self._asked.get(self.node.resolve(service), [])
 
     def forget(self) -> None:
-        """Hear and be asked as if nothing had been before."""
+        """Discard all received messages and requests."""
         for messages in (*self._heard.values(), *self._asked.values()):
             messages.clear()
 
-    @_told()
+    @_graph_errors()
     def hear(self, topic: str, type_name: str) -> None:
-        """Listen to a topic, so that those who look for its type find one."""
+        """Subscribe to a topic, which makes its type known to the run."""
         self.node.subscription(topic, type_name, lambda sample: None, _ALL)
 
     def count_published(self, topic: str, fields: str) -> tuple[int, list[str]]:
-        """How many messages on a topic had these values, and all of them as text."""
+        """Return the number of messages on a topic with these values, and all its messages as text."""
         name = self._name(topic)
         messages = self._heard.get(name, [])
         type_name = self._types.get(name) or self.node.graph.topics().get(name)
         return self._count(messages, fields, type_name) if type_name else (0, [])
 
     def count_asked(self, service: str, fields: str) -> tuple[int, list[str]]:
-        """How many requests to a service had these values, and all of them as text."""
+        """Return the number of requests to a service with these values, and all its requests as text."""
         name = self._name(service)
         offered = self.node.graph.contents().services
         if name not in self._services:
-            raise ValueError(f"the test has no service {name}; begin with fake_service")
+            raise ValueError(f"unknown service {name}; call fake_service first")
         return self._count(self.asked(name), fields, request_type(offered[name]))
 
-    @_told()
+    @_graph_errors()
     def _name(self, name: str) -> str:
         return str(self.node.resolve(name))
 
@@ -123,7 +123,7 @@ class FakeGraph:
         return sum(_has(message, wanted) for message in messages), [shown(each) for each in messages]
 
     def _listen_to(self, publisher: Any) -> None:
-        """Hear what the run publishes from now on; what a world says is nobody's business here."""
+        """Receive what the run publishes from now on, without the messages of an embedded world."""
         name = publisher.topic
         if publisher.node_name != self._ours.node_name or name in self._heard:
             return
@@ -140,8 +140,8 @@ class FakeGraph:
         if found := topics.get(name):
             return found
         near = difflib.get_close_matches(name, topics, 2)
-        help = f"did you mean {' or '.join(near)}?" if near else "write its type as the second argument"
-        raise ValueError(f"nobody listens to {name}, so that its type is not known; {help}")
+        help = f"did you mean {' or '.join(near)}?" if near else "pass its type as the second argument"
+        raise ValueError(f"unknown type of {name}, which has no subscription; {help}")
 
     def _fields(self, fields: str | Mapping[str, Any], type_name: str) -> dict[str, Any]:
         if not isinstance(fields, str):
@@ -150,15 +150,15 @@ class FakeGraph:
         values = read_values(read_document(fields, problems, "a message"), ())
         fill = filler(values, type_name, self.node, problems) if not problems else None
         if fill is None:
-            told = "; ".join(
+            text = "; ".join(
                 f"{each.message}: {each.help}" if each.help else each.message for each in problems
             )
-            raise ValueError(f"{fields}: {told}")
+            raise ValueError(f"{fields}: {text}")
         return fill((), self.node.clock.now())
 
 
 def _has(given: Any, wanted: Any) -> bool:
-    """Whether a message, or a value in it, has all that is wanted; numbers may differ a little."""
+    """Return whether a message or value has the wanted values; numbers may differ slightly."""
     if isinstance(wanted, Mapping):
         return all(_has(getattr(given, name), value) for name, value in wanted.items())
     if isinstance(wanted, list | tuple):
@@ -166,20 +166,20 @@ def _has(given: Any, wanted: Any) -> bool:
     if isinstance(wanted, float) or (isinstance(wanted, int) and not isinstance(wanted, bool)):
         if isinstance(given, bytes):
             return bool(given == bytes([int(wanted)]))
-        if hasattr(given, "nanosec"):  # a time: relative to it any other of the same day were close
+        if hasattr(given, "nanosec"):  # a time: a relative tolerance would accept any time of the same day
             return math.isclose(to_seconds(given), wanted, rel_tol=0.0, abs_tol=_TOLERANCE)
         return math.isclose(given, wanted, rel_tol=_TOLERANCE, abs_tol=_TOLERANCE)
     return bool(given == wanted)
 
 
 def shown(message: Any) -> str:
-    """A message for people: its fields that are not zero or empty."""
+    """Return a message as text, without fields that are zero or empty."""
     parts = [f"{name}: {text}" for name in _names(message) if (text := _shown(getattr(message, name)))]
     return f"{{{', '.join(parts)}}}"
 
 
 def _shown(value: Any) -> str:
-    """A value; empty when it is zero or empty."""
+    """Return a value as text; empty if it is zero or empty."""
     if _names(value):
         text = shown(value)
         return "" if text == "{}" else text

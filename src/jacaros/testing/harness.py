@@ -1,7 +1,7 @@
-"""One agent in the hands of a Python test: given beliefs, percepts, messages and goals, made to reason, and looked at.
+"""One agent under the control of a Python test, which gives it percepts, messages and goals, and inspects what it does.
 
-No environment, no other agents, no waiting: the agent's actions and messages are recorded, and its time is virtual and
-moves only when the test lets it::
+There is no environment, no other agent and no waiting: actions and messages are recorded, and virtual time advances only
+when the test says so::
 
     def test_a_low_battery_sends_the_robot_to_the_dock() -> None:
         agent = AgentHarness(Path("robot.asl"))
@@ -41,32 +41,32 @@ from jacaros.text_files import file_text
 _QUANTUM = 50
 _SHOWN = 20
 _LONGEST = 3600.0
-"""Seconds of virtual time after which `AgentHarness.run` gives up on an agent that never gets idle."""
+"""Seconds of virtual time after which `AgentHarness.run` fails for an agent that never becomes idle."""
 
 
 class AgentHarness(OpenMind):
     """An agent under test.
 
-    Literals, goals and formulae are given as text, in the syntax of the language.
+    Literals, goals and formulae are passed as text, in the syntax of the language.
 
     Args:
-        program: the program as text, or the path of a file.
-        name: of the agent.
-        actions: functions that answer external actions, by name, see `RecordedAct.answer`.  Actions without one stay
-            pending until the test ends them, see `act`.
-        others: names of the agents that can be sent messages; all names can if it is None.
-        folders: where included files are looked for, beside the folder of the program.
-        seed: of the agent's random numbers.
+        program: program text, or the path of a file.
+        name: name of the agent.
+        actions: functions that answer external actions, by name; see `RecordedAct.answer`. Other actions stay pending
+            until the test ends them; see `act`.
+        others: names of agents that accept messages; None for any name.
+        folders: folders to search for included files, in addition to that of the program.
+        seed: seed of the agent's random numbers.
 
     Attributes:
-        prints: what the agent has printed, line by line.
-        logs: what was told to people, each as ``level: text``.
-        acts: the external actions begun, oldest first.
-        sent: the messages sent, oldest first.
-        files: texts of the files that it would have written, by path.
+        prints: lines that the agent printed.
+        logs: log lines, each as ``level: text``.
+        acts: external actions started, oldest first.
+        sent: messages sent, oldest first.
+        files: contents of the files that the agent would have written, by path.
 
     Raises:
-        AslError: the program is wrong.
+        AslError: the program has errors.
     """
 
     __test__ = False
@@ -86,7 +86,9 @@ class AgentHarness(OpenMind):
         file = program if isinstance(program, Path) else Path(f"{name}.asl")
         written = file_text(program) if isinstance(program, Path) else program
         code = PythonCode(ProjectModules(file.parent, *folders))
-        programs = Programs((file.parent, *folders), lambda told: self.logs.append(f"warning: {told}"), code)
+        programs = Programs(
+            (file.parent, *folders), lambda message: self.logs.append(f"warning: {message}"), code
+        )
         port = self._port = HarnessPort(name, dict(actions or {}), others, seed, programs, file)
         self.prints, self.logs, self.files = port.prints, port.logs, port.files
         self.acts, self.sent = port.acts, port.sent
@@ -100,18 +102,18 @@ class AgentHarness(OpenMind):
 
     @property
     def mind(self) -> Mind:
-        """The agent itself, for what this class does not offer."""
+        """The mind of the agent, for what this class does not offer."""
         return self._mind
 
     @property
     def exit_code(self) -> int | None:
-        """The code of ``.stopMAS``; None while the program has not called it."""
+        """The code passed to ``.stopMAS``; None before that."""
         return self._port.exit_code
 
-    # ---- giving
+    # ---- input
 
     def receive(self, sender: str, performative: str, content: str) -> None:
-        """Let the agent receive a message: ``agent.receive("boss", "achieve", "clean(kitchen)")``."""
+        """Deliver a message to the agent: ``agent.receive("boss", "achieve", "clean(kitchen)")``."""
         self._asked += 1
         message = SpeechAct(
             performative, sender, self.name, lower_value(parse_term(content)), f"test{self._asked}"
@@ -119,15 +121,22 @@ class AgentHarness(OpenMind):
         self.mind.receive(message)
 
     def achieve(self, goal: str) -> PursuedGoal:
-        """Give the agent a goal, with an intention of its own; tells later what became of it."""
+        """Give the agent a goal in a new intention; the result reports the outcome."""
         return PursuedGoal(goal, WatchedGoal(self.mind, literal(goal)))
 
-    # ---- letting it reason
+    # ---- reasoning
 
     def step(self, cycles: int = 1) -> bool:
-        """Let it make at most so many reasoning cycles; no time passes.  Whether there is more to do.
+        """Run reasoning cycles without advancing time.
 
-        What a function that answers actions raises, such as a failed ``assert``, is raised here and by `run`.
+        Args:
+            cycles: maximum number of cycles.
+
+        Returns:
+            Whether the agent has more to do.
+
+        Raises:
+            Exception: raised by a function that answers actions, such as a failed ``assert``; `run` raises it, too.
         """
         more = not self._stopped and self.mind.run(cycles)
         if self._port.mistake is not None:
@@ -136,14 +145,14 @@ class AgentHarness(OpenMind):
         return more
 
     def run(self, seconds: float | None = None, cycles: int = 100_000) -> None:
-        """Let it reason.
+        """Run reasoning cycles, and advance time to the next timer while the agent waits.
 
         Args:
-            seconds: for so long in virtual time; without, until it has nothing to do and waits for no time to pass.
-            cycles: at most so many reasoning cycles.
+            seconds: virtual time to run for; None to run until the agent is idle and waits for no timer.
+            cycles: maximum number of reasoning cycles.
 
         Raises:
-            AssertionError: it made that many cycles, or went on for an hour of virtual time.
+            AssertionError: the agent reached that number of cycles, or did not become idle within an hour of virtual time.
         """
         __tracebackhide__ = True
         over: list[bool] = []
@@ -157,42 +166,42 @@ class AgentHarness(OpenMind):
             self._port.clock.advance()
         end.cancel()
         if over and seconds is None:
-            self._complain("it went on for an hour: use run(seconds=...)")
+            self._fail("not idle after an hour of virtual time: use run(seconds=...)")
 
     def _reason(self, cycles: int) -> int:
         __tracebackhide__ = True
         while self.step(_QUANTUM):
             cycles -= _QUANTUM
             if cycles <= 0:
-                self._complain("it made very many reasoning cycles without an end: an endless loop?")
+                self._fail("too many reasoning cycles: an endless loop?")
         return cycles
 
     @property
     def time(self) -> float:
-        """Seconds of virtual time since the beginning."""
+        """Virtual time since the start, in seconds."""
         return self._port.clock.elapsed
 
     @property
     def _stopped(self) -> bool:
         return self.exit_code is not None
 
-    # ---- asking
+    # ---- state
 
     def act(self, pattern: str) -> RecordedAct:
-        """The oldest pending act of that name, or that matches the pattern (``driveTo(_, 2)``).
+        """Return the oldest pending action with that name, or matching the pattern (``driveTo(_, 2)``).
 
         Raises:
-            AssertionError: there is none.
+            AssertionError: no such action is pending.
         """
         __tracebackhide__ = True
         wanted = literal(pattern)
         pending = [act for act in self.acts if act.pending]
         found = next((act for act in pending if act.name == pattern or _matches(wanted, act.term)), None)
         if found is None:
-            self._complain(f"no act {pattern} is pending")
+            self._fail(f"no pending action {pattern}")
         return found
 
-    # ---- asserting
+    # ---- assertions
 
     def assert_believes(self, *formulae: str) -> None:
         """Assert that each formula holds."""
@@ -207,12 +216,12 @@ class AgentHarness(OpenMind):
             self._require(not self.believes(formula), f"it believes {formula}")
 
     def assert_pursues(self, goal: str) -> None:
-        """Assert that a goal that matches is pursued."""
+        """Assert that the agent pursues a matching goal."""
         __tracebackhide__ = True
         self._require(self._pursues(goal), f"it does not pursue !{goal}")
 
     def assert_pursues_not(self, goal: str) -> None:
-        """Assert that no goal that matches is pursued."""
+        """Assert that the agent pursues no matching goal."""
         __tracebackhide__ = True
         self._require(not self._pursues(goal), f"it pursues !{goal}")
 
@@ -221,63 +230,66 @@ class AgentHarness(OpenMind):
         return any(_matches(pattern, each) for each, _ in goals.desires(self.mind))
 
     def assert_idle(self) -> None:
-        """Assert that it has no goal and nothing to do."""
+        """Assert that the agent has no goal and nothing to do."""
         __tracebackhide__ = True
         self._require(not self.goals and self.mind.is_idle(), "it is not idle")
 
     def assert_achieved(self, goal: PursuedGoal) -> None:
-        """Assert that a goal of this test was achieved."""
+        """Assert that a goal given by this test was achieved."""
         __tracebackhide__ = True
         self._require(goal.achieved, f"not achieved: {goal}")
 
     def assert_failed(self, goal: PursuedGoal, reason: str | None = None) -> None:
-        """Assert that a goal of this test failed; with a reason, that it is among those of the failure.
+        """Assert that a goal given by this test failed.
 
-        The reasons are terms such as ``error(no_relevant)`` and ``env_failure_reason(blocked(wall))``.
+        Args:
+            goal: returned by `achieve`.
+            reason: an annotation of the failure, such as ``error(no_relevant)`` or ``env_failure_reason(blocked(wall))``;
+                None for any.
         """
         __tracebackhide__ = True
         self._require(goal.failed, f"it did not fail: {goal}")
         if reason is not None and not any(_matches(literal(reason), each) for each in goal.reasons):
-            self._complain(f"it failed for another reason than {reason}: {goal}")
+            self._fail(f"it failed for another reason than {reason}: {goal}")
 
     def assert_printed(self, part: str) -> None:
-        """Assert that a printed line has this in it."""
+        """Assert that a printed line contains *part*."""
         __tracebackhide__ = True
         self._require(any(part in line for line in self.prints), f"it did not print {part!r}")
 
     def assert_printed_not(self, part: str) -> None:
-        """Assert that no printed line has this in it."""
+        """Assert that no printed line contains *part*."""
         __tracebackhide__ = True
         self._require(not any(part in line for line in self.prints), f"it printed {part!r}")
 
     def assert_did(self, *actions: str) -> None:
-        """Assert that actions that match were begun, in this order; others may have come between."""
+        """Assert that matching actions were started in this order, possibly with others between them."""
         __tracebackhide__ = True
         begun = iter(self.acts)
         for action in actions:
             pattern = literal(action)
             if not any(_matches(pattern, act.term) for act in begun):
                 order = " in this order" if len(actions) > 1 else ""
-                self._complain(f"it did not do {', '.join(actions)}{order}")
+                self._fail(f"it did not do {', '.join(actions)}{order}")
 
     def assert_did_not(self, *actions: str) -> None:
-        """Assert that no action that matches one of these was begun."""
+        """Assert that no matching action was started."""
         __tracebackhide__ = True
         for action in actions:
             pattern = literal(action)
             self._require(not any(_matches(pattern, act.term) for act in self.acts), f"it did {action}")
 
     def assert_sent(self, receiver: str, performative: str, content: str) -> None:
-        """Assert that such a message was sent; the content is a pattern."""
+        """Assert that a message was sent whose content matches."""
         __tracebackhide__ = True
         if not self._has_sent(receiver, performative, content):
-            self._complain(f"it did not send {performative} {content} to {receiver}")
+            self._fail(f"it did not send {performative} {content} to {receiver}")
 
     def assert_sent_not(self, receiver: str, performative: str, content: str) -> None:
         """Assert that no such message was sent."""
         __tracebackhide__ = True
         if self._has_sent(receiver, performative, content):
-            self._complain(f"it sent {performative} {content} to {receiver}")
+            self._fail(f"it sent {performative} {content} to {receiver}")
 
     def _has_sent(self, receiver: str, performative: str, content: str) -> bool:
         pattern = lower_value(parse_term(content))
@@ -288,7 +300,7 @@ class AgentHarness(OpenMind):
         )
 
     def __str__(self) -> str:
-        """All that can be seen of the agent, for people."""
+        """Return the visible state of the agent as text."""
         parts = {
             "beliefs": self.beliefs,
             "goals": [f"!{goal}" for goal in self.goals],
@@ -304,18 +316,18 @@ class AgentHarness(OpenMind):
                 lines += [f"  {title}:", *(f"    {line}" for line in (*rest, *shown[-_SHOWN:]))]
         return "\n".join(lines)
 
-    def _require(self, holds: bool, told: str) -> None:
+    def _require(self, holds: bool, message: str) -> None:
         __tracebackhide__ = True
         if not holds:
-            self._complain(told)
+            self._fail(message)
 
-    def _complain(self, told: str) -> NoReturn:
+    def _fail(self, message: str) -> NoReturn:
         __tracebackhide__ = True
-        raise AssertionError(f"{told}\n{self}")
+        raise AssertionError(f"{message}\n{self}")
 
 
 def _matches(pattern: Term, term: Term) -> bool:
-    """Whether a pattern unifies with a term; annotations count only where the pattern has some."""
+    """Return whether a pattern unifies with a term; annotations count only if the pattern has some."""
     trail = Trail()
     found = unify(pattern, rename(term), trail)
     undo(trail, 0)

@@ -1,4 +1,4 @@
-"""How tests ended: as data, as lines for people, and as a JUnit XML file."""
+"""Outcomes of tests: as data, as text and as JUnit XML."""
 
 import re
 from collections.abc import Callable, Iterator, Sequence
@@ -12,10 +12,10 @@ from jacaros.testing.probe import Assertion
 from jacaros.testing.suites import AgentTest, Suite
 
 Paint = Callable[[str, str], str]
-"""``paint(text, kind)``: *text* in the colour of *kind*, which is ``passed``, ``failed``, ``place`` or ``quiet``."""
+"""``paint(text, kind)``: returns *text* in the colour of *kind*: ``passed``, ``failed``, ``place`` or ``quiet``."""
 
 _WORTH_TELLING = 0.5
-"""Tests that took less, in seconds, are not told to be slow."""
+"""Seconds: faster tests are not listed as slow."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,9 +23,9 @@ class Problem:
     """One reason why a test failed.
 
     Attributes:
-        message: what is wrong, in one line.
-        details: further lines, such as what was expected.
-        span: where in the program, None when that is unknown.
+        message: the error, in one line.
+        details: further lines, such as the expected value.
+        span: place in the program; None if unknown.
     """
 
     message: str
@@ -34,7 +34,7 @@ class Problem:
 
     @staticmethod
     def of(assertion: Assertion) -> "Problem":
-        """What an assertion that failed tells."""
+        """Return the problem for a failed assertion."""
         details = []
         if assertion.expected:
             details.append(f"expected  {assertion.expected}")
@@ -43,7 +43,7 @@ class Problem:
         return Problem(f"{assertion.name} failed", tuple(details), assertion.span)
 
     def lines(self) -> list[str]:
-        """The problem for people: place and message, the line of the program, the details."""
+        """Return the problem as text: place and message, source line, details."""
         place = (
             f"{self.span.file.name}:{self.span.line}:{self.span.column}: " if self.span is not None else ""
         )
@@ -53,14 +53,14 @@ class Problem:
 
 @dataclass(slots=True)
 class Outcome:
-    """How one test ended.
+    """The outcome of one test.
 
     Attributes:
-        problems: why it failed; empty when it passed.
-        assertions: number of assertions made.
-        output: what agents printed and what was logged, in order.
-        seconds: how long it took, on the wall clock.
-        simulated: how long it took on the clock of the run.
+        problems: reasons for the failure; empty if the test passed.
+        assertions: number of assertions evaluated.
+        output: output of agents and log lines, in order.
+        seconds: duration on the wall clock.
+        simulated: duration on the clock of the run, in seconds.
     """
 
     test: AgentTest
@@ -72,11 +72,11 @@ class Outcome:
 
     @property
     def passed(self) -> bool:
-        """Whether there is nothing to complain about."""
+        """Whether the test passed."""
         return not self.problems
 
     def lines(self) -> list[str]:
-        """For people: all problems, and then what was printed."""
+        """Return all problems and the output as text."""
         found = [line for problem in self.problems for line in problem.lines()]
         if self.output:
             found += ["printed:", *(f"  {line}" for text in self.output for line in text.splitlines())]
@@ -85,14 +85,13 @@ class Outcome:
 
 @dataclass(slots=True)
 class SuiteOutcome:
-    """How the tests of one file ended; those that were run, in order."""
+    """The outcomes of the tests of one file, in the order in which they ran."""
 
     suite: Suite
     outcomes: list[Outcome] = field(default_factory=list)
 
     @property
     def path(self) -> Path:
-        """The file."""
         return self.suite.path
 
     @property
@@ -102,17 +101,17 @@ class SuiteOutcome:
 
 
 def line_of(outcome: Outcome, paint: Paint, timed: bool) -> str:
-    """The line of one test; *timed* with the time that it took."""
+    """Return the line of one test, with its duration if *timed*."""
     verdict = paint("ok    ", "passed") if outcome.passed else paint("FAILED", "failed")
     took = paint(f"  {outcome.seconds:.2f} s", "quiet") if timed else ""
     return f"  {verdict}  {outcome.test.name}{took}"
 
 
 def failures(suites: Sequence[SuiteOutcome], paint: Paint) -> Iterator[str]:
-    """The lines about all that failed."""
+    """Yield the lines about failures."""
     for suite in suites:
         if suite.suite.error is not None:
-            yield from ("", paint(f"{suite.path}: cannot be run", "failed"), suite.suite.error)
+            yield from ("", paint(f"{suite.path}: cannot run the file", "failed"), suite.suite.error)
         for outcome in suite.outcomes:
             if not outcome.passed:
                 yield from ("", paint(f"{suite.path}::{outcome.test.name}", "failed"))
@@ -120,7 +119,7 @@ def failures(suites: Sequence[SuiteOutcome], paint: Paint) -> Iterator[str]:
 
 
 def slowest(suites: Sequence[SuiteOutcome], number: int) -> Iterator[str]:
-    """The lines about the tests that took longest."""
+    """Yield the lines about the slowest tests."""
     outcomes = [(outcome, suite) for suite in suites for outcome in suite.outcomes]
     outcomes.sort(key=lambda pair: -pair[0].seconds)
     slow = [pair for pair in outcomes[:number] if pair[0].seconds >= _WORTH_TELLING]
@@ -132,7 +131,7 @@ def slowest(suites: Sequence[SuiteOutcome], number: int) -> Iterator[str]:
 
 
 def summary(suites: Sequence[SuiteOutcome], seed: int | None, paint: Paint) -> str:
-    """The last line: the counts."""
+    """Return the last line, with the counts."""
     outcomes = [outcome for suite in suites for outcome in suite.outcomes]
     failed = sum(not outcome.passed for outcome in outcomes)
     errors = sum(suite.suite.error is not None for suite in suites)
@@ -147,13 +146,13 @@ def summary(suites: Sequence[SuiteOutcome], seed: int | None, paint: Paint) -> s
 
 
 _UNFIT = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
-"""Characters that XML cannot hold."""
+"""Characters that XML does not allow."""
 
 
 def write_junit(path: Path, suites: Sequence[SuiteOutcome]) -> None:
-    """Write *path*; its folder is made if need be.
+    """Write outcomes as JUnit XML to *path*, creating its folder.
 
-    A file whose tests could not be run is one test case with an error.
+    A file that could not be run becomes one test case with an error.
 
     Raises:
         OSError: the file cannot be written.
@@ -164,7 +163,7 @@ def write_junit(path: Path, suites: Sequence[SuiteOutcome]) -> None:
         element = ElementTree.SubElement(root, "testsuite", counts, name=str(suite.path))
         if suite.suite.error is not None:
             case = _case(element, suite, "the file", 0.0)
-            _text(ElementTree.SubElement(case, "error", message="the file cannot be run"), suite.suite.error)
+            _text(ElementTree.SubElement(case, "error", message="cannot run the file"), suite.suite.error)
         for outcome in suite.outcomes:
             _add(element, suite, outcome)
     ElementTree.indent(root)

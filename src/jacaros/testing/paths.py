@@ -1,7 +1,6 @@
-"""Judging a run by what truly happened: the frame of a scenario's checker, and the geometry of true paths.
+"""Evaluate runs by their ground truth: checkers of scenarios, and the geometry of true paths.
 
-A checker is a function from a ground truth to a `Verdict`; it takes what an agent believes or prints for
-nothing.  As a program it is::
+A checker is a function from a ground truth to a `Verdict`; it ignores what agents believe and print. As a program::
 
     def check(truth: GroundTruth) -> Verdict:
         verdict = Verdict()
@@ -27,11 +26,11 @@ from jacaros.sim.ground_truth import GroundTruth, Sample
 
 @dataclass(slots=True)
 class Verdict:
-    """What a checker found.
+    """The result of a checker.
 
     Attributes:
-        complaints: what is not as it should be; empty when the run passes.
-        measured: figures for people, by what they are.
+        complaints: failed expectations; empty if the run passes.
+        measured: measured values by name.
     """
 
     complaints: list[str] = field(default_factory=list)
@@ -39,26 +38,26 @@ class Verdict:
 
     @property
     def passed(self) -> bool:
-        """True when there is nothing to complain about."""
+        """Whether no expectation failed."""
         return not self.complaints
 
     def expect(self, condition: bool, complaint: str) -> None:
-        """Complain unless the condition holds."""
+        """Add a complaint unless the condition holds."""
         if not condition:
             self.complaints.append(complaint)
 
     def measure(self, what: str, value: float) -> float:
-        """Take note of a figure, and give it back."""
+        """Record a value and return it."""
         self.measured[what] = value
         return value
 
     def at_most(self, what: str, value: float, limit: float) -> None:
-        """Take note of a figure, and complain when it is greater than *limit*."""
+        """Record a value; add a complaint if it exceeds *limit*."""
         self.measure(what, value)
         self.expect(value <= limit, f"{what}: {value:.4g}, more than {limit:g}")
 
     def lines(self) -> list[str]:
-        """The verdict for people."""
+        """Return the verdict as text."""
         figures = [f"{what}: {value:.4g}" for what, value in self.measured.items()]
         if self.passed:
             return [*figures, "passed"]
@@ -66,10 +65,10 @@ class Verdict:
 
 
 def judge(check: Callable[[GroundTruth], Verdict], arguments: Sequence[str]) -> int:
-    """The main program of a checker: judge the ground truth file that is the only argument.
+    """Run a checker as a main program on the ground truth file that is the only argument.
 
     Returns:
-        The exit code: 0 passed, 1 failed or no ground truth file, 2 wrong usage.
+        The exit code: 0 passed; 1 failed, or the file is not a ground truth file; 2 wrong usage.
     """
     if len(arguments) != 1:
         print(
@@ -79,30 +78,30 @@ def judge(check: Callable[[GroundTruth], Verdict], arguments: Sequence[str]) -> 
     try:
         verdict = check(GroundTruth.read(arguments[0]))
     except (OSError, ValueError, JacarosError) as error:
-        print(f"{arguments[0]} cannot be judged: {error}")
+        print(f"error: cannot read the ground truth `{arguments[0]}`: {error}")
         return 1
     print("\n".join(verdict.lines()))
     return 0 if verdict.passed else 1
 
 
 class Placed(Protocol):
-    """Anything with a pose: a sample, an event, a pose."""
+    """An object with a pose: a sample, an event or a pose."""
 
     @property
     def x(self) -> float:
-        """Metres."""
+        """X coordinate in metres."""
 
     @property
     def y(self) -> float:
-        """Metres."""
+        """Y coordinate in metres."""
 
     @property
     def yaw(self) -> float:
-        """Radians."""
+        """Heading in radians."""
 
 
 class Turn(NamedTuple):
-    """The robot turned on the spot: where (the mean), by how much (signed), and when it began and ended."""
+    """A turn on the spot: mean position (m), signed angle (rad), start and end (s)."""
 
     x: float
     y: float
@@ -112,24 +111,24 @@ class Turn(NamedTuple):
 
 
 def distance(one: Placed, x: float, y: float) -> float:
-    """From a pose to a point."""
+    """Return the distance from a pose to a point, in metres."""
     return math.hypot(one.x - x, one.y - y)
 
 
 def angle_between(one: float, other: float) -> float:
-    """The smaller angle between two headings, not negative."""
+    """Return the absolute difference of two headings, from 0 to pi, in radians."""
     return abs(math.remainder(one - other, math.tau))
 
 
 def seen_from(origin: Placed, point: Placed) -> tuple[float, float]:
-    """How far ahead of a pose, and how far to its left, another one lies."""
+    """Return the position of a point relative to a pose: metres ahead, metres to the left."""
     dx, dy = point.x - origin.x, point.y - origin.y
     cosine, sine = math.cos(origin.yaw), math.sin(origin.yaw)
     return dx * cosine + dy * sine, dy * cosine - dx * sine
 
 
 def to_segment(one: Placed, a: tuple[float, float], b: tuple[float, float]) -> float:
-    """From a pose to the nearest point between *a* and *b*."""
+    """Return the distance from a pose to the segment from *a* to *b*, in metres."""
     dx, dy = b[0] - a[0], b[1] - a[1]
     share = ((one.x - a[0]) * dx + (one.y - a[1]) * dy) / (dx * dx + dy * dy)
     share = min(1.0, max(0.0, share))
@@ -137,13 +136,13 @@ def to_segment(one: Placed, a: tuple[float, float], b: tuple[float, float]) -> f
 
 
 def turns(path: Sequence[Sample], least: float = math.radians(20.0)) -> list[Turn]:
-    """Where the robot turned on the spot by *least* or more; wobbling on the way is no turn."""
+    """Return the turns on the spot by *least* radians or more; small corrections on the way do not count."""
     found = [_turn(stretch) for stretch in _turning_stretches(path)]
     return [turn for turn in found if abs(turn.angle) >= least]
 
 
 def _turning_stretches(path: Sequence[Sample]) -> Iterable[list[Sample]]:
-    """Runs of samples between which the robot turned and hardly moved."""
+    """Yield sequences of samples in which the robot turned and hardly moved."""
     stretch: list[Sample] = []
     for before, after in itertools.pairwise(path):
         turned = angle_between(after.yaw, before.yaw)
@@ -171,19 +170,19 @@ def _turn(stretch: Sequence[Sample]) -> Turn:
 
 
 class Stay(NamedTuple):
-    """From docking to leaving the dock; ``end`` is None when the run ended in the dock."""
+    """A stay in the dock, from docking to leaving; ``end`` is None if the run ended in the dock."""
 
     begin: float
     end: float | None
     charged: bool
     level: float
-    """Percent at the beginning."""
+    """Battery level in percent at the start."""
 
 
 def stays(truth: GroundTruth, robot: str | None = None) -> list[Stay]:
-    """The stays in which the battery got current; brief halts with a full battery do not count.
+    """Return the stays that charged the battery; brief stops with a full battery do not count.
 
-    A robot that turns in the dock docks and undocks again: that is one stay.
+    A robot that turns in the dock undocks and docks again; this counts as one stay.
     """
     robot = robot or truth.robots[0]
     found: list[Stay] = []
@@ -197,7 +196,7 @@ def stays(truth: GroundTruth, robot: str | None = None) -> list[Stay]:
 
 
 def _dockings(truth: GroundTruth, robot: str) -> Iterator[Stay]:
-    """From each ``docked`` to the next ``undocked``, where the battery was charged meanwhile."""
+    """Yield the stays from each ``docked`` to the next ``undocked`` event in which the battery was charged."""
     begin, level, charged = 0.0, None, False
     for event in truth.events_of("docked", "charging", "charged", "undocked", robot=robot):
         match event.kind:
@@ -222,10 +221,10 @@ def _stayed_between(truth: GroundTruth, robot: str, one: Stay, other: Stay) -> b
 
 
 def judge_recharging(verdict: Verdict, truth: GroundTruth, low: float = 20.0) -> list[Stay]:
-    """Expect a robot that charges in docks only, when the battery is low, until it is full, and is never empty.
+    """Expect that a robot charges only in docks, only when its battery is low, until it is full, and never runs empty.
 
     Args:
-        low: percent from which on the robot may go to the dock.
+        low: battery level in percent below which the robot may dock.
 
     Returns:
         The stays in the dock.
@@ -239,7 +238,8 @@ def judge_recharging(verdict: Verdict, truth: GroundTruth, low: float = 20.0) ->
     for stay in found:
         verdict.expect(stay.charged, f"it left the dock of {stay.begin:.1f} s before the battery was full")
         verdict.expect(
-            stay.level <= low, f"it docked at {stay.begin:.1f} s with {stay.level:.0f} %, which is not low"
+            stay.level <= low,
+            f"it docked at {stay.begin:.1f} s with {stay.level:.0f} %, which is not low",
         )
     return found
 

@@ -1,4 +1,4 @@
-"""The port of an agent under test to its harness."""
+"""Port of an agent under test to its harness."""
 
 from asyncio import CancelledError
 from collections.abc import Callable, Collection, Coroutine, Mapping, Sequence
@@ -17,11 +17,11 @@ from jacaros.testing.recorded import Action, RecordedAct, SentMessage
 
 
 class HarnessPort:
-    """The agent's port to its host, `jacaros.bdi.architecture.Architecture`, which keeps what the agent does.
+    """The agent's port to its host (`jacaros.bdi.architecture.Architecture`), which records what the agent does.
 
     Attributes:
         mind: the agent.
-        mistake: the first exception of a function that answers actions.  For the agent it would be one more failed step.
+        mistake: first exception of a function that answers actions, which for the agent is only a failed step.
     """
 
     mind: Mind
@@ -59,7 +59,7 @@ class HarnessPort:
         return self.clock.call_later(delay, callback)
 
     def start_coroutine(self, coroutine: Coroutine[Any, Any, Any], ended: Ended) -> Timer:
-        # Its waiting takes no time here: it is run to its end at once, and told in the next cycle that looks at timers.
+        # Awaiting takes no time in a test: the coroutine runs to its end, which the next check of timers reports.
         result: object = None
         error: BaseException | None = None
         try:
@@ -126,7 +126,7 @@ class HarnessPort:
         return None
 
     def explain(self, question: str) -> Mapping[str, Any]:
-        raise UsageError(f"nothing is recorded in this test, so `{question}` has no answer")
+        raise UsageError(f"cannot answer `{question}`: this test has no recording")
 
     def clone_agent(self, name: str) -> str | None:
         self.log("info", f".clone({name}): this test has no other agents")

@@ -1,4 +1,4 @@
-"""What a test knows of one of its agents, and how the assertions of an agent reach its test."""
+"""A test's view of one agent, and the path from assertions of the agent to the test."""
 
 import re
 from collections.abc import Callable, Iterator, Sequence
@@ -19,13 +19,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Assertion:
-    """An assertion that a program made.
+    """An assertion evaluated by a program.
 
     Attributes:
-        name: the goal that made it, such as ``assert_equals``.
+        name: the assertion goal, such as ``assert_equals``.
         passed: whether it held.
-        expected, actual: for people; empty where there is nothing to tell.
-        span: where the program makes it, None when that is unknown.
+        expected, actual: for the report; may be empty.
+        span: place in the program; None if unknown.
     """
 
     name: str
@@ -35,22 +35,22 @@ class Assertion:
     span: Span | None
 
     def text(self) -> str:
-        """The assertion in one line, without its place."""
+        """Return the assertion in one line, without its place."""
         if self.passed:
             return f"{self.name} passed"
-        told = f"expected {self.expected}" if self.expected else ""
+        text = f"expected {self.expected}" if self.expected else ""
         if self.actual:
-            told += f"{', but ' if told else ''}{self.actual}"
-        return f"{self.name} failed: {told}"
+            text += f"{', but ' if text else ''}{self.actual}"
+        return f"{self.name} failed: {text}"
 
 
 @dataclass(frozen=True, slots=True)
 class Probe:
-    """A test that looks on at one agent.
+    """A test that observes one agent.
 
     Attributes:
-        prints: the lines that the agent has printed, oldest first.
-        others: the rest of the ROS graph, as the test plays it.
+        prints: lines that the agent printed, oldest first.
+        others: the rest of the ROS graph, played by the test.
     """
 
     fakes: Fakes
@@ -60,17 +60,17 @@ class Probe:
 
 
 class Asserting:
-    """A call of an action behind an assertion goal.
+    """A call of an internal action behind an assertion goal.
 
     Args:
-        probe: the test of the agent; without one its assertions are told to people.
+        probe: the test of the agent; None to log failed assertions.
     """
 
     def __init__(self, ctx: Context, probe: Probe | None) -> None:
         self.ctx = ctx
         self._probe = probe
 
-    def tell(self, passed: bool, expected: str, actual: str = "") -> None:
+    def report(self, passed: bool, expected: str, actual: str = "") -> None:
         """Report the assertion made by the goal whose plan makes this call."""
         assertion = Assertion(self._goal(), passed, _readable(expected), _readable(actual), self._place())
         if self._probe is not None:
@@ -80,26 +80,26 @@ class Asserting:
         self.ctx.architecture.log("info" if passed else "error", f"{where}{assertion.text()}")
 
     def probe(self, what: str) -> Probe:
-        """The test of this agent; *what* asks.
+        """Return the test of this agent; *what* names the calling assertion.
 
         Raises:
-            ActionError: the agent is not tested.
+            ActionError: the agent is not in a test.
         """
         if self._probe is None:
-            raise ActionError(f"{what} is for tests: run them with jacaros test")
+            raise ActionError(f"{what} works only in tests; run them with `jacaros test`")
         return self._probe
 
     @contextmanager
     def others(self, what: str) -> "Iterator[FakeGraph]":
-        """The rest of the ROS graph; what is wrong with the arguments is told where the test has them.
+        """Yield the rest of the ROS graph; report errors in the arguments at the place of the assertion.
 
         Raises:
-            ActionError: the agent is not tested.
+            ActionError: the agent is not in a test.
         """
         try:
             yield self.probe(what).others()
         except ValueError as wrong:
-            self.tell(False, "", str(wrong))
+            self.report(False, "", str(wrong))
 
     def _goal(self) -> str:
         if self.ctx.intention is None:
@@ -108,13 +108,13 @@ class Asserting:
         return name
 
     def _place(self) -> Span | None:
-        """Where the assertion goal is called; None when it has no caller, as with ``!!assert_true(F)``."""
+        """Return where the assertion goal is called; None without a caller, as for ``!!assert_true(F)``."""
         intention = self.ctx.intention
         if intention is None:
             return None
         own = len(intention.frames) - 1
         if intention.frames[own][GOAL][0].failing and intention.handlers:
-            # A handler stands above the frame of the goal that failed.
+            # A handler is above the frame of the failed goal.
             own = intention.handlers[-1]
         if own == 0 or not intention.frames[own - 1][PLAN].steps:
             return None
@@ -122,5 +122,5 @@ class Asserting:
 
 
 def _readable(shown: str) -> str:
-    """Unnamed variables as they are written, without their numbers."""
+    """Return text with anonymous variables as ``_``, without their numbers."""
     return re.sub(r"\b_\d+\b", "_", shown)

@@ -1,7 +1,7 @@
-"""The plugin for pytest: tests of agent programs are collected beside those in Python.
+"""Plugin for pytest that collects tests of agent programs.
 
-It is there wherever JaCaROS is installed (``-p no:jacaros`` leaves it out).  Test files are those that ``jacaros test``
-finds in a folder, see `jacaros.testing.suites`; a file that is named on the command line counts whatever its name.
+It is active wherever JaCaROS is installed (``-p no:jacaros`` disables it). In folders it collects the same files as
+``jacaros test``, see `jacaros.testing.suites`; a file named on the command line is collected whatever its name.
 """
 
 from collections.abc import Iterable
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-# Nothing else is imported here: the plugin is loaded by every run of pytest, also by those that have no agents.
+# No other imports: every run of pytest loads this plugin, even without agents.
 
 if TYPE_CHECKING:
     from jacaros.testing.suites import AgentTest, Suite
@@ -20,20 +20,22 @@ _SUFFIXES = (".asl", ".jcm", ".mas2j")
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """The options of ``jacaros test`` that make sense here."""
+    """Add the options of ``jacaros test`` that apply to pytest."""
     group = parser.getgroup("jacaros", "agent programs")
     group.addoption(
         "--asl-timeout",
         type=float,
         default=60.0,
         metavar="S",
-        help="seconds of virtual time that an agent test may take",
+        help="time limit of each agent test, in seconds of virtual time",
     )
-    group.addoption("--asl-seed", type=int, default=0, metavar="N", help="seed of agent tests")
+    group.addoption(
+        "--asl-seed", type=int, default=0, metavar="N", help="seed for random numbers of agent tests"
+    )
 
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> "AgentFile | None":
-    """Take test programs and test projects."""
+    """Collect test programs and test projects."""
     if file_path.suffix not in _SUFFIXES:
         return None
     from jacaros.testing.suites import is_test_file
@@ -48,10 +50,10 @@ class AgentFile(pytest.File):
     """A program or project with agent tests."""
 
     def collect(self) -> Iterable["AgentItem"]:
-        """Its tests.
+        """Yield the tests of the file.
 
         Raises:
-            CollectError: it cannot be read.
+            CollectError: the file cannot be read.
         """
         from jacaros.testing.suites import suite_of
 
@@ -71,10 +73,10 @@ class AgentItem(pytest.Item):
         self._test = test
 
     def runtest(self) -> None:
-        """Run it in a system of its own.
+        """Run the test in a separate system.
 
         Raises:
-            AgentTestFailed: with all that is wrong.
+            AgentTestFailed: the test failed; the text lists all problems.
         """
         from jacaros.testing.trial import TrialOptions, run_suite
 
@@ -87,23 +89,23 @@ class AgentItem(pytest.Item):
                 print(line)
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
-        """What is told about a failure: no trace of Python, when the agent is to blame."""
+        """Return the report of a failure, without a Python traceback if the agent failed."""
         if isinstance(excinfo.value, AgentTestFailed):
             return str(excinfo.value)
         return super().repr_failure(excinfo, style)
 
     def reportinfo(self) -> tuple[PathLike[str] | str, int | None, str]:
-        """File, line (counted from 0) and name."""
+        """Return file, line (counted from 0) and name."""
         line = self._test.span.line - 1 if self._test.span is not None else None
         return self.path, line, self.name
 
 
 class AgentTestFailed(Exception):
-    """An agent test failed; ``str()`` tells what is wrong."""
+    """Raised when an agent test fails; ``str()`` lists the problems."""
 
 
 def _relative(path: Path) -> Path:
-    """The path as people write it, where that is shorter."""
+    """Return the path relative to the current folder if that is shorter."""
     try:
         return path.relative_to(Path.cwd())
     except ValueError:

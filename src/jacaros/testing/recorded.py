@@ -1,6 +1,6 @@
-"""What a test sees of an agent, and how it answers: the actions that the agent has begun, its messages, and fakes.
+"""The actions and messages of an agent as recorded by a test, and fake actions.
 
-A fake answers external actions in place of an environment.
+A fake answers external actions instead of an environment.
 """
 
 from collections.abc import Callable
@@ -21,17 +21,17 @@ REASON = functor("env_failure_reason", 1)
 STOP = ".stopMAS"
 
 Action = Callable[..., object]
-"""Answers an external action, see `RecordedAct.answer`."""
+"""A function that answers an external action; see `RecordedAct.answer`."""
 Complete = Callable[[int, Completion], None]
 Later = Callable[[float, Callable[[], None]], object]
 
 
 class ActionFailed(Exception):
-    """Raised by a faked action to let the step fail.
+    """Raised by a fake action to make the step fail.
 
     Args:
-        reason: the reason term, as text: ``blocked(wall)`` reaches the plan as ``env_failure_reason(blocked(wall))``.
-        message: for people; the reason unless given.
+        reason: reason term as text: ``blocked(wall)`` reaches the plan as ``env_failure_reason(blocked(wall))``.
+        message: message for the log (default: the reason).
     """
 
     def __init__(self, reason: str, message: str | None = None) -> None:
@@ -40,14 +40,14 @@ class ActionFailed(Exception):
 
 
 class RecordedAct:
-    """An external action that the agent has begun.
+    """An external action started by the agent.
 
     Attributes:
-        name: of the action.
+        name: name of the action.
         arguments: plain values (numbers, strings, `jacaros.env.values.Atom`, `Structure`, lists); None for an output.
-        pending: whether its end is still to come.
-        cancelled: the intention behind it was dropped.
-        paused: the intention behind it is suspended.
+        pending: whether the action has not ended yet.
+        cancelled: whether its intention was dropped.
+        paused: whether its intention is suspended.
     """
 
     def __init__(self, act: Act, complete: Complete) -> None:
@@ -67,10 +67,10 @@ class RecordedAct:
         return self._term
 
     def complete(self, *outputs: object) -> None:
-        """Let it succeed; *outputs* are the values of its unbound variables, in order.
+        """Let the action succeed; *outputs* are the values of its unbound variables, in order.
 
         Raises:
-            ValueError: it has ended before, or the number of outputs is not that of its unbound variables.
+            ValueError: the action has already ended, or the number of outputs differs from that of the unbound variables.
         """
         if outputs and len(outputs) != len(self._outputs):
             raise ValueError(f"{self} has {len(self._outputs)} unbound variables, not {len(outputs)}")
@@ -81,24 +81,28 @@ class RecordedAct:
         self._end(Completion(True, tuple(values)))
 
     def fail(self, reason: str = "failed", message: str | None = None) -> None:
-        """Let it fail, with a reason term as text, and a message for people.
+        """Let the action fail.
+
+        Args:
+            reason: reason term as text.
+            message: message for the log (default: the reason).
 
         Raises:
-            ValueError: it has ended before.
+            ValueError: the action has already ended.
         """
         self._end(failed(lower_value(parse_term(reason)), message))
 
     def _end(self, completion: Completion) -> None:
         if not self.pending:
-            raise ValueError(f"{self} has ended{' with its intention' if self.cancelled else ''}")
+            raise ValueError(f"{self} has already ended{' with its intention' if self.cancelled else ''}")
         self.pending = False
         self._complete(self._act.id, completion)
 
     def answer(self, function: Action) -> None:
-        """Let a function decide: it is called with the arguments that have values, and gives the outputs.
+        """Let a function answer the action: it receives the bound arguments and returns the outputs.
 
-        One output is what it returns, several are a tuple; without outputs False means that the action fails.
-        What it raises beside `ActionFailed` is a mistake of the test, and is raised by `AgentHarness.run`.
+        It returns a single output as such, several as a tuple; without outputs, False makes the action fail.
+        `AgentHarness.run` raises any exception other than `ActionFailed`.
         """
         values = [
             a
@@ -125,12 +129,12 @@ class RecordedAct:
 
 
 class SentMessage:
-    """A message that the agent has sent.
+    """A message sent by the agent.
 
     Attributes:
-        receiver: name of the agent it is for.
-        performative: such as ``tell``.
-        content: as text.
+        receiver: name of the receiving agent.
+        performative: performative, such as ``tell``.
+        content: content as text.
     """
 
     def __init__(self, message: SpeechAct) -> None:
@@ -149,14 +153,14 @@ class _Fake(NamedTuple):
 
 
 class Fakes:
-    """The faked actions of one agent, and all actions that it has begun.
+    """The fake actions of one agent, and all actions that it has started.
 
     Args:
-        complete: tells the agent the end of an act.
-        later: calls a function after so many seconds of the run's clock.
+        complete: reports the end of an action to the agent.
+        later: calls a function after a number of seconds on the run's clock.
 
     Attributes:
-        acts: every action begun, faked or not, oldest first; outputs that the fake gave are filled in.
+        acts: every action started, fake or not, oldest first, with the outputs returned by a fake.
     """
 
     def __init__(self, complete: Complete, later: Later) -> None:
@@ -167,32 +171,33 @@ class Fakes:
         self._fakes_stop = False
 
     def add(self, pattern: Term, outcome: Term = None) -> None:
-        """Answer actions that match *pattern*; of several fakes the last one added is taken.
+        """Answer actions that match *pattern*; the fake added last wins.
 
-        Values that stand in the pattern where the action has an unbound variable become its outputs.
+        Where the action has an unbound variable, the value in the pattern becomes its output.
 
         Args:
-            pattern: an atom or structure; ``.stopMAS`` stands for all its forms.
+            pattern: an atom or structure; ``.stopMAS`` matches all its forms.
             outcome: ``done`` (the default), ``after(Ms)``, ``failed(Reason)``, ``failed(Reason, Message)`` or ``never``.
 
         Raises:
-            ValueError: there is no such outcome.
+            ValueError: the outcome or the pattern is invalid.
         """
         outcome = atom("done") if outcome is None else resolve(outcome)
         if not _is_outcome(outcome):
             raise ValueError(
-                f"{text(outcome)} is no outcome of a fake: done, after(Ms), failed(Reason), failed(Reason, Message), never"
+                f"invalid outcome {text(outcome)}: expected done, after(Ms), failed(Reason), failed(Reason, Message) or "
+                "never"
             )
         symbol = functor_of(pattern)
         if symbol is None or (symbol.name[:1] == "." and symbol.name != STOP):
-            raise ValueError(f"{text(pattern)} is no external action")
+            raise ValueError(f"{text(pattern)} is not an external action")
         if symbol.name == STOP:
             self._fakes_stop = True
             return
         self._fakes.append(_Fake(rename(pattern), outcome))
 
     def begin(self, act: Act) -> bool:
-        """Answer an act; False when no fake is for it."""
+        """Answer an action; return False if no fake matches."""
         term = (act.functor, *act.arguments) if act.arguments else act.functor
         variables = free_variables(term)
         trail = Trail()
@@ -209,7 +214,7 @@ class Fakes:
         return False
 
     def stop(self, delay: float, exit_code: int) -> bool:
-        """Take note of ``.stopMAS``; False when it is not faked, and ends the run."""
+        """Record a call of ``.stopMAS``; return False if it is not faked and must end the run."""
         if self._fakes_stop:
             given = [delay * 1000.0, float(exit_code)] if exit_code else [delay * 1000.0] if delay else []
             symbol = functor(STOP, len(given), kind=ACTION)
@@ -228,9 +233,9 @@ class Fakes:
 
 
 def failed(reason: Term, message: Term = None) -> Completion:
-    """The end of an action that failed for this reason, told as environments tell it."""
-    told = String(text(reason)) if message is None else String(message)
-    return Completion(False, (), ((ERROR_MSG, told), (REASON, reason)))
+    """Return the completion of a failed action, in the form that environments use."""
+    message = String(text(reason)) if message is None else String(message)
+    return Completion(False, (), ((ERROR_MSG, message), (REASON, reason)))
 
 
 def _is_outcome(term: Term) -> bool:

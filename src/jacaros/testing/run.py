@@ -1,4 +1,4 @@
-"""Running a whole project inside a test, on virtual time."""
+"""Run a whole project in a test, on virtual time."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
@@ -12,19 +12,19 @@ from jacaros.mas.options import RunOptions
 from jacaros.mas.system import System
 
 TEST_RUN: Final = RunOptions(fast=True, seed=0, keep_ground_truth=True)
-"""The options of a run in a test."""
+"""Default options of a run in a test."""
 
 
 @dataclass(slots=True)
 class RunResult:
-    """What a run did.
+    """The result of a run.
 
     Attributes:
-        lines: the agents' output, as ``[agent] text``.
-        errors: everything else that was told, warnings and logs.
-        exit_code: what the ``jacaros`` command would have ended with.
-        seconds: how long it took on its own clock.
-        ground_truth: what truly happened in the embedded world (`jacaros.sim.GroundTruth`); None without one.
+        lines: output of agents, as ``[agent] text``.
+        errors: other output: errors, warnings and log lines.
+        exit_code: exit code that the ``jacaros`` command would return.
+        seconds: duration on the clock of the run.
+        ground_truth: ground truth of the embedded world (`jacaros.sim.GroundTruth`); None without a world.
     """
 
     lines: list[str] = field(default_factory=list)
@@ -34,18 +34,18 @@ class RunResult:
     ground_truth: Any = None
 
     def of(self, agent: str) -> list[str]:
-        """What one agent printed, without its name."""
+        """Return the output of one agent, without its name."""
         prefix = f"[{agent}] "
         return [line.removeprefix(prefix) for line in self.lines if line.startswith(prefix)]
 
     # The port of a run's console.
 
     def print(self, agent: str, text: str) -> None:
-        """Take a line of an agent's output."""
+        """Record a line of an agent's output."""
         self.lines.append(f"[{agent}] {text}")
 
     def log(self, text: str, level: str = "info") -> None:
-        """Take a line for people."""
+        """Record a log line."""
         self.errors.append(text)
 
 
@@ -56,19 +56,19 @@ def run_project(
     when_started: Callable[[System], None] | None = None,
     **changes: Any,
 ) -> RunResult:
-    """Run a project as ``jacaros run`` does.
+    """Run a project, as ``jacaros run`` does.
 
-    Mistakes of programs and projects do not raise: they are among the `RunResult.errors`, with exit code 1.
+    Errors in programs and projects do not raise: they are in `RunResult.errors`, and the exit code is 1.
 
     Args:
-        project: a project file, a lone program, or a deployment.
-        options: how; on the virtual clock with seed 0 unless given.
-        when_started: called with the run before its first agent has its turn.
-        changes: single fields of `RunOptions` in place of those of *options*, such as ``until_idle=True, seconds=60``.
+        project: a project file, a program, or a deployment.
+        options: options of the run (default: virtual clock, seed 0).
+        when_started: called with the run before the first agent reasons.
+        changes: fields of `RunOptions` that override those of *options*, such as ``until_idle=True, seconds=60``.
 
     Raises:
         TypeError: `RunOptions` has no such field.
-        InternalError: a defect of JaCaROS showed itself.
+        InternalError: JaCaROS has a defect.
     """
     result = RunResult()
     options = replace(options, **changes)

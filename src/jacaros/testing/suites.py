@@ -1,16 +1,16 @@
-"""Finding agent tests: the plans labelled ``test`` of programs and projects.
+"""Find agent tests: plans labelled ``test`` in programs and projects.
 
 A plan for an achievement goal whose label has the annotation ``test`` is a test::
 
     @charges_when_low[test]
     +!test_charging <- ... .
 
-``[test, timeout(2000)]`` gives it a time limit of its own, in milliseconds; ``[test, mapping("robot.yaml")]`` the artifacts
-of a mapping file, in a ROS graph without a robot.
+``[test, timeout(2000)]`` sets its time limit in milliseconds; ``[test, mapping("robot.yaml")]`` adds the artifacts of a
+mapping file, in a ROS graph without a robot.
 
-In a folder, and in all folders in it, the test files are: programs that have such a plan themselves, and projects
-(`.jcm`, `.mas2j`) called ``test_...`` or ``..._test``, of which all agents are looked at.  A program called
-``test_...`` or ``..._test`` that cannot be read is a test file too.
+In a folder and its subfolders, test files are the programs that contain such a plan, and the projects (`.jcm`, `.mas2j`)
+named ``test_...`` or ``..._test``, whose agents are all searched. A program named ``test_...`` or ``..._test`` that cannot
+be read is a test file, too.
 """
 
 import os
@@ -27,6 +27,7 @@ from jacaros.asl.formatter import format_term
 from jacaros.asl.loader import load_program, parse_literals
 from jacaros.asl.source import Span
 from jacaros.errors import JacarosError, UsageError
+from jacaros.excerpts import help_line
 from jacaros.mas.deployment import AgentSpec, Deployment, has_own_artifacts
 from jacaros.mas.loading import load_deployment
 from jacaros.mas.programs import Programs, library_file
@@ -56,12 +57,12 @@ class AgentTest:
     """One test.
 
     Attributes:
-        name: the label of its plan, or the goal when the plan has none of its own.
-        agent: name of the agent that gets the goal.
-        goal: what it is to achieve.
-        span: where the plan stands.
-        timeout: time limit in seconds, None for the usual one.
-        mappings: mapping files whose artifacts the run has.
+        name: label of the plan, or the goal if the plan has no label of its own.
+        agent: name of the agent that receives the goal.
+        goal: goal to achieve.
+        span: place of the plan.
+        timeout: time limit in seconds; None for the default.
+        mappings: mapping files whose artifacts the run creates.
     """
 
     name: str
@@ -77,11 +78,11 @@ class Suite:
     """The tests of one program or project.
 
     Attributes:
-        path: of the file.
-        tests: in the order of the program.
-        deployment: what is run for each test; None when the file is wrong.
-        error: why it cannot be run.
-        warnings: about its programs.
+        path: path of the file.
+        tests: tests in the order of the program.
+        deployment: what to run for each test; None if the file has errors.
+        error: why the file cannot be run.
+        warnings: warnings about its programs.
     """
 
     path: Path
@@ -92,8 +93,7 @@ class Suite:
 
 
 def with_assertions(program: nodes.Program) -> nodes.Program:
-    """What is run of a program for its tests: all assertion goals are added, if it does not include them, and the goal by
-    which Jason's harness begins is left out."""
+    """Return a program prepared for tests: with all assertion goals, without the initial goal of Jason's test harness."""
     labels = {plan.label.functor for plan in program.plans if isinstance(plan.label, nodes.Literal)}
     added = tuple(plan for plan in _library() if _label(plan) not in labels)
     goals = tuple(goal for goal in program.goals if goal.functor != _HARNESS_GOAL)
@@ -102,19 +102,19 @@ def with_assertions(program: nodes.Program) -> nodes.Program:
 
 @cache
 def _library() -> tuple[nodes.Plan, ...]:
-    """The assertion goals and what else the harness of Jason offers."""
+    """Return the assertion goals, and the rest of Jason's test harness."""
     text = library_file(LIBRARY).read_text(encoding="utf-8")
     programs = Programs((), print, PythonCode(ProjectModules()))
     return load_program(f"$jacaros/{LIBRARY}", text, programs.include)[0].plans
 
 
 def collect(paths: Sequence[Path]) -> list[Suite]:
-    """The suites in files and folders, in order; a file that is named twice is there once.
+    """Return the suites in files and folders, in order and without repetition.
 
-    Files that cannot be read are suites too, with an `Suite.error`.
+    Files that cannot be read become suites with a `Suite.error`.
 
     Raises:
-        UsageError: a path is not there, or is no program, project or folder.
+        UsageError: a path does not exist, or is not a program, a project or a folder.
     """
     found: dict[Path, Suite] = {}
     for path in paths:
@@ -125,7 +125,7 @@ def collect(paths: Sequence[Path]) -> list[Suite]:
 
 
 def suite_of(path: Path) -> Suite:
-    """The tests of one program or project file."""
+    """Return the suite of one program or project file."""
     suite = Suite(path)
     try:
         deployment = load_deployment(path) if path.suffix in PROJECTS else _lone(path)
@@ -148,7 +148,7 @@ def suite_of(path: Path) -> Suite:
 
 
 def is_test_file(path: Path) -> bool:
-    """Whether a program or project that lies in a folder of tests is to be looked at, see the top of this file."""
+    """Return whether a program or project in a folder is a test file; see the module docstring."""
     if path.suffix in PROJECTS:
         return bool(_NAMED_TEST.fullmatch(path.stem))
     if path.suffix != ".asl":
@@ -168,7 +168,7 @@ def _in_folder(folder: Path) -> Iterator[Suite]:
     for file in _files(folder):
         (projects if file.suffix in PROJECTS else programs).append(file)
     suites = [suite_of(file) for file in projects]
-    # What a test project runs is not run once more alone.
+    # Programs that a test project runs are not run again as single programs.
     run = {
         spec.source_path.resolve()
         for suite in suites
@@ -190,9 +190,11 @@ def _files(folder: Path) -> Iterator[Path]:
 
 def _of_file(path: Path) -> Iterator[Suite]:
     if path.suffix not in (".asl", *PROJECTS):
-        raise UsageError(f"unsupported file type: {path} (expected .asl, .mas2j, .jcm or a folder)")
+        raise UsageError(
+            f"error: unsupported file type: `{path}`\n{help_line('expected .asl, .mas2j, .jcm or a folder')}"
+        )
     if not is_file(path):
-        raise UsageError(f"file not found: {path}")
+        raise UsageError(f"error: file not found: `{path}`")
     suite = suite_of(path)
     folders = list(_folders_of_the_manager(suite))
     if suite.tests or suite.error or not folders:
@@ -202,20 +204,20 @@ def _of_file(path: Path) -> Iterator[Suite]:
 
 
 def _folders_of_the_manager(suite: Suite) -> Iterator[Path]:
-    """Where a test project of Jason says that its tests are: in the goal of its agent test_manager."""
+    """Yield the folders that a test project of Jason names in the goal of its agent test_manager."""
     if suite.deployment is None:
         return
     for spec in suite.deployment.agents:
         for goal in parse_literals(spec.goals) if spec.goals.strip() else ():
             if goal.functor == "create_tester_agents" and isinstance(goal.arguments[0], nodes.String):
                 written = goal.arguments[0].value
-                # Jason looks in the folder in which it is started.
+                # Jason searches the folder in which it is started.
                 folders = (suite.deployment.base_path / written, Path(written))
                 yield from [folder for folder in folders if folder.is_dir()][:1]
 
 
 def _without_repetitions(suites: list[Suite]) -> None:
-    """A test that a suite has from a file that it includes is not run there when that file is a suite itself."""
+    """Drop tests from included files that are suites themselves."""
     own = {suite.path.resolve() for suite in suites if suite.path.suffix == ".asl"}
     for suite in suites:
         if suite.path.suffix == ".asl":
@@ -231,10 +233,10 @@ def _file_of(test: AgentTest) -> Path | None:
 
 
 def _programs(deployment: Deployment, warn: Callable[[str], None]) -> list[nodes.Program]:
-    """The programs of all agents.
+    """Read the programs of all agents.
 
     Raises:
-        AslError: with the errors of all of them.
+        AslError: with the errors of all programs.
     """
     code = PythonCode(ProjectModules(deployment.base_path, *deployment.source_paths))
     code.actions.update(UNTESTED)
@@ -246,7 +248,7 @@ def _programs(deployment: Deployment, warn: Callable[[str], None]) -> list[nodes
 
 
 def _lone(path: Path) -> Deployment:
-    """A program alone, as an agent of its name; its project is looked for in the folders above."""
+    """Return the deployment of a single program; its project is searched in the folders above."""
     folders = _project_folders(path.parent)
     base = next((folder for folder in folders if has_own_artifacts(folder)), folders[-1])
     places = [folder / each for folder in folders for each in _PATHS]
@@ -261,7 +263,7 @@ def _lone(path: Path) -> Deployment:
 
 
 def _project_folders(folder: Path) -> list[Path]:
-    """The folder of a test and those above it, up to the one of its project; alone when there is none."""
+    """Return the folder of a test and those above it, up to that of its project."""
     found = [folder]
     above = Path(os.path.abspath(folder))
     relative = folder
@@ -298,17 +300,17 @@ def _tests(agent: str, program: nodes.Program, problems: list[Diagnostic]) -> It
         signature = _signature(goal)
         first = known.setdefault(signature, plan)
         if first is not plan:
-            # Several plans for one goal are alternatives of one test, unless the first one is always taken.
+            # Several plans for one goal are alternatives of one test, unless the first one is always applicable.
             if first.context is not None:
                 continue
-            told = f"this plan is never run: !{signature} has another, which is tested twice"
-            problems.append(Diagnostic("warning", told, plan.span, "give it a goal of its own"))
+            message = f"unreachable test: an earlier plan for !{signature} is always applicable"
+            problems.append(Diagnostic("warning", message, plan.span, "give the test a different goal"))
         mappings = tuple(_mappings(plan, problems))
         yield AgentTest(_name(plan, goal), agent, goal, plan.span, _timeout(plan), mappings)
 
 
 def _marks(plan: nodes.Plan, functor: str) -> Iterator[nodes.Literal]:
-    """The annotations of a plan's label with that functor."""
+    """Yield the annotations of a plan's label with that functor."""
     if isinstance(plan.label, nodes.Literal) and plan.label.annotations is not None:
         for annotation in plan.label.annotations.items:
             if isinstance(annotation, nodes.Literal) and annotation.functor == functor:
@@ -324,13 +326,13 @@ def _timeout(plan: nodes.Plan) -> float | None:
 
 
 def _mappings(plan: nodes.Plan, problems: list[Diagnostic]) -> Iterator[str]:
-    """The mapping files of a test: beside its file, or as the current folder and the package have them."""
+    """Yield the mapping files of a test: next to its file, in the current folder, or shipped with the package."""
     for mark in _marks(plan, "mapping"):
         for argument in mark.arguments or (None,):
             if not isinstance(argument, nodes.String):
-                told = "mapping(...) names no file"
+                message = "mapping(...) expects a file name"
                 problems.append(
-                    Diagnostic("error", told, plan.span, 'as in @name[test, mapping("robot.yaml")]')
+                    Diagnostic("error", message, plan.span, 'as in @name[test, mapping("robot.yaml")]')
                 )
                 continue
             beside = Path(plan.span.file.name).parent / argument.value if plan.span is not None else None
@@ -347,7 +349,7 @@ def _name(plan: nodes.Plan, goal: nodes.Literal) -> str:
 
 
 def _signature(goal: nodes.Literal) -> str:
-    """The goal as text, with all variables alike."""
+    """Return the goal as text, with all variables written alike."""
 
     def plain(term: nodes.Term) -> nodes.Term:
         if isinstance(term, nodes.Variable):

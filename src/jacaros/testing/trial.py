@@ -1,4 +1,4 @@
-"""Running tests: each in a system of its own, or those of a file one after the other in one system."""
+"""Run tests: each in a separate system, or all tests of a file in one."""
 
 import asyncio
 import threading
@@ -42,20 +42,20 @@ if TYPE_CHECKING:
 
 LINGER_SECONDS = 1.0
 LINGER_CYCLES = 10_000
-"""When a test has achieved its goal the run goes on until nobody has anything to do, but no longer than this: for the goals
-that it posted with ``!!``, whose assertions count too."""
+"""Seconds for which a run may continue after the goal of a test is achieved, until all agents are idle: assertions of goals
+posted with ``!!`` count, too."""
 
 
 @dataclass(frozen=True, slots=True)
 class TrialOptions(RunOptions):
-    """How tests are run: the attributes of `RunOptions` (on the virtual clock with seed 0 unless given), and these.
+    """Options of a test run: those of `RunOptions` (default: virtual clock, seed 0), and the following.
 
     Attributes:
-        timeout: seconds of the run's clock after which a test has failed, unless its label says otherwise.
-        cycles: reasoning cycles of all agents together after which a test has failed.
-        patience: seconds of the wall clock after which a test has failed, whatever it does; 0 for no such limit.  It works
-            in the main thread of a process on POSIX systems.
-        shared: the tests of a file run one after the other in one system, as on Jason.
+        timeout: seconds of the run's clock after which a test fails, unless its label sets another limit.
+        cycles: reasoning cycles of all agents together after which a test fails.
+        patience: seconds of real time after which a test fails; 0 for no limit. Works only in the main thread, on POSIX
+            systems.
+        shared: run all tests of a file in one system, in turn, as Jason does.
     """
 
     fast: bool = True
@@ -71,11 +71,11 @@ def run_suite(
     options: TrialOptions | None = None,
     chosen: Callable[[AgentTest], bool] = lambda test: True,
 ) -> Iterator[Outcome]:
-    """Run the tests of a file; each outcome comes when it is there.
+    """Run the tests of a file; yield each outcome as soon as it is known.
 
     Raises:
-        UsageError: options that cannot go together.
-        InternalError: a defect of JaCaROS showed itself.
+        UsageError: the options cannot be combined.
+        InternalError: JaCaROS has a defect.
     """
     options = options or TrialOptions()
     options.check()
@@ -87,26 +87,26 @@ def run_suite(
 
 
 def _outcomes(suite: Suite, tests: Sequence[AgentTest], options: TrialOptions) -> list[Outcome]:
-    """Make tests in one run."""
+    """Run tests in one system."""
     try:
         trial = Trial(suite, tests, options)
     except ProjectError as wrong:
-        told = Problem("a mapping is wrong", tuple(str(wrong).splitlines()), tests[0].span)
-        return [Outcome(test, problems=[told]) for test in tests]
+        problem = Problem("invalid mapping file", tuple(str(wrong).splitlines()), tests[0].span)
+        return [Outcome(test, problems=[problem]) for test in tests]
     return trial.run()
 
 
 def run_suites(suites: Sequence[Suite], options: TrialOptions | None = None) -> list[SuiteOutcome]:
-    """Run all tests of several files."""
+    """Run the tests of several files."""
     return [SuiteOutcome(suite, list(run_suite(suite, options))) for suite in suites]
 
 
 class TookTooLong(BaseException):
-    """The wall clock says that a test hangs; no ordinary exception, because those of a step only fail that step."""
+    """Raised when a test exceeds its real time; a BaseException, because an exception would only fail the current step."""
 
 
 class Trial:
-    """One run of a system in which tests are made, one after the other."""
+    """A run of one system for one test or, in turn, for several."""
 
     def __init__(self, suite: Suite, tests: Sequence[AgentTest], options: TrialOptions) -> None:
         assert suite.deployment is not None
@@ -131,7 +131,7 @@ class Trial:
         self._mas = self._system(suite.deployment)
 
     def _system(self, deployment: Deployment) -> System:
-        """The system, with the artifacts of the mappings; then in a graph without a robot, unless a world is named."""
+        """Create the system with the artifacts of the mapping files, in a graph without a robot unless a world is named."""
         options, world = self._options, self._options.world
         if self._mappings and world is None and deployment.world is None:
             world = NO_WORLD
@@ -151,10 +151,10 @@ class Trial:
         return with_assertions(program)
 
     def run(self) -> list[Outcome]:
-        """Make the tests; their outcomes, in order.
+        """Run the tests; return their outcomes in order.
 
         Raises:
-            InternalError: a defect of JaCaROS showed itself.
+            InternalError: JaCaROS has a defect.
         """
         try:
             with _patience(self._options.patience * len(self._outcomes)):
@@ -164,22 +164,22 @@ class Trial:
         except InternalError:
             raise
         except JacarosError as wrong:
-            self._end_run(Problem("the system cannot be started", tuple(str(wrong).splitlines())))
-        self._end_run(Problem("the program ended the run (.stopMAS) before the test had ended"))
+            self._end_run(Problem("cannot start the system", tuple(str(wrong).splitlines())))
+        self._end_run(Problem("the program ended the run (.stopMAS) before the test ended"))
         return self._outcomes
 
     async def _main(self) -> None:
         asyncio.get_running_loop().set_exception_handler(self._escaped)
         await self._mas.run(self._next)
 
-    # ---- one test after the other
+    # ---- tests in turn
 
     @property
     def _outcome(self) -> Outcome:
         return self._outcomes[max(self._number, 0)]
 
     def _next(self) -> None:
-        """Begin the next test, or end the run."""
+        """Start the next test, or end the run."""
         for timer in self._timers:
             timer.cancel()
         if self._number + 1 == len(self._outcomes):
@@ -197,28 +197,28 @@ class Trial:
         host = self._mas.directory.find(test.agent)
         if host is None or not isinstance(host.mind, Mind):
             self._fail(
-                Problem(f"the test was not started: there is no agent {test.agent} any more", (), test.span)
+                Problem(f"the test was not started: agent {test.agent} no longer exists", (), test.span)
             )
             return
         self._goal = WatchedGoal(host.mind, lower_value(test.goal), self._goal_ended)
 
     def _forget_messages(self) -> None:
-        """A test hears what is published from its beginning on."""
+        """Discard messages published before this test."""
         if self._others is not None:
             self._others.forget()
         elif self._mappings:
             self._others_in_graph()
 
     def _others_in_graph(self) -> "FakeGraph":
-        """The rest of the ROS graph, which comes into being when a test first plays it."""
+        """Return the rest of the ROS graph, created on first use."""
         if self._others is None:
-            from jacaros.testing.fake_graph import FakeGraph  # here: most tests have no ROS graph
+            from jacaros.testing.fake_graph import FakeGraph  # here: most tests use no ROS graph
 
             self._others = FakeGraph(self._mas.ros)
         return self._others
 
     def _goal_ended(self) -> None:
-        """The goal of the test is achieved or has failed."""
+        """Handle the end of the goal of the test."""
         assert self._goal is not None
         if self._goal.failed:
             self._fail(_failure(self._outcome.test, self._goal.reason))
@@ -228,7 +228,7 @@ class Trial:
         self._timers.append(self._clock.call_later(LINGER_SECONDS, self._finish))
 
     def _finish(self) -> None:
-        """The test is over."""
+        """End the test."""
         self._note_times()
         self._next()
 
@@ -241,7 +241,7 @@ class Trial:
         self._finish()
 
     def _end_run(self, problem: Problem) -> None:
-        """The run is over before its time: a problem of the present test, and of those that have not begun."""
+        """Handle an early end of the run: a problem of the current test and of those not yet started."""
         if self._done:
             return
         self._done = True
@@ -252,17 +252,17 @@ class Trial:
         for outcome in self._outcomes[max(self._number, 0) + 1 :]:
             outcome.problems.append(Problem("the test was not started: the run had ended"))
 
-    # ---- what ends a test that does not end by itself
+    # ---- limits
 
     def _timed_out(self, limit: float) -> None:
         if self._lingers:
             self._finish()
             return
-        told = f"the test did not end within {limit:g} s of the run's clock"
-        self._give_up(told)
+        problem = f"the test did not end within {limit:g} s of the run's clock"
+        self._give_up(problem)
 
     def _busy(self, cycles: int) -> None:
-        """Agents made reasoning cycles."""
+        """Count reasoning cycles."""
         self._cycles += cycles
         if self._done or self._number < 0:
             return
@@ -275,32 +275,32 @@ class Trial:
             )
 
     def _idle(self) -> None:
-        """No agent has anything to do or waits for anything but the environment."""
+        """Handle an idle run: no agent has anything to do, or waits for anything but the environment."""
         if self._done:
             return
         if self._lingers:
             self._finish()
         elif self._mas.environment is None:
-            self._give_up("the test did not end, and nothing happens any more")
+            self._give_up("the test did not end, and nothing is left to do")
         elif self._goal is not None and not self._goal.intentions():
             self._give_up("the test did not end")
 
-    def _give_up(self, told: str) -> None:
+    def _give_up(self, message: str) -> None:
         assert self._goal is not None
-        problem = _stuck(told, self._goal.intentions(), self._outcome.test)
+        problem = _stuck(message, self._goal.intentions(), self._outcome.test)
         for intention in self._goal.intentions():
             self._goal.agent.finish(intention)
         self._fail(problem)
 
     def _hangs(self) -> None:
-        told = (
-            f"the test was stopped after {self._options.patience:g} s of real time: a step that does not end"
+        message = (
+            f"the test did not end within {self._options.patience:g} s of real time: a step that never ends?"
         )
         intentions = self._goal.intentions() if self._goal is not None else []
-        self._end_run(_stuck(told, intentions, self._outcome.test))
+        self._end_run(_stuck(message, intentions, self._outcome.test))
 
     def _escaped(self, loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
-        """Something raised an exception outside of anybody's care."""
+        """Handle an exception that no caller can catch."""
         del loop
         error = context.get("exception")
         if isinstance(error, TookTooLong):
@@ -311,10 +311,10 @@ class Trial:
         else:
             self.log(f"error: {context.get('message')}: {type(error).__name__}: {error}", "error")
 
-    # ---- looking on
+    # ---- observation
 
     def _observe(self, host: AgentHost) -> None:
-        """Look on at an agent, from its making on."""
+        """Observe an agent from its creation."""
         mind = host.mind
         if isinstance(mind, Mind):
             fakes = Fakes(mind.complete, host.set_timer)
@@ -325,62 +325,62 @@ class Trial:
             host.intercept_stop = fakes.stop
 
     def _asserted(self, assertion: Assertion) -> None:
-        """An agent made an assertion."""
+        """Record an assertion of an agent."""
         self._outcome.assertions += 1
         if not assertion.passed:
             self._outcome.problems.append(Problem.of(assertion))
 
-    def _lost(self, agent: str, told: str, details: Sequence[str], span: Span | None) -> None:
-        """An intention of an agent failed, and nobody took care of that."""
+    def _lost(self, agent: str, message: str, details: Sequence[str], span: Span | None) -> None:
+        """Record the failure of an intention that no plan handled."""
         outcome = self._outcome
-        if outcome.output and outcome.output[-1].startswith(f"[{agent}] ") and told in outcome.output[-1]:
-            # The warning about it says the same.
+        if outcome.output and outcome.output[-1].startswith(f"[{agent}] ") and message in outcome.output[-1]:
+            # The warning about it has the same text.
             outcome.output.pop()
-        first, _, rest = told.partition(": ")
-        told_further = (rest, *details) if rest else tuple(details)
-        outcome.problems.append(Problem(f"agent {agent}: {first}", told_further, span))
+        first, _, rest = message.partition(": ")
+        further = (rest, *details) if rest else tuple(details)
+        outcome.problems.append(Problem(f"agent {agent}: {first}", further, span))
 
     def _printed_by(self, agent: str) -> Sequence[str]:
         prefix = f"[{agent}] "
         return [line.removeprefix(prefix) for line in self._outcome.output if line.startswith(prefix)]
 
     def print(self, agent: str, text: str) -> None:
-        """Keep a line that an agent prints."""
+        """Record a line of an agent's output."""
         self._outcome.output.append(f"[{agent}] {text}")
 
     def log(self, text: str, level: str = "info") -> None:
-        """Keep a line for people; warnings about the programs are told once, not in each test."""
+        """Record a log line; warnings about programs are reported once, not for each test."""
         del level
         if text not in self._warnings:
             self._outcome.output.append(text)
 
 
 def _failure(test: AgentTest, reason: FailureReason | None) -> Problem:
-    """Why the goal of a test failed."""
+    """Return why the goal of a test failed."""
     if reason is None:
         return Problem("the goal of the test failed", (), test.span)
     place = reason.span() or test.span
-    told = filter(None, (reason.message(), *details(reason)))
-    return Problem(f"the goal of the test failed: {reason.error()}", tuple(told), place)
+    message = filter(None, (reason.message(), *details(reason)))
+    return Problem(f"the goal of the test failed: {reason.error()}", tuple(message), place)
 
 
-def _stuck(told: str, intentions: Sequence[Intention], test: AgentTest) -> Problem:
-    """Why a test does not come to an end."""
+def _stuck(message: str, intentions: Sequence[Intention], test: AgentTest) -> Problem:
+    """Return why a test does not end."""
     if not intentions:
-        return Problem(f"{told}: its intention was dropped", (), test.span)
+        return Problem(f"{message}: its intention was dropped", (), test.span)
     intention = intentions[-1]
     state, reason = describe(intention)
     frame = intention.frames[-1]
     info = getattr(frame[STEP], "info", None)
     place = info.node.span if info is not None else frame[PLAN].node.span
     if state == "waiting":
-        what = f"it waits for the end of {text(reason[1])}" if is_action(reason) else "it waits here"
-        return Problem(told, (what,), place)
-    return Problem(told, (f"it is {state}",) if state != "running" else (), place or test.span)
+        what = f"it waits for {text(reason[1])}" if is_action(reason) else "it waits here"
+        return Problem(message, (what,), place)
+    return Problem(message, (f"it is {state}",) if state != "running" else (), place or test.span)
 
 
 class _MeteredVirtualClock(VirtualClock):
-    """A virtual clock that tells of the cycles of agents."""
+    """A virtual clock that reports reasoning cycles."""
 
     def __init__(self, on_busy: Callable[[int], None]) -> None:
         super().__init__()
@@ -392,7 +392,7 @@ class _MeteredVirtualClock(VirtualClock):
 
 
 class _MeteredWallClock(WallClock):
-    """The time of day, and told of the cycles of agents."""
+    """A wall clock that reports reasoning cycles."""
 
     def __init__(self, on_busy: Callable[[int], None]) -> None:
         super().__init__()
@@ -404,7 +404,7 @@ class _MeteredWallClock(WallClock):
 
 @contextmanager
 def _patience(seconds: float) -> Iterator[None]:
-    """Raise `TookTooLong` in the middle of whatever is done when it takes too long."""
+    """Raise `TookTooLong` in the current step after *seconds* of real time."""
     if seconds <= 0 or threading.current_thread() is not threading.main_thread():
         yield
         return

@@ -40,7 +40,7 @@ def test_a_world_is_listed_shown_mapped_and_checked_and_the_mapping_is_run(
     assert "node /world" in lines
 
     shown = [" ".join(line.split()) for line in ask("show", "/odom").lines]
-    assert "message just heard" in shown
+    assert "latest message" in shown
     assert any(line.startswith("pose.pose.position.x float64 m ") for line in shown)
     if kind == "ros2":
         assert "publishers: /world (reliable, volatile)" in shown
@@ -48,7 +48,7 @@ def test_a_world_is_listed_shown_mapped_and_checked_and_the_mapping_is_run(
     file, program = tmp_path / "robot.yaml", tmp_path / "look.asl"
     assert ask("map", "-o", str(file)).code == 0
     checked = ask("check", str(file))
-    assert (checked.code, checked.lines) == (0, [f"{file} suits this graph"])
+    assert (checked.code, checked.lines) == (0, [f"{file} matches this graph"])
     program.write_text(PROGRAM, encoding="utf-8")
     agents = run_agents(program, "--mapping", str(file))
     assert agents.end() == 0
@@ -71,9 +71,9 @@ def test_problems_of_a_mapping_are_told(
     checked = ask("check", str(file))
     told = "\n".join(checked.lines)
     assert checked.code == 1
-    assert "robot.yaml:2:29: its type is nav_msgs/msg/Odometry, not nav_msgs/msg/Path" in told
-    assert "robot.yaml:3:17: no node publishes /odmo" in told
-    assert "did you mean odom?" in told
+    assert "robot.yaml:2:29: expected the type `nav_msgs/msg/Odometry`, found `nav_msgs/msg/Path`" in told
+    assert "robot.yaml:3:17: no node publishes `/odmo`" in told
+    assert "did you mean `odom`?" in told
     assert ("the subscription asks for reliable, the publisher offers best_effort" in told) == (
         kind == "ros2"
     )

@@ -1,4 +1,4 @@
-"""The engines of the benchmarks are run in processes of their own, and what they tell is understood."""
+"""The engines of the benchmarks run in separate processes, and their output is parsed."""
 
 import sys
 from pathlib import Path
@@ -34,7 +34,7 @@ def fake_jason(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, script: str) -> 
     monkeypatch.setenv("JASON", str(file))
 
 
-def test_ours_tells_its_figures() -> None:
+def test_our_engine_reports_its_figures() -> None:
     found = engines.run(engines.OURS, COUNT, 50)
     assert found["times"] == engines.MOST_TIMES
     assert found["results"] == [""] * engines.MOST_TIMES
@@ -43,8 +43,8 @@ def test_ours_tells_its_figures() -> None:
     assert found["calls"] > 50
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="stands in for Jason with a script of POSIX")
-def test_jason_takes_part_where_it_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.skipif(sys.platform == "win32", reason="replaces Jason by a POSIX script")
+def test_jason_runs_if_it_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     fake_jason(tmp_path, monkeypatch, JASON)
     assert engines.JASON in engines.available()
     found = engines.run(engines.JASON, COUNT, 50)
@@ -52,15 +52,15 @@ def test_jason_takes_part_where_it_is_named(tmp_path: Path, monkeypatch: pytest.
     assert found["start"] > 0
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="stands in for Jason with a script of POSIX")
-def test_an_engine_that_fails_says_why(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.skipif(sys.platform == "win32", reason="replaces Jason by a POSIX script")
+def test_a_failing_engine_reports_why(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     fake_jason(tmp_path, monkeypatch, "#!/bin/sh\necho there is no java\nexit 1\n")
     found = engines.run(engines.JASON, COUNT, 50)
     assert found["note"] == "fails"
     assert "there is no java" in found["why"]
 
 
-def test_one_that_takes_for_ever_is_ended(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_engine_that_never_ends_is_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(engines.PATIENCE, engines.OURS, 1.0)
 
     def endless(*arguments: Any) -> list[str]:

@@ -42,7 +42,7 @@ def test_a_measurement_without_answers_has_dashes() -> None:
     )
 
 
-def test_graphs_that_are_missing_are_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_missing_graphs_are_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(reactivity.graphs, "python_of", lambda kind: tmp_path / kind)
     found = reactivity.measured(["ros1", "ros2-jazzy", "rosbridge"], True, None, print)
     assert found["figures"] == []

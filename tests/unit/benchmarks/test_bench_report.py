@@ -1,4 +1,4 @@
-"""The report of the benchmarks: what stands in its tables, which goals are met."""
+"""The report of the benchmarks: the content of its tables, and the goals that are met."""
 
 import json
 import runpy
@@ -24,7 +24,7 @@ def workload(name: str, **rest: Any) -> Workload:
 
 
 def outcomes(engine: str, each: Workload, n: int) -> dict[str, Any]:
-    """What an engine would tell."""
+    """Return the output of an engine."""
     if engine == OURS:
         calls = CALLS[each.name.partition(" ")[0]] * n
         return {"seconds": calls * 1e-8, "calls": calls, "megabytes": 20.0, "results": ["7"]}
@@ -79,7 +79,7 @@ def test_a_peer_that_lacks_something_has_a_dash(report: dict[str, Any]) -> None:
     assert rows["quick work without a peer"][4:] == ["–", "", ""]
 
 
-def test_a_peer_that_takes_for_ever_has_its_limit_and_what_follows_from_it(report: dict[str, Any]) -> None:
+def test_a_peer_that_never_ends_has_its_limit_as_time(report: dict[str, Any]) -> None:
     rows = rows_of(parts_of(report)["programs"])
     assert rows["quick work for ever"][4:] == ["> 30 s: > 290,000 ×", "≥ 12 met", ""]
 
@@ -110,7 +110,7 @@ def test_figures_are_put_between_their_marks_and_the_rest_stays() -> None:
     assert filled(new, {"one": "new"}) == new
 
 
-def test_marks_without_figures_are_told() -> None:
+def test_missing_figures_are_reported() -> None:
     with pytest.raises(ValueError, match="marks for one; there are figures for two"):
         filled("<!-- figures: one -->\n<!-- end of figures -->\n", {"two": ""})
 
@@ -159,7 +159,7 @@ def test_an_agent_is_compared_with_a_bare_echo_on_each_graph() -> None:
     )
 
 
-def test_flat_out_counts_what_comes_back_by_each_way() -> None:
+def test_flat_out_counts_the_replies_of_each_way() -> None:
     pings = runpy.run_path(str(ROOT / "benchmarks" / "latency" / "pings.py"))
     now = 0.0
     sent: list[tuple[str, float]] = []
@@ -177,5 +177,5 @@ def test_flat_out_counts_what_comes_back_by_each_way() -> None:
 @pytest.mark.parametrize(
     ("value", "text"), [(0.66, "0.7"), (9.94, "9.9"), (12.4, "12"), (104.4, "104"), (123456, "123,000")]
 )
-def test_figures_have_the_digits_that_count(value: float, text: str) -> None:
+def test_figures_have_significant_digits(value: float, text: str) -> None:
     assert figure(value) == text

@@ -1,4 +1,4 @@
-"""Every benchmark program does its work, and as many units of it as the table says."""
+"""Every benchmark program does its work, with as many units as in the table."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -34,7 +34,7 @@ def run(workload: Workload, n: int, times: int, folder: Path) -> tuple[list[str]
 
 
 @pytest.mark.parametrize("workload", WORKLOADS, ids=lambda each: each.name)
-def test_a_program_does_its_work_as_often_as_it_is_told_to(workload: Workload, tmp_path: Path) -> None:
+def test_a_program_runs_the_requested_number_of_times(workload: Workload, tmp_path: Path) -> None:
     lines, _ = run(small(workload, 4), 6, 3, tmp_path)
     assert [line.split()[0] for line in lines] == ["begin", "end"] * 3
     assert len(set(lines)) == 2, "the work has the same result each time"
@@ -45,7 +45,7 @@ COUNTED = [workload for workload in WORKLOADS if workload.unit == "cycle"]
 
 @pytest.mark.parametrize("workload", COUNTED, ids=lambda each: each.name)
 @pytest.mark.parametrize(("n", "k"), [(6, 4), (11, 4), (6, 9)])
-def test_the_table_knows_how_many_cycles_the_work_has(
+def test_the_table_has_the_number_of_cycles_of_the_work(
     workload: Workload, n: int, k: int, tmp_path: Path
 ) -> None:
     meant = small(workload, k)
@@ -68,7 +68,7 @@ def test_programs_that_grow_do_their_work(curve: scaling.Curve, size: int, tmp_p
     assert [line.split()[0] for line in lines] == ["begin", "end"] * 2
 
 
-def test_where_the_peer_does_less_ours_does_as_little_once_more() -> None:
+def test_a_smaller_workload_is_repeated_where_the_peer_does_less() -> None:
     workload = replace(WORKLOADS[0], n=100, sizes={AGENTSPEAK: 10}, lacks={})
     assert turns(workload, [OURS, AGENTSPEAK]) == [(OURS, 100), (AGENTSPEAK, 10), (OURS, 10)]
     alike = replace(workload, sizes={})

@@ -31,16 +31,16 @@ def outcome(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, s
 
 
 def found(capsys: pytest.CaptureFixture[str], *arguments: str) -> list[tuple[str, int, str]]:
-    """File, line and code of everything that is told."""
+    """Return file, line and code of all reported problems."""
     _, output, _ = outcome(capsys, *arguments, "--format", "json")
     return [(each["file"], each["line"], each["code"]) for each in json.loads(output)["diagnostics"]]
 
 
-def test_a_good_program_is_clean(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_correct_program_has_no_problems(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert outcome(capsys, "good.asl", "--strict") == (0, "", "nothing wrong in 1 file\n")
 
 
-def test_warnings_are_told_and_matter_only_when_strict(
+def test_warnings_are_reported_and_fail_only_with_strict(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     code, output, errors = outcome(capsys, "warned.asl")
@@ -57,7 +57,7 @@ def test_warnings_are_told_and_matter_only_when_strict(
     assert outcome(capsys, "warned.asl", "--strict", *ignored)[0] == 0
 
 
-def test_all_problems_are_told_at_once(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_all_problems_are_reported_in_one_pass(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert outcome(capsys, "wrong.asl")[0] == 1
     assert found(capsys, "wrong.asl") == [
         ("wrong.asl", 2, "unexpected-token"),
@@ -79,7 +79,7 @@ def test_a_folder_is_checked_with_its_projects(folder: Path, capsys: pytest.Capt
     assert found(capsys, "part.asl") == [("part.asl", 1, "unknown-goal")]
 
 
-def test_a_plan_before_an_include_may_take_the_place_of_one_in_it(
+def test_a_plan_before_an_include_may_override_an_included_one(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (folder / "part.asl").write_text("+!go <- .print(part).", encoding="utf-8")
@@ -89,7 +89,7 @@ def test_a_plan_before_an_include_may_take_the_place_of_one_in_it(
     assert found(capsys, "behind.asl") == [("behind.asl", 1, "plan-never-selected")]
 
 
-def test_projects_are_checked_themselves(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_projects_are_checked(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (folder / "p.jcm").write_text(
         "mas p {\n  agent bob : warned.asl\n  agent eve : nowhere.asl\n  agent joe : good.asl { focus: thing }\n}\n",
         encoding="utf-8",
@@ -102,7 +102,7 @@ def test_projects_are_checked_themselves(folder: Path, capsys: pytest.CaptureFix
     ]
 
 
-def test_actions_of_modules_beside_the_program_are_known(
+def test_internal_actions_of_neighbouring_modules_are_known(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (folder / "own.asl").write_text("!go. +!go <- my.act(1); your.act(1).", encoding="utf-8")
@@ -115,7 +115,7 @@ def test_actions_of_modules_beside_the_program_are_known(
     assert (None, None, "unreadable-file") in found(capsys, "own.asl")
 
 
-def test_files_that_cannot_be_read_are_told(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_unreadable_files_are_reported(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (folder / "bytes.asl").write_bytes(b"p(\xff).")
     code, output, _ = outcome(capsys, "bytes.asl")
     assert code == 1
@@ -126,9 +126,12 @@ def test_files_that_cannot_be_read_are_told(folder: Path, capsys: pytest.Capture
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
-        (["godo.asl"], "did you mean good.asl?"),
-        (["good.asl", "--ignore", "nonsense"], "unknown code nonsense"),
-        (["notes.txt"], "unsupported file type: notes.txt (expected .asl, .mas2j, .jcm, .py, .yaml, .yml)"),
+        (["godo.asl"], "did you mean `good.asl`?"),
+        (["good.asl", "--ignore", "nonsense"], "unknown code: `nonsense`"),
+        (
+            ["notes.txt"],
+            "unsupported file type: `notes.txt`\n  = help: expected .asl, .mas2j, .jcm, .py, .yaml, .yml",
+        ),
         ([], "FILE"),
     ],
 )
@@ -141,9 +144,7 @@ def test_wrong_usage(
     assert told in errors
 
 
-def test_the_sarif_report_has_what_the_schema_asks_for(
-    folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_sarif_report_follows_its_schema(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (folder / "bytes.asl").write_bytes(b"\xff")
     code, output, _ = outcome(capsys, ".", "--format", "sarif")
     log = json.loads(output)
@@ -176,7 +177,7 @@ def check_result(result: dict[str, Any], rules: list[str]) -> None:
         assert (region["startLine"], region["startColumn"]) <= (region["endLine"], region["endColumn"])
 
 
-def test_the_bracket_that_is_not_closed_is_told(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_unclosed_bracket_is_reported(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (folder / "open.asl").write_text("+!g <- a(1,\n  2; b.", encoding="utf-8")
     (told,) = json.loads(outcome(capsys, "open.asl", "--format", "json")[1])["diagnostics"]
     assert (told["line"], told["opened"]) == (2, [1, 9])
@@ -186,16 +187,14 @@ def test_the_bracket_that_is_not_closed_is_told(folder: Path, capsys: pytest.Cap
     assert related["physicalLocation"]["region"]["startLine"] == 1
 
 
-def test_files_with_unusual_names_have_right_addresses(
-    folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_unusual_file_names_are_quoted_in_uris(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (folder / "a b.asl").write_text("+!g <- .", encoding="utf-8")
     for name, uri in (("a b.asl", "a%20b.asl"), (str(folder / "a b.asl"), (folder / "a b.asl").as_uri())):
         (result,) = json.loads(outcome(capsys, name, "--format", "sarif")[1])["runs"][0]["results"]
         assert result["locations"][0]["physicalLocation"]["artifactLocation"]["uri"] == uri
 
 
-def test_colours_are_for_terminals(
+def test_output_is_coloured_only_on_terminals(
     folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     assert "\x1b[" not in outcome(capsys, "warned.asl")[1]
@@ -207,7 +206,7 @@ def test_colours_are_for_terminals(
     assert "\x1b[" not in outcome(capsys, "warned.asl")[1]
 
 
-def test_the_programs_of_the_project_are_clean(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_programs_of_the_repository_have_no_problems(capsys: pytest.CaptureFixture[str]) -> None:
     folders = ("examples", "tests/compatibility", "tests/integration", "benchmarks/latency", "src")
     code, output, _ = outcome(capsys, "--strict", *(str(ROOT / folder) for folder in folders))
     assert (code, output) == (0, "")
@@ -223,10 +222,10 @@ MEANT = {
     "rules_and_queries/rules_raise_no_events": {"event-never-happens"},
     "rules_and_queries/waiting_is_no_condition": {"acting-condition"},
 }
-"""Cases in which what is told is what the case is about."""
+"""Cases whose problems are their subject."""
 
 
-def test_conformance_cases_are_told_only_what_is_meant(capsys: pytest.CaptureFixture[str]) -> None:
+def test_conformance_cases_have_only_the_expected_problems(capsys: pytest.CaptureFixture[str]) -> None:
     cases = ROOT / "tests" / "conformance"
     _, output, _ = outcome(capsys, str(cases), "--ignore", "singleton-variable", "--format", "json")
     told: dict[str, set[str]] = {}
@@ -244,7 +243,7 @@ def test_every_code_has_a_level_and_a_meaning() -> None:
         assert kind.meaning
 
 
-def test_a_program_is_compared_with_the_mappings_that_it_is_run_with(
+def test_a_program_is_checked_against_its_mapping_files(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     program = "!go.\n+!go <- navigate_too(1, 2, 0);\n  navigate_to(1, 2);\n  navigate_to(1, 2, 0).\n"
@@ -261,7 +260,7 @@ def test_a_program_is_compared_with_the_mappings_that_it_is_run_with(
     assert found(capsys, "go.asl", *both) == expected[1:]
 
 
-def test_mistakes_in_such_a_mapping_are_told_once_and_stand_before_those_of_the_program(
+def test_mistakes_in_a_mapping_file_are_reported_once_before_those_of_the_program(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (folder / "wrong.yaml").write_text("propertys: {}\n", encoding="utf-8")
@@ -303,7 +302,7 @@ def test_a_folder_is_checked_with_its_worlds_and_mappings(
     }
 
 
-def test_files_of_other_kinds_are_skipped_among_others(
+def test_unsupported_files_are_skipped_next_to_supported_ones(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (folder / "a.html").write_text("")
@@ -311,7 +310,7 @@ def test_files_of_other_kinds_are_skipped_among_others(
     code, output, errors = outcome(capsys, "a.html", "good.asl", "notes.txt", "warned.asl")
     assert code == 0
     assert "warned.asl" in output
-    assert errors == ("note: skipped because of their file types: a.html, notes.txt\n2 warnings in 2 files\n")
+    assert errors == ("note: skipped unsupported file types: a.html, notes.txt\n2 warnings in 2 files\n")
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""The command line: exit codes, outputs, and what it tells about mistakes."""
+"""The command line: exit codes, outputs and errors."""
 
 import json
 import signal
@@ -22,37 +22,35 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def outcome(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str, str]:
-    """Exit code, standard output and standard error output of a command."""
+    """Return exit code, standard output and standard error output of a command."""
     code = call(list(arguments))
     captured = capsys.readouterr()
     return code, captured.out, captured.err
 
 
-def test_a_program_prints_its_lines_and_gives_its_code(
-    folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_program_prints_and_sets_the_exit_code(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert outcome(capsys, "run", "hello.asl", "--clock", "fast") == (3, "[hello] hi\n", "")
 
 
-def test_after_a_run_signals_are_as_before(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_signal_handlers_are_restored_after_a_run(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     before = [signal.getsignal(each) for each in (signal.SIGINT, signal.SIGTERM, alarm.SIGNAL)]
     outcome(capsys, "run", "hello.asl", "--clock", "fast")
     assert [signal.getsignal(each) for each in (signal.SIGINT, signal.SIGTERM, alarm.SIGNAL)] == before
 
 
-def test_the_word_run_may_be_left_out(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_run_is_the_default_command(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert outcome(capsys, "hello.asl")[:2] == (3, "[hello] hi\n")
 
 
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
-        (["run", "hallo.asl"], "did you mean hello.asl?"),
+        (["run", "hallo.asl"], "did you mean `hello.asl`?"),
         (["run", "."], "is a folder"),
         (["run", "hello.asl", "--clock", "fast", "--ros", "ros1"], "use --clock real"),
         (["run", "hello.asl", "--clock", "ros"], "--clock fast"),
         (["run", "hello.asl", "--remap", "odom"], "FROM:=TO"),
-        (["run", "hello.asl", "--remap", "a:=b", "--remap", "a:=c"], "two other names: 'b' and 'c'"),
+        (["run", "hello.asl", "--remap", "a:=b", "--remap", "a:=c"], "two new names: `b` and `c`"),
         (["run", "hello.asl", "--domain-id", "3"], "--ros ros2"),
         (["run", "hello.asl", "--clok", "fast"], "--clock"),
         (["run", "hello.asl", "--clock", "slow"], "slow"),
@@ -60,14 +58,14 @@ def test_the_word_run_may_be_left_out(folder: Path, capsys: pytest.CaptureFixtur
         (["nonsense"], "error: unknown command: `nonsense`\n  = help: `jacaros --help` lists the commands"),
         (["chek"], "did you mean `check`?"),
         (["run", "house.yaml"], "--mapping house.yaml"),
-        (["run", "hello"], "did you mean hello.asl?"),
-        (["run", "hello.asl", "--ros-args", "-q"], "unknown argument -q after --ros-args"),
+        (["run", "hello"], "did you mean `hello.asl`?"),
+        (["run", "hello.asl", "--ros-args", "-q"], "unknown argument after --ros-args: `-q`"),
         (["sim", "empty", "--ros", "ros2", "--clock", "fast"], "--ros memory"),
         (["sim", "empty", "--ros", "ros1", "--domain-id", "3"], "--ros ros2"),
         (["describe", "ArtOdometri"], "did you mean `ArtOdometry`"),
     ],
 )
-def test_wrong_usage_is_told_with_code_2(
+def test_wrong_usage_exits_with_code_2(
     folder: Path, capsys: pytest.CaptureFixture[str], arguments: list[str], told: str
 ) -> None:
     code, output, errors = outcome(capsys, *arguments)
@@ -80,11 +78,11 @@ def test_wrong_usage_is_told_with_code_2(
     ("name", "text", "told"),
     [
         ("wrong.asl", '!go.\n+!go <- .print("hi".', "wrong.asl:2:"),
-        ("wrong.mas2j", "MAS wrong { agents: nobody; }", "wrong.mas2j:1:"),
+        ("wrong.mas2j", "MAS wrong { agents: absent; }", "wrong.mas2j:1:"),
         ("wrong.txt", "", "unsupported file type: wrong.txt (expected .mas2j, .jcm, .asl or .py)"),
     ],
 )
-def test_a_wrong_project_is_told_with_code_1(
+def test_an_error_in_a_project_exits_with_code_1(
     folder: Path, capsys: pytest.CaptureFixture[str], name: str, text: str, told: str
 ) -> None:
     (folder / name).write_text(text, encoding="utf-8")
@@ -94,15 +92,13 @@ def test_a_wrong_project_is_told_with_code_1(
     assert "Traceback" not in errors
 
 
-def test_an_unknown_world_is_told_with_the_known_ones(
-    folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_an_unknown_world_lists_the_shipped_ones(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     code, _, errors = outcome(capsys, "run", "hello.asl", "--world", "nowhere")
     assert code == 1
     assert "empty, flat, house, maze" in errors
 
 
-def test_a_failure_without_handler_is_a_warning_that_names_the_remedy(
+def test_an_unhandled_failure_logs_a_warning_with_a_suggestion(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (folder / "a.asl").write_text(
@@ -167,7 +163,7 @@ def test_types_and_projects_are_described(folder: Path, capsys: pytest.CaptureFi
     assert "agent hello: hello.asl" in outcome(capsys, "describe", "hello.asl")[1]
 
 
-def test_versions_are_told(capsys: pytest.CaptureFixture[str]) -> None:
+def test_version_prints_the_versions(capsys: pytest.CaptureFixture[str]) -> None:
     code, output, _ = outcome(capsys, "version")
     assert code == 0
     assert output.startswith("jacaros 0.")
@@ -180,7 +176,7 @@ def test_help_lists_the_commands(capsys: pytest.CaptureFixture[str]) -> None:
     assert "Run an agent program or a project." in output
 
 
-def test_a_defect_is_shown_with_its_trace(
+def test_an_internal_error_prints_a_traceback_and_the_command(
     folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def broken(*_: object) -> int:
@@ -190,7 +186,7 @@ def test_a_defect_is_shown_with_its_trace(
     code, _, errors = outcome(capsys, "run", "hello.asl")
     assert code == 1
     assert "Traceback" in errors
-    assert "defect of jacaros" in errors
+    assert "internal error: oh; please file an issue" in errors
 
 
 NOT_FOR_A_LONE_PROGRAM = (
@@ -207,7 +203,7 @@ NOT_FOR_A_LONE_PROGRAM = (
     # of the middleware a run needs only the owner of its signals, jacaros.ros.lifetime
     *("jacaros.ros.backend", "jacaros.ros.message", "jacaros.ros.node", "jacaros.ros.open"),
 )
-"""What a program that talks to no robot does not wait for at its start."""
+"""Modules that a program without robots must not import at start."""
 
 
 def test_a_program_without_robots_loads_only_what_it_needs(folder: Path) -> None:
@@ -219,7 +215,7 @@ def test_a_program_without_robots_loads_only_what_it_needs(folder: Path) -> None
     assert result.stdout == "[hello] hi\n[]\n"
 
 
-def test_a_run_writes_what_truly_happened(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_run_writes_the_ground_truth(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (folder / "drive.asl").write_text(
         '!go. +!go <- makeArtifact("w", "ArtCmdVel"); moveForward(0.5); .stopMAS.', encoding="utf-8"
     )
@@ -230,13 +226,11 @@ def test_a_run_writes_what_truly_happened(folder: Path, capsys: pytest.CaptureFi
     assert '"kind": "end"' in Path("truth.jsonl").read_text(encoding="utf-8").splitlines()[-1]
 
 
-def test_batteries_of_a_world_are_told_to_who_started_it(
-    folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_low_batteries_are_logged_by_sim(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     world = ["sim", "house", "--ros", "memory", "--clock", "fast", "--for", "400"]
     code, _, errors = outcome(capsys, *world)
     assert code == 0
-    assert "turtlebot is at 20 %" in errors
-    assert "turtlebot is empty" in errors
+    assert "`turtlebot` is at 20 %" in errors
+    assert "`turtlebot` is empty" in errors
     assert "--full-battery" in errors
     assert outcome(capsys, *world, "--full-battery")[2] == ""

@@ -90,7 +90,7 @@ def test_a_type_of_the_project_is_described(folder: Path, capsys: pytest.Capture
     assert described(capsys, "Lamp", "--project", str(folder)) == LAMP
 
 
-def test_people_do_not_see_the_marks_of_docstrings(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_descriptions_have_no_backquotes(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     said = described(capsys, "nav2.yaml")
     assert 'such as "robot_1", rate(5)' in said
     assert "`" not in said
@@ -108,7 +108,7 @@ def test_a_project_is_described_with_its_types(folder: Path, capsys: pytest.Capt
     assert output.endswith(f"\n{BARE}")
 
 
-def test_a_lone_program_is_described_with_the_types_beside_it(
+def test_a_program_without_a_project_is_described_with_neighbouring_types(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     output = described(capsys, "bob.asl")
@@ -131,7 +131,7 @@ def test_the_folders_of_a_project_are_searched(folder: Path, capsys: pytest.Capt
     assert LAMP in output
 
 
-def test_programs_get_json(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_json_output_is_complete(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     lamp = json.loads(described(capsys, "Lamp", "--json"))
     assert lamp["type_name"] == "Lamp"
     assert lamp["operations"][0]["parameters"][0] == {
@@ -155,11 +155,11 @@ def test_programs_get_json(folder: Path, capsys: pytest.CaptureFixture[str]) -> 
     ("what", "told"),
     [
         ("Lump", "unknown artifact type `Lump`; did you mean `Lamp`?"),
-        ("nothing.py", "file not found: nothing.py"),
-        ("empty.py", "empty.py has no artifact type (a class derived from jacaros.env.Artifact)"),
+        ("nothing.py", "file not found: `nothing.py`"),
+        ("empty.py", "no artifact type in `empty.py`"),
     ],
 )
-def test_what_is_not_there_is_told(
+def test_unknown_types_and_files_are_reported(
     folder: Path, capsys: pytest.CaptureFixture[str], what: str, told: str
 ) -> None:
     assert call(["describe", what]) == 2

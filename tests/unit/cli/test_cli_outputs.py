@@ -1,4 +1,4 @@
-"""Files of outputs are checked before the run."""
+"""Output files are checked before the run."""
 
 from pathlib import Path
 
@@ -26,15 +26,15 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         (["--record", "."], "error: `.` is a folder\n  = help: name a file in it for the recording\n"),
         (
             ["--record", "agent.asl"],
-            "error: not a recording, and not overwritten: `agent.asl`\n  = help: name another file, or delete it\n",
+            "error: `agent.asl` exists and is not a recording\n  = help: name another file, or delete it\n",
         ),
         (
             ["--ground-truth", "agent.asl"],
-            "error: not a ground truth, and not overwritten: `agent.asl`\n  = help: name another file, or delete it\n",
+            "error: `agent.asl` exists and is not a ground truth\n  = help: name another file, or delete it\n",
         ),
         (
             ["--replay", "page.jsonl"],
-            "error: not the name of a page: `page.jsonl`\n  = help: --replay page.html\n",
+            "error: expected a file name with the suffix .html, found `page.jsonl`\n  = help: --replay page.html\n",
         ),
         (
             ["--record", "x.jsonl", "--ground-truth", "x.jsonl"],
@@ -42,7 +42,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         ),
     ],
 )
-def test_an_output_that_cannot_be_written_is_refused_before_the_run(
+def test_an_unwritable_output_is_reported_before_the_run(
     folder: Path, capsys: pytest.CaptureFixture[str], arguments: list[str], message: str
 ) -> None:
     assert call(["run", "agent.asl", "--clock", "fast", *arguments]) == 2
@@ -50,7 +50,7 @@ def test_an_output_that_cannot_be_written_is_refused_before_the_run(
     assert (folder / "agent.asl").read_text(encoding="utf-8") == PROGRAM
 
 
-def test_a_recording_and_a_page_are_written_anew(folder: Path) -> None:
+def test_recordings_and_pages_are_overwritten(folder: Path) -> None:
     for _ in range(2):
         assert call(["run", "agent.asl", "--clock", "fast", "--record", "r.jsonl", "--replay", "r.html"]) == 0
 
@@ -59,4 +59,4 @@ def test_a_report_of_tests_does_not_overwrite_a_program(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert call(["test", "agent.asl", "--junit", "agent.asl"]) == 2
-    assert "error: not a JUnit report, and not overwritten: `agent.asl`" in capsys.readouterr().err
+    assert "error: `agent.asl` exists and is not a JUnit report" in capsys.readouterr().err

@@ -29,7 +29,7 @@ def outcome(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, s
     return code, captured.out, captured.err
 
 
-def test_a_failing_test_is_told_with_all_that_helps(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_failing_test_is_reported_with_its_cause(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert outcome(capsys, "tests", "--slowest", "0") == (
         1,
         """\
@@ -53,26 +53,24 @@ tests/sums.asl::breaks
     )
 
 
-def test_all_is_well_when_all_pass(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_exit_code_is_0_when_all_tests_pass(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     code, output, errors = outcome(capsys, "tests/sums.asl", "-k", "sums.asl::*s", "-k", "adds")
     assert (code, errors) == (0, "")
     assert output.endswith("1 passed; 1 assertions, seed 0\n")
     assert "quiet" not in output
 
 
-def test_this_folder_is_meant_when_none_is_named(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_default_is_the_current_folder(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     code, output, _ = outcome(capsys, "-k", "END")
     assert code == 0
     assert output.startswith("tests/sums.asl\n  ok      ends\n")
 
 
-def test_prints_of_passing_tests_are_shown_when_wanted(
-    folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_verbose_shows_the_output_of_passed_tests(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert "[sums] quiet" in outcome(capsys, "-v")[1]
 
 
-def test_the_first_failure_may_end_it(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_x_stops_after_the_first_failure(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (folder / "tests" / "xyz.asl").write_text("@later[test] +!later.", encoding="utf-8")
     code, output, _ = outcome(capsys, "-x")
     assert code == 1
@@ -80,17 +78,17 @@ def test_the_first_failure_may_end_it(folder: Path, capsys: pytest.CaptureFixtur
     assert "later" not in output
 
 
-def test_nothing_to_run_is_wrong_usage(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_run_without_tests_is_wrong_usage(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (folder / "none.asl").write_text("!go. +!go.", encoding="utf-8")
     code, output, errors = outcome(capsys, "none.asl")
     assert (code, output) == (2, "")
     assert errors == (
-        "jacaros: no tests in none.asl; a test is a plan for a goal with the label test: "
-        "@name[test] +!goal <- ...\n"
+        "error: no tests in none.asl\n"
+        "  = help: a test is a plan for a goal with the label test: @name[test] +!goal <- ...\n"
     )
     code, _, errors = outcome(capsys, "tests", "-k", "nothing")
     assert code == 2
-    assert "no test in tests matches -k nothing; tests: tests/sums.asl::adds" in errors
+    assert "no test in tests matches `-k nothing`\n  = help: tests: tests/sums.asl::adds" in errors
     assert outcome(capsys, "nowhere")[0] == 2
     assert outcome(capsys, "--timeout", "0")[0] == 2
 
@@ -99,7 +97,7 @@ def test_a_program_with_errors_fails(folder: Path, capsys: pytest.CaptureFixture
     (folder / "tests" / "test_wrong.asl").write_text("@a[test] +!g <- .print(.", encoding="utf-8")
     code, output, _ = outcome(capsys, "--junit", "out/report.xml")
     assert code == 1
-    assert "  ERROR   the file cannot be run" in output
+    assert "  ERROR   cannot run the file" in output
     assert "tests/test_wrong.asl:1:24: error: " in output
     assert "2 passed, 1 failed, 1 file cannot be run" in output
     root = ElementTree.parse(folder / "out" / "report.xml").getroot()
@@ -130,12 +128,12 @@ def test_the_junit_file_has_every_test(folder: Path, capsys: pytest.CaptureFixtu
     assert cases["b"].findtext("system-out") == "[bell] a\\\\b < c\N{REPLACEMENT CHARACTER}"
 
 
-def test_colours_are_for_terminals(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_output_is_coloured_only_on_terminals(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert "\x1b[" not in outcome(capsys)[1]
     assert "\x1b[32mok" in outcome(capsys, "--color", "always")[1]
 
 
-def test_slow_tests_are_told(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_slow_tests_are_listed(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     slow = folder / "slow.asl"
     slow.write_text("@a[test] +!a <- .wait(600). @b[test] +!b.", encoding="utf-8")
     output = outcome(capsys, "slow.asl", "--clock", "real")[1]
@@ -144,7 +142,7 @@ def test_slow_tests_are_told(folder: Path, capsys: pytest.CaptureFixture[str]) -
     assert "slowest" not in outcome(capsys, "slow.asl")[1]
 
 
-def test_warnings_about_programs_go_to_the_errors(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_warnings_go_to_the_standard_error_output(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (folder / "warn.asl").write_text("@a[test] +!a : false <- !missing.", encoding="utf-8")
     code, output, errors = outcome(capsys, "warn.asl")
     assert code == 1

@@ -31,7 +31,7 @@ def shown(capsys: pytest.CaptureFixture[str], *arguments: str) -> list[str]:
     return capsys.readouterr().out.splitlines()
 
 
-def test_every_piece_stands_below_its_line(program: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_generated_code_follows_its_source_line(program: str, capsys: pytest.CaptureFixture[str]) -> None:
     lines = shown(capsys, program, "--show")
     for title in ("the rules of far/1", "the plans for +!count/1", "the plans for +left/1"):
         assert f"# ---- {title} ----" in lines
@@ -41,7 +41,7 @@ def test_every_piece_stands_below_its_line(program: str, capsys: pytest.CaptureF
     assert lines[context + 1].strip().startswith("if ")
 
 
-def test_the_listing_is_python_and_says_what_its_names_mean(
+def test_the_listing_is_python_and_explains_its_names(
     program: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     lines = shown(capsys, program, "--show")
@@ -64,7 +64,7 @@ def test_a_join_by_an_index_is_shown(program: str, capsys: pytest.CaptureFixture
 
 
 @pytest.mark.parametrize("wanted", ["done", "@done"])
-def test_of_a_labelled_plan_only_its_steps_are_shown(
+def test_a_label_selects_the_steps_of_one_plan(
     wanted: str, program: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     text = "\n".join(shown(capsys, program, "--show", "--plan", wanted))
@@ -75,27 +75,25 @@ def test_of_a_labelled_plan_only_its_steps_are_shown(
 
 
 @pytest.mark.parametrize("wanted", ["+!count", "+!count/1", "+!count(N)"])
-def test_plans_are_chosen_by_their_event(
-    wanted: str, program: str, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_plans_are_selected_by_event(wanted: str, program: str, capsys: pytest.CaptureFixture[str]) -> None:
     titles = [line for line in shown(capsys, program, "--show", "--plan", wanted) if line.startswith("# --")]
     assert titles == ["# ---- the plans for +!count/1 ----"]
 
 
-def test_a_plan_that_is_not_there_is_told(program: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_unknown_plan_is_reported(program: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert call(["compile", program, "--plan", "stop"]) == 2
     assert capsys.readouterr().err == (
-        "jacaros: unknown plan stop; the program has plans for +!count/1, +left/1\n"
+        "error: unknown plan: `stop`\n  = help: the program has plans for +!count/1, +left/1\n"
     )
 
 
-def test_without_show_it_tells_how_much_there_is(program: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_without_show_it_prints_the_size(program: str, capsys: pytest.CaptureFixture[str]) -> None:
     (line,) = shown(capsys, program)
     assert line.startswith("robot.asl: 3 plans and 1 rule: ")
     assert line.endswith(" lines")
 
 
-def test_what_is_wrong_is_told_as_by_check(program: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_errors_are_reported_as_by_check(program: str, capsys: pytest.CaptureFixture[str]) -> None:
     Path(program).write_text("+!g <- .print(.\n", encoding="utf-8")
     assert call(["check", program]) == 1
     checked = capsys.readouterr()

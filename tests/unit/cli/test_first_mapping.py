@@ -1,4 +1,4 @@
-"""What `jacaros ros map` writes of topics, services and actions of many types; none of it needs editing to be right."""
+"""Mapping files written by `jacaros ros map` for topics, services and actions of many types; none needs editing."""
 
 from pathlib import Path
 
@@ -41,7 +41,7 @@ def info(type_name: str) -> TopicInfo:
 
 
 def checked(types: StoredInterfaces, *entries: Entry) -> str:
-    """The text of the entries, which must be right at once."""
+    """Return the text of the entries, which must be valid."""
     lines = []
     for section in dict.fromkeys(entry.section for entry in entries):
         lines.append(f"{section}:")
@@ -88,7 +88,7 @@ def shown(types: StoredInterfaces, type_name: str) -> str:
         ("std_msgs/msg/Empty", ["signals:\n", "# t, for each message"]),
         ("builtin_interfaces/msg/Time", ["# t(Seconds): seconds", "{path: ., round: 2, name: seconds}"]),
         ("geometry_msgs/msg/WrenchStamped", ["t(ForceX, ForceY, ForceZ, TorqueX, TorqueY, TorqueZ)"]),
-        ("geometry_msgs/msg/PoseArray", ["# t(N): how many poses there are"]),
+        ("geometry_msgs/msg/PoseArray", ["# t(N): number of poses"]),
         (
             "tf2_msgs/msg/TFMessage",
             [
@@ -108,14 +108,17 @@ def shown(types: StoredInterfaces, type_name: str) -> str:
             "odd_msgs/msg/Part",
             [
                 "- name\n      - {path: state, as: name}  # idle, busy\n",
-                "# there are also weights",
+                "# further fields: weights",
                 "dead_band: [0, 0, 0.02, 0.02]",
             ],
         ),
         ("odd_msgs/msg/Modes", ["- {path: mode, as: name}  # auto, manual\n      - other\n      - on\n"]),
         ("odd_msgs/msg/Alike", ["- kind\n"]),
         ("type_description_interfaces/msg/FieldType", ["- nested_type_name  # at most 255 characters\n"]),
-        ("odd_msgs/msg/Parts", ["t(Name, State, X, Y): name, state, metres, metres, one for each of parts"]),
+        (
+            "odd_msgs/msg/Parts",
+            ["t(Name, State, X, Y): name, state, metres, metres, one for each element of parts"],
+        ),
         (
             "odd_msgs/msg/Moves",
             ["t(StartX, StartY, StartYaw, EndX, EndY, EndYaw)", "twist.linear.x, twist.angular.z"],
@@ -123,7 +126,7 @@ def shown(types: StoredInterfaces, type_name: str) -> str:
         ("odd_msgs/msg/Deep", ["OneStartX", "OneStartYaw", "OneEndX"]),
     ],
 )
-def test_properties_show_what_says_most_in_few_digits(
+def test_properties_have_the_essential_fields_rounded(
     types: StoredInterfaces, type_name: str, parts: list[str]
 ) -> None:
     text = shown(types, type_name)
@@ -137,7 +140,7 @@ def test_a_latched_text_is_a_property(types: StoredInterfaces) -> None:
     assert "properties:\n" in checked(types, entry)
 
 
-def test_lists_are_parameters_and_frames_are_of_what_has_a_place(types: StoredInterfaces) -> None:
+def test_lists_become_parameters_and_poses_get_a_frame(types: StoredInterfaces) -> None:
     text = checked(types, *publishing(types, "t", "t", info("sensor_msgs/msg/JointState")))
     assert "parameters: [name, position, velocity, effort]" in text
     assert "header.stamp: now" in text
@@ -146,14 +149,14 @@ def test_lists_are_parameters_and_frames_are_of_what_has_a_place(types: StoredIn
     assert "header.frame_id: map" in text
 
 
-def test_names_of_constants_are_given_and_results_are_rounded(types: StoredInterfaces) -> None:
+def test_constants_are_passed_by_name_and_results_are_rounded(types: StoredInterfaces) -> None:
     text = checked(types, acting(types, "t", "t", "odd_msgs/action/Sort"))
     assert "order: {value: $order, as: name}  # by_name, by_weight\n" in text
     assert "outputs: [{path: weight, round: 3}]" in text
     assert "t_feedback: {fields: [{path: progress, round: 3}], rate: 2}" in text
     text = checked(types, calling(types, "t", "t", "odd_msgs/srv/Weigh"))
     assert "parameters: [names]" in text
-    assert "# left as they are: offsets, picture" in text
+    assert "# unchanged: offsets, picture" in text
 
 
 @pytest.mark.parametrize(
@@ -173,7 +176,7 @@ def test_names_of_constants_are_given_and_results_are_rounded(types: StoredInter
         ({"/r1/odom": "nav_msgs/msg/Odometry", "/r2/scan": "sensor_msgs/msg/LaserScan"}, ["r1", "r2"]),
     ],
 )
-def test_robots_are_told_from_parts_of_a_robot(topics: dict[str, str], spaces: list[str]) -> None:
+def test_robots_are_distinguished_from_parts_of_a_robot(topics: dict[str, str], spaces: list[str]) -> None:
     assert robots(GraphContents({name: TopicInfo(name, (kind,)) for name, kind in topics.items()})) == spaces
 
 
@@ -187,11 +190,11 @@ def test_robots_are_told_from_parts_of_a_robot(topics: dict[str, str], spaces: l
         ("true", "the_true"),
     ],
 )
-def test_names_are_such_as_agents_can_write(ros_name: str, name: str) -> None:
+def test_names_are_valid_functors(ros_name: str, name: str) -> None:
     assert plain_name(ros_name) == name
 
 
-def test_an_action_that_moves_joints_gets_the_points_of_their_trajectory(types: StoredInterfaces) -> None:
+def test_a_joint_trajectory_action_takes_its_points(types: StoredInterfaces) -> None:
     text = checked(types, acting(types, "follow", "arm/follow", "odd_msgs/action/Follow"))
     assert "parameters: [joint_names, points]" in text
     assert "trajectory.joint_names: $joint_names" in text
@@ -199,7 +202,7 @@ def test_an_action_that_moves_joints_gets_the_points_of_their_trajectory(types: 
     assert "fields: {positions: $1, time_from_start: $2}" in text
 
 
-def test_the_code_of_an_aborted_goal_is_named_where_the_result_has_constants(types: StoredInterfaces) -> None:
+def test_an_aborted_goal_has_a_named_code_if_the_result_has_constants(types: StoredInterfaces) -> None:
     line = "code: {path: error_code, as: name}"
     assert line in checked(types, acting(types, "follow", "arm/follow", "odd_msgs/action/Follow"))
     assert line not in checked(types, acting(types, "sort", "sort", "odd_msgs/action/Sort"))

@@ -29,7 +29,7 @@ def outcome(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, s
     return code, captured.out, captured.err
 
 
-def test_programs_are_laid_out_in_place(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_programs_are_formatted_in_place(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert outcome(capsys, ".") == (0, "", "1 of 2 files changed\n")
     assert (folder / "a.asl").read_text(encoding="utf-8") == NICE
     assert outcome(capsys, ".") == (0, "", "0 of 2 files changed\n")
@@ -55,7 +55,7 @@ def test_the_standard_input_goes_to_the_standard_output(
     assert errors.startswith("<stdin>:1:")
 
 
-def test_a_wrong_program_is_left_as_it_is_and_the_others_are_laid_out(
+def test_a_program_with_errors_is_kept_and_the_others_are_formatted(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (folder / "0.asl").write_text("p( ", encoding="utf-8")
@@ -68,7 +68,7 @@ def test_a_wrong_program_is_left_as_it_is_and_the_others_are_laid_out(
     assert (folder / "0.asl").read_text(encoding="utf-8") == "p( "
 
 
-def test_a_program_that_would_change_is_left_as_it_is(
+def test_a_program_whose_meaning_would_change_is_kept(
     folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("jacaros.asl.formatting._laid_out", lambda text: "p.")
@@ -81,9 +81,9 @@ def test_a_program_that_would_change_is_left_as_it_is(
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
-        (["b.asl"], "did you mean a.asl?"),
-        (["-", "a.asl"], "'-' cannot be combined with files"),
-        (["p.jcm"], "unsupported file type: p.jcm (expected .asl)"),
+        (["b.asl"], "did you mean `a.asl`?"),
+        (["-", "a.asl"], "`-` cannot be combined with files"),
+        (["p.jcm"], "unsupported file type: `p.jcm`\n  = help: expected .asl"),
         ([], "FILE"),
     ],
 )
@@ -96,7 +96,7 @@ def test_wrong_usage(
     assert told in errors
 
 
-def test_the_programs_of_the_project_are_laid_out(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_programs_of_the_repository_are_formatted(capsys: pytest.CaptureFixture[str]) -> None:
     folders = ("examples", "tests/compatibility", "tests/integration", "benchmarks/latency", "src")
     code, output, _ = outcome(capsys, "--check", *(str(ROOT / folder) for folder in folders))
     assert (code, output) == (0, "")
@@ -107,11 +107,11 @@ def test_a_folder_without_programs_is_wrong_usage(
     command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert call([command, str(tmp_path)]) == 2
-    assert capsys.readouterr().err == f"jacaros: no agent programs in {tmp_path}\n"
+    assert capsys.readouterr().err == f"error: no agent programs in `{tmp_path}`\n"
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="files of Windows have no such modes")
-def test_the_mode_of_a_file_stays_and_nothing_lies_beside_it(
+@pytest.mark.skipif(sys.platform == "win32", reason="files on Windows have no such modes")
+def test_formatting_keeps_the_file_mode_and_leaves_no_temporary_files(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (folder / "a.asl").chmod(0o640)

@@ -1,4 +1,4 @@
-"""Parameters of our node on the command line: what is read, what counts, and what is told."""
+"""Parameters of our node on the command line: reading, precedence and errors."""
 
 import sys
 from pathlib import Path
@@ -36,9 +36,7 @@ def test_files_are_read_for_our_node(file: Path) -> None:
     assert read_parameters((), (file,), "other") == everywhere | {"colour": "red"}
 
 
-def test_what_is_written_alone_goes_before_files_and_later_files_before_earlier(
-    file: Path, tmp_path: Path
-) -> None:
+def test_single_parameters_override_files_and_later_files_earlier_ones(file: Path, tmp_path: Path) -> None:
     later = tmp_path / "later.yaml"
     later.write_text("r1: {guard: {ros__parameters: {speed: 3, turn: 4}}}", encoding="utf-8")
     read = read_parameters(("speed:=5",), (file, later), "/r1/guard")
@@ -63,16 +61,16 @@ def test_values_are_yaml(written: str, value: object) -> None:
     assert (read, type(read)) == (value, type(value))
 
 
-def test_mappings_are_given_by_their_parts() -> None:
+def test_nested_mappings_are_flattened() -> None:
     assert read_parameters(("wheels:={left: {radius: 0.1}}",), (), "node", "/") == {"wheels/left/radius": 0.1}
 
 
 @pytest.mark.parametrize(
     ("written", "files", "told"),
     [
-        (("speed=1",), (), "is written NAME:=VALUE"),
+        (("speed=1",), (), "expected NAME:=VALUE, found `speed=1`"),
         (("x:={",), (), "--param x:1:2: this bracket is never closed"),
-        (("x:=",), (), "the parameter x has no value"),
+        (("x:=",), (), "parameter `x` has no value"),
         (("x:=&a [*a]",), (), "&a contains itself"),
         (("x:=" + "[" * 200 + "]" * 200,), (), "nested too deeply"),
         ((), ("deep.yaml",), "nested too deeply"),
@@ -86,7 +84,7 @@ def test_mappings_are_given_by_their_parts() -> None:
         ((), ("latin.yaml",), "not UTF-8; save the file as UTF-8"),
     ],
 )
-def test_mistakes_are_told(
+def test_mistakes_are_reported(
     tmp_path: Path, written: tuple[str, ...], files: tuple[str, ...], told: str
 ) -> None:
     (tmp_path / "list.yaml").write_text("- a", encoding="utf-8")
@@ -120,20 +118,24 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def test_what_a_launch_file_gives_reaches_the_agent(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_parameters_of_a_launch_file_reach_the_agent(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     (folder / "launch_params").write_text("guard: {ros__parameters: {speed: 0.7}}", encoding="utf-8")
     given = ("--ros-args", "--params-file", "launch_params", "-p", "places:=[attic, hall]")
     assert run(folder, "--ros", "memory", *given) == 0
     assert capsys.readouterr() == ("[guard] 0.7 [attic,hall]\n", "")
 
 
-def test_the_node_of_a_file_is_that_of_the_run(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_parameter_files_are_read_for_the_node_of_the_run(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     (folder / "p.yaml").write_text("r1: {left: {ros__parameters: {speed: 0.9}}}", encoding="utf-8")
     assert run(folder, "--params-file", "p.yaml", "--node-name", "left", "--namespace", "r1") == 0
     assert capsys.readouterr().out == "[guard] 0.9 [hall]\n"
 
 
-def test_what_nobody_declares_is_told_once(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_undeclared_parameter_is_reported_once(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(folder, "--param", "spede:=1.0", "--param", "use_sim_time:=true") == 0
     out, told = capsys.readouterr()
     assert out == "[guard] 0.4 [hall]\n"
@@ -142,7 +144,7 @@ def test_what_nobody_declares_is_told_once(folder: Path, capsys: pytest.CaptureF
     )
 
 
-def test_values_that_do_not_fit_are_told_all_at_once(
+def test_all_invalid_values_are_reported_in_one_pass(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert run(folder, "--param", "speed:=1", "--param", "places:=1") == 1
@@ -159,19 +161,19 @@ def test_values_that_do_not_fit_are_told_all_at_once(
     assert "has no effect" not in told
 
 
-def test_what_no_parameter_holds_and_where_there_are_none(
+def test_unsupported_values_and_graphs_without_parameters_are_reported(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert run(folder, "--param", "speed:=[1, a]") == 2
     assert "--param speed: a parameter holds" in capsys.readouterr().err
     arguments = ["guard.asl", "--ros", "rosbridge", "--param", "speed:=0.5"]
     assert call(arguments) == 2
-    assert "over rosbridge we are no node of the graph" in capsys.readouterr().err
+    assert "node of the graph" in capsys.readouterr().err
 
 
 def test_use_sim_time_is_true_or_false(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(folder, "--param", "use_sim_time:=yes") == 2
-    assert "the parameter use_sim_time is true or false, not 'yes'" in capsys.readouterr().err
+    assert "invalid parameter use_sim_time: expected true or false, found `'yes'`" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
@@ -183,7 +185,7 @@ def test_use_sim_time_is_true_or_false(folder: Path, capsys: pytest.CaptureFixtu
         (("--clock", "ros"), True),
     ],
 )
-def test_use_sim_time_is_the_clock(
+def test_use_sim_time_selects_the_ros_clock(
     folder: Path, monkeypatch: pytest.MonkeyPatch, arguments: tuple[str, ...], follows: bool
 ) -> None:
     seen: list[Any] = []

@@ -1,4 +1,4 @@
-"""Runs that have nothing left to do, and runs that lost a goal: what they log, and their exit codes."""
+"""Idle runs, and runs that lost a goal: log lines and exit codes."""
 
 from pathlib import Path
 
@@ -27,7 +27,7 @@ class EndingConsole(RunResult):
 
 
 def notes(folder: Path, program: str, name: str = "robot.asl", seconds: float = 50.0) -> list[str]:
-    """The notes of a run of some seconds that ends at the first one."""
+    """Return the notes of a run of several seconds that ends at the first one."""
     file = folder / name
     file.write_text(program, encoding="utf-8")
     console = EndingConsole()
@@ -38,19 +38,19 @@ def notes(folder: Path, program: str, name: str = "robot.asl", seconds: float = 
 HOW_TO_END = "press Ctrl+C to end the run, or start it with --until-idle"
 
 
-def test_a_run_without_goals_and_events_says_so(tmp_path: Path) -> None:
+def test_a_run_without_goals_and_events_logs_a_note(tmp_path: Path) -> None:
     (note,) = notes(tmp_path, "!go.\n+!go <- .wait(1000).")
     assert note == f"note: nothing left to do: no agent has a goal or an event; {HOW_TO_END}"
 
 
-def test_agents_whose_goals_wait_for_nothing_are_named(tmp_path: Path) -> None:
+def test_agents_that_wait_forever_are_named(tmp_path: Path) -> None:
     (note,) = notes(tmp_path, "!go.\n+!go <- .wait({+never}).")
     assert (
         note == f"note: nothing left to do: the goals of robot wait, and no agent can wake them; {HOW_TO_END}"
     )
 
 
-def test_a_goal_that_failed_before_it_made_an_artifact_leaves_nothing(tmp_path: Path) -> None:
+def test_a_goal_that_failed_before_creating_an_artifact_leaves_an_idle_run(tmp_path: Path) -> None:
     program = '!go.\n+!go <- makeArtifact("w", "NoSuchType", [], Id).'
     assert len(notes(tmp_path, program)) == 1
 
@@ -63,11 +63,11 @@ def test_a_goal_that_failed_before_it_made_an_artifact_leaves_nothing(tmp_path: 
         "!go.\n+!go <- .wait(100000).",
     ],
 )
-def test_runs_that_may_go_on_do_not_say_that_nothing_is_left(tmp_path: Path, program: str) -> None:
+def test_runs_that_may_continue_log_no_note(tmp_path: Path, program: str) -> None:
     assert notes(tmp_path, program, seconds=5.0) == []
 
 
-def test_an_agent_in_python_may_know_more_than_the_run(tmp_path: Path) -> None:
+def test_a_run_with_an_agent_in_python_logs_no_note(tmp_path: Path) -> None:
     program = "import jacaros\n\n\nclass Robot(jacaros.PythonAgent):\n    async def run(self) -> None:\n        pass\n"
     assert notes(tmp_path, program, "robot.py", seconds=5.0) == []
 
@@ -89,11 +89,11 @@ def test_all_lost_goals_are_counted(tmp_path: Path) -> None:
     assert code(tmp_path, program) == (1, ["error: 2 goals were lost (--fail-on-lost-goal)"])
 
 
-def test_a_goal_that_a_plan_saves_does_not_fail_the_run(tmp_path: Path) -> None:
+def test_a_handled_failure_does_not_fail_the_run(tmp_path: Path) -> None:
     assert code(tmp_path, "!go.\n+!go <- .fail.\n-!go.") == (0, [])
 
 
-def test_the_code_of_the_program_comes_before_that_of_a_lost_goal(tmp_path: Path) -> None:
+def test_the_code_of_the_program_overrides_that_of_a_lost_goal(tmp_path: Path) -> None:
     assert code(tmp_path, "!a. !go.\n+!go <- .wait(100); .stopMAS(0, 7).")[0] == 7
 
 

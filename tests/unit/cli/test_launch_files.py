@@ -17,7 +17,7 @@ FILE = Path(__file__).parents[3] / "examples" / "04_patrol" / "patrol_launch.py"
 
 
 class Description(list[Any]):
-    """What a launch file gives."""
+    """The result of a launch file."""
 
 
 class Node:
@@ -30,7 +30,7 @@ class Node:
         self.parameters: list[dict[str, object]] = rest.get("parameters", [])
 
     def command_line(self, folder: Path) -> list[str]:
-        """The arguments of the process: names behind ``--ros-args``, and a file of parameters."""
+        """Return the arguments of the process: names after ``--ros-args``, and a parameter file."""
         line = [*self.arguments, "--ros-args", "-r", f"__node:={self.name}"]
         for parameters in self.parameters:
             file = folder / "launch_params"

@@ -66,7 +66,7 @@ def test_charts_are_written_and_other_files_kept(folder: Path, capsys: pytest.Ca
     (charts / "lines.svg").write_text("mine")
     code, output, errors = outcome(capsys, "square", "--charts", "made/charts")
     assert (code, output) == (2, "")
-    assert "not a picture, and not overwritten: `made/charts/lines.svg`" in errors
+    assert "`made/charts/lines.svg` exists and is not a picture" in errors
 
 
 def test_all_that_cannot_be_counted_is_reported_in_one_pass(

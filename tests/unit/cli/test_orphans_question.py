@@ -14,19 +14,19 @@ pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="has no pseudo-t
 
 
 class Terminal:
-    """A terminal with somebody in front of it."""
+    """A terminal with a user in front of it."""
 
     def __init__(self, person: int, typed: TextIO, shown: TextIO) -> None:
         self._person, self._streams = person, (typed, shown)
         self.shown = ""
 
     def attach(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        """Make it the terminal of this process; in the test itself, since pytest sets the streams before."""
+        """Make it the terminal of this process; in the test itself, because pytest replaces the streams before."""
         for name, stream in zip(("stdin", "stderr"), self._streams, strict=True):
             monkeypatch.setattr(sys, name, stream)
 
     async def read_until(self, text: str) -> None:
-        """Wait until the terminal shows *text* behind what was read before."""
+        """Wait until the terminal shows *text* after what was read before."""
         loop = asyncio.get_running_loop()
         self.shown = ""
         while text not in self.shown:

@@ -1,18 +1,18 @@
-"""When a page is opened in the user's browser, and what is printed about it."""
+"""When a page is opened in the user's browser, and what is logged about it."""
 
 import sys
 import webbrowser
 
 import pytest
 
-from jacaros.cli.pages import has_display, open_page, tell_address
+from jacaros.cli.pages import has_display, log_address, open_page
 
 PAGE = "http://localhost:1/token/"
 
 
 @pytest.fixture
 def opened(monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    """The pages that were opened; the user sits at a terminal of a desktop."""
+    """The opened pages; the user sits at a terminal of a desktop."""
     found: list[str] = []
     monkeypatch.setattr(webbrowser, "open", found.append)
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
@@ -31,7 +31,7 @@ def test_the_page_is_opened_where_there_is_a_display(opened: list[str]) -> None:
 
 
 @pytest.mark.parametrize("lacking", ["display", "terminal", "errors"])
-def test_nothing_is_opened_elsewhere(
+def test_no_page_is_opened_without_a_display(
     opened: list[str], monkeypatch: pytest.MonkeyPatch, lacking: str
 ) -> None:
     if lacking == "display":
@@ -53,9 +53,9 @@ def test_a_remote_shell_of_another_system_has_no_display(
     assert not has_display()
 
 
-def test_only_an_address_for_others_has_a_warning() -> None:
+def test_only_an_address_for_other_machines_logs_a_warning() -> None:
     told: list[tuple[str, str]] = []
-    tell_address(PAGE, "127.0.0.1", lambda text, level: told.append((text, level)))
+    log_address(PAGE, "127.0.0.1", lambda text, level: told.append((text, level)))
     assert told == [(f"view: {PAGE}", "info")]
-    tell_address(PAGE, "0.0.0.0", lambda text, level: told.append((text, level)))
+    log_address(PAGE, "0.0.0.0", lambda text, level: told.append((text, level)))
     assert told[-1][1] == "warning"

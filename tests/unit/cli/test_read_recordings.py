@@ -1,4 +1,4 @@
-"""What commands print of recordings that are not whole."""
+"""Warnings of commands about incomplete recordings."""
 
 import gzip
 import json
@@ -34,7 +34,7 @@ def test_a_recording_of_a_newer_version_is_read_with_a_warning(
     assert "version 99" in told
 
 
-def test_a_compressed_recording_is_read_up_to_where_it_is_cut_off(
+def test_a_truncated_compressed_recording_is_read_to_its_last_line(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     run = written(tmp_path / "run.jsonl.gz")

@@ -1,4 +1,4 @@
-"""What ``ros2 run``, launch files, rosrun and roslaunch add to a command line is understood."""
+"""Arguments added by ``ros2 run``, launch files, rosrun and roslaunch are translated."""
 
 from pathlib import Path
 
@@ -15,7 +15,7 @@ def no_kind(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def options(*arguments: str) -> tuple[list[str], list[str]]:
-    """The options, and what is told."""
+    """Return the options and the warnings."""
     told: list[str] = []
     assert has_ros_arguments(arguments)
     return as_options(arguments, told.append), told
@@ -39,21 +39,21 @@ def test_arguments_of_ros2_become_options(written: tuple[str, ...], read: list[s
     assert options(*LAUNCHED, *written) == (["run", "guard.asl", *read, "--ros", "ros2"], [])
 
 
-def test_what_stands_behind_two_dashes_is_ours_again() -> None:
+def test_arguments_after_two_dashes_are_ours() -> None:
     assert options("guard.asl", "--ros-args", "-r", "a:=b", "--", "--mapping", "robot.yaml") == (
         ["guard.asl", "--mapping", "robot.yaml", "--remap", "a:=b", "--ros", "ros2"],
         [],
     )
 
 
-def test_what_is_said_by_our_own_options_counts(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_our_own_options_win(monkeypatch: pytest.MonkeyPatch) -> None:
     own = ("run", "a.asl", "--ros", "memory", "--param", "speed:=1")
     assert options(*own, "--ros-args") == (list(own), [])
     monkeypatch.setenv("JACAROS_ROS", "rosbridge")
     assert options("run", "a.asl", "--ros-args") == (["run", "a.asl"], [])
 
 
-def test_a_world_has_no_clock_to_follow_and_no_parameters(tmp_path: Path) -> None:
+def test_sim_drops_parameters(tmp_path: Path) -> None:
     file = tmp_path / "parameters.yaml"
     file.write_text(
         "/**: {ros__parameters: {use_sim_time: true}}\nhouse: {ros__parameters: {b: {c: 1}}}",
@@ -62,7 +62,7 @@ def test_a_world_has_no_clock_to_follow_and_no_parameters(tmp_path: Path) -> Non
     given = ("-r", "__node:=house", "-p", "use_sim_time:=true", "-p", "a:=1", "--params-file", str(file))
     read, told = options("sim", "house", "--ros-args", "--enable-rosout-logs", *given)
     assert read == ["sim", "house", "--rosout", "--node-name", "house", "--ros", "ros2"]
-    assert [line.split(" has ")[0] for line in told] == ["the parameter b.c", "the parameter a"]
+    assert [line.split(" has ")[0] for line in told] == ["parameter `b.c`", "parameter `a`"]
 
 
 def test_an_empty_namespace_is_kept() -> None:
@@ -89,7 +89,7 @@ def test_arguments_of_ros1_become_options() -> None:
     assert told == []
 
 
-def test_other_commands_and_options_with_such_values_are_left_alone() -> None:
+def test_other_commands_and_option_values_are_unchanged() -> None:
     assert not has_ros_arguments(["run", "a.asl", "--remap", "x:=y"])
     assert not has_ros_arguments(["run", "a.asl", "--remap=x:=y"])
     assert not has_ros_arguments(["run", "a.asl", "--param", "x:=1"])
@@ -100,20 +100,20 @@ def test_other_commands_and_options_with_such_values_are_left_alone() -> None:
 @pytest.mark.parametrize(
     ("written", "told"),
     [
-        (("--ros-args", "--clock", "ros"), "or -- before other arguments"),
-        (("--ros-args", "-r"), "missing value after -r"),
-        (("--ros-args", "-r", "odom"), "is written -r NAME:=VALUE"),
-        (("--ros-args", "-r", "other:odom:=x"), "leave out the name of the node"),
-        (("--ros-args", "-p", "x"), "is written -p NAME:=VALUE"),
+        (("--ros-args", "--clock", "ros"), "or `--` before other arguments"),
+        (("--ros-args", "-r"), "missing value after `-r`"),
+        (("--ros-args", "-r", "odom"), "invalid value of -r"),
+        (("--ros-args", "-r", "other:odom:=x"), "unexpected node name"),
+        (("--ros-args", "-p", "x"), "invalid value of -p"),
         (("__ip:=127.0.0.1",), "ROS_IP"),
     ],
 )
-def test_mistakes_are_told(written: tuple[str, ...], told: str) -> None:
+def test_mistakes_are_reported(written: tuple[str, ...], told: str) -> None:
     with pytest.raises(UsageError, match=told):
         options("run", "a.asl", *written)
 
 
-def test_a_run_takes_them(
+def test_a_run_accepts_ros_arguments(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)

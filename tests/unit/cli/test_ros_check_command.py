@@ -15,7 +15,7 @@ def outcome(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, s
 
 
 def checked(capsys: pytest.CaptureFixture[str], folder: Path, text: str, *options: str) -> str:
-    """What is told of a mapping that does not suit."""
+    """Return the report about a mapping that does not match."""
     file = folder / "robot.yaml"
     file.write_text(text, encoding="utf-8")
     code, output, errors = outcome(capsys, "ros", "check", str(file), "--world", "house", *options)
@@ -24,11 +24,9 @@ def checked(capsys: pytest.CaptureFixture[str], folder: Path, text: str, *option
     return output.replace(f"{folder}/", "")
 
 
-def test_a_type_that_is_not_known_and_not_that_of_the_topic_is_told_once(
-    capsys: pytest.CaptureFixture[str], tmp_path: Path
-) -> None:
+def test_an_unknown_type_is_reported_once(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     told = checked(capsys, tmp_path, "properties:\n  a: {topic: odom, type: nav_msgs/msg/Odometri}\n")
-    assert "its type is nav_msgs/msg/Odometry, not nav_msgs/msg/Odometri" in told
+    assert "expected the type `nav_msgs/msg/Odometry`, found `nav_msgs/msg/Odometri`" in told
     assert "is not known here" not in told
 
 
@@ -37,18 +35,18 @@ def test_a_type_that_is_not_known_and_not_that_of_the_topic_is_told_once(
     [
         (
             "properties:\n  pose: {topic: odm}\n",
-            "robot.yaml:2:17: no node publishes /odm",
-            "did you mean odom?",
+            "robot.yaml:2:17: no node publishes `/odm`",
+            "did you mean `odom`?",
         ),
         (
             "properties:\n  pose: {topic: cmd_vel}\n",
-            "robot.yaml:2:17: no node publishes /cmd_vel; it has only subscriptions, of /world",
+            "robot.yaml:2:17: no node publishes `/cmd_vel`; it has only subscriptions, by /world",
             "`publish`",
         ),
         (
             "properties:\n  pose: {topic: odom, type: nav_msgs/msg/Path}\n",
-            "robot.yaml:2:29: its type is nav_msgs/msg/Odometry, not nav_msgs/msg/Path",
-            "write type: nav_msgs/msg/Odometry",
+            "robot.yaml:2:29: expected the type `nav_msgs/msg/Odometry`, found `nav_msgs/msg/Path`",
+            "type: nav_msgs/msg/Odometry",
         ),
         (
             "properties:\n  pose: {topic: odom, fields: [pose.pose.positon.x]}\n",
@@ -57,52 +55,52 @@ def test_a_type_that_is_not_known_and_not_that_of_the_topic_is_told_once(
         ),
         (
             "properties:\n  pose: {topic: odom, qos: latched}\n",
-            "no messages of /odom would arrive from /world: the subscription asks for transient_local",
+            "incompatible QoS with /world on /odom: the subscription asks for transient_local",
             "write qos: default",
         ),
         (
             "operations:\n  go: {parameters: [x], publish: cmd_vl, type: geometry_msgs/Twist, fields: {linear.x: $x}}\n",
-            "no node subscribes to /cmd_vl",
-            "did you mean cmd_vel?",
+            "no node subscribes to `/cmd_vl`",
+            "did you mean `cmd_vel`?",
         ),
         (
             "operations:\n  go: {action: navigate_to_pos, type: nav2_msgs/action/NavigateToPose}\n",
-            "robot.yaml:2:16: no node offers the action /navigate_to_pos",
-            "did you mean navigate_to_pose",
+            "robot.yaml:2:16: no node offers the action `/navigate_to_pos`",
+            "did you mean `navigate_to_pose`",
         ),
         (
             "operations:\n  go: {action: dock, type: nav2_msgs/action/DockRobot}\n",
-            "its type is irobot_create_msgs/action/Dock, not nav2_msgs/action/DockRobot",
-            "write type: irobot_create_msgs/action/Dock",
+            "expected the type `irobot_create_msgs/action/Dock`, found `nav2_msgs/action/DockRobot`",
+            "type: irobot_create_msgs/action/Dock",
         ),
         (
             "operations:\n  ask: {service: nothing, type: std_srvs/srv/Trigger}\n",
-            "no node offers the service /nothing",
+            "no node offers the service `/nothing`",
             "`jacaros ros list` shows all names",
         ),
         (
             "frames:\n  pose: {target: map, source: base_footprnt}\n",
-            "robot.yaml:2:3: unknown frame base_footprnt",
-            "did you mean base_footprint?",
+            "robot.yaml:2:3: unknown frame `base_footprnt`",
+            "did you mean `base_footprint`?",
         ),
         (
             "namespace: r1\nframes:\n  pose: {target: map, source: base_footprint}\n",
-            "unknown frame r1/base_footprint",
+            "unknown frame `r1/base_footprint`",
             'write tf_prefix: ""',
         ),
         (
             "parameters:\n  top: {node: wrld, parameter: speed}\n",
-            "robot.yaml:2:3: unknown node /wrld",
-            "did you mean /world?",
+            "robot.yaml:2:3: unknown node `/wrld`",
+            "did you mean `/world`?",
         ),
         (
             "operations:\n  limit: {parameters: [v], set_parameter: nothing, node: world, value: $v}\n",
-            "node /world has no parameter nothing",
-            "it has",
+            "unknown parameter `nothing` of node `/world`",
+            "its parameters: ",
         ),
     ],
 )
-def test_what_would_not_work_is_told_with_its_place_and_what_to_write(
+def test_each_problem_has_a_location_and_a_suggested_fix(
     capsys: pytest.CaptureFixture[str], tmp_path: Path, text: str, problem: str, help: str
 ) -> None:
     told = checked(capsys, tmp_path, text)
@@ -110,23 +108,19 @@ def test_what_would_not_work_is_told_with_its_place_and_what_to_write(
     assert help in told
 
 
-def test_a_robot_without_namespace_is_found_by_the_last_part_of_names(
-    capsys: pytest.CaptureFixture[str], tmp_path: Path
-) -> None:
+def test_names_without_namespace_are_suggested(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     told = checked(capsys, tmp_path, "namespace: r1\nproperties:\n  pose: {topic: odom}\n")
-    assert "no node publishes /r1/odom" in told
-    assert "did you mean /odom?" in told
+    assert "no node publishes `/r1/odom`" in told
+    assert "did you mean `/odom`?" in told
 
 
-def test_all_problems_are_told_at_once_in_the_order_of_the_lines(
-    capsys: pytest.CaptureFixture[str], tmp_path: Path
-) -> None:
+def test_all_problems_are_reported_in_line_order(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     told = checked(capsys, tmp_path, "properties:\n  a: {topic: aa}\n  b: {topic: bb}\n  c: odom\n")
     assert told.index("robot.yaml:2:") < told.index("robot.yaml:3:")
     assert "robot.yaml:4:" not in told
 
 
-def test_a_mapping_with_mistakes_of_its_own_is_told_as_such(
+def test_mistakes_in_the_mapping_file_itself_are_reported(
     capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     file = tmp_path / "wrong.yaml"
@@ -154,14 +148,18 @@ PROGRAM = """
 """
 
 
-def test_what_map_writes_is_right_suits_and_is_run(
+def test_a_generated_mapping_is_valid_matches_the_graph_and_runs(
     capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     file, program = str(tmp_path / "robot.yaml"), tmp_path / "go.asl"
     program.write_text(PROGRAM, encoding="utf-8")
     assert outcome(capsys, "ros", "map", "--world", "house", "-o", file)[0] == 0
     assert outcome(capsys, "check", file, "--strict")[0] == 0
-    assert outcome(capsys, "ros", "check", file, "--world", "house") == (0, f"{file} suits this graph\n", "")
+    assert outcome(capsys, "ros", "check", file, "--world", "house") == (
+        0,
+        f"{file} matches this graph\n",
+        "",
+    )
     run = ("run", str(program), "--mapping", file, "--world", "house", "--clock", "fast", "--for", "300")
     code, output, errors = outcome(capsys, *run)
     assert (code, output) == (0, "[go] 1 0.5 discharging\n"), errors
@@ -182,7 +180,7 @@ def test_everything_of_a_graph_can_be_mapped(
     assert code == 0, output
 
 
-def test_lists_of_places_are_filled(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+def test_lists_of_poses_are_filled(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     file, program = str(tmp_path / "ways.yaml"), tmp_path / "go.asl"
     program.write_text(
         "!go. +!go <- follow_waypoints([place(0.4, 0, 0), place(0.4, 0.4, 90)]); .print(there); .stopMAS.",
@@ -194,12 +192,10 @@ def test_lists_of_places_are_filled(capsys: pytest.CaptureFixture[str], tmp_path
     assert (code, output) == (0, "[go] there\n"), errors
 
 
-def test_frames_are_below_the_namespace_of_the_command_too(
-    capsys: pytest.CaptureFixture[str], tmp_path: Path
-) -> None:
+def test_the_namespace_option_applies_to_frames(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     file = tmp_path / "frames.yaml"
     file.write_text("frames: {pose: {target: odom, source: base_footprint}}\n", encoding="utf-8")
     arguments = ["ros", "check", str(file), "--world", "two_robots", "--namespace"]
     assert call([*arguments, "robot_1"]) == 0
     assert call([*arguments, "robot_7"]) == 1
-    assert "unknown frame robot_7/odom" in capsys.readouterr().out
+    assert "unknown frame `robot_7/odom`" in capsys.readouterr().out

@@ -36,7 +36,7 @@ def test_types_are_defined_in_folders_that_the_command_names(
     told(capsys, "check", "maps/robot.yaml", "--world", "house")
 
 
-def test_everything_is_listed_a_line_for_each(capsys: pytest.CaptureFixture[str]) -> None:
+def test_each_entry_is_listed_on_one_line(capsys: pytest.CaptureFixture[str]) -> None:
     lines = told(capsys, "list", "--world", "house").splitlines()
     assert "topic /odom nav_msgs/msg/Odometry publishers=1 subscriptions=0" in lines
     assert "topic /cmd_vel geometry_msgs/msg/Twist publishers=0 subscriptions=1" in lines
@@ -45,7 +45,7 @@ def test_everything_is_listed_a_line_for_each(capsys: pytest.CaptureFixture[str]
     assert not any("jacaros_ros" in line for line in lines), "our own node is there for the look alone"
 
 
-def test_variables_of_the_environment_say_which_graph(
+def test_environment_variables_select_the_graph(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("JACAROS_WORLD", "two_robots")
@@ -62,7 +62,7 @@ def test_rates_are_measured(capsys: pytest.CaptureFixture[str]) -> None:
     assert "topic /scan sensor_msgs/msg/LaserScan publishers=1 subscriptions=0 rate=5" in lines
 
 
-def test_the_list_is_there_for_programs(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_list_is_available_as_json(capsys: pytest.CaptureFixture[str]) -> None:
     data = json.loads(told(capsys, "list", "--world", "two_robots", "--json", "--rates"))
     assert set(data) == {"topics", "actions", "services", "nodes"}
     [odom] = [topic for topic in data["topics"] if topic["name"] == "/robot_1/odom"]
@@ -85,7 +85,7 @@ def test_a_topic_is_shown_with_fields_units_endpoints_and_a_message(
         "type: nav_msgs/msg/Odometry",
         "publishers: /world (reliable, volatile)",
     ]
-    assert "message just heard" in lines
+    assert "latest message" in lines
     assert "pose.pose.position.x float64 m 0" in lines
     assert "twist.twist.angular.z float64 rad/s 0" in lines
     assert 'child_frame_id string "base_footprint"' in lines
@@ -115,27 +115,31 @@ def test_a_service_a_node_and_a_type_are_shown(capsys: pytest.CaptureFixture[str
     text = told(capsys, "show", "sensor_msgs/BatteryState")
     assert text.startswith("type sensor_msgs/msg/BatteryState")
     assert "0 to 1" in text
-    assert "in a mapping file" not in text
+    assert "entry for a mapping file" not in text
 
 
 @pytest.mark.parametrize(
     ("arguments", "code", "text"),
     [
-        (["show", "/odm"], 2, "unknown name /odm; did you mean /odom?"),
-        (["show", "/robot_1/odom"], 2, "did you mean /odom?"),
+        (["show", "/odm"], 2, "unknown name: `/odm`\n  = help: did you mean `/odom`?"),
+        (["show", "/robot_1/odom"], 2, "did you mean `/odom`?"),
         (["show", "/nonsense"], 2, "`jacaros ros list` shows all names"),
-        (["show", "/o dom"], 2, "'/o dom' is no ROS name"),
+        (["show", "/o dom"], 2, "ROS name"),
         (["show", "nonsense_msgs/Thing"], 1, "nonsense_msgs"),
         (["list", "--domain-id", "3"], 2, "--domain-id goes with --ros ros2"),
         (["list", "--master", "http://robot.lab.example:11311"], 2, "--master goes with --ros ros1"),
         (["list", "--ros", "ros2", "--world", "house"], 2, "jacaros sim"),
         (["list", "--world", "hose"], 1, "hose"),
         (["list", "--timeout", "0"], 2, "--timeout"),
-        (["map", "/world"], 2, "/world is a node"),
-        (["map", "nav_msgs/msg/Odometry"], 2, "is a type; a mapping has topics, services and actions"),
+        (["map", "/world"], 2, "`/world` is a node"),
+        (
+            ["map", "nav_msgs/msg/Odometry"],
+            2,
+            "a mapping file contains topics, services and actions",
+        ),
     ],
 )
-def test_mistakes_are_told(
+def test_mistakes_are_reported(
     capsys: pytest.CaptureFixture[str], arguments: list[str], code: int, text: str
 ) -> None:
     got, output, errors = outcome(capsys, *arguments)
@@ -153,9 +157,9 @@ def test_the_usual_things_of_a_robot_are_mapped(capsys: pytest.CaptureFixture[st
     assert "#   jacaros ros check robot.yaml --world house" in text
 
 
-def test_what_was_not_taken_is_named_in_the_file(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_file_names_what_it_leaves_out(capsys: pytest.CaptureFixture[str]) -> None:
     text = told(capsys, "map", "--world", "house")
-    _, _, left = text.partition("\n# Also there, but not taken; `jacaros ros show NAME --world house` prints")
+    _, _, left = text.partition("\n# Not in this file; `jacaros ros show NAME --world house` prints")
     lines = left.splitlines()
     assert "#   action /move_base" in lines
     assert sum(line.startswith(("#   action ", "#   topic ")) for line in lines) == 12
@@ -165,7 +169,7 @@ def test_what_was_not_taken_is_named_in_the_file(capsys: pytest.CaptureFixture[s
     assert "not taken" not in told(capsys, "map", "/odom", "--world", "house")
 
 
-def test_robots_have_an_artifact_each(capsys: pytest.CaptureFixture[str]) -> None:
+def test_each_robot_gets_an_artifact(capsys: pytest.CaptureFixture[str]) -> None:
     text = told(capsys, "map", "/robot_0/odom", "/robot_1/cmd_vel", "--world", "two_robots")
     assert "\n  robot_0:\n    namespace: robot_0 " in text
     assert "\n  robot_1:\n    namespace: robot_1 " in text
@@ -190,19 +194,19 @@ def test_names_do_not_clash(capsys: pytest.CaptureFixture[str]) -> None:
     assert "parameters: [x, y, yaw]" in text
 
 
-def test_docking_of_a_kobuki_is_called_as_plans_call_it(capsys: pytest.CaptureFixture[str]) -> None:
+def test_docking_of_a_kobuki_has_the_usual_name(capsys: pytest.CaptureFixture[str]) -> None:
     text = told(capsys, "map", "/dock_drive_action", "--world", "house")
     assert "  dock:   " in text
     assert "outputs" not in text
 
 
-def test_a_file_is_written_but_not_over_another(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+def test_a_file_is_written_but_not_overwritten(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     file = tmp_path / "robot.yaml"
     assert "wrote " in told(capsys, "map", "/odom", "-o", str(file))
     first = file.read_text(encoding="utf-8")
     code, _, errors = outcome(capsys, "map", "/scan", "-o", str(file))
     assert code == 2
-    assert "overwrite it with --force" in errors
+    assert "--force overwrites it" in errors
     assert file.read_text(encoding="utf-8") == first
     told(capsys, "map", "/scan", "-o", str(file), "--force")
     assert "LaserScan" in file.read_text(encoding="utf-8")

@@ -1,4 +1,4 @@
-"""The options about the view, and ``jacaros view``: what is refused before anything runs."""
+"""The options of the view, and ``jacaros view``: checks before the run."""
 
 import sys
 from pathlib import Path
@@ -16,14 +16,14 @@ PROGRAM = "!start. +!start <- .print(hello); .stopMAS."
 
 @pytest.fixture
 def program(tmp_path: Path) -> Path:
-    """A program that ends by itself."""
+    """A program that ends."""
     path = tmp_path / "hello.asl"
     path.write_text(PROGRAM)
     return path
 
 
 def refused(command: object, *arguments: str) -> str:
-    """Why a command line is refused."""
+    """Return the error for a command line."""
     with pytest.raises(UsageError) as error:
         CliRunner().invoke(command, arguments, catch_exceptions=False, standalone_mode=False)  # type: ignore[arg-type]
     return str(error.value)
@@ -35,7 +35,7 @@ def run(*arguments: str) -> Result:
 
 
 @pytest.mark.parametrize("before", [True, False])
-def test_view_takes_no_value_from_the_word_after_it(program: Path, before: bool) -> None:
+def test_view_does_not_consume_the_next_argument(program: Path, before: bool) -> None:
     words = ["--view", str(program)] if before else [str(program), "--view"]
     result = run(*words)
     assert "[hello] hello" in result.stdout
@@ -56,7 +56,7 @@ def test_other_machines_need_a_token(program: Path, monkeypatch: pytest.MonkeyPa
     assert "invalid view token" in refused(run_command, str(program), "--view", "--view-token", "short")
 
 
-def test_a_page_without_its_library_is_refused_before_the_run(
+def test_a_missing_websockets_library_is_reported_before_the_run(
     program: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(sys.modules, "websockets.asyncio", None)
@@ -65,7 +65,7 @@ def test_a_page_without_its_library_is_refused_before_the_run(
     assert "[hello] hello" in run(str(program), "--view=terminal").stdout
 
 
-def test_what_other_machines_can_do_is_printed(program: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_rights_of_other_machines_are_logged(program: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("JACAROS_VIEW_TOKEN", "a-token-that-tests-know")
     result = run(str(program), "--view", "--view-address", "0.0.0.0")
     assert "/a-token-that-tests-know/" in result.stderr
@@ -73,7 +73,7 @@ def test_what_other_machines_can_do_is_printed(program: Path, monkeypatch: pytes
     assert "not encrypted" in result.stderr
 
 
-def test_a_missing_recording_is_refused_with_help(tmp_path: Path) -> None:
+def test_a_missing_recording_suggests_a_command(tmp_path: Path) -> None:
     told = refused(view_command, str(tmp_path / "none.jsonl"))
     assert told.startswith("error: recording not found: ")
     assert "= help: jacaros run FILE --record" in told
@@ -82,9 +82,7 @@ def test_a_missing_recording_is_refused_with_help(tmp_path: Path) -> None:
 def test_a_file_that_is_not_a_page_is_not_overwritten(program: Path, tmp_path: Path) -> None:
     record = tmp_path / "run.jsonl"
     run(str(program), "--record", str(record))
-    assert "not a replay page, and not overwritten" in refused(
-        view_command, str(record), "--output", str(program)
-    )
+    assert "exists and is not a replay page" in refused(view_command, str(record), "--output", str(program))
     assert program.read_text() == PROGRAM
 
 
@@ -96,7 +94,7 @@ def test_the_page_is_written_to_a_file(program: Path, tmp_path: Path) -> None:
     assert page.read_text().lower().startswith("<!doctype html>")
 
 
-def test_the_list_of_commands_has_it(
+def test_the_list_of_commands_contains_view(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("sys.argv", ["jacaros", "--help"])

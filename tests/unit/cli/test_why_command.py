@@ -33,7 +33,7 @@ def test_a_whole_recording_has_no_warning(recording: Path) -> None:
     assert asked(recording, "waiting", "--agent", "bob").stderr == ""
 
 
-def test_a_recording_that_is_cut_off_is_answered_from_with_a_warning(recording: Path) -> None:
+def test_a_truncated_recording_answers_with_a_warning(recording: Path) -> None:
     recording.write_text(recording.read_text(encoding="utf-8") + '{"kind": "ev', encoding="utf-8")
     result = asked(recording, "waiting")
     assert result.exit_code == 0
@@ -42,6 +42,6 @@ def test_a_recording_that_is_cut_off_is_answered_from_with_a_warning(recording: 
 
 
 @pytest.mark.parametrize("option", ["--agent", "--robot"])
-def test_a_name_that_the_recording_does_not_have_is_refused(recording: Path, option: str) -> None:
-    with pytest.raises(UsageError, match=f"unknown {option[2:]}: `nobody`"):
-        asked(recording, "waiting", option, "nobody")
+def test_an_unknown_name_is_reported(recording: Path, option: str) -> None:
+    with pytest.raises(UsageError, match=f"unknown {option[2:]}: `unknown`"):
+        asked(recording, "waiting", option, "unknown")

@@ -125,7 +125,7 @@ class Page:
             await asyncio.sleep(0.02)
 
     async def text(self, selector: str) -> str:
-        """Return the text of an element as it is seen, "" when there is none."""
+        """Return the text of an element as displayed, "" without one."""
         return str(await self.evaluate(f"document.querySelector({json.dumps(selector)})?.innerText ?? ''"))
 
     async def texts(self, selector: str) -> list[str]:
@@ -201,7 +201,7 @@ class Page:
         return base64.b64decode(answer["data"])
 
     async def close(self) -> None:
-        """Read no more."""
+        """Stop reading."""
         self._reader.cancel()
         with contextlib.suppress(asyncio.CancelledError):
             await self._reader

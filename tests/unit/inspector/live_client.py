@@ -1,4 +1,4 @@
-"""A page for tests: connects with a live server over real sockets, collects records, and sends commands."""
+"""A page for tests: connects to a live server over real sockets, collects records, and sends commands."""
 
 import asyncio
 import json
@@ -11,7 +11,7 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed
 
 PATIENCE = 20.0
-"""Seconds after which what does not come fails a test."""
+"""Seconds of waiting after which a test fails."""
 
 
 class LivePage:
@@ -33,7 +33,7 @@ class LivePage:
         self._count = 0
 
     async def read(self) -> None:
-        """Take messages until the connection ends."""
+        """Receive messages until the connection ends."""
         async for message in self.socket:
             self._take(json.loads(message))
             self._changed.set()
@@ -48,7 +48,7 @@ class LivePage:
             self.hello = message if message["kind"] == "hello" else self.hello
 
     async def until(self, condition: Callable[[], Any]) -> Any:
-        """Wait until a condition holds; its value."""
+        """Wait until a condition holds; return its value."""
         async with asyncio.timeout(PATIENCE):
             while not (found := condition()):
                 self._changed.clear()
@@ -56,7 +56,7 @@ class LivePage:
         return found
 
     async def event(self, name: str, **data: object) -> dict[str, Any]:
-        """Wait for an event whose data hold *data*; its data."""
+        """Wait for an event whose data contain *data*; return its data."""
 
         def found() -> dict[str, Any] | None:
             matching = (
@@ -70,7 +70,7 @@ class LivePage:
         return result
 
     async def do(self, command: str, **fields: object) -> dict[str, Any]:
-        """Send a command; the reply."""
+        """Send a command; return the reply."""
         self._count += 1
         number = self._count
         await self.socket.send(json.dumps({"id": number, "do": command, **fields}))
@@ -80,7 +80,7 @@ class LivePage:
 
 @asynccontextmanager
 async def live_page(address: str) -> AsyncIterator[LivePage]:
-    """Connect with a server, as the page at *address* does."""
+    """Connect to a server, as the page at *address* does."""
     async with connect(socket_address(address), max_size=None, compression=None) as socket:
         page = LivePage(socket)
         reading = asyncio.create_task(page.read())
@@ -94,12 +94,12 @@ async def live_page(address: str) -> AsyncIterator[LivePage]:
 
 
 def socket_address(address: str) -> str:
-    """The address of the WebSocket of a page."""
+    """Return the address of the WebSocket of a page."""
     return f"{address.replace('http', 'ws', 1)}live"
 
 
 async def get(address: str, path: str = "", **headers: str) -> tuple[int, dict[str, str], bytes]:
-    """Send a GET request; status, headers and content of the answer.  Fields with the value "" are left out."""
+    """Send a GET request; return status, headers and content of the response. Fields with the value "" are left out."""
     parts = urlsplit(address)
     assert parts.hostname is not None
     reader, writer = await asyncio.open_connection(parts.hostname, parts.port)

@@ -1,4 +1,4 @@
-"""The end of a run that is seen on a live page: pages receive all of it, and it does not take long."""
+"""The end of a run shown on a live page: pages receive all of it, and it does not take long."""
 
 import asyncio
 import re
@@ -53,7 +53,7 @@ def test_a_page_receives_the_end_of_the_run(program: Path) -> None:
 
 @pytest.mark.skipif(sys.platform == "win32", reason="sends a signal of POSIX")
 @pytest.mark.slow
-def test_pages_that_take_nothing_do_not_hold_up_the_end(program: Path) -> None:
+def test_blocked_pages_do_not_delay_the_end(program: Path) -> None:
     process, address = started(program)
 
     async def main() -> float:

@@ -1,4 +1,4 @@
-"""What a graph tells of its world: drawn maps, and robots as they are seen."""
+"""The world as seen in a graph: drawn maps and perceived robots."""
 
 import json
 import math
@@ -55,14 +55,14 @@ def test_a_map_is_drawn_as_outlines_and_boxes() -> None:
     assert [4, 0.5, 4.5, 1] in drawing["boxes"]
 
 
-def test_a_map_that_is_turned_has_outlines_alone() -> None:
+def test_a_rotated_map_has_only_outlines() -> None:
     drawing = map_drawing(grid(PICTURE, yaw=math.pi / 2))
     assert drawing["boxes"] == []
     assert drawing["bounds"] == pytest.approx([-2.0, -0.5, 0.5, 3.0])
     assert any(wall == pytest.approx([-0.5, 2.0, -1.0, 2.0]) for wall in drawing["walls"])
 
 
-def test_a_map_of_nothing_is_no_trouble() -> None:
+def test_an_empty_map_is_drawn() -> None:
     drawing = map_drawing(grid("??\n??"))
     assert drawing["walls"] == drawing["boxes"] == []
     assert drawing["bounds"] == [1.0, -1.0, 2.0, 0.0]
@@ -86,7 +86,7 @@ def looking(world_name: str, body: Callable[[VirtualClock, World, Any, SimNode],
     run(main, clock)
 
 
-def test_robots_are_seen_where_they_believe_to_be_on_the_map() -> None:
+def test_robots_are_shown_at_their_estimated_poses() -> None:
     async def body(clock: VirtualClock, world: World, backend: Any, node: SimNode) -> None:
         scene = GraphScene(backend, clock, "storehouse")
         await clock.sleep(1.0)
@@ -130,7 +130,7 @@ def test_odometry_alone_is_enough() -> None:
     looking("empty", body)
 
 
-def test_numbers_that_are_none_are_not_drawn() -> None:
+def test_nan_and_infinity_are_not_drawn() -> None:
     """Neither by a view, which nothing else draws, nor in a recording: JSON has no such numbers."""
 
     async def body(clock: VirtualClock, world: World, backend: Any, node: SimNode) -> None:
@@ -155,18 +155,18 @@ def test_numbers_that_are_none_are_not_drawn() -> None:
     "change",
     [{"width": 4}, {"width": 0, "height": 0}, {"resolution": 0.0}, {"resolution": math.nan}],
 )
-def test_a_map_that_is_none_is_not_drawn(change: dict[str, Any]) -> None:
+def test_an_invalid_map_is_not_drawn(change: dict[str, Any]) -> None:
     message = grid("##\n##")
     assert can_be_drawn(message)
     vars(message.info).update(change)
     assert not can_be_drawn(message)
 
 
-def test_a_map_that_is_nowhere_is_not_drawn() -> None:
+def test_a_map_without_a_valid_origin_is_not_drawn() -> None:
     assert not can_be_drawn(grid("##\n##", x=math.nan))
 
 
-def test_a_world_that_is_known_late_is_recorded_all_the_same(tmp_path: Path) -> None:
+def test_a_world_discovered_late_is_recorded(tmp_path: Path) -> None:
     path = tmp_path / "run.jsonl"
 
     async def body(clock: VirtualClock, world: World, backend: Any, node: SimNode) -> None:

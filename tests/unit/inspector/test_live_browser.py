@@ -1,4 +1,4 @@
-"""The server of live pages against a real browser: what reaches the run, and who is kept out."""
+"""The server of live pages with a real browser: what reaches the run, and who is kept out."""
 
 import asyncio
 import json
@@ -44,7 +44,7 @@ async def connected(page: Page, address: str) -> None:
 
 
 async def counts_on(mas: Mas) -> None:
-    """Wait until the agent has counted on."""
+    """Wait until the agent has continued to count."""
     found = mas.agent("bob").ask("counted(N)")
     until = (found["N"] if found is not None else 0) + 10
     async with asyncio.timeout(PATIENCE):
@@ -67,7 +67,7 @@ def sending(command: dict[str, Any], address: str = "live") -> str:
 
 
 @needs_chromium
-def test_a_belief_that_is_added_on_the_page_arrives() -> None:
+def test_a_belief_added_on_the_page_reaches_the_agent() -> None:
     async def test(mas: Mas, address: str, page: Page) -> None:
         await connected(page, address)
         reply = await page.evaluate(sending({"do": "belief", "agent": "bob", "op": "+", "text": "seen(key)"}))
@@ -113,7 +113,7 @@ def test_a_page_of_another_origin_is_refused_even_with_the_token() -> None:
 
 
 @needs_chromium
-def test_a_browser_that_is_closed_does_no_harm() -> None:
+def test_closing_the_browser_is_harmless() -> None:
     async def main() -> None:
         async with Mas(seed=1, world=LAB, on_print=lambda *_: None) as mas, view(mas) as address:
             mas.add_agent("bob", PROGRAM)

@@ -1,4 +1,4 @@
-"""What pages can do to a run, over real sockets: each command, its refusals, and the record that it leaves."""
+"""Commands of pages over real sockets: effects, errors, and their records."""
 
 from collections.abc import Awaitable, Callable
 from pathlib import Path
@@ -69,7 +69,7 @@ def commanding(test: Test, world: str = "none") -> None:
 
 
 async def refused(page: LivePage, command: str, **fields: object) -> str:
-    """Why a command is refused, in one line."""
+    """Return the error of a command, in one line."""
     reply = await page.do(command, **fields)
     assert not reply["ok"]
     assert "\n" not in reply["error"]
@@ -179,14 +179,14 @@ def test_the_console_answers(line: str, result: str) -> None:
         ("", "`text` must be a text"),
     ],
 )
-def test_the_console_says_what_is_wrong_in_one_line(line: str, why: str) -> None:
+def test_the_console_reports_errors_in_one_line(line: str, why: str) -> None:
     async def test(_: Mas, page: LivePage) -> None:
         assert why in await refused(page, "console", agent="bob", text=line)
 
     commanding(test)
 
 
-def test_the_console_ends_long_answers() -> None:
+def test_the_console_limits_long_answers() -> None:
     async def test(_: Mas, page: LivePage) -> None:
         answers = str(await done(page, "console", agent="bob", text="?.range(X, 1, 1000000000)")).splitlines()
         assert answers[:2] == ["X = 1", "X = 2"]
@@ -229,7 +229,7 @@ def test_incomplete_commands_are_refused(command: dict[str, object], why: str) -
     commanding(test)
 
 
-def test_only_what_works_is_offered() -> None:
+def test_only_available_commands_are_offered() -> None:
     async def test(_: Mas, page: LivePage) -> None:
         assert {"belief", "console", "goal", "message", "operate"} <= set(page.hello["can"])
         assert not {"move_robot", "door", "obstacle", "person", "battery", "fault"} & set(page.hello["can"])
@@ -250,7 +250,7 @@ def test_a_robot_is_moved() -> None:
         )
         assert "a wall is in the way" in await refused(page, "move_robot", robot="turtlebot", x=0, y=2)
         assert "outside of the world" in await refused(page, "move_robot", robot="turtlebot", x=9, y=2)
-        assert "no robot 'r2'" in await refused(page, "move_robot", robot="r2", x=1, y=2)
+        assert "unknown robot 'r2'" in await refused(page, "move_robot", robot="r2", x=1, y=2)
         assert "`x` must be a number" in await refused(page, "move_robot", robot="turtlebot", x="1", y=2)
         assert "`yaw` must be a number" in await refused(
             page, "move_robot", robot="turtlebot", x=1, y=1, yaw=True
@@ -267,7 +267,7 @@ def test_a_door_is_opened_and_closed() -> None:
         await page.event("door_opened", door="gate")
         await done(page, "move_robot", robot="turtlebot", x=1, y=-2.5)
         assert "turtlebot is in the way" in await refused(page, "door", name="gate", open=False)
-        assert "no door 'exit'" in await refused(page, "door", name="exit", open=True)
+        assert "unknown door 'exit'" in await refused(page, "door", name="exit", open=True)
 
     commanding(test, WORLD)
 
@@ -279,7 +279,7 @@ def test_an_obstacle_stops_a_robot() -> None:
         await page.event("obstacle_placed", obstacle=name, radius=0.3)
         assert "obstacle_1 is in the way" in await refused(page, "move_robot", robot="turtlebot", x=0, y=-0.4)
         assert "turtlebot is in the way" in await refused(page, "obstacle", x=-1, y=0)
-        assert "0.02 to 2 metres" in await refused(page, "obstacle", x=2, y=2, radius=9)
+        assert "0.02 and 2 metres" in await refused(page, "obstacle", x=2, y=2, radius=9)
         await done(page, "obstacle", remove=name)
         await page.event("obstacle_removed", obstacle=name)
         assert not mas.world.obstacles.by_name
@@ -306,7 +306,7 @@ def test_a_battery_is_drained() -> None:
         await done(page, "battery", robot="turtlebot", level=7)
         assert mas.world.robot().battery.level <= 7
         await page.event("battery_set", robot="turtlebot", level=7)
-        assert "0 to 100" in await refused(page, "battery", robot="turtlebot", level=101)
+        assert "0 and 100" in await refused(page, "battery", robot="turtlebot", level=101)
 
     commanding(test, WORLD)
 
@@ -334,7 +334,7 @@ def test_a_fault_begins_and_ends() -> None:
 
 @pytest.mark.parametrize("clock", ["real", "fast"])
 def test_a_run_is_paused_stepped_and_continued(clock: str) -> None:
-    """On the virtual clock the page has to reach a run that stands still."""
+    """On the virtual clock the page must reach a run whose clock stands still."""
 
     async def main() -> None:
         running = Mas(seed=1, world=WORLD, on_print=lambda *_: None)

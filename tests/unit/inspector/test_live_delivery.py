@@ -1,4 +1,4 @@
-"""What one page receives: bounded, newest-only where that is enough, and complete again after it was too slow."""
+"""The records for one page: bounded, newest-only where that is enough, and complete again after the page was too slow."""
 
 import json
 from typing import Any
@@ -20,7 +20,7 @@ def event(number: int, name: str, /, **data: object) -> LiveRecord:
 
 
 def received(delivery: Delivery) -> list[Any]:
-    """All records and notes that wait, in their order."""
+    """Return all waiting records and notes, in order."""
     found: list[Any] = []
     while (message := delivery.take()) is not None:
         content = json.loads(message)
@@ -39,7 +39,7 @@ def robot(x: float) -> RobotView:
 
 
 def shown() -> tuple[LiveView, Delivery]:
-    """A view, and what a page that came at the beginning receives."""
+    """A view, and the records of a page connected from the beginning."""
     view = LiveView("lab", Commands())
     delivery = view.begin()
     assert names(received(delivery)) == ["hello"]
@@ -60,7 +60,7 @@ def test_only_the_newest_frame_and_scan_of_a_robot_are_delivered() -> None:
     assert delivery.complete
 
 
-def test_a_page_that_comes_late_receives_what_happened() -> None:
+def test_a_late_page_receives_earlier_records() -> None:
     view, _ = shown()
     view.world({"name": "lab"})
     for index in range(5):
@@ -71,7 +71,7 @@ def test_a_page_that_comes_late_receives_what_happened() -> None:
     assert [each["robots"][0][0] for each in late if each["kind"] == "frame"] == [0, 1, 2, 3, 4]
 
 
-def test_frames_in_which_nothing_moves_are_delivered_and_not_kept() -> None:
+def test_frames_without_motion_are_delivered_but_not_stored() -> None:
     view, delivery = shown()
     for index in range(50):
         view.frame(float(index), [robot(0.0)])
@@ -81,7 +81,7 @@ def test_frames_in_which_nothing_moves_are_delivered_and_not_kept() -> None:
     assert [each["t"] for each in late if each["kind"] == "frame"] == [0.0, 49.0, 50.0]
 
 
-def test_a_page_that_is_too_slow_is_told_how_much_it_missed_and_begins_again(
+def test_a_slow_page_receives_the_number_of_missed_records_and_restarts(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(delivering, "AGAIN", 0.0)
@@ -98,7 +98,7 @@ def test_a_page_that_is_too_slow_is_told_how_much_it_missed_and_begins_again(
     assert [each["text"] for each in received(delivery)] == ["more"]
 
 
-def test_a_page_that_is_too_slow_does_not_begin_again_all_the_time(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_slow_page_does_not_restart_all_the_time(monkeypatch: pytest.MonkeyPatch) -> None:
     now = 100.0
     monkeypatch.setattr(delivering, "real_time", lambda: now)
     view, delivery = shown()
@@ -114,7 +114,7 @@ def test_a_page_that_is_too_slow_does_not_begin_again_all_the_time(monkeypatch: 
     assert names(received(delivery))[:2] == ["missed", "hello"]
 
 
-def test_what_is_kept_is_bounded_and_the_state_stays() -> None:
+def test_records_are_bounded_and_the_state_is_kept() -> None:
     past = Past(events=10, frames=3)
     past.take(LiveRecord(0, {"kind": "world", "version": 2, "world": {"name": "lab"}}))
     past.take(event(1, "source", file="bob.asl", text="a."))
@@ -153,7 +153,7 @@ def test_records_are_json_that_browsers_read(data: Any, written: str) -> None:
     assert json_text(data) == written
 
 
-def test_a_text_without_end_is_cut() -> None:
+def test_a_very_long_text_is_cut() -> None:
     written = json_text({"kind": "text", "text": "x" * 10_000_000, "short": "y"})
     assert len(written) < LONGEST
     assert json.loads(written)["short"] == "y"

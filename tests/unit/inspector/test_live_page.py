@@ -89,7 +89,7 @@ def test_doors_obstacles_and_batteries_change_by_keyboard() -> None:
 
 
 @needs_chromium
-def test_a_refused_change_says_why() -> None:
+def test_a_rejected_change_gives_the_reason() -> None:
     async def test(mas: Mas, world: World, page: Page) -> None:
         await page.click("[data-tool=obstacle]")
         x, y = await page.evaluate(pixel(-1, 0))
@@ -119,7 +119,7 @@ def test_the_page_goes_back_in_time_and_back_to_live() -> None:
 
 
 @needs_chromium
-def test_the_past_stays_when_the_run_has_ended() -> None:
+def test_the_past_stays_available_after_the_run() -> None:
     async def main() -> None:
         async with chromium() as page:
             async with Mas(seed=1, world=WORLD, on_print=lambda *_: None) as mas, view(mas) as address:
@@ -133,7 +133,7 @@ def test_the_past_stays_when_the_run_has_ended() -> None:
 
 
 @needs_chromium
-def test_a_page_that_is_open_for_days_forgets_what_is_old() -> None:
+def test_a_page_open_for_days_drops_old_records() -> None:
     async def test(mas: Mas, world: World, page: Page) -> None:
         kept = await page.evaluate(
             """Promise.all(["run", "world", "log"].map((name) => import(`./${name}.js`))).then(([r, w, l]) => {
@@ -189,7 +189,7 @@ def test_a_world_of_any_size_is_drawn() -> None:
 
 
 @needs_chromium
-def test_a_world_that_comes_late_can_be_changed() -> None:
+def test_a_world_created_late_can_be_changed() -> None:
     async def main() -> None:
         async with Mas(seed=1, on_print=lambda *_: None) as mas, view(mas) as address, chromium() as page:
             mas.add_agent("bob", "!live. +!live <- .wait(nothing).")

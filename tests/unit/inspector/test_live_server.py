@@ -37,13 +37,13 @@ def serving(test: Callable[[Mas, str], Awaitable[None]], program: str = COUNTS) 
 
 
 def counted(mas: Mas) -> int:
-    """How far the agent has counted."""
+    """Return the agent's count."""
     found = mas.agent("bob").ask("counted(N)")
     return found["N"] if found is not None else -1
 
 
 async def counts_on(mas: Mas, steps: int = 5) -> None:
-    """Wait until the agent has counted on; fails when the run is held up."""
+    """Wait until the agent has continued to count; fail if the run is blocked."""
     until = counted(mas) + steps
     async with asyncio.timeout(PATIENCE):
         await mas.agent("bob").until(f"counted(N) & N >= {until}")
@@ -141,7 +141,7 @@ def test_another_origin_is_refused(origin: str) -> None:
     serving(test)
 
 
-def test_the_origin_of_the_page_is_welcome() -> None:
+def test_the_origin_of_the_page_is_accepted() -> None:
     async def test(_: Mas, address: str) -> None:
         origin = address.partition(f"/{TOKEN}")[0]
         async with connect(socket_address(address), origin=origin) as socket:  # type: ignore[arg-type]
@@ -160,7 +160,7 @@ def test_the_server_listens_on_the_loopback_alone() -> None:
     assert Access("192.168.1.5").exposed
 
 
-def test_any_address_knows_numbers_and_no_names_of_strangers() -> None:
+def test_any_address_accepts_ip_addresses_but_no_foreign_names() -> None:
     access = Access("0.0.0.0", TOKEN)
     assert access.knows_host(["192.168.1.5:8000"])
     assert access.knows_host(["[fe80::1]:8000"])
@@ -179,7 +179,7 @@ def test_random_tokens_differ() -> None:
     assert len(Access().token) >= 32
 
 
-def test_a_port_that_is_taken_is_an_error_before_anything_is_served() -> None:
+def test_a_port_in_use_is_an_error() -> None:
     async def test(mas: Mas, address: str) -> None:
         port = int(address.split(":")[2].split("/")[0])
         with pytest.raises(
@@ -191,7 +191,7 @@ def test_a_port_that_is_taken_is_an_error_before_anything_is_served() -> None:
     serving(test)
 
 
-def test_a_late_page_learns_what_holds() -> None:
+def test_a_late_page_receives_the_current_state() -> None:
     async def test(mas: Mas, address: str) -> None:
         await counts_on(mas)
         async with live_page(address) as page:
@@ -205,7 +205,7 @@ def test_a_late_page_learns_what_holds() -> None:
     serving(test)
 
 
-def test_closed_pages_do_no_harm() -> None:
+def test_closed_pages_are_harmless() -> None:
     async def test(mas: Mas, address: str) -> None:
         for _ in range(5):
             socket = await connect(socket_address(address))
@@ -219,7 +219,7 @@ def test_closed_pages_do_no_harm() -> None:
 
 
 @pytest.mark.parametrize("message", ["x", "[1]", "3", '"a"', "{" * 50_000, "[" * 50_000, b"\xff\xfe", "null"])
-def test_garbage_is_answered_and_then_cut_off(message: str | bytes) -> None:
+def test_garbage_gets_replies_and_then_a_disconnect(message: str | bytes) -> None:
     async def test(mas: Mas, address: str) -> None:
         async with live_page(address) as page:
             await _cut_off(_again_and_again(page.socket, message))
@@ -237,7 +237,7 @@ def test_a_huge_message_is_refused() -> None:
     serving(test)
 
 
-def test_many_connections_that_say_nothing_hold_up_nobody(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_idle_connections_do_not_block_others(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(server, "ADMITTED", 10_000)
 
     async def test(mas: Mas, address: str) -> None:
@@ -252,7 +252,7 @@ def test_many_connections_that_say_nothing_hold_up_nobody(monkeypatch: pytest.Mo
     serving(test)
 
 
-def test_a_flood_of_connections_is_turned_away(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_flood_of_connections_is_rejected(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(server, "ADMITTED", 20)
 
     async def test(mas: Mas, address: str) -> None:
@@ -278,7 +278,7 @@ def test_a_flood_of_connections_is_turned_away(monkeypatch: pytest.MonkeyPatch) 
     serving(test)
 
 
-def test_there_are_not_too_many_pages() -> None:
+def test_the_number_of_pages_is_limited() -> None:
     async def test(mas: Mas, address: str) -> None:
         sockets = [await connect(socket_address(address)) for _ in range(server.PAGES)]
         with pytest.raises(InvalidStatus) as refused:
@@ -291,7 +291,7 @@ def test_there_are_not_too_many_pages() -> None:
     serving(test)
 
 
-def test_a_page_that_takes_nothing_is_disconnected(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_blocked_page_is_disconnected(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(server, "PATIENCE", 2.0)
     cut_off = asyncio.Event()
     disconnect = server.LiveServer._disconnect

@@ -63,7 +63,7 @@ def test_each_kind_of_record_has_a_channel(driven: dict[str, Any]) -> None:
     assert (t, schema, content["goal"]) == (0.0, "jacaros.goal", "!start")
 
 
-def test_messages_that_had_an_effect_are_there_and_no_others(driven: dict[str, Any]) -> None:
+def test_only_messages_with_an_effect_are_recorded(driven: dict[str, Any]) -> None:
     moved = [content["linear"]["x"] for _, _, content in driven["/cmd_vel"]]
     assert max(moved) > 0.1
     assert moved[-1] == 0.0
@@ -90,7 +90,7 @@ def test_robots_are_transforms_and_the_world_is_a_scene(driven: dict[str, Any]) 
     assert (schema, line["name"], line["message"]) == ("foxglove.Log", "ann", "there")
 
 
-def test_a_recording_that_is_too_long_begins_again_and_both_parts_are_whole(tmp_path: Path) -> None:
+def test_a_long_recording_starts_a_second_complete_part(tmp_path: Path) -> None:
     path = tmp_path / "run.mcap"
     recorder = Recorder(path, limit=1_000_000)
     recorder.world({"name": "nowhere"})
@@ -103,9 +103,7 @@ def test_a_recording_that_is_too_long_begins_again_and_both_parts_are_whole(tmp_
     assert numbers == list(range(6000 - len(numbers), 6000))
 
 
-def test_without_the_library_the_command_says_what_to_install(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_missing_library_suggests_what_to_install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(__import__("sys").modules, "jacaros.inspector.mcap_format", None)
     with pytest.raises(UsageError, match=r"pip install 'jacaros\[mcap\]'"):
         Recorder(tmp_path / "run.mcap")
@@ -113,7 +111,7 @@ def test_without_the_library_the_command_says_what_to_install(
 
 
 @pytest.mark.parametrize("name", ["run.mcap", "run.jsonl.gz"])
-def test_a_missing_folder_is_refused_before_the_run(
+def test_a_missing_folder_is_reported_before_the_run(
     tmp_path: Path, name: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "a.asl").write_text('!s. +!s <- .print("begun").', encoding="utf-8")
@@ -125,7 +123,7 @@ def test_a_missing_folder_is_refused_before_the_run(
     assert "folder does not exist" in printed.err
 
 
-def test_jacaros_reads_no_recording_of_mcap_and_says_so(tmp_path: Path) -> None:
+def test_reading_an_mcap_recording_reports_that_it_is_unsupported(tmp_path: Path) -> None:
     recorder = Recorder(tmp_path / "run.mcap")
     recorder.close()
     (tmp_path / "run.mcap").write_bytes(b"\x89MCAP0\r\n")

@@ -88,7 +88,7 @@ def test_agents_that_only_report_goals_have_a_card_for_each_intention(tmp_path: 
 
 
 @needs_chromium
-def test_of_a_deep_stack_the_ends_are_shown(tmp_path: Path) -> None:
+def test_a_deep_stack_shows_its_ends(tmp_path: Path) -> None:
     goals = [goal(0.1 * n, n, f"!round({n})", intention=1) for n in range(12)]
 
     async def test(page: Page) -> None:
@@ -123,7 +123,7 @@ def test_a_click_shows_the_causes_back_to_the_sensor(tmp_path: Path) -> None:
 
 
 @needs_chromium
-def test_a_decision_says_why_each_plan_was_taken_or_not(tmp_path: Path) -> None:
+def test_a_decision_explains_why_each_plan_was_selected_or_not(tmp_path: Path) -> None:
     async def test(page: Page) -> None:
         await unfold(page, "Plans")
         plans = await page.texts(".plan > summary")
@@ -143,7 +143,7 @@ def test_a_decision_says_why_each_plan_was_taken_or_not(tmp_path: Path) -> None:
 
 
 @needs_chromium
-def test_going_back_in_time_shows_earlier_beliefs_and_a_filter_selects_some(tmp_path: Path) -> None:
+def test_going_back_in_time_shows_earlier_beliefs_and_the_filter_works(tmp_path: Path) -> None:
     async def test(page: Page) -> None:
         assert await page.texts(".beliefs code") == ["battery(100)", "battery(12)"]
         for _ in range(4):

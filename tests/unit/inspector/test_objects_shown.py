@@ -1,4 +1,4 @@
-"""Objects and cliffs on the still picture and in what the replay page is given."""
+"""Objects and cliffs on the still picture and in the data of the replay page."""
 
 from jacaros.inspector.page import records
 from jacaros.inspector.picture import picture_svg
@@ -21,7 +21,7 @@ def recorded() -> Recorder:
     return recorder
 
 
-def test_objects_are_where_they_lie_at_the_end() -> None:
+def test_the_picture_shows_objects_at_their_final_places() -> None:
     recorder = recorded()
     before = picture_svg(recorder.recording)
     assert "<title>cup</title>" in before

@@ -58,7 +58,7 @@ def last(kind: str) -> str:
 
 
 @needs_chromium
-def test_pause_holds_the_run_and_a_step_moves_it() -> None:
+def test_pause_stops_the_run_and_a_step_advances_it() -> None:
     async def test(mas: Mas, page: Page) -> None:
         await page.evaluate("document.querySelector('.pause-run').focus()")
         await page.press("Enter")
@@ -105,7 +105,7 @@ def test_a_breakpoint_on_a_line_hits_and_shows_the_line() -> None:
 
 
 @needs_chromium
-def test_a_breakpoint_without_a_line_is_refused_at_the_field() -> None:
+def test_a_breakpoint_without_a_line_is_rejected_at_the_field() -> None:
     async def test(_: Mas, page: Page) -> None:
         await page.click(".popover summary")
         await page.click(".window .entry")
@@ -119,7 +119,7 @@ def test_a_breakpoint_without_a_line_is_refused_at_the_field() -> None:
 
 
 @needs_chromium
-def test_a_breakpoint_on_a_condition_is_set_and_a_wrong_one_refused() -> None:
+def test_a_breakpoint_on_a_condition_is_set_and_an_invalid_one_rejected() -> None:
     async def test(mas: Mas, page: Page) -> None:
         await page.click(".popover summary")
         await page.evaluate(
@@ -175,7 +175,7 @@ def test_a_goal_is_dropped_at_its_card() -> None:
 
 
 @needs_chromium
-def test_a_button_gets_its_click_although_its_card_changes_all_the_time() -> None:
+def test_a_button_receives_clicks_while_its_card_changes() -> None:
     async def test(mas: Mas, page: Page) -> None:
         x, y = await page.evaluate(
             "(() => { const box = document.querySelector('.intention .ask').getBoundingClientRect();"

@@ -49,9 +49,7 @@ PLAYED = """(() => {
 
 @needs_chromium
 @pytest.mark.parametrize(("limit", "kept"), [(20000, 3000), (400, 500)])
-def test_a_fold_answers_for_any_moment_as_a_replay_from_the_beginning(
-    tmp_path: Path, limit: int, kept: int
-) -> None:
+def test_a_fold_equals_a_replay_from_the_beginning_at_any_time(tmp_path: Path, limit: int, kept: int) -> None:
     wrong, length, checkpoints = evaluated(tmp_path, "fold", "Fold", PLAYED.replace("LIMIT", str(limit)))
     assert wrong == []
     assert length <= kept

@@ -1,4 +1,4 @@
-"""People in the terminal and on the still picture: where their last event tells, straight on since then."""
+"""People in the terminal and on the still picture, extrapolated from their last event."""
 
 import io
 from typing import Any
@@ -22,7 +22,7 @@ people:
 """
 
 
-def test_a_person_is_shown_where_it_is() -> None:
+def test_a_person_is_shown_at_its_position() -> None:
     world = World.load(WORLD)
     seen = PeopleSeen(world.description.drawing())
 

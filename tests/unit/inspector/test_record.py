@@ -93,7 +93,7 @@ class Worker(PythonAgent):
 """
 
 
-def test_what_agents_in_python_work_at_and_agents_that_come_later_are_recorded(tmp_path: Path) -> None:
+def test_goals_of_agents_in_python_and_agents_created_later_are_recorded(tmp_path: Path) -> None:
     (tmp_path / "work.jcm").write_text(PROJECT)
     (tmp_path / "worker.py").write_text(WORKER)
     (tmp_path / "artifacts.py").write_text(WORKER)
@@ -129,7 +129,7 @@ def test_what_agents_in_python_work_at_and_agents_that_come_later_are_recorded(t
     assert not ended.value.code
 
 
-def test_what_led_to_an_act_is_recorded_from_the_message_on(tmp_path: Path) -> None:
+def test_the_causes_of_an_action_are_recorded_from_the_message_on(tmp_path: Path) -> None:
     program = """
         !start.
         +!start

@@ -35,7 +35,7 @@ def recorded(tmp_path: Path) -> Path:
     return path
 
 
-def test_a_page_receives_the_whole_recording_in_the_order_of_time(recorded: Path) -> None:
+def test_a_page_receives_the_whole_recording_in_time_order(recorded: Path) -> None:
     async def main() -> None:
         server = LiveServer(bound_socket(), Access(), RecordedView(Recording.read(recorded)))
         await server.start()
@@ -66,7 +66,7 @@ def test_a_page_receives_the_whole_recording_in_the_order_of_time(recorded: Path
     asyncio.run(main())
 
 
-def test_a_server_that_is_closed_waits_for_a_browser_that_was_opened(recorded: Path) -> None:
+def test_closing_the_server_waits_for_an_opened_browser(recorded: Path) -> None:
     async def main() -> None:
         server = LiveServer(bound_socket(), Access(), RecordedView(Recording.read(recorded)))
         await server.start()
@@ -90,7 +90,7 @@ def test_the_command_prints_the_address_serves_and_ends_with_ctrl_c(recorded: Pa
     try:
         found = re.fullmatch(r"view: (\S+:\d+/[\w-]+/)\n", process.stderr.readline())
         assert found is not None
-        assert process.stderr.readline() == "press Ctrl+C to end\n"
+        assert process.stderr.readline() == "press Ctrl+C to stop\n"
         status, _, content = asyncio.run(get(found[1]))
         assert status == 200
         assert b"live.js" in content

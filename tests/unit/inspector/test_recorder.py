@@ -35,7 +35,7 @@ def record(path: Path | None) -> Recorder:
     return recorder
 
 
-def test_what_was_recorded_reads_back_the_same(tmp_path: Path) -> None:
+def test_a_recording_reads_back_unchanged(tmp_path: Path) -> None:
     recorder = record(tmp_path / "run.jsonl")
     assert Recording.read(tmp_path / "run.jsonl") == recorder.recording
     assert recorder.recording.robots == ["turtlebot"]
@@ -79,14 +79,14 @@ def test_the_last_rest_is_recorded_when_the_run_ends() -> None:
     assert recorder.recording.duration == 50.0
 
 
-def test_a_line_cut_off_by_a_crash_is_left_out(tmp_path: Path) -> None:
+def test_a_line_truncated_by_a_crash_is_skipped(tmp_path: Path) -> None:
     path = tmp_path / "run.jsonl"
     record(path)
     path.write_text(path.read_text(encoding="utf-8") + '{"kind": "fra', encoding="utf-8")
     assert len(Recording.read(path).frames) == 5
 
 
-def test_a_line_cut_off_by_a_full_disk_is_left_out(tmp_path: Path) -> None:
+def test_a_line_truncated_by_a_full_disk_is_skipped(tmp_path: Path) -> None:
     path = tmp_path / "run.jsonl"
     record(path)
     lines = path.read_text(encoding="utf-8").splitlines(keepends=True)
@@ -94,7 +94,7 @@ def test_a_line_cut_off_by_a_full_disk_is_left_out(tmp_path: Path) -> None:
     assert len(Recording.read(path).frames) == 4
 
 
-def test_records_are_in_the_file_while_the_run_goes_on(tmp_path: Path) -> None:
+def test_records_are_in_the_file_during_the_run(tmp_path: Path) -> None:
     recorder = Recorder(tmp_path / "run.jsonl")
     recorder.world({"name": "nowhere"})
     recorder.text(0.1, "ann", "hello")
@@ -125,7 +125,7 @@ def test_an_older_part_of_another_run_is_not_read(tmp_path: Path) -> None:
     assert len(Recording.read(tmp_path / "run.jsonl").texts) == 1
 
 
-def test_a_recording_on_a_full_disk_is_warned_about_and_hurts_nobody() -> None:
+def test_a_full_disk_logs_a_warning_and_does_not_stop_the_run() -> None:
     if not Path("/dev/full").exists():
         pytest.skip("this system has no /dev/full")
     warnings: list[str] = []
@@ -156,7 +156,7 @@ MALFORMED = [
 @pytest.mark.parametrize(
     "content", ["", '{"kind": "frame", "t": 0}\n{}\n', "hello\nworld\n", "[1]\n[2]\n", *MALFORMED]
 )
-def test_a_file_that_is_no_recording_is_refused(tmp_path: Path, content: str) -> None:
+def test_a_file_that_is_not_a_recording_is_rejected(tmp_path: Path, content: str) -> None:
     path = tmp_path / "other.jsonl"
     path.write_text(content)
     with pytest.raises(JacarosError, match=r"other\.jsonl"):
@@ -222,7 +222,7 @@ def test_a_compressed_recording_reads_back_the_same(tmp_path: Path) -> None:
         assert len(lines.readlines()) == 8
 
 
-def test_a_compressed_recording_is_in_the_file_while_the_run_goes_on(tmp_path: Path) -> None:
+def test_a_compressed_recording_is_in_the_file_during_the_run(tmp_path: Path) -> None:
     path = tmp_path / "run.jsonl.gz"
     recorder = Recorder(path)
     recorder.world({"name": "nowhere"})
@@ -244,7 +244,7 @@ def packed_in_pieces(count: int) -> tuple[list[bytes], int]:
     return pieces, len(pieces[0])
 
 
-def test_a_compressed_recording_that_is_cut_off_is_read_up_to_there(tmp_path: Path) -> None:
+def test_a_truncated_compressed_recording_is_read_to_its_end(tmp_path: Path) -> None:
     path, whole = tmp_path / "run.jsonl.gz", record(tmp_path / "whole.jsonl.gz").recording
     data = (tmp_path / "whole.jsonl.gz").read_bytes()
     counts = set()
@@ -256,7 +256,7 @@ def test_a_compressed_recording_that_is_cut_off_is_read_up_to_there(tmp_path: Pa
     assert max(counts) == len(whole.frames)
 
 
-def test_what_follows_a_hole_in_a_compressed_recording_is_read(tmp_path: Path) -> None:
+def test_records_after_damage_in_a_compressed_recording_are_read(tmp_path: Path) -> None:
     """A full disk has not taken a piece: the members behind it can be read."""
     pieces, _ = packed_in_pieces(12)
     path = tmp_path / "run.jsonl.gz"
@@ -283,7 +283,7 @@ def test_a_long_compressed_recording_keeps_its_newest_half(tmp_path: Path) -> No
     assert texts == [str(number) for number in range(3000 - len(texts), 3000)]
 
 
-def test_of_a_newer_version_what_is_known_is_read_with_a_warning(tmp_path: Path) -> None:
+def test_known_records_of_a_newer_version_are_read_with_a_warning(tmp_path: Path) -> None:
     path = tmp_path / "run.jsonl"
     path.write_text(
         '{"kind": "world", "version": 9, "world": {"name": "nowhere", "new": 1}}\n'
@@ -300,7 +300,7 @@ def test_of_a_newer_version_what_is_known_is_read_with_a_warning(tmp_path: Path)
     assert "version 9" in warning
 
 
-def test_a_recording_that_is_cut_off_is_read_with_a_warning(tmp_path: Path) -> None:
+def test_a_truncated_recording_is_read_with_a_warning(tmp_path: Path) -> None:
     path = tmp_path / "run.jsonl"
     record(path)
     assert Recording.read(path).warnings == []
@@ -314,7 +314,7 @@ def test_a_recording_that_is_cut_off_is_read_with_a_warning(tmp_path: Path) -> N
     ("line", "reason"),
     [("[1, 2]", "names with values are expected, not [1, 2]"), ("{}", "the key 'kind' is missing")],
 )
-def test_a_line_that_is_not_a_record_is_named_in_words(tmp_path: Path, line: str, reason: str) -> None:
+def test_an_invalid_line_is_described(tmp_path: Path, line: str, reason: str) -> None:
     path = tmp_path / "run.jsonl"
     path.write_text(f"{line}\n", encoding="utf-8")
     with pytest.raises(JacarosError, match=re.escape(f"not a recording: {reason}")):
@@ -327,7 +327,7 @@ def test_a_recording_of_version_1_is_read_without_a_warning(tmp_path: Path) -> N
     assert Recording.read(path).warnings == []
 
 
-def test_what_is_wrong_with_a_file_is_reported_with_place_and_help(tmp_path: Path) -> None:
+def test_errors_in_a_file_have_a_location_and_help(tmp_path: Path) -> None:
     path = tmp_path / "run.jsonl"
     path.write_text('{"kind": "world", "world": {"robots": [{}]}}\n\n', encoding="utf-8")
     with pytest.raises(JacarosError) as refused:
@@ -338,7 +338,7 @@ def test_what_is_wrong_with_a_file_is_reported_with_place_and_help(tmp_path: Pat
     )
 
 
-def test_records_that_look_like_the_next_one_stay_one_record() -> None:
+def test_a_text_that_looks_like_a_record_stays_in_its_record() -> None:
     records = [
         {"kind": "event", "data": [{"kind": "a"}, {"kind": "b"}]},
         {"kind": "text", "text": '}, {"kind": "x'},

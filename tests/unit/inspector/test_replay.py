@@ -69,7 +69,7 @@ def unpacked(page: str) -> list[dict[str, Any]]:
     return [json.loads(line) for line in gzip.decompress(base64.b64decode(found.group(1))).splitlines()]
 
 
-def test_the_page_holds_all_records_in_the_order_of_time() -> None:
+def test_the_page_holds_all_records_in_time_order() -> None:
     run = recording()
     columns, *held = unpacked(replay_html(run))
     assert held == json.loads(json.dumps(list(records(run))))
@@ -85,7 +85,7 @@ def test_the_page_holds_all_records_in_the_order_of_time() -> None:
     assert times == sorted(times)
 
 
-def test_the_page_needs_nothing_from_anywhere() -> None:
+def test_the_page_loads_nothing() -> None:
     page = replay_html(recording(), title="A <b>run</b>")
     without_data = re.sub(r'id="recording">[^<]*<', 'id="recording"><', page)
     assert not re.search(
@@ -130,7 +130,7 @@ def test_modules_are_joined_in_the_order_of_their_imports(tmp_path: Path) -> Non
         ('import { x } from "./entry.js";', "import each other: entry -> entry"),
     ],
 )
-def test_modules_of_another_form_are_refused(tmp_path: Path, source: str, reason: str) -> None:
+def test_unsupported_modules_are_rejected(tmp_path: Path, source: str, reason: str) -> None:
     (tmp_path / "entry.js").write_text(source)
     with pytest.raises(JacarosError, match=reason):
         bundle(tmp_path, "entry")
@@ -190,7 +190,7 @@ def test_keys_move_through_time(tmp_path: Path) -> None:
 
 
 @needs_chromium
-def test_marks_are_reached_by_keyboard_and_have_texts(tmp_path: Path) -> None:
+def test_marks_are_reachable_by_keyboard_and_have_texts(tmp_path: Path) -> None:
     async def test(page: Page) -> None:
         await page.wait_for("document.querySelectorAll('.marks .mark').length === 2")
         await page.evaluate("document.querySelector('.marks .mark').focus()")
@@ -222,7 +222,7 @@ def test_a_run_without_robots_has_no_map(tmp_path: Path) -> None:
 
 
 @needs_chromium
-def test_the_reason_of_goals_that_served_one_another_is_shown_once(tmp_path: Path) -> None:
+def test_the_reason_of_nested_goals_is_shown_once(tmp_path: Path) -> None:
     recorder = Recorder()
     why = "action_failed, no way (robot.asl:4)\nstep: navigate_to(5,5,0)"
     goals = (("!work", why), ("!tour", why), ("!other", "stuck (robot.asl:9)"))
@@ -272,7 +272,7 @@ def test_the_picture_of_two_robots_names_them(tmp_path: Path) -> None:
     assert "http" not in text.replace("http://www.w3.org/2000/svg", "")
 
 
-def test_a_world_may_have_any_name() -> None:
+def test_a_world_with_any_name_is_shown() -> None:
     made = recording()
     made.world["name"] = '<link rel="stylesheet" href="page.css"></title><script>alert(1)</script>'
     page = replay_html(made)
@@ -282,7 +282,7 @@ def test_a_world_may_have_any_name() -> None:
 
 
 @needs_chromium
-def test_what_can_be_shown_of_broken_records_is_shown(tmp_path: Path) -> None:
+def test_the_valid_parts_of_broken_records_are_shown(tmp_path: Path) -> None:
     async def test(page: Page) -> None:
         assert "hello" in await page.text("#log")
         assert (await page.text("#notice")).startswith("1 record is not shown: goal: ")
@@ -308,7 +308,7 @@ def test_the_page_fits_its_window(tmp_path: Path, width: int, height: int) -> No
 
 
 @needs_chromium
-def test_everything_that_can_be_pressed_is_reached_by_the_tab_key(tmp_path: Path) -> None:
+def test_every_button_is_reachable_by_the_tab_key(tmp_path: Path) -> None:
     async def test(page: Page) -> None:
         reached = set()
         for _ in range(30):

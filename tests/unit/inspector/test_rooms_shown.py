@@ -1,4 +1,4 @@
-"""Dirt and furniture on the still picture: as much dirt as is left at the end, furniture in its colour."""
+"""Dirt and furniture on the still picture: the remaining dirt at the end, and furniture in its colour."""
 
 from jacaros.inspector.page import records
 from jacaros.inspector.picture import picture_svg
@@ -14,7 +14,7 @@ robots: [{}]
 """
 
 
-def test_the_picture_shows_what_is_left_of_the_dirt() -> None:
+def test_the_picture_shows_the_remaining_dirt() -> None:
     recorder = Recorder()
     recorder.world(World.load(WORLD).description.drawing())
     assert picture_svg(recorder.recording).count('class="dirt" opacity="0.30"') == 2
@@ -36,7 +36,7 @@ def test_the_picture_shows_furniture_in_its_colour() -> None:
     assert next(records(recorder.recording))["world"]["furniture"][0]["color"] == "#c0392b"
 
 
-def test_a_colour_of_a_recording_is_no_way_into_a_picture() -> None:
+def test_colours_of_a_recording_are_escaped_in_pictures() -> None:
     recorder = Recorder()
     furniture = [{"kind": "", "color": '"><script>', "area": [0, 0, 1, 1]}]
     recorder.world({"name": "", "bounds": [0, 0, 1, 1], "furniture": furniture})

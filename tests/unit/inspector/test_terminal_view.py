@@ -1,4 +1,4 @@
-"""The terminal view: what it draws, how seldom, and what it does without a terminal."""
+"""The terminal view: its pictures, their rate, and its output without a terminal."""
 
 import io
 import os
@@ -50,7 +50,7 @@ def test_a_braille_map_sets_the_dots_of_a_line() -> None:
     assert shown.text().startswith("⠉")
 
 
-def test_dots_outside_of_the_map_are_left_out() -> None:
+def test_dots_outside_the_map_are_skipped() -> None:
     shown = BrailleMap((0.0, 0.0, 1.0, 1.0), 4, 2)
     shown.line(-9.0, -9.0, 9.0, 9.0)
     shown.point(50.0, 50.0)
@@ -76,13 +76,13 @@ def test_the_view_shows_walls_robot_battery_goals_and_prints() -> None:
 
 
 @pytest.mark.parametrize(("yaw", "arrow"), [(0.0, "→"), (0.8, "↗"), (3.14, "←"), (-3.14, "←"), (-1.6, "↓")])
-def test_the_arrow_looks_where_the_robot_looks(yaw: float, arrow: str) -> None:
+def test_the_arrow_has_the_robots_heading(yaw: float, arrow: str) -> None:
     view, _, _, _ = view_of()
     view.frame(0.0, [robot(yaw=yaw)])
     assert arrow in rendered(view)
 
 
-def test_a_fast_run_is_drawn_ten_times_a_second_on_the_wall_at_most() -> None:
+def test_a_fast_run_is_drawn_at_most_ten_times_per_second_of_real_time() -> None:
     view, wall, out, _ = view_of()
     pictures = 0
     for step in range(1000):
@@ -102,7 +102,7 @@ def test_the_speed_of_the_run_is_shown() -> None:
     view.close()
 
 
-def test_without_a_terminal_there_is_a_plain_line_now_and_then() -> None:
+def test_without_a_terminal_plain_lines_are_printed() -> None:
     view, wall, out, _ = view_of(terminal=False)
     for step in range(100):
         wall.now += 0.125
@@ -115,7 +115,7 @@ def test_without_a_terminal_there_is_a_plain_line_now_and_then() -> None:
     view.close()
 
 
-def test_without_a_world_there_are_goals_and_prints() -> None:
+def test_without_a_world_goals_and_output_are_shown() -> None:
     view = TerminalView(Console(file=io.StringIO(), force_terminal=True, width=80), Wall())
     view.event(0.0, "goal", {"agent": "a", "goal": "!go", "state": "pursued"})
     view.text(0.0, "a", "on the way")
@@ -124,7 +124,7 @@ def test_without_a_world_there_are_goals_and_prints() -> None:
     assert rendered(view).splitlines()[1:] == ["pursuing !go", "[a] on the way"]
 
 
-def test_each_intention_has_a_row_that_begins_with_what_is_done_now() -> None:
+def test_each_intention_has_a_row_with_its_current_step_first() -> None:
     view = TerminalView(Console(file=io.StringIO(), force_terminal=True, width=40), Wall())
 
     def tell(agent: str, number: int, goal: str, intention: int, state: str = "pursued") -> None:
@@ -153,7 +153,7 @@ def test_each_intention_has_a_row_that_begins_with_what_is_done_now() -> None:
     ]
 
 
-def test_two_robots_have_a_gauge_each() -> None:
+def test_each_robot_has_a_gauge() -> None:
     view, _, _, _ = view_of("two_robots")
     view.frame(
         0.0, [RobotView("robot_0", -1, -1, 0, 20), RobotView("robot_1", 1, 1, 3.14, 80, touching=True)]
@@ -163,7 +163,7 @@ def test_two_robots_have_a_gauge_each() -> None:
     assert "80 % touching" in text
 
 
-def test_closing_leaves_the_last_picture_and_twice_is_harmless() -> None:
+def test_closing_leaves_the_last_picture_and_is_idempotent() -> None:
     view, wall, out, _ = view_of()
     wall.now += 1.0
     view.frame(1.0, [robot()])
@@ -173,7 +173,7 @@ def test_closing_leaves_the_last_picture_and_twice_is_harmless() -> None:
 
 
 @pytest.mark.skipif(os.name != "posix", reason="needs a pseudo-terminal")
-def test_a_terminal_that_nobody_reads_stops_no_agent(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_blocked_terminal_does_not_stop_agents(monkeypatch: pytest.MonkeyPatch) -> None:
     reader, terminal = os.openpty()
     wall = Wall()
     with open(terminal, "w", encoding="utf-8") as stream:

@@ -1,4 +1,4 @@
-"""Lines and compressed bytes, counted by hand in small sources, and by the rule of the thesis."""
+"""Lines and compressed bytes, checked by hand-made counts of small sources, and by the rule of the thesis."""
 
 import gzip
 from pathlib import Path
@@ -156,7 +156,7 @@ def test_both_sizes_are_those_of_gzip_at_its_highest_level(tmp_path: Path) -> No
     assert counts.gzip_code_bytes == len(gzip.compress(AGENT_CODE.encode(), 9, mtime=0))
 
 
-def test_ends_of_lines_of_other_systems_are_lines_too(tmp_path: Path) -> None:
+def test_line_ends_of_other_systems_are_recognised(tmp_path: Path) -> None:
     file = counted(tmp_path, "water.asl", AGENT.replace("\n", "\r\n"))
     assert (file.lines, file.code) == (9, AGENT_CODE)
     assert file.counts.gzip_bytes == len(gzip.compress(AGENT.replace("\n", "\r\n").encode(), 9, mtime=0))
@@ -205,7 +205,7 @@ def plain_count(text: str) -> tuple[int, int]:
 
 
 @pytest.mark.parametrize("folder", sorted(EXAMPLES.glob("0[1-5]*")), ids=lambda path: str(path.name))
-def test_the_examples_have_as_many_lines_as_a_plain_count_says(folder: Path) -> None:
+def test_the_examples_have_the_number_of_lines_of_a_plain_count(folder: Path) -> None:
     agents = measure([folder])[0].counts(Group.AGENTS)
     text = (folder / "robot.asl").read_text(encoding="utf-8")
     assert (agents.lines, agents.code_lines) == plain_count(text)

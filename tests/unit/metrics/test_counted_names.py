@@ -1,4 +1,4 @@
-"""Identifiers, counted by hand in small sources."""
+"""Identifiers, checked by hand-made counts of small sources."""
 
 import gzip
 from pathlib import Path
@@ -133,7 +133,7 @@ async def run(): pass
 Variables: LIMIT, flow, first, second, others, total, each, file, found, error, head, tail, word."""
 
 
-def test_names_that_python_code_binds_count_once(folder: Path) -> None:
+def test_names_bound_by_python_code_count_once(folder: Path) -> None:
     program = measured(folder, a__asl="!go.\n+!go.\n", artifacts__py=PYTHON)
     functions = {"Pump", "__init__", "made", "run"}
     parameters = {"node", "pipes", "speed", "rest", "angle"}

@@ -59,7 +59,7 @@ def test_a_table_has_a_row_for_each_program_and_a_column_for_each_group() -> Non
     )
 
 
-def test_columns_of_baselines_need_one() -> None:
+def test_columns_of_baselines_appear_only_with_a_baseline() -> None:
     alone = ProgramMetrics("01_alone", {Group.AGENTS: SQUARE.files[Group.AGENTS]})
     assert as_text(measure_table([alone], "names")) == (
         "Identifiers, with beliefs and variables of agents\n"
@@ -68,7 +68,7 @@ def test_columns_of_baselines_need_one() -> None:
     )
 
 
-def test_figures_of_others_stand_beside_ours() -> None:
+def test_external_figures_get_a_column() -> None:
     table = measure_table([SQUARE, PATROL], "code_lines").with_column("thesis | Python", [110, "536"])
     assert as_markdown(table) == (
         "| program | agents | artifacts | total | baseline | projects | worlds | library | baseline library "
@@ -143,7 +143,7 @@ def test_a_chart_has_bars_in_proportion_with_artifacts_on_agents() -> None:
     ]
 
 
-def test_a_chart_escapes_names_and_bears_zeros() -> None:
+def test_a_chart_escapes_names_and_accepts_zeros() -> None:
     svg = bar_chart("<&>", ['a"<b'], [[Series("x & y", (0,))], [Series("z", (3,))]])
     assert texts(svg) == ["<&>", "z", "0", "1", "2", "3", "4", "5", "0", "3", 'a"<b']
     assert bar_chart("none", [], []).count("<rect") == 0

@@ -1,4 +1,4 @@
-"""Which files of a folder are counted, and as what."""
+"""The files of a folder that are counted, and their groups."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -68,7 +68,7 @@ GROUPS = {
 }
 
 
-def test_files_are_grouped_by_what_they_are_for(tmp_path: Path) -> None:
+def test_files_are_grouped_by_role(tmp_path: Path) -> None:
     write(tmp_path, {"beds.yaml": "robots: [{name: mower}]\n"})
     program = measured(tmp_path / "garden", PROGRAM)
     assert grouped(program, tmp_path) == GROUPS
@@ -140,7 +140,7 @@ def test_a_baseline_is_a_file_with_what_it_imports_or_a_folder(tmp_path: Path) -
     assert one.total == measure([tmp_path / "agent"])[0].total, "the total leaves the baseline out"
 
 
-def test_libraries_of_a_baseline_are_counted_apart(tmp_path: Path) -> None:
+def test_libraries_of_a_baseline_are_counted_separately(tmp_path: Path) -> None:
     write(tmp_path, {"agent/a.asl": AGENT, "patrol.py": BASELINE["patrol.py"]})
     (program,) = measure([tmp_path / "agent"], [[tmp_path / "patrol.py"]])
     root = Path(py_trees.__file__).parent
@@ -156,20 +156,20 @@ def test_a_library_that_is_not_installed_is_reported(tmp_path: Path) -> None:
         measure([tmp_path / "agent"], [[tmp_path / "patrol.py"]], libraries=["no_such_library"])
 
 
-def test_there_is_one_baseline_for_each_program(tmp_path: Path) -> None:
+def test_each_program_needs_a_baseline(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="expected 2 baselines, found 1"):
         measure([tmp_path, tmp_path], [[tmp_path]])
 
 
-def test_programs_in_folders_of_one_name_are_called_by_their_paths(tmp_path: Path) -> None:
+def test_programs_in_folders_with_equal_names_are_named_by_path(tmp_path: Path) -> None:
     folders = [tmp_path / "a" / "robot", tmp_path / "b" / "robot", tmp_path / "c"]
     for folder in folders:
         write(folder, {"robot.asl": AGENT})
     assert [each.name for each in measure(folders)] == [str(folders[0]), str(folders[1]), "c"]
 
 
-def test_a_part_is_read_as_its_program_reads_it(tmp_path: Path) -> None:
-    """Alone it has an error: only the project says where the file is that it includes."""
+def test_an_included_file_is_read_in_the_context_of_its_program(tmp_path: Path) -> None:
+    """Alone, the program has an error: only the project knows the folder of its included file."""
     files = {
         "a.jcm": "mas a { agent a asl-path: shared, parts }\n",
         "shared/a.asl": '{ include("b.asl") }\n!go.\n+!go.\n',
@@ -187,7 +187,7 @@ def test_files_that_include_each_other_are_reported(tmp_path: Path) -> None:
     assert [each.code for each in wrong.value.diagnostics] == ["include-circle"] * 2
 
 
-def test_imports_for_type_checkers_are_no_library_code(tmp_path: Path) -> None:
+def test_imports_for_type_checkers_do_not_count_as_library_code(tmp_path: Path) -> None:
     text = (
         "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    import py_trees\nelse:\n    import json\n"
     )

@@ -1,4 +1,4 @@
-"""A world on the memory graph, and goals for its robots, judged by what truly happens."""
+"""A world on the memory graph, and goals for its robots, checked against the ground truth."""
 
 import math
 from collections.abc import Awaitable, Callable
@@ -37,7 +37,7 @@ class Lab:
         return await self.do(f"{robot}/navigate_to_pose", NAVIGATE, pose=pose(x, y, yaw, frame))
 
     async def stands(self, robot: str | None = None) -> None:
-        """Half a second later nothing moves any more."""
+        """Assert that nothing moves half a second later."""
         await self.clock.sleep(0.6)
         before = self.world.robot(robot).pose
         await self.clock.sleep(0.5)

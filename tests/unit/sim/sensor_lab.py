@@ -1,4 +1,4 @@
-"""A laboratory for sensors: what a topic carries while the robot of a world drives."""
+"""A laboratory for sensors: the messages of a topic while the robot of a world drives."""
 
 from typing import Any
 
@@ -10,7 +10,7 @@ from jacaros.sim import SimNode, World
 def heard(
     topic: str, kind: str, seconds: float, speed: float, turn_rate: float = 0.0, world: str = "patrol"
 ) -> tuple[World, list[Any]]:
-    """The messages of a topic while the robot drives."""
+    """Return the messages of a topic while the robot drives."""
     clock, loaded = VirtualClock(), World.load(world)
     messages: list[Any] = []
 

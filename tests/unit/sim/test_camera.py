@@ -1,4 +1,4 @@
-"""The camera of a robot: what its images show, judged by where things are."""
+"""The camera of a robot: its images, checked against the positions of objects."""
 
 import math
 from array import array
@@ -34,11 +34,11 @@ def depth(image: Any, column: int, row: int) -> float:
 
 
 def column_of(x: float, y: float) -> int:
-    """The column in which a robot at the origin sees a point."""
+    """Return the column in which a robot at the origin sees a point."""
     return round(WIDTH / 2 - FOCAL_LENGTH * y / x - 0.5)
 
 
-def test_images_come_five_times_a_second_to_those_who_listen() -> None:
+def test_images_are_published_at_5_hz_with_subscribers() -> None:
     _, images = heard("/camera/image_raw", IMAGE, 2.0, 0.0, world=ROOM)
     assert len(images) == pytest.approx(10, abs=1)
     image = images[0]
@@ -71,13 +71,13 @@ def test_the_depth_image_has_metres_ahead() -> None:
     assert depth(image, 0, HEIGHT - 1) == pytest.approx(floor)
 
 
-def test_where_nothing_is_the_depth_is_infinite() -> None:
+def test_the_depth_of_empty_space_is_infinite() -> None:
     _, images = heard("/camera/depth/image_raw", IMAGE, 0.3, 0.0, world="robots: [{name: robot}]\n")
     assert depth(images[0], 40, 0) == math.inf
     assert depth(images[0], 40, HEIGHT - 1) < 1.0
 
 
-def test_the_middle_of_the_depth_image_is_what_the_laser_measures() -> None:
+def test_the_centre_of_the_depth_image_equals_the_laser_range() -> None:
     text = ROOM.replace("{name: robot}", "{name: robot, pose: {yaw_degrees: 70}}")
     world, images = heard("/camera/depth/image_raw", IMAGE, 0.3, 0.0, world=text)
     for column, beam in ((WIDTH // 2, 180), (0, 210), (WIDTH - 1, 150)):
@@ -99,7 +99,7 @@ people:
     assert depth(images[0], column_of(2.0, 1.0), 10) < 2.0, "a person is taller than the camera"
 
 
-def test_an_opened_door_is_not_seen() -> None:
+def test_an_open_door_is_invisible() -> None:
     text = ROOM.replace("[3, -0.5]]", "[3, -0.5]], open: true")
     _, images = heard("/camera/depth/image_raw", IMAGE, 0.3, 0.0, world=text)
     assert depth(images[0], column_of(3.0, -0.75), HEIGHT // 2) == pytest.approx(4.0)

@@ -1,4 +1,4 @@
-"""Dirt and the tools that remove it: how much, where, of which kind, and what the ground truth says."""
+"""Dirt and the tools that remove it: amounts, places, kinds, and the ground truth."""
 
 import math
 from pathlib import Path
@@ -41,7 +41,7 @@ def left(world: World) -> dict[tuple[str, str], float]:
     return {(field.room, field.kind): field.grams for field in world.cleaning.fields}
 
 
-def test_a_tool_removes_its_rate_of_its_kinds_only() -> None:
+def test_a_tool_removes_only_its_kinds_of_dirt_at_its_rate() -> None:
     flat = world()
     flat.use_tool("a", "vacuum")
     flat.run(0.5)
@@ -62,7 +62,7 @@ def test_dirt_does_not_lie_below_furniture_and_a_standing_robot_cleans_within_it
     assert 30.0 - left(flat)["hall", "dust"] == pytest.approx(2.5 * math.pi * 0.25, rel=0.05)
 
 
-def test_the_nearest_dirt_goes_first() -> None:
+def test_the_nearest_dirt_is_removed_first() -> None:
     flat = world()
     (dust, _, _) = flat.cleaning.fields
     before = dust.near(-1.0, 0.0, 0.5)
@@ -74,7 +74,7 @@ def test_the_nearest_dirt_goes_first() -> None:
     assert max(gone) <= min(kept)
 
 
-def test_a_driving_robot_cleans_its_way() -> None:
+def test_a_driving_robot_cleans_its_path() -> None:
     flat = world()
     flat.use_tool("a", "vacuum")
     flat.run(2.0)
@@ -102,7 +102,7 @@ def test_two_robots_clean_the_same_dirt() -> None:
     assert left(flat)["office", "dust"] == pytest.approx(9.7)
 
 
-def test_what_is_clean_is_exactly_clean_and_is_told_once() -> None:
+def test_a_clean_room_has_exactly_no_dirt_and_one_event() -> None:
     flat = world(**{"reach: 0.5": "reach: 9"})
     flat.use_tool("a", "mop")
     flat.use_tool("a", "vacuum")
@@ -113,7 +113,7 @@ def test_what_is_clean_is_exactly_clean_and_is_told_once() -> None:
     assert flat.ground_truth.dirt["hall", "dust"] == 0.0
 
 
-def test_an_empty_battery_drives_no_tool() -> None:
+def test_an_empty_battery_stops_the_tool() -> None:
     flat = world(**{"pose: {x: -1, y: 0}": "battery: {level: 0}"})
     flat.use_tool("a", "vacuum")
     flat.run(1.0)
@@ -135,7 +135,7 @@ def test_a_task_starts_the_tool_that_it_names() -> None:
     ]
 
 
-def test_a_tool_that_stops_tells_what_is_left_though_it_is_no_whole_percent() -> None:
+def test_a_stopped_tool_records_the_remaining_dirt_below_a_whole_percent() -> None:
     flat = world()
     flat.use_tool("a", "vacuum")
     flat.run(0.1)
@@ -145,7 +145,7 @@ def test_a_tool_that_stops_tells_what_is_left_though_it_is_no_whole_percent() ->
     assert flat.log[1].data["grams"] == left(flat)["hall", "dust"] < 30.0
 
 
-def test_the_ground_truth_and_its_file_end_with_the_dirt_that_is_left(tmp_path: Path) -> None:
+def test_the_ground_truth_has_the_remaining_dirt(tmp_path: Path) -> None:
     flat = world()
     path = tmp_path / "truth.jsonl"
     with GroundTruthFile(path, flat, 0.0):
@@ -169,7 +169,7 @@ def test_equal_runs_clean_equally() -> None:
     assert digest() == digest()
 
 
-def test_cells_are_made_when_a_tool_comes_near() -> None:
+def test_cells_are_created_when_a_tool_comes_near() -> None:
     flat = world()
     flat.run(1.0)
     assert all(field._cells == [] for field in flat.cleaning.fields)
@@ -194,7 +194,7 @@ def test_cells_are_made_when_a_tool_comes_near() -> None:
         ("reach: 0.5", "reach: 0", "'reach' is 0, but must lie between 0.01 and 10"),
     ],
 )
-def test_a_wrong_room_or_tool_says_what_is_wrong(old: str, new: str, message: str) -> None:
+def test_mistakes_in_rooms_and_tools_are_reported(old: str, new: str, message: str) -> None:
     assert old in WORLD
     with pytest.raises(WorldError) as caught:
         read_world(WORLD.replace(old, new, 1))

@@ -1,4 +1,4 @@
-"""Cliffs: robots that drive over one fall, and their sensors see it before."""
+"""Cliffs: robots that drive over one fall, and their sensors detect it before."""
 
 from collections.abc import Awaitable, Callable
 from typing import Any
@@ -44,7 +44,7 @@ async def drive(backend: Backend, clock: VirtualClock, seconds: float, speed: fl
         await clock.sleep(0.1)
 
 
-def test_a_robot_whose_centre_is_over_a_cliff_has_fallen_and_stays_there() -> None:
+def test_a_robot_with_its_centre_over_a_cliff_falls_and_stays_there() -> None:
     world = World.load(STAIRS)
     for _ in range(60):
         world.command("robot", 0.5, 0.0)
@@ -107,7 +107,7 @@ def test_the_sensors_of_a_kobuki_see_the_cliff_and_then_the_wheels_drop() -> Non
     assert [(each.wheel, each.state) for each in drops] == [(0, 1), (1, 1)]
 
 
-def test_a_create_tells_cliffs_and_dropped_wheels_as_hazards() -> None:
+def test_a_create_publishes_cliffs_and_wheel_drops_as_hazards() -> None:
     hazards: list[set[str]] = []
 
     async def body(world: World, backend: Backend, clock: VirtualClock) -> None:
@@ -132,6 +132,6 @@ def test_the_map_keeps_robots_away_from_cliffs() -> None:
     assert grid.clearance_at(0.8, 0.0) == pytest.approx(0.2, abs=0.03)
 
 
-def test_a_robot_must_not_begin_over_a_cliff() -> None:
+def test_a_robot_must_not_start_over_a_cliff() -> None:
     with pytest.raises(WorldError, match=r"the robot 'robot' is at \[1.5, 0\], over a cliff"):
         read_world(STAIRS.replace("x: 0", "x: 1.5"))

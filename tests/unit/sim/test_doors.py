@@ -1,4 +1,4 @@
-"""Doors: walls that come and go, in the world, in the graph, and on the way of a robot."""
+"""Doors in the world, in the graph, and on the path of a robot."""
 
 import math
 from typing import Any
@@ -10,8 +10,8 @@ from jacaros.errors import UsageError
 from jacaros.ros.action import GoalStatus
 from jacaros.ros.qos import QoS
 from jacaros.sim import World, WorldError, read_world
+from jacaros.sim.navigation.laser_perception import LaserPerception
 from jacaros.sim.navigation.placement import Placement
-from jacaros.sim.navigation.sight import Sight
 
 TWO_ROOMS = """
 name: two rooms
@@ -58,11 +58,11 @@ def test_a_closed_door_is_a_wall() -> None:
     assert robot.x == pytest.approx(0.17, abs=0.01), "it is shut in"
     told = [(event.kind, event.data, event.robot) for event in world.log if event.kind.startswith("door")]
     assert told == [("door_opened", {"door": "kitchen"}, ""), ("door_closed", {"door": "kitchen"}, "")]
-    with pytest.raises(UsageError, match="no door 'cellar'"):
+    with pytest.raises(UsageError, match="unknown door 'cellar'"):
         world.move_door("cellar", True)
 
 
-def test_a_door_is_moved_and_told_in_the_graph() -> None:
+def test_a_door_is_moved_and_published_in_the_graph() -> None:
     heard: list[bool] = []
 
     async def body(lab: Lab) -> None:
@@ -86,7 +86,7 @@ def test_a_door_is_moved_and_told_in_the_graph() -> None:
     assert heard == [False, True, False, True]
 
 
-def test_the_way_fails_at_a_closed_door_and_not_when_it_is_open() -> None:
+def test_a_goal_fails_at_a_closed_door_and_succeeds_when_it_is_open() -> None:
     async def body(lab: Lab) -> None:
         failed = await lab.go(1, 0)
         assert (failed.status, failed.result.error_code) == (GoalStatus.ABORTED, 208)
@@ -102,7 +102,7 @@ def test_the_way_fails_at_a_closed_door_and_not_when_it_is_open() -> None:
     assert bumps(in_world(TWO_ROOMS, body).world) == []
 
 
-def test_a_goal_right_behind_a_closed_door_fails_for_the_door() -> None:
+def test_a_goal_just_behind_a_closed_door_fails_because_of_the_door() -> None:
     async def body(lab: Lab) -> None:
         assert (await lab.go(-0.3, 0)).status == GoalStatus.SUCCEEDED
         failed = await lab.go(0.02, 0)
@@ -111,7 +111,7 @@ def test_a_goal_right_behind_a_closed_door_fails_for_the_door() -> None:
     assert bumps(in_world(TWO_ROOMS, body).world) == []
 
 
-def test_a_door_that_is_opened_in_time_is_waited_for() -> None:
+def test_the_robot_waits_for_a_door_that_opens_in_time() -> None:
     async def body(lab: Lab) -> None:
         handle = await lab.send("/navigate_to_pose", NAVIGATE, pose=pose(1, 0))
         await lab.clock.sleep(8.0)
@@ -137,7 +137,7 @@ robots:
 """
 
 
-def test_a_door_that_was_closed_is_gone_round_until_it_is_forgotten_or_seen_open() -> None:
+def test_the_robot_avoids_a_closed_door_until_it_is_forgotten_or_seen_open() -> None:
     async def body(lab: Lab) -> None:
         async def there(x: float, y: float) -> float:
             begin = lab.world.robot().odometer
@@ -161,19 +161,19 @@ def test_a_door_that_was_closed_is_gone_round_until_it_is_forgotten_or_seen_open
     assert bumps(in_world(WAY_ROUND, body).world) == []
 
 
-def test_nobody_sees_through_a_closed_door() -> None:
+def test_a_closed_door_blocks_the_view() -> None:
     text = TWO_ROOMS.replace("docks:", "  - {name: pantry, segment: [[1, -1], [1, 1]], open: true}\ndocks:")
     world = World.load(text)
     world.move_door("pantry", False)
     robot = world.robot()
     here = Placement.at(robot.x, robot.y, robot.yaw)
-    sight = Sight(world, robot)
+    sight = LaserPerception(world, robot)
     assert list(sight.closed_doors(here)) == ["kitchen"]
     world.move_door("kitchen", True)
     assert list(sight.closed_doors(here)) == ["pantry"]
 
 
-def test_the_map_shows_doors_as_ways() -> None:
+def test_the_map_shows_doors_as_free() -> None:
     async def body(lab: Lab) -> None:
         client = lab.backend.client("/map_server/map", "nav_msgs/srv/GetMap")
         found = (await client.call(timeout=5.0)).map
@@ -185,7 +185,7 @@ def test_the_map_shows_doors_as_ways() -> None:
     in_world(TWO_ROOMS, body)
 
 
-def test_wrong_doors_are_told_at_once() -> None:
+def test_all_mistakes_of_doors_are_reported_in_one_pass() -> None:
     text = """
 name: wrong
 doors:

@@ -1,4 +1,4 @@
-"""Fault files: all mistakes at once, each with its place and what to write."""
+"""Fault files: all mistakes in one pass, each with its location and a suggested fix."""
 
 from pathlib import Path
 
@@ -54,24 +54,24 @@ robots:
         ("{kind: dead, topic: /scan, at: -1}", "'at' is -1, but must be at least 0"),
     ],
 )
-def test_a_mistake_is_told_with_its_place(fault: str, message: str) -> None:
+def test_a_mistake_has_a_location(fault: str, message: str) -> None:
     with pytest.raises(WorldError) as told:
         read_faults(f"faults:\n  # one\n  f: {fault}\n", WORLD, "f.yaml")
     assert message in str(told.value)
     assert str(told.value).startswith("f.yaml:3:")
 
 
-def test_a_robot_is_put_into_a_doorway_that_can_be_open_by_then() -> None:
+def test_a_kidnapped_robot_may_be_put_into_a_doorway() -> None:
     (fault,) = read_faults("faults: {f: {kind: kidnapped_robot, robot: one, to: {x: 2, y: 0}}}", WORLD)
     assert fault.pose == (2.0, 0.0, 0.0)
 
 
-def test_topics_are_the_robots_unless_they_begin_with_a_slash() -> None:
+def test_topics_are_relative_to_the_robot_unless_absolute() -> None:
     text = "faults:\n  a: {kind: dead, robot: two, topic: scan}\n  b: {kind: dead, topic: /clock}\n"
     assert [fault.topic for fault in read_faults(text, WORLD)] == ["/two/scan", "/clock"]
 
 
-def test_a_file_is_told_from_others_and_checked_without_a_world(tmp_path: Path) -> None:
+def test_a_fault_file_is_recognised_and_checked_without_a_world(tmp_path: Path) -> None:
     path = tmp_path / "faults.yaml"
     path.write_text("faults:\n  a: {kind: closed_door, door: any}\n  b: {kind: dead}\n", encoding="utf-8")
     assert is_fault_file(path)
@@ -81,6 +81,6 @@ def test_a_file_is_told_from_others_and_checked_without_a_world(tmp_path: Path) 
     assert not is_fault_file(other)
 
 
-def test_a_missing_file_is_told(tmp_path: Path) -> None:
+def test_a_missing_file_is_reported(tmp_path: Path) -> None:
     with pytest.raises(WorldError, match="cannot read the file"):
         load_faults(tmp_path / "none.yaml", WORLD)

@@ -1,4 +1,4 @@
-"""The fingerprint of a world: equal on every Python, with and without numpy; another with another seed."""
+"""The fingerprint of a world: equal on every Python, with and without numpy, and different for another seed."""
 
 import pytest
 

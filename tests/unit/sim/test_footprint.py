@@ -30,20 +30,20 @@ def pushed(pose: Pose, *segments: Segment) -> tuple[float, float, tuple[float, f
 @pytest.mark.parametrize(
     ("yaw", "half"), [(0.0, 0.3), (math.pi / 2, 0.15), (math.pi / 4, (0.3 + 0.15) / math.sqrt(2))]
 )
-def test_it_stands_as_far_from_a_wall_as_its_edge_or_corner_reaches(yaw: float, half: float) -> None:
+def test_a_footprint_keeps_edges_and_corners_out_of_walls(yaw: float, half: float) -> None:
     x, y, towards = pushed(Pose(0.9, 0.0, yaw), WALL)
     assert (x, y) == pytest.approx((1.0 - half, 0.0))
     assert towards == pytest.approx((1.0, 0.0))
 
 
-def test_it_is_not_touched_where_only_its_circle_would_be() -> None:
+def test_only_the_footprint_touches_not_its_circle() -> None:
     beside = Segment(-1.0, 0.2, 1.0, 0.2)
     assert pushed(Pose(0.0, 0.0, 0.0), beside) == (0.0, 0.0, None)
     post = Segment(0.31, 0.2, 0.4, 0.3)
     assert pushed(Pose(0.0, 0.0, 0.0), post) == (0.0, 0.0, None)
 
 
-def test_the_end_of_a_wall_pushes_the_shortest_way() -> None:
+def test_the_end_of_a_wall_pushes_by_the_shortest_way() -> None:
     x, y, towards = pushed(Pose(0.0, 0.0, 0.0), Segment(0.25, 0.0, 2.0, 0.0))
     assert (x, y) == pytest.approx((-0.05, 0.0))
     assert towards == (1.0, 0.0)
@@ -77,7 +77,7 @@ def test_a_place_beside_a_wall_is_checked_by_its_edges() -> None:
         (world(footprint="[0.6, 0]"), "a footprint is from 0.04 to 4 m long and wide"),
     ],
 )
-def test_a_wrong_footprint_is_told(text: str, message: str) -> None:
+def test_an_invalid_footprint_is_reported(text: str, message: str) -> None:
     with pytest.raises(WorldError, match=message):
         read_world(text)
 

@@ -81,7 +81,7 @@ def test_an_object_that_is_too_wide_is_not_taken() -> None:
     with_hand(body)
 
 
-def test_what_is_carried_moves_along_and_is_put_down_before_the_robot() -> None:
+def test_a_carried_object_moves_along_and_is_put_down_in_front() -> None:
     async def body(hand: Hand, backend: Backend) -> None:
         hand.world.objects.by_name.pop("crate")
         await hand.grip(0.0)
@@ -101,7 +101,7 @@ def test_what_is_carried_moves_along_and_is_put_down_before_the_robot() -> None:
     with_hand(body)
 
 
-def test_no_gripper_reaches_through_a_closed_door() -> None:
+def test_grippers_do_not_reach_through_closed_doors() -> None:
     text = TABLE + "doors:\n  - {name: locker, segment: [[0.2, -1], [0.2, 1]]}\n"
 
     async def body(hand: Hand, backend: Backend) -> None:
@@ -133,7 +133,7 @@ objects:
     with_hand(body, text)
 
 
-def test_a_newer_goal_takes_over_and_a_position_that_is_no_number_is_rejected() -> None:
+def test_a_newer_goal_preempts_and_an_invalid_position_is_rejected() -> None:
     async def body(hand: Hand, backend: Backend) -> None:
         first = await hand.client.send({"command": {"position": 0.0}}, None, 5.0)
         await hand.clock.sleep(0.15)
@@ -147,7 +147,7 @@ def test_a_newer_goal_takes_over_and_a_position_that_is_no_number_is_rejected() 
     with_hand(body)
 
 
-def test_a_robot_without_a_gripper_offers_none() -> None:
+def test_a_robot_without_a_gripper_has_no_gripper_action() -> None:
     async def body(hand: Hand, backend: Backend) -> None:
         assert not any("gripper" in name for name in (await backend.contents()).actions)
 
@@ -155,6 +155,6 @@ def test_a_robot_without_a_gripper_offers_none() -> None:
 
 
 def test_two_objects_must_differ_in_name() -> None:
-    with pytest.raises(WorldError, match="there is an object 'cup' already"):
+    with pytest.raises(WorldError, match="duplicate object 'cup'"):
         read_world(TABLE.replace("name: far", "name: cup"))
     assert read_world(TABLE.replace("gripper: true", "gripper: {reach: 0.5}")).robots[0].gripper_reach == 0.5

@@ -3,7 +3,7 @@
 from jacaros.sim import World
 
 
-def test_only_the_newest_part_of_a_long_path_is_kept_when_asked_for() -> None:
+def test_a_limited_ground_truth_keeps_the_newest_part_of_a_path() -> None:
     world = World.load("empty")
     world.ground_truth.keep = 50
     heard: list[object] = []

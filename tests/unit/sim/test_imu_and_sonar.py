@@ -1,4 +1,4 @@
-"""The IMU and the sonar of a robot: what they measure, and that they cost nothing while nobody listens."""
+"""The IMU and the sonar of a robot: what they measure, and that they cost nothing without subscribers."""
 
 import math
 import random
@@ -11,7 +11,7 @@ from jacaros.sim.robot.sensors.laser_plain import Circle
 from jacaros.sim.robot.sensors.sonar import FIELD, echo
 
 
-def test_the_imu_measures_turning_and_what_a_curve_costs() -> None:
+def test_the_imu_measures_rotation_and_centripetal_acceleration() -> None:
     world, messages = heard("/imu", "sensor_msgs/msg/Imu", 2.0, 0.3, 0.5)
     assert len(messages) == pytest.approx(40, abs=1)
     last = messages[-1]
@@ -24,7 +24,7 @@ def test_the_imu_measures_turning_and_what_a_curve_costs() -> None:
     )
 
 
-def test_the_imu_measures_how_the_robot_gets_faster() -> None:
+def test_the_imu_measures_acceleration() -> None:
     _, messages = heard("/imu", "sensor_msgs/msg/Imu", 1.0, 0.4)
     ahead = [message.linear_acceleration.x for message in messages]
     assert ahead[0] == 0.0, "there is no message before the first"
@@ -43,14 +43,14 @@ def test_the_sonar_measures_the_wall_ahead_but_not_beyond_its_range() -> None:
     assert {message.range for message in silent} == {math.inf}
 
 
-def test_the_sonar_hears_another_robot() -> None:
+def test_the_sonar_detects_another_robot() -> None:
     text = "robots:\n  - {name: a}\n  - {name: b, namespace: b, pose: {x: 1.5}}\n"
     _, messages = heard("/sonar", "sensor_msgs/msg/Range", 0.5, 0.0, world=text)
     assert messages[0].range == pytest.approx(1.5 - 0.17)
 
 
 def by_many_rays(segments: list[Segment], circles: list[Circle]) -> float:
-    """The nearest hit of many rays of the cone, from the origin along x."""
+    """Return the nearest hit of many rays of the cone, from the origin along x."""
     nearest = math.inf
     for number in range(2001):
         angle = FIELD * (number / 2000 - 0.5)

@@ -87,7 +87,7 @@ def switchable_processor_paths() -> list[str]:
     return [name for name in numpy_core.__cpu_dispatch__ if features.get(name)]
 
 
-def test_a_wall_ahead_is_seen_by_the_middle_beam() -> None:
+def test_the_middle_beam_hits_a_wall_ahead() -> None:
     laser = Laser(LaserSettings(beams_per_turn=360), [Segment(2.0, -1.0, 2.0, 1.0)], "seed")
     ranges = laser.scan(0.0, 0.0, 0.0)
     assert ranges[180] == pytest.approx(2.0)
@@ -96,7 +96,7 @@ def test_a_wall_ahead_is_seen_by_the_middle_beam() -> None:
     assert ranges[0] == math.inf
 
 
-def test_a_field_of_view_is_cut_out_around_the_heading() -> None:
+def test_the_field_of_view_is_centred_on_the_heading() -> None:
     beams = Beams(LaserSettings(beams_per_turn=360, field=PI))
     assert beams.last - beams.first == 181
     assert beams.angle_min == pytest.approx(-PI / 2)
@@ -126,7 +126,7 @@ def test_noise_is_bounded_and_repeats_with_the_seed() -> None:
         assert noisy == true == math.inf or abs(noisy - true) <= 0.02
 
 
-def test_nothing_is_seen_beyond_the_reach() -> None:
+def test_nothing_is_detected_out_of_range() -> None:
     laser = Laser(LaserSettings(range_max=1.5), [Segment(2.0, -1.0, 2.0, 1.0)], "seed")
     assert set(laser.scan(0.0, 0.0, 0.0)) == {math.inf}
 

@@ -1,4 +1,4 @@
-"""Maps of map_server as worlds, and worlds as such maps."""
+"""Maps of map_server as worlds, and worlds as maps."""
 
 import itertools
 import math
@@ -54,7 +54,7 @@ def test_the_boundary_of_occupied_cells_is_walls_and_the_cells_are_boxes(tmp_pat
     assert [tuple(box) for box in found.boxes()] == [(-0.5, -1.5, 0, -1), (-0.5, -1, 0.5, -0.5)]
 
 
-def test_boxes_cover_each_occupied_cell_once_and_walls_part_cells_of_two_kinds(tmp_path: Path) -> None:
+def test_boxes_cover_each_occupied_cell_once_and_walls_separate_kinds_of_cells(tmp_path: Path) -> None:
     draw = random.Random("map")
     for _ in range(20):
         width, height = draw.randint(1, 12), draw.randint(1, 12)
@@ -88,7 +88,7 @@ def test_boxes_cover_each_occupied_cell_once_and_walls_part_cells_of_two_kinds(t
         ("mode: raw\n", {100, 90}),
     ],
 )
-def test_shades_mean_what_they_mean_to_a_map_server(tmp_path: Path, line: str, occupied: set[int]) -> None:
+def test_shades_have_the_meaning_of_map_server(tmp_path: Path, line: str, occupied: set[int]) -> None:
     pixels = (
         bytes([0, 50, 205, 254, 255, 220, 100, 90]) if "raw" in line else bytes([0, 50, 205, 254, 255, 220])
     )
@@ -143,7 +143,7 @@ def test_images_with_comments_few_shades_and_in_text_are_read(tmp_path: Path) ->
         (YAML, b"", [(1, "found something else")]),
     ],
 )
-def test_all_that_is_wrong_with_a_map_is_reported_with_its_line(
+def test_all_mistakes_in_a_map_are_reported_with_their_lines(
     tmp_path: Path, text: str, image: list[str] | bytes, wrong: list[tuple[int, str]]
 ) -> None:
     path = write_map(tmp_path, image, text)
@@ -170,7 +170,7 @@ def test_a_png_image_is_read_with_pillow(tmp_path: Path) -> None:
         read_image(path)
 
 
-def test_a_map_alone_is_a_world_with_a_robot_where_it_is_free(tmp_path: Path) -> None:
+def test_a_map_is_a_world_with_a_robot_at_a_free_place(tmp_path: Path) -> None:
     path = write_map(tmp_path)
     assert is_world(path)
     world = World.load(path)
@@ -183,7 +183,7 @@ def test_a_map_alone_is_a_world_with_a_robot_where_it_is_free(tmp_path: Path) ->
         World.load(path)
 
 
-def test_a_world_file_builds_upon_a_map(tmp_path: Path) -> None:
+def test_a_world_file_can_use_a_map(tmp_path: Path) -> None:
     write_map(tmp_path)
     text = "map: m.yaml\nwalls:\n  - segment: [[0, 0], [1, 0]]\nrobots:\n  - pose: {x: 0, y: -1}\n"
     path = tmp_path / "office.yaml"
@@ -199,7 +199,7 @@ def test_a_world_file_builds_upon_a_map(tmp_path: Path) -> None:
     assert load_world(str(path)).bounds == (-1, -1, 1, 1)
 
 
-def test_mistakes_of_a_map_are_reported_in_the_world_file_too(tmp_path: Path) -> None:
+def test_mistakes_in_a_map_are_also_reported_in_the_world_file(tmp_path: Path) -> None:
     made = write_map(tmp_path, b"P5 9 9 255 ", YAML.replace("0.5", "-1"))
     path = tmp_path / "office.yaml"
     path.write_text("name: x\nmap: m.yaml\nrobots:\n  - {name: 1}\n")
@@ -218,7 +218,7 @@ def test_mistakes_of_a_map_are_reported_in_the_world_file_too(tmp_path: Path) ->
 
 
 @pytest.mark.parametrize("name", ["house", "two_robots"])
-def test_a_world_comes_back_from_its_map(tmp_path: Path, name: str) -> None:
+def test_a_world_survives_conversion_to_a_map(tmp_path: Path, name: str) -> None:
     world = load_world(name)
     text, image = map_of_world(world, "m.pgm")
     again = loaded(write_map(tmp_path, image, text))

@@ -1,4 +1,4 @@
-"""Where robots are and goals lie: the frames of the tf tree, and a pose that the robot is told."""
+"""Where robots are and goals lie: the frames of the tf tree, and a pose set from outside."""
 
 import math
 from typing import Any
@@ -92,7 +92,7 @@ def tell_pose(
         (2.0, 0.0, 0.0, "map", -1.0, False),
     ],
 )
-def test_a_pose_that_the_robot_is_told_is_believed(
+def test_a_received_pose_sets_the_estimate(
     x: float, y: float, yaw: float, frame: str, spread: float, lost: bool
 ) -> None:
     async def body(lab: Lab) -> None:
@@ -106,7 +106,7 @@ def test_a_pose_that_the_robot_is_told_is_believed(
     in_world("empty", body)
 
 
-def test_a_robot_that_is_lost_goes_wrong_until_it_is_told_better() -> None:
+def test_a_lost_robot_drives_wrong_until_it_receives_its_pose() -> None:
     async def body(lab: Lab) -> None:
         tell_pose(lab, 1, 0)
         assert (await lab.go(2, 0)).status == GoalStatus.SUCCEEDED
@@ -137,7 +137,7 @@ def believed(message: Any) -> tuple[float, float, float, float]:
     return (round(place.x, 3), round(place.y, 3), round(covariance[0], 6), round(covariance[35], 6))
 
 
-def test_the_pose_of_the_localisation_is_latched_and_told_again_after_25_cm_or_11_degrees() -> None:
+def test_the_estimated_pose_is_latched_and_published_after_25_cm_or_11_degrees() -> None:
     async def body(lab: Lab) -> None:
         first = heard(lab)
         await lab.clock.sleep(3.0)
@@ -166,7 +166,7 @@ def test_the_pose_of_the_localisation_is_latched_and_told_again_after_25_cm_or_1
     in_world("empty", body)
 
 
-def test_a_pose_that_it_was_told_is_told_with_its_covariance_until_it_is_found() -> None:
+def test_a_received_pose_keeps_its_covariance_until_it_is_corrected() -> None:
     async def body(lab: Lab) -> None:
         messages = heard(lab)
         await lab.clock.sleep(0.2)
@@ -184,7 +184,7 @@ def test_a_pose_that_it_was_told_is_told_with_its_covariance_until_it_is_found()
     in_world("empty", body)
 
 
-def test_the_pose_of_a_robot_with_a_name_is_below_it() -> None:
+def test_the_pose_of_a_robot_is_in_its_namespace() -> None:
     async def body(lab: Lab) -> None:
         name = lab.world.description.robots[0].namespace
         messages = heard(lab, f"/{name}/amcl_pose")

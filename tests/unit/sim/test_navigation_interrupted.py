@@ -1,4 +1,4 @@
-"""Goals that do not have their way: cancelled, taken over, without power, and with robots in the way."""
+"""Interrupted goals: cancelled, preempted, without power, and with robots in the way."""
 
 import asyncio
 from typing import Any
@@ -22,7 +22,7 @@ def test_cancelling_stops_the_robot() -> None:
     in_world("house", body)
 
 
-def test_a_newer_goal_takes_over_also_from_another_action() -> None:
+def test_a_newer_goal_preempts_goals_of_other_actions_too() -> None:
     async def body(lab: Lab) -> None:
         first = await lab.send("/navigate_to_pose", NAVIGATE, pose=pose(2, 2))
         await lab.clock.sleep(2.0)
@@ -41,13 +41,13 @@ def test_a_newer_goal_takes_over_also_from_another_action() -> None:
 
 
 async def occupied(lab: Lab, name: str, type_name: str, **fields: Any) -> None:
-    """Send a goal that is accepted and aborted, because another navigator is at work."""
+    """Send a goal that is accepted and aborted, because another navigator is running."""
     outcome = await lab.do(name, type_name, **fields)
     assert outcome.status == GoalStatus.ABORTED
-    assert "is at work; cancel that goal first" in outcome.text
+    assert "is running; cancel that goal first" in outcome.text
 
 
-def test_a_goal_that_is_cancelled_just_before_the_next_one_comes_ends_as_aborted() -> None:
+def test_a_goal_cancelled_just_before_the_next_one_ends_as_aborted() -> None:
     async def body(lab: Lab) -> None:
         first = await lab.send("/navigate_to_pose", NAVIGATE, pose=pose(2, 2))
         await lab.clock.sleep(1.0)
@@ -62,7 +62,7 @@ def test_a_goal_that_is_cancelled_just_before_the_next_one_comes_ends_as_aborted
     in_world("house", body)
 
 
-def test_nav2s_two_navigators_do_not_take_over_from_each_other() -> None:
+def test_nav2s_two_navigators_do_not_preempt_each_other() -> None:
     async def body(lab: Lab) -> None:
         through = "nav2_msgs/action/NavigateThroughPoses"
         first = await lab.send("/navigate_to_pose", NAVIGATE, pose=pose(2, 2))
@@ -83,7 +83,7 @@ def test_nav2s_two_navigators_do_not_take_over_from_each_other() -> None:
     in_world("house", body)
 
 
-def test_a_goal_that_comes_while_the_robot_docks_takes_over() -> None:
+def test_a_goal_preempts_docking() -> None:
     async def body(lab: Lab) -> None:
         for wait in (1.0, 5.5):  # on the way to the dock, and close before it
             docking = await lab.send("/dock_robot", "nav2_msgs/action/DockRobot", dock_id="dock")
@@ -142,7 +142,7 @@ def test_a_robot_that_never_moves_blocks_a_corridor() -> None:
     assert bumps(in_world(PARKED, body).world) == []
 
 
-def test_a_robot_that_goes_away_in_time_is_waited_for() -> None:
+def test_the_robot_waits_for_a_robot_that_leaves_in_time() -> None:
     async def body(lab: Lab) -> None:
         first = await lab.send("/one/navigate_to_pose", NAVIGATE, pose=pose(1.4, 0))
         await lab.clock.sleep(8.0)
@@ -187,8 +187,8 @@ robots:
 @pytest.mark.parametrize(
     "x", [pytest.param(-1.6, id="closed from the beginning"), pytest.param(1.5, id="seen on the way")]
 )
-def test_a_detour_is_left_when_those_who_stood_there_have_gone(x: float, they_go: bool) -> None:
-    """Between the racks it is 6.4 metres to the goal, round them 8.9 or, for who turns back, 12."""
+def test_a_detour_is_abandoned_when_the_obstacles_have_gone(x: float, they_go: bool) -> None:
+    """Between the racks it is 6.4 metres to the goal, around them 8.9, or 12 after turning back."""
 
     async def body(lab: Lab) -> None:
         first = await lab.send("/one/navigate_to_pose", NAVIGATE, pose=pose(3.2, 0))

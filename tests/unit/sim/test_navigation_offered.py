@@ -1,4 +1,4 @@
-"""What a robot that drives by itself offers to the graph: the map and its servers, unless switched off."""
+"""The map and the servers of a navigating robot, unless they are disabled."""
 
 import math
 from typing import Any
@@ -13,7 +13,7 @@ from jacaros.ros.qos import QoS
 from jacaros.sim import SimNode, World
 
 
-def test_the_map_comes_latched_and_by_service() -> None:
+def test_the_map_is_available_latched_and_as_a_service() -> None:
     async def body(lab: Lab) -> None:
         maps: list[Any] = []
         latched = QoS(durability="transient_local", depth=1)
@@ -49,7 +49,7 @@ def test_navigation_can_be_switched_off() -> None:
     in_world("name: w\nrobots: [{name: r, navigation: false}]\n", body)
 
 
-def test_types_that_are_not_known_are_left_out_and_told(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_unknown_types_are_skipped_with_a_warning(monkeypatch: pytest.MonkeyPatch) -> None:
     clock = VirtualClock()
     told = []
 

@@ -1,4 +1,4 @@
-"""Robots that drive among people: round them, or waiting for them."""
+"""Robots among people: they drive around them or wait."""
 
 from navigation_lab import NAVIGATE, Lab, bumps, in_world, near, pose
 
@@ -43,7 +43,7 @@ def test_a_person_in_a_corridor_blocks_the_way() -> None:
     in_world(CORRIDOR, body)
 
 
-def test_a_robot_goes_on_when_the_person_has_gone() -> None:
+def test_a_robot_continues_when_the_person_has_gone() -> None:
     async def body(lab: Lab) -> None:
         handle = await lab.send("/navigate_to_pose", NAVIGATE, pose=pose(2, 0))
         await lab.clock.sleep(10.0)

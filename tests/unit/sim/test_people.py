@@ -1,4 +1,4 @@
-"""People who walk through a world: their ways, what they stop for, and what robots notice of them."""
+"""People who walk through a world: their paths, what stops them, and how robots perceive them."""
 
 import math
 
@@ -49,7 +49,7 @@ def test_a_person_walks_to_the_end_of_its_path_and_stays_there() -> None:
     ]
 
 
-def test_a_loop_has_no_end_and_pauses_at_each_point() -> None:
+def test_a_loop_never_ends_and_pauses_at_each_point() -> None:
     flat = world("{name: ann, path: [[-2, 2], [2, 2], [2, 1]], speed: 2, pause: 1, loop: true}")
     flat.run(2.5)
     assert place(flat) == (2.0, 2.0)
@@ -66,7 +66,7 @@ def test_a_loop_has_no_end_and_pauses_at_each_point() -> None:
     ]
 
 
-def test_a_careful_person_stops_before_a_robot_and_goes_on_when_it_has_left() -> None:
+def test_a_careful_person_stops_before_a_robot_and_continues_when_it_leaves() -> None:
     flat = world("{name: ann, path: [[-2, 0], [2, 0]]}")
     flat.run(5.0)
     gap = -flat.people["ann"].x - 0.17 - 0.25
@@ -79,7 +79,7 @@ def test_a_careful_person_stops_before_a_robot_and_goes_on_when_it_has_left() ->
     assert place(flat) == (2.0, 0.0)
 
 
-def test_a_robot_beside_the_way_or_behind_stops_nobody() -> None:
+def test_a_robot_beside_or_behind_does_not_stop_people() -> None:
     flat = world("{name: ann, path: [[-2, 0.5], [2, 0.5]]}")
     flat.run(4.5)
     assert place(flat) == (2.0, 0.5)
@@ -99,7 +99,7 @@ def test_a_careless_person_runs_into_a_robot_but_not_through_it() -> None:
     assert robot.touching == {"ann"}
 
 
-def test_a_robot_that_drives_into_a_person_is_held() -> None:
+def test_a_person_blocks_a_robot() -> None:
     flat = world("{name: ann, path: [[1, 0]]}")
     for _ in range(50):
         flat.command("a", 0.5, 0.0)
@@ -133,7 +133,7 @@ def test_lasers_see_people_as_circles() -> None:
     assert flat.scan("a")[180] == pytest.approx(5.0)
 
 
-def test_people_come_and_go_at_run_time() -> None:
+def test_people_can_be_added_and_removed_at_run_time() -> None:
     flat = World.load("empty")
     assert flat.people == {}
     flat.run(1.0)
@@ -150,13 +150,13 @@ def test_people_come_and_go_at_run_time() -> None:
     )
 
 
-def test_a_person_comes_neither_twice_nor_onto_a_robot() -> None:
+def test_a_person_cannot_be_added_twice_or_onto_a_robot() -> None:
     flat = world()
-    with pytest.raises(UsageError, match="there is a person 'ann' already"):
+    with pytest.raises(UsageError, match="duplicate name of a person: 'ann'"):
         flat.add_person(PersonDescription("ann", ((1.0, 1.0),)))
-    with pytest.raises(UsageError, match="there is a robot 'a' already"):
+    with pytest.raises(UsageError, match="the name 'a' belongs to a robot"):
         flat.add_person(PersonDescription("a", ((1.0, 1.0),)))
-    with pytest.raises(UsageError, match="a stands where 'bob' is to come"):
+    with pytest.raises(UsageError, match="no room for 'bob': a is in the way"):
         flat.add_person(PersonDescription("bob", ((0.3, 0.0),)))
     with pytest.raises(UsageError, match="unknown person 'bob'; people: ann"):
         flat.remove_person("bob")
@@ -182,13 +182,13 @@ def test_equal_runs_are_equal() -> None:
         ("{name: ann, path: [[1, 1]], speed: 0}", "'speed' is 0, but must lie between 0.01 and 5"),
         ("{name: ann, path: [[1, 1]], careles: true}", "did you mean 'careless'?"),
         ("{name: ann, path: [[1, 1]], color: sky}", "'sky' is not a colour"),
-        ("{name: a, path: [[1, 1]]}", "the name 'a' is taken"),
-        ("{name: ann, path: [[0.3, 0]]}", "'ann' begins where the robot 'a' stands"),
+        ("{name: a, path: [[1, 1]]}", "duplicate name 'a'"),
+        ("{name: ann, path: [[0.3, 0]]}", "'ann' starts at the place of the robot 'a'"),
         ("{name: ann, path: [[1, 1], [1, 9]]}", "the path of 'ann' from [1, 1] to [1, 9] leaves the world"),
-        ("{name: ann, path: [[1, 1], [4.8, 1]]}", "is nearer to a wall than the radius of 0.25 m"),
+        ("{name: ann, path: [[1, 1], [4.8, 1]]}", "passes a wall at less than the radius of 0.25 m"),
     ],
 )
-def test_a_wrong_person_says_what_is_wrong(ann: str, message: str) -> None:
+def test_mistakes_in_people_are_reported(ann: str, message: str) -> None:
     with pytest.raises(WorldError) as caught:
         read_world(WORLD.replace(ANN, ann))
     assert message in str(caught.value)
@@ -197,11 +197,11 @@ def test_a_wrong_person_says_what_is_wrong(ann: str, message: str) -> None:
 def test_a_path_through_a_thin_wall_is_found() -> None:
     text = "walls: [{segment: [[0, -1], [0, 1]]}]\nrobots: [{pose: {x: 2}}]\n"
     text += "people: [{name: ann, path: [[-1, 0], [1, 0]]}]"
-    with pytest.raises(WorldError, match="nearer to a wall"):
+    with pytest.raises(WorldError, match="passes a wall"):
         read_world(text)
 
 
-def test_a_closed_door_on_a_path_is_no_mistake() -> None:
+def test_a_path_through_a_closed_door_is_valid() -> None:
     read_world(
         WORLD.replace("open: true", "open: false").replace(ANN, "{name: ann, path: [[3, 0], [4.7, 0]]}")
     )

@@ -1,4 +1,4 @@
-"""Changes of a running world: robots that are put elsewhere, obstacles, batteries."""
+"""Changes of a running world: moved robots, obstacles, batteries."""
 
 import math
 
@@ -25,7 +25,7 @@ def world() -> World:
     return World.load(LAB, seed=1)
 
 
-def test_a_robot_is_put_elsewhere_and_the_ground_truth_knows(world: World) -> None:
+def test_a_robot_is_put_down_elsewhere_and_the_ground_truth_records_it(world: World) -> None:
     world.command("one", 0.5, 0.0)
     world.run(0.2)
     world.place("one", 2.0, 0.0, math.pi)
@@ -50,14 +50,14 @@ def test_a_robot_keeps_its_heading_unless_another_is_given(world: World) -> None
         ((-1.0, -1.8), "two is in the way"),
     ],
 )
-def test_places_without_room_are_refused(world: World, place: tuple[float, float], why: str) -> None:
+def test_places_without_room_are_rejected(world: World, place: tuple[float, float], why: str) -> None:
     with pytest.raises(UsageError, match=why):
         world.place("one", *place)
     assert (world.robot("one").x, world.robot("one").y) == (-1.0, 0.0)
     assert not world.ground_truth.events_of("placed")
 
 
-def test_a_robot_may_be_put_where_it_stands(world: World) -> None:
+def test_a_robot_may_be_put_at_its_own_place(world: World) -> None:
     world.place("one", -1.0, 0.05)
     assert world.robot("one").y == 0.05
 
@@ -77,7 +77,7 @@ def test_an_obstacle_stops_a_robot_and_is_seen_by_its_laser(world: World) -> Non
     assert world.ground_truth.events_of("collision", robot="one")[0].data["with"] == obstacle.name
 
 
-def test_an_obstacle_that_is_gone_stops_nobody(world: World) -> None:
+def test_a_removed_obstacle_does_not_block(world: World) -> None:
     obstacle = world.add_obstacle(0.5, 0.0, 0.2)
     world.remove_obstacle(obstacle.name)
     for _ in range(300):
@@ -91,18 +91,18 @@ def test_an_obstacle_that_is_gone_stops_nobody(world: World) -> None:
         world.remove_obstacle(obstacle.name)
 
 
-def test_obstacles_have_names_of_their_own(world: World) -> None:
+def test_obstacles_have_unique_names(world: World) -> None:
     names = [world.add_obstacle(x, 0.0, 0.1).name for x in (0.0, 1.0, 2.0)]
     assert names == ["obstacle_1", "obstacle_2", "obstacle_3"]
 
 
 @pytest.mark.parametrize("radius", [0.0, -1.0, 2.5, math.nan])
-def test_an_obstacle_has_a_sensible_size(world: World, radius: float) -> None:
+def test_the_size_of_an_obstacle_is_limited(world: World, radius: float) -> None:
     with pytest.raises(UsageError, match=r"0\.02 to 2 metres"):
         world.add_obstacle(0.0, 0.0, radius)
 
 
-def test_a_battery_is_set(world: World) -> None:
+def test_a_battery_level_can_be_set(world: World) -> None:
     world.set_battery("one", 7.5)
     assert world.robot("one").battery.level == 7.5
     assert world.ground_truth.events_of("battery_set", robot="one")[0].data == {"level": 7.5}
@@ -112,7 +112,7 @@ def test_a_battery_is_set(world: World) -> None:
         world.set_battery("one", 101.0)
 
 
-def test_a_world_without_changes_is_as_before(world: World) -> None:
+def test_an_unchanged_world_behaves_as_before(world: World) -> None:
     """The same description, seed and commands give the same run, whether or not obstacles came and went."""
     other = World.load(LAB, seed=1)
     gone = other.add_obstacle(2.0, -2.0, 0.1)

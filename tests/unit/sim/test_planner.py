@@ -1,4 +1,4 @@
-"""Planning: against a search without any cleverness, against the walls, and the reasons when there is no way."""
+"""Planning: checked against a simple search and against the walls; reasons when there is no path."""
 
 import heapq
 import itertools
@@ -29,7 +29,7 @@ SHIPPED = ["empty", "house", "patrol", "two_robots"]
 
 
 def from_wall(x: float, y: float, walls: Sequence[Segment]) -> float:
-    """Distance to the nearest wall, all of them tried."""
+    """Return the distance to the nearest wall, by trying all of them."""
     nearest = math.inf
     for ax, ay, bx, by in walls:
         dx, dy = bx - ax, by - ay
@@ -39,7 +39,7 @@ def from_wall(x: float, y: float, walls: Sequence[Segment]) -> float:
 
 
 def dijkstra(weights: Sequence[float], width: int, start: int, goal: int) -> float:
-    """What the cheapest way costs, found without an estimate of what is left; infinite when there is none."""
+    """Return the cost of the cheapest path, found without an estimate of the rest; infinite without a path."""
     costs, waiting = {start: 0.0}, [(0.0, start)]
     while waiting:
         cost, cell = heapq.heappop(waiting)
@@ -119,7 +119,7 @@ def test_a_large_world_gets_larger_cells() -> None:
 
 
 @pytest.mark.parametrize("name", SHIPPED)
-def test_ways_keep_clear_of_walls_and_end_at_the_goal(name: str) -> None:
+def test_paths_keep_clear_of_walls_and_end_at_the_goal(name: str) -> None:
     world = World.load(name).description
     planner, draw, found = Planner(Grid(world), RADIUS), random.Random(name), 0
     bounds = world.bounds
@@ -145,7 +145,7 @@ def test_an_open_floor_is_crossed_straight() -> None:
     assert planner.plan((-2.0, -1.0), (1.5, 2.0)) == [(-2.0, -1.0), (1.5, 2.0)]
 
 
-def test_the_way_goes_round_an_obstacle_that_is_not_on_the_map() -> None:
+def test_the_path_avoids_an_obstacle_that_is_not_on_the_map() -> None:
     planner = Planner(Grid(World.load("empty").description), RADIUS)
     points = planner.plan((-2.0, 0.0), (2.0, 0.0), [(0.0, 0.05, 0.3)])
     route = Route(points)
@@ -175,7 +175,7 @@ def test_each_reason_has_nav2s_code() -> None:
     assert "(5.00, 0.00)" in str(no_way((0, -1), (5, 0)))
 
 
-def test_a_robot_at_a_wall_gets_away_from_it() -> None:
+def test_a_robot_at_a_wall_can_leave_it() -> None:
     bounds = Rectangle(-2.0, -2.0, 2.0, 2.0)
     planner = Planner(Grid(WorldDescription(bounds=bounds, segments=tuple(bounds.edges()))), RADIUS)
     points = planner.plan((-2.0 + RADIUS, 0.0), (1.0, 0.0))

@@ -1,4 +1,4 @@
-"""The large worlds that come with the package: robots get everywhere in them, and touch nothing."""
+"""The large shipped worlds: robots reach every place in them, and touch nothing."""
 
 import asyncio
 import math
@@ -12,7 +12,7 @@ from jacaros.sim.navigation.grid import Grid
 from jacaros.sim.navigation.planner import Planner
 
 WORLDS = {"flat": 8, "office": 12, "warehouse": 27, "maze": 3}
-"""The worlds, and how many places they have: rooms and docks."""
+"""The worlds, with the number of their rooms and docks."""
 
 
 @pytest.mark.parametrize(("name", "places"), WORLDS.items())

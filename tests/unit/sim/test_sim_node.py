@@ -1,4 +1,4 @@
-"""The world as a ROS node: topics, rates, commands, several robots, and the process of its own."""
+"""The world as a ROS node: topics, rates, commands, several robots, and the separate process."""
 
 import json
 import math
@@ -23,7 +23,7 @@ TWIST = "geometry_msgs/msg/Twist"
 
 
 class Run:
-    """A world on the memory backend and a virtual clock, with what was received."""
+    """A world on the memory backend and a virtual clock, with the received messages."""
 
     def __init__(self, world: World, backend: Backend, clock: VirtualClock) -> None:
         self.world, self.backend, self.clock = world, backend, clock
@@ -65,7 +65,7 @@ def in_world(name: str, body: Callable[[Run], Awaitable[None]]) -> Run:
     return runs[0]
 
 
-def test_odometry_comes_twenty_times_a_second_with_pose_and_twist() -> None:
+def test_odometry_is_published_at_20_hz_with_pose_and_twist() -> None:
     async def body(run: Run) -> None:
         run.listen("/odom", "nav_msgs/msg/Odometry")
         await run.drive(2.0, 0.3, 0.5)
@@ -99,7 +99,7 @@ def test_the_robot_obeys_all_command_topics(topic: str) -> None:
     assert done.world.ground_truth.pose().x == pytest.approx(0.2 * 3.0, abs=0.04)
 
 
-def test_the_last_writer_wins() -> None:
+def test_the_last_command_wins() -> None:
     async def body(run: Run) -> None:
         await run.drive(1.0, 0.2)
         await run.drive(1.0, -0.3, topic="/cmd_vel_mux/input/navi")
@@ -107,7 +107,7 @@ def test_the_last_writer_wins() -> None:
     assert in_world("empty", body).world.robot().speed == pytest.approx(-0.3)
 
 
-def test_a_command_counts_from_its_moment_though_the_world_is_stepped_later() -> None:
+def test_a_command_takes_effect_at_its_time_although_the_world_is_stepped_later() -> None:
     async def body(run: Run) -> None:
         await run.clock.sleep(0.071)
         publisher = run.backend.publisher("/cmd_vel", TWIST)
@@ -118,7 +118,7 @@ def test_a_command_counts_from_its_moment_though_the_world_is_stepped_later() ->
     assert event.time == pytest.approx(0.06 + 0.52)
 
 
-def test_stepping_late_gives_the_same_run_as_stepping_at_once() -> None:
+def test_late_steps_give_the_same_run() -> None:
     done = in_world("patrol", lambda run: run.drive(4.0, 0.3, 0.4))
     direct = World.load("patrol")
     for _ in range(40):
@@ -127,7 +127,7 @@ def test_stepping_late_gives_the_same_run_as_stepping_at_once() -> None:
     assert done.world.ground_truth.digest() == direct.ground_truth.digest()
 
 
-def test_the_battery_comes_every_second_and_when_charging_changes() -> None:
+def test_the_battery_is_published_every_second_and_when_charging_changes() -> None:
     async def body(run: Run) -> None:
         run.world.robot().battery.level = 50.0
         run.listen("/battery_state", "sensor_msgs/msg/BatteryState")
@@ -144,7 +144,7 @@ def test_the_battery_comes_every_second_and_when_charging_changes() -> None:
     assert done.received[-1].percentage == 1.0
 
 
-def test_the_laser_is_computed_only_for_those_who_listen() -> None:
+def test_the_laser_is_computed_only_with_subscribers() -> None:
     async def quiet(run: Run) -> None:
         await run.clock.sleep(1.0)
 
@@ -162,7 +162,7 @@ def test_the_laser_is_computed_only_for_those_who_listen() -> None:
     assert scan.angle_min + 180 * scan.angle_increment == pytest.approx(0.0)
 
 
-def test_transforms_come_only_for_those_who_listen() -> None:
+def test_transforms_are_published_only_with_subscribers() -> None:
     async def body(run: Run) -> None:
         run.listen("/tf", "tf2_msgs/msg/TFMessage")
         await run.clock.sleep(1.0)
@@ -173,7 +173,7 @@ def test_transforms_come_only_for_those_who_listen() -> None:
     assert frames == [("odom", "base_footprint"), ("map", "odom")]
 
 
-def test_two_robots_are_told_apart_by_their_namespaces() -> None:
+def test_two_robots_differ_by_their_namespaces() -> None:
     async def body(run: Run) -> None:
         run.listen("/robot_1/odom", "nav_msgs/msg/Odometry")
         await run.drive(2.0, 0.2, topic="/robot_1/cmd_vel")
@@ -185,7 +185,7 @@ def test_two_robots_are_told_apart_by_their_namespaces() -> None:
     assert done.received[0].child_frame_id == "robot_1/base_footprint"
 
 
-def test_a_cleaning_task_on_the_topic_is_logged_where_the_robot_truly_is() -> None:
+def test_a_cleaning_task_on_the_topic_is_recorded_with_the_true_pose() -> None:
     async def body(run: Run) -> None:
         await run.drive(2.0, 0.3)
         publisher = run.backend.publisher("/cleaning/task", "std_msgs/msg/String")
@@ -197,7 +197,7 @@ def test_a_cleaning_task_on_the_topic_is_logged_where_the_robot_truly_is() -> No
     assert event.x == pytest.approx(0.6, abs=0.1)
 
 
-def test_a_closed_node_stops_the_world_where_it_is() -> None:
+def test_a_closed_node_stops_the_world() -> None:
     async def body(run: Run) -> None:
         await run.drive(1.0, 0.2)
         run.node.close()
@@ -207,7 +207,7 @@ def test_a_closed_node_stops_the_world_where_it_is() -> None:
 
 
 class HeldUpClock:
-    """A wall clock whose timers come when the test says so."""
+    """A wall clock whose timers fire when the test says so."""
 
     virtual = False
 
@@ -232,14 +232,14 @@ class HeldUpClock:
         raise AssertionError
 
     def fire(self, late: float = 0.0) -> float:
-        """Call the next timer, *late* seconds after its time; gives the time it was set for."""
+        """Call the next timer, *late* seconds after its time; return that time."""
         when, callback = self.timers.pop(0)
         self.time = max(self.time, when + late)
         callback()
         return when
 
 
-def test_a_world_that_was_held_up_catches_up_without_a_burst_of_messages() -> None:
+def test_a_blocked_world_catches_up_without_a_burst_of_messages() -> None:
     clock, world, received = HeldUpClock(), World.load("empty"), []
 
     async def main() -> None:
@@ -274,7 +274,7 @@ def test_served_worlds_write_their_ground_truth_and_it_reads_back_the_same(tmp_p
     assert records[-1] == {"kind": "end", "time": 5.0}
 
 
-def test_the_ground_truth_is_on_disk_while_the_world_runs_and_a_cut_off_line_is_forgiven(
+def test_the_ground_truth_is_on_disk_during_the_run_and_a_truncated_line_is_skipped(
     tmp_path: Path,
 ) -> None:
     path, world = tmp_path / "truth.jsonl", World.load("empty")
@@ -301,7 +301,7 @@ def test_a_served_world_stops_cleanly_on_a_signal(tmp_path: Path, number: signal
     assert json.loads(path.read_text().splitlines()[-1])["kind"] == "end"
 
 
-def test_the_time_of_the_world_goes_to_clock() -> None:
+def test_the_time_of_the_world_is_published_on_clock() -> None:
     times: list[float] = []
     clock = VirtualClock()
 
@@ -321,7 +321,7 @@ def test_the_time_of_the_world_goes_to_clock() -> None:
 
 
 class Sonar:
-    """A sensor of a project: how far the robot is from the origin."""
+    """A sensor of a project: the distance of the robot from the origin."""
 
     def __init__(self, at: RobotOnGraph) -> None:
         self._at = at

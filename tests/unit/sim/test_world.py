@@ -72,7 +72,7 @@ def test_a_circle_closes() -> None:
     assert robot.odometer == pytest.approx(0.2 * 4 * PI, rel=0.01)
 
 
-def test_a_robot_stops_without_ramp_when_commands_stay_away() -> None:
+def test_a_robot_stops_without_a_ramp_when_commands_cease() -> None:
     world = World.load("empty")
     world.command("turtlebot", 0.3, 0.0)
     world.run(0.5)
@@ -87,7 +87,7 @@ def test_a_robot_stops_without_ramp_when_commands_stay_away() -> None:
     assert world.robot().x == where
 
 
-def test_a_command_that_is_no_number_stops_the_robot() -> None:
+def test_an_invalid_command_stops_the_robot() -> None:
     world = World.load("empty")
     drive(world, 1.0, 0.3)
     world.command("turtlebot", math.nan, 0.0)
@@ -129,7 +129,7 @@ def test_a_robot_behind_touches_with_its_back() -> None:
     assert [event.data["side"] for event in world.ground_truth.events_of("bump")] == ["back"]
 
 
-def test_two_robots_push_each_other_apart_and_both_are_told() -> None:
+def test_two_robots_push_each_other_apart_and_both_have_an_event() -> None:
     world = World(
         WorldDescription(
             robots=(
@@ -173,22 +173,22 @@ def test_a_battery_charges_in_the_dock_until_it_is_full_and_stays_full() -> None
     assert not world.robot().battery.charging
 
 
-def test_a_battery_does_not_charge_just_outside_of_the_dock() -> None:
+def test_a_battery_does_not_charge_just_outside_the_dock() -> None:
     world = docking_world(0.26)
     world.run(10.0)
     assert world.ground_truth.battery() == pytest.approx(40.0)
     assert world.ground_truth.events_of("docked", "charging") == []
 
 
-def test_a_robot_that_only_drives_through_the_dock_is_not_charged() -> None:
+def test_driving_through_a_dock_does_not_charge() -> None:
     world = docking_world(-1.0)
     drive(world, 10.0, 0.2)
     assert world.robot().x > 0.9
     assert world.ground_truth.events_of("docked", "charging") == []
 
 
-def test_a_robot_is_charged_from_the_moment_when_it_is_in_the_dock() -> None:
-    """In between it told that it was full, with 20 % in the battery."""
+def test_charging_starts_immediately_in_the_dock() -> None:
+    """In between it reported a full battery at 20 %."""
     world = docking_world(0.2)
     for _ in range(50):
         world.step()
@@ -308,6 +308,6 @@ def test_the_path_is_sampled_ten_times_a_second_in_motion_and_seldom_at_rest() -
     assert len(world.ground_truth.path()) - moving <= 30
 
 
-def test_a_robot_that_is_not_there_is_named() -> None:
-    with pytest.raises(UsageError, match="has no robot 'dalek', only: turtlebot"):
+def test_an_unknown_robot_is_reported() -> None:
+    with pytest.raises(UsageError, match=r"unknown robot 'dalek' in world .*; robots: turtlebot"):
         World.load("empty").robot("dalek")

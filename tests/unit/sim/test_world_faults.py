@@ -1,4 +1,4 @@
-"""Faults of the world: what they do, when, and what the ground truth says of them."""
+"""Faults of the world: their effects, their times, and the ground truth about them."""
 
 import hashlib
 import json
@@ -45,7 +45,7 @@ def states(world: World) -> list[tuple[float, str]]:
     return [(event.time, event.data["state"]) for event in world.ground_truth.events_of("fault")]
 
 
-def test_a_fault_begins_and_ends_at_its_times() -> None:
+def test_a_fault_starts_and_ends_on_schedule() -> None:
     world = world_with("{kind: wheel_slip, share: 0.5, at: 1, for: 2}")
     drive(world, 4.0)
     assert states(world) == [(1.0, "begins"), (3.0, "ends")]
@@ -53,7 +53,7 @@ def test_a_fault_begins_and_ends_at_its_times() -> None:
     assert (first.robot, first.data["fault"], first.data["kind"]) == ("turtlebot", "f", "wheel_slip")
 
 
-def test_slipping_wheels_roll_farther_than_the_robot_drives() -> None:
+def test_slipping_wheels_turn_farther_than_the_robot_drives() -> None:
     world = world_with("{kind: wheel_slip, share: 0.4, at: 0}")
     drive(world, 5.0)
     robot = world.robot()
@@ -70,7 +70,7 @@ def test_a_robot_with_a_blocked_wheel_turns_round_it(wheel: str, turns: int) -> 
     assert robot.odometry.yaw == pytest.approx(robot.yaw), "the wheels are what odometry counts"
 
 
-def test_a_robot_with_two_blocked_wheels_stands() -> None:
+def test_a_robot_with_two_blocked_wheels_does_not_move() -> None:
     world = world_with("{kind: blocked_wheel, at: 0, for: 1.1}")
     drive(world, 1.0)
     assert world.robot().pose == (0, 0, 0)
@@ -104,7 +104,7 @@ faults:
     assert world.robot().battery.charging
 
 
-def test_a_door_closes_and_opens_again_unless_somebody_is_in_it() -> None:
+def test_a_door_closes_and_opens_unless_it_is_blocked() -> None:
     world = world_with("{kind: closed_door, door: kitchen, at: 1, for: 2}")
     world.run(2.0)
     assert world.doors == {"kitchen": False}
@@ -126,7 +126,7 @@ def test_a_person_comes_and_goes() -> None:
     assert world.people == {}
 
 
-def test_faults_begin_and_end_on_command() -> None:
+def test_faults_can_be_started_and_ended() -> None:
     world = world_with("{kind: blocked_wheel}")
     world.run(1.0)
     assert world.faults.at_work == []
@@ -155,7 +155,7 @@ def test_the_same_seed_gives_the_same_faults() -> None:
 
 
 def heard(faults: str, topic: str, type_name: str, seconds: float = 3.0) -> list[tuple[float, Any]]:
-    """What comes on a topic, with the time."""
+    """Return the messages of a topic, with their times."""
     found: list[tuple[float, Any]] = []
 
     async def body(backend: Backend, clock: VirtualClock) -> None:
@@ -211,7 +211,7 @@ def test_a_frozen_sensor_repeats_itself_with_new_stamps() -> None:
     assert len(set(stamps)) == len(stamps)
 
 
-def test_a_sensor_tells_nonsense() -> None:
+def test_a_nan_sensor_publishes_nan() -> None:
     scans = heard("{kind: nan, topic: /scan, at: 1, for: 1}", *SCAN)
     wrong = [all(math.isnan(each) for each in scan.ranges) for _, scan in scans]
     assert wrong == [1.0 < time <= 2.0 for time, _ in scans]
@@ -248,13 +248,13 @@ def test_every_fault_has_a_service() -> None:
     assert [state for _, state in states(in_graph("{kind: blocked_wheel}", body))] == ["begins", "ends"]
 
 
-def test_a_fault_of_a_topic_that_nobody_has_is_refused() -> None:
+def test_a_fault_of_an_unknown_topic_is_reported() -> None:
     with pytest.raises(UsageError, match=r"fault f: unknown topic /skan; did you mean /scan\?"):
         heard("{kind: dead, topic: /skan}", *SCAN)
 
 
 def outcomes(fault: str, begins: list[float]) -> list[tuple[float, str, str]]:
-    """When goals end that begin at some times, how, and why."""
+    """Return when goals started at given times end, how, and why."""
     ended: list[tuple[float, str, str]] = []
 
     async def body(backend: Backend, clock: VirtualClock) -> None:
@@ -289,7 +289,7 @@ def test_a_share_of_the_goals_is_aborted() -> None:
 
 
 def door_replies(fault: str, requests: list[bool]) -> list[tuple[bool, str]]:
-    """What the service of a door that is open at first replies to requests to open (True) or close it."""
+    """Return the replies of the service of an open door to requests to open (True) or close it."""
     replies: list[tuple[bool, str]] = []
 
     async def body(backend: Backend, clock: VirtualClock) -> None:
@@ -313,7 +313,7 @@ def test_a_stuck_door_does_not_move_and_the_reply_has_the_reason() -> None:
     assert door_replies("{kind: stuck_door, door: kitchen, at: 2}", [False, True]) == [(True, "")] * 2
 
 
-def test_a_door_is_stuck_for_a_share_of_the_requests() -> None:
+def test_a_stuck_door_fails_a_share_of_the_requests() -> None:
     replies = door_replies("{kind: stuck_door, door: kitchen, share: 0.25, at: 0}", [False, True] * 40)
     failed = [success for success, _ in replies].count(False)
     assert 5 <= failed <= 35
@@ -321,14 +321,14 @@ def test_a_door_is_stuck_for_a_share_of_the_requests() -> None:
     assert other == replies, "the same seed"
 
 
-def test_a_fault_of_an_action_that_nobody_offers_is_refused() -> None:
+def test_a_fault_of_an_unknown_action_is_reported() -> None:
     with pytest.raises(
         UsageError, match=r"fault f: unknown action /navigate_to; did you mean /navigate_to_pose\?"
     ):
         heard("{kind: aborted_action, action: /navigate_to}", *SCAN)
 
 
-def test_a_kidnapped_robot_is_lost_until_it_is_told_its_place() -> None:
+def test_a_kidnapped_robot_is_lost_until_it_receives_its_pose() -> None:
     async def body(backend: Backend, clock: VirtualClock) -> None:
         backend.tf_listen()
         await clock.sleep(2.0)
@@ -345,7 +345,7 @@ def test_a_kidnapped_robot_is_lost_until_it_is_told_its_place() -> None:
     in_graph("{kind: kidnapped_robot, to: {x: 1, y: -2}, at: 1}", body)
 
 
-def test_a_fault_from_the_beginning_is_in_the_file(tmp_path: Path) -> None:
+def test_a_fault_that_starts_with_the_world_is_in_the_file(tmp_path: Path) -> None:
     world, path = world_with("{kind: blocked_wheel, at: 0}"), tmp_path / "truth.jsonl"
     with GroundTruthFile(path, world, 0.0):
         world.run(1.0)

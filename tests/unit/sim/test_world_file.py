@@ -1,4 +1,4 @@
-"""World files: what they say, and what is wrong with them, all at once and with lines."""
+"""World files: their content, and all mistakes in one pass, with lines."""
 
 import math
 from pathlib import Path
@@ -78,7 +78,7 @@ def test_a_robot_of_each_kind_drives_as_fast_as_it_can(kind: str) -> None:
     assert world.robot().speed == KINDS[kind].limits.speed
 
 
-def test_all_mistakes_are_told_at_once_with_line_excerpt_and_cure() -> None:
+def test_all_mistakes_are_reported_with_excerpt_and_help() -> None:
     text = "\n".join(
         [
             "name: 7",
@@ -132,7 +132,7 @@ def test_all_mistakes_are_told_at_once_with_line_excerpt_and_cure() -> None:
         ("robots: [{name: a, radius: .inf}]", "must be a number"),
     ],
 )
-def test_a_wrong_world_says_what_is_wrong(text: str, message: str) -> None:
+def test_mistakes_in_a_world_are_reported(text: str, message: str) -> None:
     with pytest.raises(WorldError, match=message):
         read_world(text)
 
@@ -152,14 +152,14 @@ walls:
     assert [each.area for each in world.furniture] == list(world.boxes[1:])
 
 
-def test_a_file_that_is_no_text_is_told_so(tmp_path: Path) -> None:
+def test_a_binary_file_is_reported(tmp_path: Path) -> None:
     path = tmp_path / "picture.yaml"
     path.write_bytes(b"\x89PNG\xff\xfe")
     with pytest.raises(WorldError, match="the byte 0x89 is not UTF-8"):
         World.load(path)
 
 
-def test_a_mistake_is_told_once() -> None:
+def test_a_mistake_is_reported_once() -> None:
     with pytest.raises(WorldError) as caught:
         read_world("robots: {name: a}")
     assert len(caught.value.problems) == 1
@@ -170,7 +170,7 @@ def test_robots_may_share_settings_by_a_yaml_merge() -> None:
     assert [robot.radius for robot in read_world(text).robots] == [0.2, 0.2]
 
 
-def test_a_world_that_is_not_there_names_the_shipped_ones() -> None:
+def test_an_unknown_world_lists_the_shipped_ones() -> None:
     with pytest.raises(
         WorldError, match="empty, flat, house, maze, office, patrol, three_robots, two_robots, warehouse"
     ):
@@ -178,7 +178,7 @@ def test_a_world_that_is_not_there_names_the_shipped_ones() -> None:
 
 
 @pytest.mark.parametrize(("name", "meant"), [("huose", "house"), ("{}/yrad.yaml", "{}/yard.yaml")])
-def test_a_misspelt_world_is_answered_with_the_one_meant(tmp_path: Path, name: str, meant: str) -> None:
+def test_a_misspelt_world_suggests_a_similar_name(tmp_path: Path, name: str, meant: str) -> None:
     (tmp_path / "yard.yaml").write_text("")
     name, meant = name.format(tmp_path), meant.format(tmp_path)
     with pytest.raises(WorldError) as unknown:
@@ -200,13 +200,13 @@ def test_a_shipped_world_loads_and_its_robots_stand_free(name: str) -> None:
     ("corner", "room"),
     [((0, 0), "hallway"), ((2, 0), "living_room"), ((2, 2), "kitchen"), ((0, 2), "bathroom")],
 )
-def test_each_corner_of_the_square_lies_in_its_room_of_the_house(
+def test_each_corner_of_the_square_is_in_its_room_of_the_house(
     corner: tuple[float, float], room: str
 ) -> None:
     assert World.load("house").room_at(*corner) == room
 
 
-def test_navigation_is_switched_off_or_given_a_speed() -> None:
+def test_navigation_can_be_disabled_or_given_a_speed() -> None:
     def settings(text: str) -> tuple[bool, float]:
         robot = read_world(f"robots:\n  - name: r\n    {text}\n").robots[0]
         return robot.navigation.enabled, robot.navigation.speed
@@ -225,18 +225,18 @@ def test_navigation_is_switched_off_or_given_a_speed() -> None:
         assert told in str(error.value)
 
 
-def test_a_misspelt_key_that_a_merge_brings_in_is_told() -> None:
+def test_a_misspelt_key_from_a_merge_is_reported() -> None:
     with pytest.raises(WorldError, match="no key 'nam'"):
         read_world("x: &x {nam: a}\nrobots:\n  - <<: *x\n    name: r\n")
 
 
 @pytest.mark.parametrize("value", ["2001-99-99", "!!int x", "!!float q", "9" * 5000])
-def test_a_value_that_cannot_be_made_has_its_place(value: str) -> None:
+def test_an_invalid_value_has_a_location(value: str) -> None:
     with pytest.raises(WorldError, match="world:2:7: error: not YAML: not a valid"):
         read_world(f"robots: [{{name: r}}]\nname: {value}\n")
 
 
-def test_a_name_that_no_file_can_have_is_an_unknown_world() -> None:
+def test_an_impossible_file_name_is_an_unknown_world() -> None:
     with pytest.raises(WorldError, match="world not found"):
         World.load("x" * 300)
 
@@ -254,7 +254,7 @@ robots:
 """
 
 
-def test_robots_that_stand_where_they_cannot_are_told_all_at_once() -> None:
+def test_all_misplaced_robots_are_reported_in_one_pass() -> None:
     robots = {"far": (9, 0), "boxed": (0, 0), "walled": (1.4, 0.5), "stuck": (-1.5, 1.6)}
     lines = [
         f"  - {{name: {name}, namespace: {name}, pose: {{x: {x}, y: {y}}}}}"
@@ -278,6 +278,6 @@ def test_robots_that_stand_where_they_cannot_are_told_all_at_once() -> None:
         ("open", "{x: 9, y: 0}"),  # nothing keeps robots in such a world
     ],
 )
-def test_robots_may_stand_wherever_they_can_drive(border: str, place: str) -> None:
+def test_robots_may_start_wherever_they_can_drive(border: str, place: str) -> None:
     text = WALLED.replace("border: walls", f"border: {border}")
     assert len(read_world(f"{text}  - {{pose: {place}}}").robots) == 1

@@ -1,4 +1,4 @@
-"""What derived events mean, worked out from all events anew for each moment: slow, and so simple that it can be read."""
+"""The definition of derived events, computed from all events anew for each time: slow, but simple to read."""
 
 import math
 from collections.abc import Sequence
@@ -11,13 +11,13 @@ Event = tuple[int, float, Values | None]
 
 
 def shown(spec: Spec, events: Sequence[Event], now: float) -> Values | None:
-    """The values that a pattern begun at 0 shows at *now*, after the events (in order) of this time."""
+    """Return the values that a pattern started at 0 shows at *now*, after the events (in order) of this time."""
     past = [event for event in events if event[1] <= now]
     return _STATES[spec.operator](spec, past, now)
 
 
 def occurrences(spec: Spec, events: Sequence[Event], end: float) -> list[float]:
-    """The times at which something occurred until *end*."""
+    """Return the times of occurrences until *end*."""
     within = spec.options["within"]
     if spec.operator == "missing":
         return sorted(
@@ -123,7 +123,7 @@ def _segments(spec: Spec, past: Sequence[Event], now: float) -> list[tuple[float
 
 
 def share_margin(spec: Spec, past: Sequence[Event], now: float) -> float:
-    """Seconds of the window that the condition held beyond the share that is wanted."""
+    """Return the seconds of the window for which the condition held beyond the wanted share."""
     start = now - spec.options["within"]
     held = sum(max(0.0, end - max(start, begun)) for begun, end, holds in _segments(spec, past, now) if holds)
     return held - spec.options.get("at_least", 0.0) * min(spec.options["within"], now - past[0][1])

@@ -63,7 +63,7 @@ def streams(count: int) -> st.SearchStrategy[list[Event]]:
 
 
 class Run:
-    """A pattern, with what it has emitted."""
+    """A pattern, with its outputs."""
 
     def __init__(self, spec: Spec) -> None:
         self.now = 0.0
@@ -71,7 +71,7 @@ class Run:
         self.pattern = Pattern(spec, 0.0, lambda kind, values: self.outputs.append((kind, self.now)))
 
     def until(self, time: float) -> None:
-        """Look at it whenever it wants to."""
+        """Advance the pattern at each deadline."""
         while self.pattern.deadline <= time:
             self.now = self.pattern.deadline
             self.pattern.advance(self.now)
@@ -79,7 +79,7 @@ class Run:
 
     @property
     def occurred(self) -> list[float]:
-        """When something occurred."""
+        """Times of occurrences."""
         return [time for kind, time in self.outputs if kind == OCCUR]
 
 
@@ -93,7 +93,7 @@ def _same(one: Values | None, other: Values | None) -> bool:
 
 
 def _close_call(spec: Spec, past: list[Event], now: float) -> bool:
-    """Whether the share is so near to the limit that rounding decides."""
+    """Return whether the share is so near to the limit that rounding decides."""
     return (
         spec.operator == "share"
         and "at_least" in spec.options
@@ -106,7 +106,7 @@ def _close_call(spec: Spec, past: list[Event], now: float) -> bool:
 @pytest.mark.parametrize("spec", STATES, ids=lambda spec: f"{spec.operator}-{len(spec.options)}")
 @given(data=st.data())
 @settings(max_examples=25, deadline=None)
-def test_states_are_those_of_the_naive_evaluator(spec: Spec, data: st.DataObject) -> None:
+def test_states_equal_those_of_the_naive_evaluator(spec: Spec, data: st.DataObject) -> None:
     events = data.draw(streams(len(spec.streams)))
     run = Run(spec)
     left = deque(events)
@@ -124,7 +124,7 @@ def test_states_are_those_of_the_naive_evaluator(spec: Spec, data: st.DataObject
 @pytest.mark.parametrize("spec", MOMENTS, ids=lambda spec: f"{spec.operator}-{len(spec.sources)}")
 @given(data=st.data())
 @settings(max_examples=25, deadline=None)
-def test_occurrences_are_those_of_the_naive_evaluator(spec: Spec, data: st.DataObject) -> None:
+def test_occurrences_equal_those_of_the_naive_evaluator(spec: Spec, data: st.DataObject) -> None:
     events = data.draw(streams(len(spec.streams)))
     run = Run(spec)
     end = (events[-1][1] if events else 0.0) + 6.0
@@ -138,7 +138,7 @@ def test_occurrences_are_those_of_the_naive_evaluator(spec: Spec, data: st.DataO
 @pytest.mark.parametrize("spec", [*STATES, *MOMENTS], ids=lambda spec: f"{spec.operator}-{len(spec.options)}")
 @given(data=st.data())
 @settings(max_examples=25, deadline=None)
-def test_events_within_the_lateness_are_put_in_order(spec: Spec, data: st.DataObject) -> None:
+def test_events_within_the_lateness_are_sorted(spec: Spec, data: st.DataObject) -> None:
     events = data.draw(streams(len(spec.streams)))
     lateness = 1.0
     delays = data.draw(st.lists(st.integers(0, 4), min_size=len(events), max_size=len(events)))
@@ -209,7 +209,7 @@ def test_memory_is_bounded_by_the_window(spec: Spec) -> None:
     assert sys.getsizeof(pattern) < 300
 
 
-def test_samples_come_together_when_their_stamps_are_near() -> None:
+def test_samples_with_nearby_stamps_are_joined() -> None:
     made: list[Values] = []
     spec = Spec("together", ("scan", "odom"), {"within": 0.05}, lateness=0.5)
     pattern = Pattern(spec, 100.0, lambda kind, values: made.append(values))
@@ -228,7 +228,7 @@ def test_samples_come_together_when_their_stamps_are_near() -> None:
     st.lists(st.tuples(st.integers(0, 1), st.integers(0, 40)), max_size=40),
 )
 @settings(max_examples=25, deadline=None)
-def test_sets_are_near_in_order_and_use_no_sample_twice(events: list[tuple[int, int]]) -> None:
+def test_sets_are_close_ordered_and_disjoint(events: list[tuple[int, int]]) -> None:
     made: list[Values] = []
     spec = Spec("together", ("a", "b"), {"within": 2 * STEP}, lateness=100.0)
     pattern = Pattern(spec, 0.0, lambda kind, values: made.append(values))
@@ -278,7 +278,7 @@ def test_values_are_interpolated_at_the_times_of_the_first_stream() -> None:
 
 @given(st.lists(st.tuples(st.integers(0, 1), st.integers(0, 30)), max_size=40, unique=True))
 @settings(max_examples=50, deadline=None)
-def test_interpolation_is_that_of_the_naive_evaluator(events: list[tuple[int, int]]) -> None:
+def test_interpolation_equals_that_of_the_naive_evaluator(events: list[tuple[int, int]]) -> None:
     made: list[Values] = []
     spec = Spec("interpolated", ("a", "b"), {"within": 2 * STEP}, lateness=100.0)
     pattern = Pattern(spec, 0.0, lambda kind, values: made.append(values))

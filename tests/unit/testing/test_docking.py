@@ -1,4 +1,4 @@
-"""Stays in docks, from what truly happened."""
+"""Stays in docks, from the ground truth."""
 
 from jacaros.sim import GroundTruth, World
 from jacaros.testing import Verdict
@@ -28,7 +28,7 @@ def visit(world: World, rest: float) -> GroundTruth:
     return world.ground_truth
 
 
-def test_a_stay_from_low_to_full() -> None:
+def test_a_stay_charges_from_low_to_full() -> None:
     truth = visit(World.load(WORLD), 8)
     (stay,) = stays(truth)
     assert 13 < stay.level < 15
@@ -50,21 +50,21 @@ def test_turning_in_the_dock_does_not_make_two_stays_of_one() -> None:
     assert stay.end is None
 
 
-def test_leaving_too_early_is_complained_about() -> None:
+def test_leaving_too_early_is_a_complaint() -> None:
     verdict = Verdict()
     judge_recharging(verdict, visit(World.load(WORLD), 2))
     assert len(verdict.complaints) == 1
     assert "before the battery was full" in verdict.complaints[0]
 
 
-def test_docking_without_need_is_complained_about() -> None:
+def test_docking_without_need_is_a_complaint() -> None:
     verdict = Verdict()
     judge_recharging(verdict, visit(World.load(WORLD), 8), low=10)
     assert len(verdict.complaints) == 1
     assert "which is not low" in verdict.complaints[0]
 
 
-def test_an_empty_battery_is_complained_about() -> None:
+def test_an_empty_battery_is_a_complaint() -> None:
     world = World.load(WORLD)
     world.run(40)
     verdict = Verdict()

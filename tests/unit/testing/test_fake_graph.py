@@ -1,4 +1,4 @@
-"""Tests of agents with mappings: messages and services that the test plays, and what the agents published and asked."""
+"""Tests of agents with mapping files: messages and services played by the test, publications and requests of the agents."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -53,7 +53,7 @@ def files(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def run(files: Path) -> Run:
-    """Runs tests with the bodies given; each has the mapping."""
+    """Runs tests with the given bodies; each has the mapping."""
 
     def run_tests(
         *bodies: str, label: str = '[test, mapping("robot.yaml")]', **options: object
@@ -72,7 +72,7 @@ def told(outcome: Outcome) -> str:
     return "\n".join(line for problem in outcome.problems for line in problem.lines())
 
 
-def test_messages_are_believed_and_what_is_published_is_heard(run: Run) -> None:
+def test_messages_become_beliefs_and_publications_are_recorded(run: Run) -> None:
     [outcome] = run(f"""
         !fake_service("light", "std_srvs/srv/SetBool", "success: true");
         {ODOM};
@@ -136,16 +136,16 @@ def test_each_test_hears_from_its_beginning_also_in_a_common_run(run: Run) -> No
     assert [told(each) for each in outcomes] == ["", ""]
 
 
-def test_what_was_not_published_is_told_with_what_was(run: Run) -> None:
+def test_a_missing_message_is_reported_with_the_published_ones(run: Run) -> None:
     [outcome] = run(
         'drive(0.5, 1); !assert_published("cmd_vel", "linear.x: 0.7"); !assert_not_published("cmd_vel")'
     )
     assert "expected  a message on cmd_vel with linear.x: 0.7" in told(outcome)
-    assert "but       there were 10 times {linear: {x: 0.5}}, {}" in told(outcome)
+    assert "but       found 10 times {linear: {x: 0.5}}, {}" in told(outcome)
     assert "expected  no message on cmd_vel" in told(outcome)
     [outcome] = run('!assert_published("cmd_vel", "linear.x: 0.7", 3)')
     assert "3 times a message on cmd_vel" in told(outcome)
-    assert "there was none" in told(outcome)
+    assert "found none" in told(outcome)
 
 
 @pytest.mark.parametrize(
@@ -153,25 +153,25 @@ def test_what_was_not_published_is_told_with_what_was(run: Run) -> None:
     [
         (
             '!fake_message("odm", "")',
-            "nobody listens to /odm, so that its type is not known; did you mean /odom?",
+            "unknown type of /odm, which has no subscription; did you mean /odom?",
         ),
-        ('!fake_message("a", "")', "write its type as the second argument"),
+        ('!fake_message("a", "")', "pass its type as the second argument"),
         ('!fake_message("odom", "pose.x: 1")', "has no field 'x'"),
         ('!fake_message("odom", "{pose: {pose: 1}}")', "write their paths: pose.pose: ..."),
         ('!fake_message("odom", "{a: ")', "this bracket is never closed"),
         ('!fake_message("odom", "just words")', "must be a mapping"),
         ('!fake_message("a", "std_msgs/Strin", "")', "std_msgs/msg/Strin is not known here"),
-        ('!fake_message("a b", "std_msgs/String", "")', "is no ROS name"),
+        ('!fake_message("a b", "std_msgs/String", "")', "ROS name"),
         ('!fake_service("a", "std_srvs/srv/Triger", "")', "std_srvs/srv/Triger is not known here"),
         ('!fake_subscriber("a", "std_srvs/srv/Trigger")', "std_srvs/srv/Trigger"),
-        ('!assert_called("light", "")', "the test has no service /light; begin with fake_service"),
+        ('!assert_called("light", "")', "unknown service /light; call fake_service first"),
         ('drive(1, 0.1); !assert_published("cmd_vel", "linear.q: 1")', "has no field 'q'"),
-        ('!assert_published("a b", "x: 1")', "'a b' is no ROS name"),
-        ('!assert_not_published("a b")', "'a b' is no ROS name"),
-        ('!assert_called("a b", "")', "'a b' is no ROS name"),
+        ('!assert_published("a b", "x: 1")', "ROS name"),
+        ('!assert_not_published("a b")', "ROS name"),
+        ('!assert_called("a b", "")', "ROS name"),
     ],
 )
-def test_mistakes_are_told_at_the_goal_of_the_test(run: Run, body: str, text: str) -> None:
+def test_mistakes_are_reported_at_the_assertion(run: Run, body: str, text: str) -> None:
     [outcome] = run(body)
     assert text in told(outcome)
     assert "robot_test.asl:" in told(outcome)
@@ -186,7 +186,7 @@ def test_times_are_compared_too(run: Run) -> None:
     assert "a message on report with stamp: 5" in told(wrong)
 
 
-def test_a_wrong_mapping_is_told(run: Run, files: Path) -> None:
+def test_an_invalid_mapping_is_reported(run: Run, files: Path) -> None:
     [outcome] = run("true", label='[test, mapping("robt.yaml")]')
     assert "mapping file not found: robt.yaml" in told(outcome)
     (files / "robot.yaml").write_text("properties: {a: {topik: b}}\n", encoding="utf-8")
@@ -194,12 +194,12 @@ def test_a_wrong_mapping_is_told(run: Run, files: Path) -> None:
     assert all("did you mean 'topic'?" in told(each) for each in outcomes)
 
 
-def test_a_label_that_names_no_file_is_an_error(files: Path) -> None:
+def test_a_label_without_a_file_is_an_error(files: Path) -> None:
     path = files / "robot_test.asl"
     path.write_text("@t[test, mapping(robot)] +!t.\n", encoding="utf-8")
     error = suite_of(path).error
     assert error is not None
-    assert "mapping(...) names no file" in error
+    assert "mapping(...) expects a file name" in error
 
 
 def test_python_tests_play_the_graph_of_a_whole_run(files: Path) -> None:

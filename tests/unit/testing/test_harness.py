@@ -1,4 +1,4 @@
-"""The harness that puts one agent into the hands of a Python test."""
+"""The harness that puts one agent under the control of a Python test."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -73,7 +73,7 @@ def test_functions_can_answer_actions() -> None:
     agent.assert_failed(goal, "env_failure_reason(failed)")
 
 
-def test_the_last_word_on_outputs_has_the_test() -> None:
+def test_the_test_decides_about_outputs() -> None:
     agent = AgentHarness("+!go <- ask(X, Y); .print(X, Y).")
     agent.achieve("go")
     agent.run()
@@ -82,13 +82,13 @@ def test_the_last_word_on_outputs_has_the_test() -> None:
     with pytest.raises(ValueError, match="has 2 unbound variables, not 1"):
         act.complete(1)
     act.complete(1, "two")
-    with pytest.raises(ValueError, match="has ended"):
+    with pytest.raises(ValueError, match="has already ended"):
         act.complete()
     agent.run()
     assert agent.prints == ["1two"]
 
 
-def test_goals_tell_what_became_of_them() -> None:
+def test_goals_report_their_outcome() -> None:
     agent = AgentHarness(
         "+!good <- .wait(100). +!bad <- .fail(error(broken)). +!long <- .suspend. +!own <- do."
     )
@@ -117,7 +117,7 @@ def test_beliefs_can_be_given_and_taken() -> None:
     assert agent.beliefs == ["p(2)[source(bob)]"]
 
 
-def test_percepts_come_go_and_flash() -> None:
+def test_percepts_can_be_added_removed_or_momentary() -> None:
     agent = AgentHarness("+door(X) <- .print(open(X)). -door(X) <- .print(closed(X)). +bump <- .print(bump).")
     agent.perceive("door(1)")
     agent.signal("bump")
@@ -160,7 +160,7 @@ def test_time_is_virtual_and_moves_as_the_test_wants() -> None:
     assert agent.time == 2.5
     agent.run(seconds=0.5)
     assert agent.prints[-1] == "4"
-    with pytest.raises(AssertionError, match="it went on for an hour"):
+    with pytest.raises(AssertionError, match="not idle after an hour"):
         agent.run()
 
 
@@ -171,7 +171,7 @@ def test_a_run_ends_when_nothing_is_left() -> None:
     assert agent.time == 1.0
 
 
-def test_an_endless_loop_is_told() -> None:
+def test_an_endless_loop_fails() -> None:
     with pytest.raises(AssertionError, match="an endless loop"):
         AgentHarness("!go. +!go <- !go.").run()
 
@@ -221,7 +221,7 @@ def test_a_program_can_be_a_file_with_includes(tmp_path: Path) -> None:
     agent.assert_printed("more")
 
 
-def test_a_wrong_program_is_told_as_ever() -> None:
+def test_a_program_with_errors_raises() -> None:
     with pytest.raises(AslError, match=r"agent\.asl:1:"):
         AgentHarness("+!go <- .print(.")
 
@@ -241,7 +241,7 @@ def test_a_wrong_program_is_told_as_ever() -> None:
         (lambda a: a.assert_did_not("drive(_)"), "it did drive(_)"),
         (lambda a: a.assert_sent("bob", "tell", "bye"), "it did not send tell bye to bob"),
         (lambda a: a.assert_sent_not("bob", "tell", "hi"), "it sent tell hi to bob"),
-        (lambda a: a.act("fly"), "no act fly is pending"),
+        (lambda a: a.act("fly"), "no pending action fly"),
         (lambda a: a.assert_achieved(a.achieve("go")), "not achieved: !go (running)"),
         (lambda a: a.assert_failed(a.achieve("go")), "it did not fail: !go (running)"),
     ],
@@ -267,7 +267,7 @@ def test_failures_show_all_that_can_be_seen_of_the_agent(
         assert part in shown
 
 
-def test_a_wrong_reason_is_told() -> None:
+def test_a_different_reason_fails() -> None:
     agent = AgentHarness("+!go <- .fail(error(a)).")
     goal = agent.achieve("go")
     agent.run()
@@ -275,7 +275,7 @@ def test_a_wrong_reason_is_told() -> None:
         agent.assert_failed(goal, "error(b)")
 
 
-def test_what_an_answering_function_raises_reaches_the_test() -> None:
+def test_exceptions_of_answering_functions_reach_the_test() -> None:
     def see(thing: object) -> None:
         assert thing == Atom("dog"), "no dog"
 

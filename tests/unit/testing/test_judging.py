@@ -37,7 +37,7 @@ def test_a_verdict_without_complaints_passes() -> None:
     assert verdict.lines() == ["metres: 0.1235", "passed"]
 
 
-def test_every_complaint_is_told() -> None:
+def test_every_complaint_is_listed() -> None:
     verdict = Verdict()
     verdict.expect(False, "too late")
     verdict.at_most("metres off", 0.06, 0.05)
@@ -57,10 +57,10 @@ def test_a_ground_truth_file_is_judged(
     assert capsys.readouterr().out.rstrip().endswith(last)
 
 
-def test_a_file_that_is_none_does_not_pass(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_invalid_ground_truth_file_fails(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     empty = tmp_path / "empty"
     empty.write_text("{}\n", encoding="utf-8")
     assert judge(check, [str(empty)]) == 1
     assert judge(check, [str(tmp_path / "missing")]) == 1
     assert judge(check, []) == 2
-    assert "cannot be judged" in capsys.readouterr().out
+    assert "cannot read the ground truth" in capsys.readouterr().out

@@ -26,7 +26,7 @@ def test_the_nearest_point_of_a_segment(x: float, y: float, far: float) -> None:
 
 
 def path_of(*commands: tuple[float, float, float]) -> list[Sample]:
-    """The path of a robot that is commanded speed and turn rate for some seconds each."""
+    """Return the path of a robot with a speed and turn rate for several seconds each."""
     world = World.load("empty")
     for speed, turn_rate, seconds in commands:
         for _ in range(round(seconds / 0.1)):
@@ -47,7 +47,7 @@ def test_turns_on_the_spot_are_found_with_place_and_angle() -> None:
     assert found[0].end - found[0].begin == pytest.approx(2.0, abs=0.3)
 
 
-def test_a_curve_is_no_turn_on_the_spot() -> None:
+def test_a_curve_does_not_count_as_a_turn_on_the_spot() -> None:
     assert turns(path_of((0.5, 1, 3), (0, 0, 1))) == []
 
 

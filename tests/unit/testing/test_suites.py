@@ -1,4 +1,4 @@
-"""What counts as a test, and where tests are looked for."""
+"""What counts as a test, and where tests are searched."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -15,7 +15,7 @@ PASSES = "@passes[test] +!passing <- !assert_true(true)."
 
 @pytest.fixture
 def write(tmp_path: Path) -> Write:
-    """Writes a file, and gives its path."""
+    """Writes a file and returns its path."""
 
     def write_file(name: str, text: str = PASSES) -> Path:
         path = tmp_path / name
@@ -44,7 +44,7 @@ def test_alternatives_of_one_goal_are_one_test(write: Write) -> None:
 def test_two_tests_with_one_goal_test_its_first_plan_twice(write: Write) -> None:
     suite = suite_of(write("t.asl", "@a[test] +!g(X) <- .print(X). @b[test] +!g(Y) <- .print(Y)."))
     assert [test.name for test in suite.tests] == ["a", "b"]
-    told = "t.asl:1:31: warning: this plan is never run: !g(_) has another, which is tested twice"
+    told = "t.asl:1:31: warning: unreachable test: an earlier plan for !g(_) is always applicable"
     assert any(told in warning for warning in suite.warnings)
 
 
@@ -79,7 +79,7 @@ def test_folders_give_the_files_that_have_tests_themselves(write: Write, tmp_pat
     assert [test.name for suite in suites for test in suite.tests] == ["passes", "more"]
 
 
-def test_a_test_file_that_cannot_be_read_is_not_passed_over(write: Write, tmp_path: Path) -> None:
+def test_an_unreadable_test_file_is_an_error(write: Write, tmp_path: Path) -> None:
     write("test_wrong.asl", "+!g <- .print(.")
     write("other_wrong.asl", "+!g <- .print(.")
     (suite,) = collect([tmp_path])
@@ -88,7 +88,7 @@ def test_a_test_file_that_cannot_be_read_is_not_passed_over(write: Write, tmp_pa
     assert "test_wrong.asl:1:" in suite.error
 
 
-def test_a_test_project_stands_for_the_programs_of_its_agents(write: Write, tmp_path: Path) -> None:
+def test_a_test_project_includes_the_programs_of_its_agents(write: Write, tmp_path: Path) -> None:
     write("boss.asl", "@asks[test] +!ask.")
     write("test_team.mas2j", "MAS team { agents: boss; worker #3; }")
     write("worker.asl", "@works[test] +!work.")
@@ -98,12 +98,12 @@ def test_a_test_project_stands_for_the_programs_of_its_agents(write: Write, tmp_
     assert [(test.agent, test.name) for test in suite.tests] == [("boss", "asks"), ("worker1", "works")]
 
 
-def test_a_file_is_there_once(write: Write, tmp_path: Path) -> None:
+def test_a_file_is_collected_once(write: Write, tmp_path: Path) -> None:
     file = write("test_a.asl")
     assert len(collect([file, tmp_path, file])) == 1
 
 
-def test_what_is_not_there_is_wrong_usage(tmp_path: Path) -> None:
+def test_a_missing_path_is_wrong_usage(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="file not found"):
         collect([tmp_path / "nothing.asl"])
     with pytest.raises(UsageError, match=r"expected \.asl, \.mas2j, \.jcm or a folder"):

@@ -1,4 +1,4 @@
-"""Running agent tests: what passes, what fails, and what is told about it."""
+"""Running agent tests: what passes, what fails, and the report."""
 
 import signal
 import sys
@@ -37,7 +37,7 @@ def outcomes(tmp_path: Path) -> Outcomes:
 
 @pytest.fixture
 def told(outcomes: Outcomes, tmp_path: Path) -> Callable[..., str]:
-    """What is told about the only test of a program, which fails."""
+    """Return the report about the only test of a program, which fails."""
 
     def tell(text: str, **others: object) -> str:
         (outcome,) = outcomes(text, **others)
@@ -86,12 +86,15 @@ def test_an_assertion_that_holds_passes(outcomes: Outcomes, assertion: str) -> N
         ("assert_equals(1, 1.2, 0.1)", ["expected  1 +/- 0.1", "but       was 1.2"]),
         ("assert_equals(1, one, 0.1)", ["expected  1 +/- 0.1", "but       was one"]),
         ("assert_not_equals(1, 1)", ["expected  anything but 1", "but       was 1"]),
-        ("assert_true(p(3))", ["expected  p(3)", "believed is p(1)[source(self)], p(2)[source(self)]"]),
-        ("assert_true(q(3))", ["expected  q(3)", "there is no belief q/1"]),
+        (
+            "assert_true(p(3))",
+            ["expected  p(3)", "the agent believes p(1)[source(self)], p(2)[source(self)]"],
+        ),
+        ("assert_true(q(3))", ["expected  q(3)", "no belief q/1"]),
         ("assert_true(p(1) & q)", ["expected  (p(1) & q)", "but       it does not hold"]),
         ("assert_false(p(1))", ["expected  not p(1)", "but       it holds"]),
         ("assert_contains([a], b)", ["expected  b", "but       [a] does not contain it"]),
-        ("assert_contains(7, b)", ["expected  b", "but       7 is no list or set"]),
+        ("assert_contains(7, b)", ["expected  b", "but       7 is not a list or set"]),
         ("assert_not_contains([a], a)", ["expected  no a", "but       [a] contains it"]),
         ("assert_greater_than(1, 1)", ["expected  more than 1", "but       was 1"]),
         ("assert_greater_than(one, 0)", ["expected  more than 0", "but       was one"]),
@@ -123,7 +126,7 @@ def test_a_formula_that_cannot_be_evaluated_fails_its_assertion(outcomes: Outcom
     assert outcome.output[-1] == "[t] end"
 
 
-def test_a_test_goes_on_after_an_assertion_that_failed(outcomes: Outcomes) -> None:
+def test_a_test_continues_after_a_failed_assertion(outcomes: Outcomes) -> None:
     (outcome,) = outcomes(
         "@t[test] +!t <- !assert_true(a); !assert_true(true); !assert_true(b); .print(end)."
     )
@@ -132,7 +135,7 @@ def test_a_test_goes_on_after_an_assertion_that_failed(outcomes: Outcomes) -> No
     assert outcome.output == ["[t] end"]
 
 
-def test_the_place_is_that_of_the_branch_that_was_taken(outcomes: Outcomes) -> None:
+def test_a_failure_has_the_location_of_the_executed_branch(outcomes: Outcomes) -> None:
     (outcome,) = outcomes(
         "@t[test] +!t <-\n if (b) {\n !assert_true(x)\n } else {\n !assert_equals(1, 2)\n }; .print(end)."
     )
@@ -140,7 +143,7 @@ def test_the_place_is_that_of_the_branch_that_was_taken(outcomes: Outcomes) -> N
     assert outcome.problems[0].span.line == 5
 
 
-def test_each_test_begins_afresh(outcomes: Outcomes) -> None:
+def test_each_test_starts_with_a_new_agent(outcomes: Outcomes) -> None:
     both = "@a[test] +!a <- +p. @b[test] +!b <- !assert_false(p)."
     assert [outcome.passed for outcome in outcomes(both)] == [True, True]
     assert [outcome.passed for outcome in outcomes(both, replace(BRIEF, shared=True))] == [True, False]
@@ -153,7 +156,7 @@ def test_the_goals_of_the_program_are_pursued_too(outcomes: Outcomes) -> None:
     assert outcome.passed
 
 
-def test_a_plan_before_an_include_takes_the_place_of_another(outcomes: Outcomes) -> None:
+def test_a_plan_before_an_include_overrides_an_included_one(outcomes: Outcomes) -> None:
     program = '+!start. { include("robot.asl") } @t[test] +!t <- .wait(10); !assert_false(started).'
     (outcome,) = outcomes(program, robot_asl="!start. +!start <- +started.")
     assert outcome.passed
@@ -164,7 +167,7 @@ def test_assertions_of_separate_goals_count(outcomes: Outcomes) -> None:
     assert [problem.message for problem in outcome.problems] == ["assert_true failed"]
 
 
-def test_a_run_that_never_gets_quiet_does_not_hold_a_test_up(outcomes: Outcomes) -> None:
+def test_a_busy_run_does_not_delay_the_end_of_a_test(outcomes: Outcomes) -> None:
     endless = "!tick. +!tick <- .wait(10); !tick. "
     busy = "!tick. +!tick <- !tick. "
     for begin in (endless, busy):
@@ -185,17 +188,17 @@ def test_a_goal_that_fails_fails_its_test(told: Callable[..., str]) -> None:
 
 
 def test_a_goal_without_plan_fails_its_test(told: Callable[..., str]) -> None:
-    assert "no relevant plan for !nobody(1)" in told("@t[test] +!t <- !nobody(1).")
+    assert "no relevant plan for !absent(1)" in told("@t[test] +!t <- !absent(1).")
     assert "no applicable plan for !t" in told("@t[test] +!t : never <- .print(x).")
 
 
-def test_a_goal_that_its_own_handler_saves_passes(outcomes: Outcomes) -> None:
+def test_a_goal_handled_by_its_own_plan_passes(outcomes: Outcomes) -> None:
     (outcome,) = outcomes("@t[test] +!t <- .fail. -!t <- !assert_true(true).")
     assert outcome.passed
     assert outcome.assertions == 1
 
 
-def test_an_intention_that_nobody_saves_fails_the_test(told: Callable[..., str]) -> None:
+def test_an_unhandled_failure_fails_the_test(told: Callable[..., str]) -> None:
     shown = told("@t[test] +!t <- !!other; .wait(50). +!other <- ?nothing(X).")
     assert "agent t: the goal !other failed and has no plan for its failure" in shown
     assert "test_goal_failed" in shown
@@ -205,13 +208,13 @@ def test_a_crash_in_an_internal_action_fails_the_test(told: Callable[..., str]) 
     assert "the goal of the test failed: " in told("@t[test] +!t <- .nth(7, [a], X); .print(X).")
 
 
-def test_a_time_limit_is_told_with_what_the_test_waits_for(told: Callable[..., str]) -> None:
+def test_a_time_out_reports_what_the_test_waits_for(told: Callable[..., str]) -> None:
     shown = told("@t[test, timeout(500)] +!t <- .print(begun);\n .wait(600).")
     assert "t.asl:2:2: the test did not end within 0.5 s of the run's clock" in shown
     assert "printed:\n  [t] begun" in shown
 
 
-def test_the_usual_time_limit_counts(outcomes: Outcomes) -> None:
+def test_the_default_time_limit_applies(outcomes: Outcomes) -> None:
     (outcome,) = outcomes("@t[test] +!t <- .wait(11000).")
     assert outcome.problems[0].message == "the test did not end within 10 s of the run's clock"
     assert outcome.simulated == pytest.approx(10.0)
@@ -228,15 +231,15 @@ def test_a_step_that_does_not_end_is_stopped(outcomes: Outcomes) -> None:
     )
     before = signal.getsignal(alarm.SIGNAL)
     hanging, other = outcomes(program, replace(BRIEF, patience=2.0))
-    assert "stopped after 2 s of real time" in hanging.problems[0].message
+    assert "did not end within 2 s of real time" in hanging.problems[0].message
     assert other.passed
     assert signal.getsignal(alarm.SIGNAL) is before
     assert sys.platform == "win32" or signal.getitimer(signal.ITIMER_REAL)[0] == 0.0
 
 
-def test_waiting_for_what_never_comes_is_told_at_once(outcomes: Outcomes) -> None:
+def test_waiting_forever_is_detected_immediately(outcomes: Outcomes) -> None:
     (outcome,) = outcomes('@t[test] +!t <- .wait("+never").')
-    assert outcome.problems[0].message == "the test did not end, and nothing happens any more"
+    assert outcome.problems[0].message == "the test did not end, and nothing is left to do"
     assert outcome.simulated < 1.0
 
 
@@ -254,7 +257,7 @@ def test_a_program_that_ends_the_run_fails_the_test(outcomes: Outcomes) -> None:
     assert second.problems[0].message == "the test was not started: the run had ended"
 
 
-def test_in_a_shared_run_the_tests_after_a_stuck_one_are_made(outcomes: Outcomes) -> None:
+def test_a_shared_run_continues_after_a_stuck_test(outcomes: Outcomes) -> None:
     stuck, other = outcomes('@t[test] +!t <- .wait("+never"). @u[test] +!u.', replace(BRIEF, shared=True))
     assert not stuck.passed
     assert other.passed
@@ -301,24 +304,24 @@ def test_a_faked_action_can_fail_and_take_time(outcomes: Outcomes) -> None:
     assert outcome.simulated == pytest.approx(1.5)
 
 
-def test_the_last_fake_of_an_action_counts(outcomes: Outcomes) -> None:
+def test_the_last_fake_of_an_action_wins(outcomes: Outcomes) -> None:
     (outcome,) = outcomes(
         "@t[test] +!t <- !fake_action(see(1)); see(X); !fake_action(see(2)); see(Y); !assert_equals([1, 2], [X, Y])."
     )
     assert outcome.passed
 
 
-def test_an_action_that_never_ends_is_told(told: Callable[..., str]) -> None:
+def test_an_action_that_never_ends_is_reported(told: Callable[..., str]) -> None:
     shown = told("@t[test] +!t <- !fake_action(drive(_), never);\n drive(3).")
     assert "t.asl:2:2: the test did not end" in shown
-    assert "it waits for the end of drive(3)" in shown
+    assert "it waits for drive(3)" in shown
 
 
-def test_a_wrong_outcome_of_a_fake_is_told(told: Callable[..., str]) -> None:
-    assert "soon is no outcome of a fake" in told("@t[test] +!t <- !fake_action(drive, soon).")
+def test_an_invalid_outcome_of_a_fake_is_reported(told: Callable[..., str]) -> None:
+    assert "invalid outcome soon" in told("@t[test] +!t <- !fake_action(drive, soon).")
 
 
-def test_tests_may_make_agents_and_talk_with_them(outcomes: Outcomes) -> None:
+def test_tests_may_create_agents_and_exchange_messages(outcomes: Outcomes) -> None:
     (outcome,) = outcomes(
         """
         @t[test] +!t
@@ -381,7 +384,7 @@ def test_a_test_project_runs_with_its_robot(tmp_path: Path) -> None:
     assert outcome.simulated > 1.0
 
 
-def test_a_world_that_is_not_there_fails_the_test(outcomes: Outcomes) -> None:
+def test_an_unknown_world_fails_the_test(outcomes: Outcomes) -> None:
     program = (
         '{ include("$jacaros/artifacts.asl") } @t[test] +!t <- !use_artifact("wheels", "ArtCmdVel"); move(1).'
     )
@@ -402,7 +405,7 @@ def test_a_seed_makes_tests_repeatable(outcomes: Outcomes) -> None:
     assert once != other
 
 
-def test_assertions_outside_of_tests_are_told_to_people(tmp_path: Path) -> None:
+def test_assertions_outside_of_tests_are_logged(tmp_path: Path) -> None:
     from jacaros.testing import run_project
 
     program = tmp_path / "a.asl"
@@ -413,5 +416,5 @@ def test_assertions_outside_of_tests_are_told_to_people(tmp_path: Path) -> None:
     )
     result = run_project(program, until_idle=True)
     assert result.lines == ["[a] end"]
-    assert "assert_true failed: expected p, but there is no belief p/0" in result.errors[0]
+    assert "assert_true failed: expected p, but no belief p/0" in result.errors[0]
     assert "assert_false passed" in result.errors[1]

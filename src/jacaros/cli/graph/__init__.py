@@ -1,1 +1,1 @@
-"""What ``jacaros ros`` finds out about a live graph, and what it writes from that."""
+"""Inspection of a live graph for ``jacaros ros``."""

@@ -1,4 +1,4 @@
-"""``jacaros ros map``: a first mapping file for things of the graph, to go on with by hand."""
+"""``jacaros ros map``: a first mapping file for a graph, for you to edit."""
 
 import json
 from collections.abc import Iterable, Iterator, Sequence
@@ -29,11 +29,11 @@ _NAMES = {
     "cmd_vel": "drive",
     "battery_state": "battery",
 }
-"""Words that read better in a plan."""
+"""ROS names, and better names for plans."""
 _VAGUE = ("compressed", "compressed_depth", "data", "feedback", "info", "raw", "state", "status", "value")
-"""Last parts of names that say nothing without the part in front."""
+"""Last parts of names that mean nothing without the part before."""
 _COMMENT_AT = 41
-"""Column of comments."""
+"""Column where comments begin."""
 _LEFT_AT_MOST = 12
 _BODIES = ("base_link", "base_footprint")
 
@@ -48,7 +48,7 @@ class _Artifact:
         self.entries.extend(entries)
 
     def free_name(self, ros_name: str) -> str:
-        """A name that no entry has yet: the last part of the ROS name, with parts in front, or with a number."""
+        """Return a free name: the last part of the ROS name, with further parts in front or a number if that is taken."""
         taken = {entry.name for entry in self.entries}
         parts = [part for part in ros_name.split("/") if part]
         plain = [plain_name("_".join(parts[-count:])) for count in range(1, len(parts) + 1)]
@@ -59,13 +59,13 @@ class _Artifact:
         return next(name for name in names if name not in taken)
 
     def relative(self, name: str) -> str:
-        """A ROS name as the file writes it."""
+        """Return a ROS name as written in the file, relative to the namespace."""
         inside = f"/{self.namespace}/" if self.namespace else "/"
         return name.removeprefix(inside) if name.startswith(inside) else name
 
 
 def lines_for(joined: Joined, thing: Thing) -> list[str]:
-    """What a mapping file would say of one thing."""
+    """Return the lines of a mapping file for one topic, service or action."""
     artifact = _Artifact("robot", robot_of(thing.name, robots(joined.contents)))
     _add(joined, artifact, thing)
     return [*_namespace(artifact), *_body(artifact)]
@@ -80,19 +80,19 @@ def mapping_for(
     left: Sequence[Thing] = (),
     interfaces: Sequence[str] = (),
 ) -> str:
-    """The text of a mapping file for things of the graph.
+    """Return the text of a mapping file.
 
     Args:
         joined: the graph.
         things: topics, services and actions, see `find_mappable`.
-        frames: what `listening.frames` found; empty to leave frames out.
+        frames: result of `listening.frames`; empty for no frames.
         file: name of the file, for the comments.
-        options: options for the commands in the comments, such as ``--ros ros2``.
-        left: things that are there and were not taken, for a comment.
-        interfaces: folders with definitions of types, as seen from the file.
+        options: options of the commands in the comments, such as ``--ros ros2``.
+        left: topics, services and actions that were left out, for a comment.
+        interfaces: folders with interface definitions, relative to the file.
 
     Raises:
-        UnknownInterface: a type has no definition here.
+        UnknownInterface: the definition of a type is not available.
     """
     artifacts = _artifacts(joined, things)
     for artifact in artifacts:
@@ -104,7 +104,7 @@ def mapping_for(
 
 
 def _artifacts(joined: Joined, things: Sequence[Thing]) -> list[_Artifact]:
-    """One artifact, or one for each robot and one for what belongs to none of them."""
+    """Return one artifact, or one for each robot and one for the rest."""
     spaces = robots(joined.contents)
     used = sorted({robot_of(thing.name, spaces) for thing in things})
     named = [space for space in used if space]
@@ -120,7 +120,7 @@ def _home(joined: Joined, artifacts: list[_Artifact], thing: Thing) -> _Artifact
 
 def _add(joined: Joined, artifact: _Artifact, thing: Thing) -> None:
     if not thing.type_name:
-        raise NothingThere(f"the type of {thing.kind} {thing.name} is unknown; write the mapping by hand")
+        raise NothingThere(f"unknown type of {thing.kind} `{thing.name}`\n  = help: write this entry by hand")
     types, name, written = joined.backend, artifact.free_name(thing.name), artifact.relative(thing.name)
     if thing.kind is Kind.SERVICE:
         artifact.add([calling(types, name, written, thing.type_name)])
@@ -138,7 +138,7 @@ def _add(joined: Joined, artifact: _Artifact, thing: Thing) -> None:
 
 
 def _frame(artifact: _Artifact, frames: dict[str, str]) -> list[Entry]:
-    """Where the robot is in the map by tf, if its frames are known; without a map odometry tells the same."""
+    """Return an entry for the pose of the robot in the map, from tf; without a map, odometry gives the same pose."""
     prefix = f"{artifact.namespace}/" if artifact.namespace else ""
     for body in _BODIES:
         for inside in dict.fromkeys((prefix, "")):
@@ -157,7 +157,7 @@ def _frame(artifact: _Artifact, frames: dict[str, str]) -> list[Entry]:
             )
             own = ('tf_prefix: ""',) if prefix and not inside else ()
             return [
-                *(Entry("", "tf_prefix", "frames have no prefix here", own) for _ in own),
+                *(Entry("", "tf_prefix", "frames of this robot have no prefix", own) for _ in own),
                 Entry("frames", name, f"{name}(X, Y, Yaw) in {target}: metres, metres, degrees", line),
             ]
     return []
@@ -186,10 +186,10 @@ def _file(artifacts: list[_Artifact], file: str, options: str, interfaces: Seque
 
 
 def _head(artifacts: list[_Artifact], file: str, options: str) -> Iterator[str]:
-    yield "# A first mapping of a robot, written by `jacaros ros map`: change what you want to."
+    yield "# A first mapping file for a robot, written by `jacaros ros map`, for you to edit."
     yield "#"
-    yield "# Properties become beliefs, signals become events, operations are what agents can do. The comments say how"
-    yield '# agents write them. The page "Mapping files" of the reference has all keys.'
+    yield "# Properties become beliefs, signals become events, and agents call operations. The comments show how to write"
+    yield '# each in a plan. The reference page "Mapping files" lists all keys.'
     yield "#"
     yield f"#   jacaros check {file}"
     yield f"#   jacaros ros check {file}{options}"
@@ -197,18 +197,18 @@ def _head(artifacts: list[_Artifact], file: str, options: str) -> Iterator[str]:
     example = _example(artifacts)
     if example:
         yield "#"
-        yield "# A first agent.asl:"
+        yield "# A first agent.asl for it:"
         yield "#"
         yield f"#   {example}"
     yield ""
 
 
 def _left(left: Sequence[Thing], options: str) -> Iterator[str]:
-    """What else there is, so that nobody takes the file for all of it."""
+    """Yield a comment with the rest of the graph, so that the file does not look complete."""
     if not left:
         return
     yield ""
-    yield f"# Also there, but not taken; `jacaros ros show NAME{options}` prints what a mapping says of one:"
+    yield f"# Not in this file; `jacaros ros show NAME{options}` prints the entry for one of them:"
     yield "#"
     for thing in left[:_LEFT_AT_MOST]:
         yield f"#   {thing.kind} {thing.name}"
@@ -217,7 +217,7 @@ def _left(left: Sequence[Thing], options: str) -> Iterator[str]:
 
 
 def _example(artifacts: list[_Artifact]) -> str:
-    """A plan that prints a belief."""
+    """Return a plan that prints a belief."""
     for entry in (each for artifact in artifacts for each in artifact.entries):
         head = entry.comment.partition(":")[0]
         if entry.section in ("properties", "frames") and head.startswith(f"{entry.name}("):
@@ -229,7 +229,7 @@ def _example(artifacts: list[_Artifact]) -> str:
 
 def _namespace(artifact: _Artifact) -> Iterator[str]:
     if artifact.namespace:
-        yield _with_comment(f"namespace: {artifact.namespace}", "makeArtifact can give another")
+        yield _with_comment(f"namespace: {artifact.namespace}", "makeArtifact can override it")
     for entry in artifact.entries:
         if not entry.section:
             yield _with_comment(entry.lines[0], entry.comment)
@@ -238,7 +238,7 @@ def _namespace(artifact: _Artifact) -> Iterator[str]:
 def _connected(artifact: _Artifact) -> Iterator[str]:
     if any(entry.section == "properties" for entry in artifact.entries):
         odometry = f"/{artifact.namespace}/odom" if artifact.namespace else "/odom"
-        comment = f'connected("{odometry}") and so on, while it has a publisher'
+        comment = f'connected("{odometry}") and so on, while the topic has a publisher'
         yield _with_comment("connected: true", comment)
 
 
@@ -255,7 +255,7 @@ def _body(artifact: _Artifact) -> Iterator[str]:
 
 
 def _aligned(line: str) -> str:
-    """A line whose comment, if it has one behind its key, stands where all comments stand."""
+    """Align the comment of a line with all other comments."""
     key, sign, comment = line.partition("  # ")
     return _with_comment(key.rstrip(), comment) if sign and key.strip() else line
 

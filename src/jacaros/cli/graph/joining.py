@@ -1,12 +1,13 @@
-"""Joining a graph for a look: our node, what else is there, and what to say when nothing is."""
+"""Join a graph to inspect it, and report what to do if it is empty or unreachable."""
 
 import os
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from dataclasses import dataclass
 
+from jacaros.cli.usage import usage_error
 from jacaros.clock import Clock, VirtualClock, WallClock
-from jacaros.errors import JacarosError, UsageError
+from jacaros.errors import JacarosError
 from jacaros.mas.options import RunOptions
 from jacaros.mas.ros_graph import RosGraph
 from jacaros.ros.backend import Backend
@@ -15,26 +16,26 @@ from jacaros.ros.graph import Endpoint, GraphContents, TopicInfo
 from jacaros.ros.middleware import middleware
 
 FIRST_LOOK = 1.0
-"""Seconds for which the embedded world runs before it is looked at."""
+"""Seconds for which the embedded world runs before its graph is read."""
 DISCOVERY = 2.0
-"""Seconds that ROS 2 may take to find all nodes."""
+"""Seconds that ROS 2 may take to discover all nodes."""
 PAUSE = 0.5
-"""Seconds between two looks; when they see the same, that is all."""
+"""Seconds between two readings; the graph is complete when they are equal."""
 
 
 class NothingThere(JacarosError):
-    """The graph cannot be reached, or nobody else is in it; the text says what to do."""
+    """Raised when the graph is unreachable or has no other node; the text suggests what to do."""
 
 
 @dataclass(frozen=True, slots=True)
 class Joined:
-    """A graph that we have joined.
+    """A graph that our node has joined.
 
     Attributes:
         backend: our node.
         clock: of the graph.
-        contents: what else is there.
-        timeout: seconds to wait for an answer of somebody.
+        contents: the graph without our node.
+        timeout: seconds to wait for a reply.
     """
 
     backend: Backend
@@ -44,27 +45,27 @@ class Joined:
 
 
 def clock_for(options: RunOptions) -> Clock:
-    """The clock on which the graph is looked at: the embedded world runs as fast as it can."""
+    """Return the clock for inspecting a graph: the embedded world runs as fast as possible."""
     return WallClock() if options.real_graph else VirtualClock()
 
 
 @asynccontextmanager
 async def joined(options: RunOptions, clock: Clock, timeout: float) -> AsyncIterator[Joined]:
-    """Join the graph, look at it, and leave it at the end.
+    """Join a graph, read it, and leave it at the end.
 
     Args:
-        options: which graph; on ``memory`` also which world.
+        options: kind and address of the graph; for ``memory`` also the world.
         clock: see `clock_for`.
-        timeout: seconds after which nothing more is awaited.
+        timeout: seconds to wait for nodes and replies.
 
     Raises:
-        UsageError: options that cannot go together.
-        NothingThere: the graph cannot be reached, or is empty.
+        UsageError: the options cannot be combined.
+        NothingThere: the graph is unreachable or empty.
         BackendUnavailable: the client library is not installed.
     """
     options.check()
     if options.world is not None and options.real_graph:
-        raise UsageError("--world goes with --ros memory; start one in a real graph with `jacaros sim`")
+        raise usage_error("--world needs --ros memory", "`jacaros sim` runs a world in a real graph")
     graph = RosGraph(options, clock, f"jacaros_ros_{os.getpid()}", None, lambda line: None)
     try:
         await graph.start()
@@ -90,7 +91,7 @@ async def _look(backend: Backend, clock: Clock, options: RunOptions, timeout: fl
 
 
 async def _settled(backend: Backend, clock: Clock, timeout: float) -> GraphContents:
-    """What is there when two looks see the same; where nobody knows all nodes, not before they were found."""
+    """Return the graph when two readings are equal; where discovery takes time, not before it may be complete."""
     if clock.virtual:
         await clock.sleep(FIRST_LOOK)
         return without(await backend.contents(timeout), backend.node_name)
@@ -107,7 +108,7 @@ async def _settled(backend: Backend, clock: Clock, timeout: float) -> GraphConte
 
 
 def without(contents: GraphContents, node: str) -> GraphContents:
-    """The graph as it is without one node: ours is there for the look alone."""
+    """Return the graph without one node: ours joined only to inspect it."""
     topics = {}
     for name, info in contents.topics.items():
         publishers = _others(info.publishers, node)

@@ -1,17 +1,18 @@
-"""Finding what a name means in a graph."""
+"""Find the topic, service, action, node or type that a name means."""
 
 import difflib
 from dataclasses import dataclass
 from enum import StrEnum
 
 from jacaros.cli.graph.joining import Joined
+from jacaros.cli.usage import did_you_mean, usage_error
 from jacaros.errors import UsageError
 from jacaros.ros.errors import NameInvalid
 from jacaros.ros.graph import GraphContents
 
 
 class Kind(StrEnum):
-    """What a thing of the graph is."""
+    """Kinds of entries of a graph."""
 
     TOPIC = "topic"
     SERVICE = "service"
@@ -22,11 +23,11 @@ class Kind(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Thing:
-    """A thing of the graph.
+    """An entry of a graph.
 
     Attributes:
-        name: absolute; of a type, its full form.
-        type_name: in full form; empty when the graph does not tell, and for nodes.
+        name: absolute name; for a type, its full name.
+        type_name: full name of the type; empty if the graph does not report it, and for nodes.
     """
 
     kind: Kind
@@ -35,7 +36,7 @@ class Thing:
 
 
 def all_things(contents: GraphContents) -> list[Thing]:
-    """Topics, actions, services and nodes, each sorted by name."""
+    """Return topics, actions, services and nodes, each sorted by name."""
     topics = [Thing(Kind.TOPIC, name, _first(info.types)) for name, info in sorted(contents.topics.items())]
     actions = [Thing(Kind.ACTION, name, type_name) for name, type_name in sorted(contents.actions.items())]
     services = [Thing(Kind.SERVICE, name, type_name) for name, type_name in sorted(contents.services.items())]
@@ -43,10 +44,10 @@ def all_things(contents: GraphContents) -> list[Thing]:
 
 
 def find(joined: Joined, written: str) -> list[Thing]:
-    """The things called *written*: an absolute name, one below the namespace, or a type.
+    """Return the entries named *written*: an absolute name, a name relative to the namespace, or a type.
 
     Raises:
-        UsageError: there is none; the text names similar ones.
+        UsageError: the name is unknown; the error suggests similar ones.
     """
     types = _type_names(written)
     if types:
@@ -58,41 +59,40 @@ def find(joined: Joined, written: str) -> list[Thing]:
     things = all_things(joined.contents)
     found = [thing for thing in things if thing.name == name]
     if not found:
-        raise UsageError(f"unknown name {name}{hint(name, [t.name for t in things])}")
+        raise usage_error(f"unknown name: `{name}`", suggestion(name, [t.name for t in things]))
     return found
 
 
 def find_mappable(joined: Joined, written: str) -> list[Thing]:
-    """What of the things called *written* a mapping can have: a node may be called like a topic.
+    """Return the entries named *written* that a mapping can contain: a node may have the same name as a topic.
 
     Raises:
-        UsageError: there is nothing of that name, or only a node or a type.
+        UsageError: the name is unknown, or names only a node or a type.
     """
     things = find(joined, written)
     mappable = [thing for thing in things if thing.kind not in (Kind.NODE, Kind.TYPE)]
     if not mappable:
         found = things[0]
-        raise UsageError(f"{found.name} is a {found.kind}; a mapping has topics, services and actions")
+        raise usage_error(
+            f"`{found.name}` is a {found.kind}", "a mapping file contains topics, services and actions"
+        )
     return mappable
 
 
-def hint(name: str, names: list[str]) -> str:
-    """What may have been meant, as the end of a sentence."""
-    near = near_names(name, names)
-    if near:
-        return f"; did you mean {' or '.join(near)}?"
-    return "; `jacaros ros list` shows all names"
+def suggestion(name: str, names: list[str]) -> str:
+    """Return the help for an unknown name."""
+    return did_you_mean(near_names(name, names)) or "`jacaros ros list` shows all names"
 
 
 def near_names(name: str, names: list[str]) -> list[str]:
-    """Up to three names like *name*: written like it, or with the same last part in another namespace."""
+    """Return up to three similar names: similar spelling, or the same last part in another namespace."""
     last = name.rpartition("/")[2]
     same = [each for each in names if each.rpartition("/")[2] == last]
     return list(dict.fromkeys([*same, *difflib.get_close_matches(name, names, n=3, cutoff=0.7)]))[:3]
 
 
 def _type_names(written: str) -> list[str]:
-    """The types that a name without a slash in front may mean, in full form."""
+    """Return the full names of the types that a name without a leading slash may mean."""
     parts = written.split("/")
     if written.startswith(("/", "~")) or not parts[-1][:1].isupper() or len(parts) not in (2, 3):
         return []

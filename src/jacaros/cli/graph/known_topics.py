@@ -1,9 +1,9 @@
-"""What a first mapping says of the topics that most robots have."""
+"""Entries of a first mapping file for topics that most robots have."""
 
 from collections.abc import Callable, Mapping, Sequence
 
 Body = tuple[str, str, Sequence[str]]
-"""Section, comment and further lines of an entry."""
+"""Section, comment and lines of an entry."""
 
 
 def _odometry(name: str) -> Body:
@@ -24,7 +24,7 @@ def _odometry(name: str) -> Body:
 def _laser(name: str) -> Body:
     return (
         "properties",
-        f"{name}(R0, R25, R50, R75, R100): metres, five of the ranges from the first to the last",
+        f"{name}(R0, R25, R50, R75, R100): metres, five ranges from the first to the last",
         ["fields: [{path: ranges, sample: 5, otherwise: range_max, round: 2}]", "rate: 2", "dead_band: 0.02"],
     )
 
@@ -44,7 +44,7 @@ def _battery(name: str) -> Body:
 def _joints(name: str) -> Body:
     return (
         "properties",
-        f"{name}(Joint, Position): one for each joint; radians, or metres of a joint that slides",
+        f"{name}(Joint, Position): one for each joint; radians, or metres for a prismatic joint",
         [
             "each: name",
             'fields: [{path: ., name: joint}, {path: "/position[i]", round: 3}]',
@@ -73,7 +73,7 @@ def _hazards(name: str) -> Body:
         [
             "each: detections",
             "fields: [{path: type, as: name}, {path: header.frame_id, as: atom}]",
-            "when_changed: true   # not again and again while it lasts",
+            "when_changed: true   # once, not repeatedly while it lasts",
         ],
     )
 

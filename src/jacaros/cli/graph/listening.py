@@ -1,4 +1,4 @@
-"""Listening for a while: one message of a topic, how often messages come, which frames there are."""
+"""Listen to a graph for a while: one message of a topic, message rates, frames."""
 
 import asyncio
 from collections.abc import Iterable
@@ -12,16 +12,16 @@ from jacaros.ros.qos import QoS
 from jacaros.ros.waiting import within
 
 RATE_OVER = 2.0
-"""Seconds over which messages are counted."""
+"""Seconds for which messages are counted."""
 FRAMES_OVER = 2.0
-"""Seconds in which every moving frame is told at least once (REP 105's trees are published ten times a second or more)."""
+"""Seconds in which each moving frame is published at least once (trees as in REP 105 are published at 10 Hz or more)."""
 
 TF_TYPE = "tf2_msgs/msg/TFMessage"
 _FRAMES = ("/tf", "/tf_static")
 
 
 def hearing(info: TopicInfo) -> QoS:
-    """What to ask for in order to hear all publishers of a topic, and their kept messages if all of them keep some."""
+    """Return the quality of service to receive from all publishers, latched messages included if all of them latch."""
     offers = [each.qos for each in info.publishers]
     keeps = bool(offers) and all(qos is not None and qos.durability == "transient_local" for qos in offers)
     sure = bool(offers) and all(qos is not None and qos.reliability == "reliable" for qos in offers)
@@ -29,7 +29,7 @@ def hearing(info: TopicInfo) -> QoS:
 
 
 async def one_message(joined: Joined, info: TopicInfo, timeout: float) -> Any:
-    """The next message of a topic; None when none comes in *timeout* seconds."""
+    """Return the next message of a topic; None after *timeout* seconds."""
     heard: asyncio.Future[Any] = asyncio.get_running_loop().create_future()
 
     def take(sample: Any) -> None:
@@ -48,7 +48,7 @@ async def one_message(joined: Joined, info: TopicInfo, timeout: float) -> Any:
 
 
 async def rates(joined: Joined, topics: Iterable[TopicInfo]) -> dict[str, float]:
-    """Messages a second by topic, counted for `RATE_OVER` seconds; topics that cannot be heard are left out."""
+    """Return the rates of topics in Hz, measured for `RATE_OVER` seconds, without topics that cannot be received."""
     stamps: dict[str, list[float]] = {}
     subscriptions = []
 
@@ -58,7 +58,7 @@ async def rates(joined: Joined, topics: Iterable[TopicInfo]) -> dict[str, float]
     for info in topics:
         if not info.publishers or len(info.types) != 1:
             continue
-        with suppress(RosError):  # a type that is not installed here
+        with suppress(RosError):  # the type is not installed
             subscriptions.append(
                 joined.backend.subscription(
                     info.name, info.types[0], count, QoS("best_effort"), on_event=lambda event: None
@@ -72,14 +72,14 @@ async def rates(joined: Joined, topics: Iterable[TopicInfo]) -> dict[str, float]
 
 
 def _rate(times: list[float]) -> float:
-    """Messages a second, with one decimal."""
+    """Return the rate in Hz, with one decimal."""
     if len(times) < 2 or times[-1] <= times[0]:
         return round(len(times) / RATE_OVER, 1)
     return round((len(times) - 1) / (times[-1] - times[0]), 1)
 
 
 async def frames(joined: Joined) -> dict[str, str]:
-    """The frames of ``/tf`` and ``/tf_static``: each with the frame that it hangs on; empty for the uppermost ones."""
+    """Return the frames on ``/tf`` and ``/tf_static``, each with its parent; the parent of a root is empty."""
     found: dict[str, str] = {}
 
     def take(sample: Any) -> None:
@@ -90,7 +90,7 @@ async def frames(joined: Joined) -> dict[str, str]:
 
     topics = joined.contents.topics
     subscriptions = []
-    # A node may publish static frames only when it hears of a listener for the others, and so be no publisher yet.
+    # Some nodes publish static frames only once the other frames have a subscription, so they may not be publishers yet.
     if any(name in topics and topics[name].publishers for name in _FRAMES):
         for name in _FRAMES:
             with suppress(RosError):
@@ -106,14 +106,14 @@ async def frames(joined: Joined) -> dict[str, str]:
 
 
 def _of_frames(name: str) -> QoS:
-    # Many nodes send frames at once, each its own; static ones are kept for late comers.
+    # Many nodes publish frames at the same time, each its own; static frames are latched for late joiners.
     if name == "/tf_static":
         return QoS(durability="transient_local", depth=100)
     return QoS("best_effort", depth=100)
 
 
 def root(frames: dict[str, str], frame: str) -> str:
-    """The uppermost frame of the tree in which *frame* is."""
+    """Return the root of the tree that contains *frame*."""
     seen = {frame}
     while (parent := frames.get(frame, "")) and parent not in seen:
         seen.add(parent)

@@ -1,4 +1,4 @@
-"""``jacaros ros list``: everything in a graph, as a table, as lines, or as JSON."""
+"""``jacaros ros list``: the contents of a graph as a table, as lines or as JSON."""
 
 import json
 from collections.abc import Iterator
@@ -7,11 +7,11 @@ from typing import Any
 from jacaros.ros.graph import GraphContents, TopicInfo
 
 UNKNOWN = "(unknown)"
-"""In place of a type that the middleware does not tell."""
+"""Shown instead of a type that the middleware does not report."""
 
 
 def as_json(contents: GraphContents, rates: dict[str, float]) -> str:
-    """One JSON object with the lists ``topics``, ``actions``, ``services`` and ``nodes``."""
+    """Return one JSON object with the lists ``topics``, ``actions``, ``services`` and ``nodes``."""
     return json.dumps(
         {
             "topics": [_topic(info, rates) for _, info in sorted(contents.topics.items())],
@@ -38,7 +38,7 @@ def _typed(things: dict[str, str]) -> list[dict[str, str | None]]:
 
 
 def as_lines(contents: GraphContents, rates: dict[str, float]) -> Iterator[str]:
-    """A line for each thing, for other programs: kind, name, type, and of topics who is there."""
+    """Yield one line for each entry, for other programs: kind, name, type and, for topics, the number of endpoints."""
     for name, info in sorted(contents.topics.items()):
         rate = f" rate={rates[name]:g}" if name in rates else ""
         ends = f"publishers={len(info.publishers)} subscriptions={len(info.subscriptions)}"
@@ -51,7 +51,7 @@ def as_lines(contents: GraphContents, rates: dict[str, float]) -> Iterator[str]:
 
 
 def show_tables(contents: GraphContents, rates: dict[str, float]) -> None:
-    """Tables on the terminal."""
+    """Print tables on the terminal."""
     from rich.console import Console
     from rich.table import Table
 
@@ -84,7 +84,7 @@ def show_tables(contents: GraphContents, rates: dict[str, float]) -> None:
 
 
 def notes(contents: GraphContents) -> Iterator[str]:
-    """Explain what is missing in the list."""
+    """Yield notes that explain what the list lacks."""
     if not all(contents.actions.values()):
         yield (
             f"note: the types of some actions are {UNKNOWN}: rosapi on the robot cannot report them "

@@ -1,4 +1,4 @@
-"""``jacaros ros show``: what a thing is made of, who is there, and what it says just now."""
+"""``jacaros ros show``: the fields of an entry of a graph, its endpoints and its next message."""
 
 import json
 import math
@@ -18,16 +18,16 @@ from jacaros.ros.graph import Endpoint
 from jacaros.ros.message import to_seconds
 
 FEW = 6
-"""So many elements of a list are shown."""
+"""Number of list elements shown."""
 LONG = 60
-"""So many characters of a text."""
+"""Number of characters of a string shown."""
 
 
 async def described_all(joined: Joined, things: Sequence[Thing]) -> list[dict[str, Any]]:
-    """What is known of each thing; of a type whose kind was left out, of that which there is.
+    """Describe entries; for a type named without its kind, describe the kinds that exist.
 
     Raises:
-        UnknownInterface: no definition is known.
+        UnknownInterface: no definition is available.
     """
     found, missing = [], None
     for thing in things:
@@ -41,10 +41,10 @@ async def described_all(joined: Joined, things: Sequence[Thing]) -> list[dict[st
 
 
 async def described(joined: Joined, thing: Thing) -> dict[str, Any]:
-    """What is known of a thing, as plain data for `as_text` and for JSON.
+    """Describe an entry, as data for `as_text` and for JSON.
 
     Raises:
-        UnknownInterface: its type has no definition here.
+        UnknownInterface: the definition of its type is not available.
     """
     data: dict[str, Any] = {"kind": str(thing.kind), "name": thing.name}
     if thing.type_name:
@@ -81,7 +81,7 @@ async def _node(joined: Joined, name: str) -> dict[str, Any]:
     }
     if PARAMETERS in joined.backend.capabilities:
         parameters = joined.backend.parameters(name)
-        # Not every node answers: on ROS 2 some have no parameter services.
+        # Not every node replies: some ROS 2 nodes have no parameter services.
         with suppress(RosError):
             names = await parameters.names(joined.timeout)
             data["parameters"] = {each: await parameters.get(each, joined.timeout) for each in names}
@@ -92,7 +92,7 @@ def _endpoint(endpoint: Endpoint) -> dict[str, Any]:
     data: dict[str, Any] = {"node": endpoint.node or None}
     if endpoint.qos is not None:
         qos = endpoint.qos
-        # The depth is nobody else's business: ROS 2 does not tell it over the network.
+        # The depth is left out: ROS 2 does not transmit it.
         quality: dict[str, Any] = {"reliability": qos.reliability, "durability": qos.durability}
         if qos.deadline is not None:
             quality["deadline"] = qos.deadline
@@ -114,7 +114,7 @@ def _row(joined: Joined, leaf: Leaf, message: Any) -> dict[str, Any]:
 
 
 def _other_constants(types: Interfaces, type_names: Iterable[str]) -> dict[str, dict[str, Any]]:
-    """The constants that belong to no single field, by the message type that has them."""
+    """Return the constants that belong to no single field, by message type."""
     owners = dict.fromkeys(owner for name in type_names for owner in messages(types.fields, name))
     others = {owner: constants_by_field(types, owner).get("", {}) for owner in owners}
     return {owner: _plain_constants(named) for owner, named in others.items() if named}
@@ -125,7 +125,7 @@ def _plain_constants(named: Mapping[str, object]) -> dict[str, Any]:
 
 
 def _plain(value: Any, leaf: Leaf) -> Any:
-    """A value as JSON has it; of long lists the beginning and the length."""
+    """Return a value as data for JSON; for long lists the first elements and the length."""
     if value is None:
         return None
     single = to_seconds if is_time(leaf.type) else _single
@@ -146,19 +146,19 @@ def _single(value: Any) -> Any:
 
 
 def as_json(data: Sequence[dict[str, Any]]) -> str:
-    """One object, or a list if there are several things of that name."""
+    """Return one object, or a list for several entries of the same name."""
     return json.dumps(data[0] if len(data) == 1 else list(data), indent=2, ensure_ascii=False, default=str)
 
 
 def as_text(data: dict[str, Any]) -> Iterator[str]:
-    """What people read."""
+    """Yield the lines of the text output."""
     yield f"{data['kind']} {data['name']}"
     if len(data.get("types", ())) > 1:
         yield f"  types: {', '.join(data['types'])}: conflicting types"
     elif "type" in data and data["kind"] != "type":
         yield f"  type: {data['type']}"
     elif data["kind"] not in ("node", "type"):
-        yield "  type: unknown to this middleware"
+        yield "  type: not reported by this middleware"
     for key in ("publishers", "subscriptions"):
         if key in data:
             yield f"  {key}: {_endpoints(data[key])}"
@@ -166,9 +166,7 @@ def as_text(data: dict[str, Any]) -> Iterator[str]:
     for name, rows in data.get("parts", {}).items():
         yield ""
         yield (
-            name
-            if len(data["parts"]) > 1 or "value" not in (rows[0] if rows else {})
-            else "message just heard"
+            name if len(data["parts"]) > 1 or "value" not in (rows[0] if rows else {}) else "latest message"
         )
         yield from _table(rows)
     for type_name, named in data.get("constants", {}).items():
@@ -177,17 +175,17 @@ def as_text(data: dict[str, Any]) -> Iterator[str]:
         yield from _constant_lines(named)
     if data.get("heard") is False:
         yield ""
-        yield "no message was heard; --timeout S waits longer"
+        yield "no message received; --timeout S waits longer"
     if data.get("mapping"):
         yield ""
-        yield "in a mapping file (`jacaros ros map` writes one)"
+        yield "entry for a mapping file (`jacaros ros map` writes one)"
         yield from (f"  {line}".rstrip() for line in data["mapping"])
 
 
 def _of_node(data: dict[str, Any]) -> Iterator[str]:
     for key in ("publishes", "subscribes"):
         if key in data:
-            yield f"  {key}: {', '.join(data[key]) or 'nothing that is known'}"
+            yield f"  {key}: {', '.join(data[key]) or 'none'}"
     if data.get("parameters"):
         yield ""
         yield "parameters"
@@ -235,7 +233,7 @@ def _text(row: dict[str, Any]) -> str:
 
 
 def _plain_text(value: Any) -> str:
-    """A value without parts as agents write it."""
+    """Return a plain value in AgentSpeak notation."""
     if isinstance(value, str):
         text = json.dumps(value, ensure_ascii=False)
         return text if len(text) <= LONG else f"{text[:LONG]}..."

@@ -1,4 +1,4 @@
-"""What a robot usually has that agents want, told by its types and names."""
+"""The usual topics, services and actions of a robot, found by their types and names."""
 
 from collections.abc import Iterator
 
@@ -7,7 +7,7 @@ from jacaros.cli.graph.suggestions import TWISTS
 from jacaros.ros.graph import GraphContents
 
 _BASE = ("nav_msgs/msg/Odometry", "sensor_msgs/msg/LaserScan")
-"""Whoever has these, or hears ``cmd_vel``, is a robot, and their namespace is its own."""
+"""A namespace with one of these topics, or a subscription to ``cmd_vel``, belongs to a robot."""
 _SENSORS = (
     "nav_msgs/msg/Odometry",
     "sensor_msgs/msg/LaserScan",
@@ -32,7 +32,7 @@ _ROLES = (
     ("irobot_create_msgs/action/DriveDistance",),
     ("irobot_create_msgs/action/RotateAngle",),
 )
-"""Of the things that do the same, a robot's first one is taken."""
+"""Roles, and the types for each: the first type found is used."""
 _SERVICES = ("std_srvs/srv/Trigger", "std_srvs/srv/Empty")
 _INNER = (
     "costmap",
@@ -45,14 +45,14 @@ _INNER = (
     "/rosapi",
     "global_localization",
 )
-"""Services of programs and not of robots have such names."""
+"""Parts of names of services that belong to programs, not to the robot."""
 SERVICES_AT_MOST = 10
 _OF_ROS = ("/tf", "/tf_static", "/clock", "/statistics")
 """Topics that agents use in other ways, or not at all."""
 
 
 def usual_things(contents: GraphContents) -> list[Thing]:
-    """Odometry, scan, velocity, battery, bumpers, map, actions to drive and dock, plain services."""
+    """Return odometry, scan, velocity, battery, bumpers, map, actions to drive and dock, and plain services."""
     things = all_things(contents)
     spaces = robots(contents)
     taken = {thing for space in ("", *spaces) for thing in _in_roles(things, contents, space, spaces)}
@@ -62,7 +62,7 @@ def usual_things(contents: GraphContents) -> list[Thing]:
 
 
 def left_out(contents: GraphContents, taken: list[Thing]) -> list[Thing]:
-    """What else of the graph could be mapped, actions first, and topics that are published before those that are heard."""
+    """Return the rest that could be mapped: actions, then topics with publishers, other topics, and services."""
 
     def order(thing: Thing) -> int:
         if thing.kind is Kind.ACTION:
@@ -82,7 +82,7 @@ def left_out(contents: GraphContents, taken: list[Thing]) -> list[Thing]:
 
 
 def _in_roles(things: list[Thing], contents: GraphContents, space: str, spaces: list[str]) -> Iterator[Thing]:
-    """What one robot has for each of the roles."""
+    """Yield the entries of one robot for each role."""
     own = [thing for thing in things if robot_of(thing.name, spaces) == space and _is_there(thing, contents)]
     for role in _ROLES:
         for type_name in role:
@@ -110,9 +110,10 @@ def _is_usual(thing: Thing, contents: GraphContents) -> bool:
 
 
 def robots(contents: GraphContents) -> list[str]:
-    """The namespaces of robots, without slash in front, sorted; ``""`` is left out.
+    """Return the namespaces of robots without leading slash, sorted, without ``""``.
 
-    Beside a robot without a namespace, a namespace with one such topic is a part of that robot: a second laser, say.
+    Beside a robot without a namespace, a namespace with a single such topic is a part of that robot, such as a second
+    laser.
     """
     found: dict[str, set[str]] = {}
     for name, info in contents.topics.items():
@@ -126,6 +127,6 @@ def robots(contents: GraphContents) -> list[str]:
 
 
 def robot_of(name: str, namespaces: list[str]) -> str:
-    """The robot to which a thing of that name belongs; empty for none."""
+    """Return the robot that owns a name; empty for none."""
     fitting = [space for space in namespaces if name.startswith(f"/{space}/")]
     return min(fitting, key=len, default="")

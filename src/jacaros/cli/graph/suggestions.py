@@ -1,4 +1,4 @@
-"""What a first mapping says of a thing: sensible fields, rates and parameters, and a comment for its reader."""
+"""Entries of a first mapping file: useful fields, rates and parameters, and a comment."""
 
 import re
 from collections.abc import Iterator, Sequence
@@ -21,7 +21,7 @@ _BIG = (
     "nav_msgs/msg/OccupancyGrid",
     "nav_msgs/msg/Path",
 )
-"""Nobody believes a picture: agents get a reference, for operations and internal actions in Python."""
+"""Types too large for beliefs: agents get a reference, for operations and for internal actions in Python."""
 
 
 _WORDS = "std_msgs/msg/String"
@@ -33,9 +33,9 @@ class Entry:
 
     Attributes:
         section: ``properties``, ``signals`` or ``operations``.
-        name: for agents.
-        comment: how agents write it, and in which units.
-        lines: its keys, without indentation in front.
+        name: name for agents.
+        comment: the belief, event or call in AgentSpeak, with units.
+        lines: keys of the entry, not indented.
     """
 
     section: str
@@ -45,43 +45,43 @@ class Entry:
 
 
 def property_of(types: Interfaces, name: str, topic: str, info: TopicInfo) -> Entry:
-    """A property that follows a topic; a signal where messages are events.  Raises `UnknownInterface`."""
+    """Return a property that follows a topic, or a signal if its messages are events. Raises `UnknownInterface`."""
     type_name = info.types[0]
     known = KNOWN.get(type_name)
     section, comment, body = known(name) if known is not None else _property(types, name, type_name)
     kept = _kept(info, type_name)
     if type_name == _WORDS and not kept:
-        section = "signals"  # two equal words in a row are two events, and one belief
+        section = "signals"  # two equal messages are two events, but one belief
     return Entry(section, name, comment, (f"topic: {topic}", f"type: {type_name}", *body, *kept))
 
 
 def _property(types: Interfaces, name: str, type_name: str) -> Body:
     if type_name in _BIG:
-        comment = f"{name}(Object), for Python code; an agent looks with get_{name}"
+        comment = f"{name}(Object), for Python code; get_{name} reads the newest message"
         return "properties", comment, ["fields: [{path: ., as: object}]", "mode: on_demand"]
     values = values_of(types, type_name)
     if not values:
         return _only_lists(types, name, type_name)
     others = [value.path for value in values[MANY:]]
     others += [field for field, _ in lists_of(types, type_name) if not field.endswith("covariance")]
-    more = [f"# there are also {_some(others)}"] if others else []
+    more = [f"# further fields: {_some(others)}"] if others else []
     shown = values[:MANY]
     return "properties", _call(name, shown), [*_fields(shown), *more, *_calm(shown)]
 
 
-_TOLD = 8
-"""So many names of fields are told in a comment."""
+_MOST_NAMES = 8
+"""Number of field names listed in a comment."""
 
 
 def _some(names: Sequence[str]) -> str:
-    more = f", and {len(names) - _TOLD} more" if len(names) > _TOLD else ""
-    return f"{', '.join(names[:_TOLD])}{more}"
+    more = f", and {len(names) - _MOST_NAMES} more" if len(names) > _MOST_NAMES else ""
+    return f"{', '.join(names[:_MOST_NAMES])}{more}"
 
 
 def _only_lists(types: Interfaces, name: str, type_name: str) -> Body:
     lists = lists_of(types, type_name)
     if not lists:
-        return "signals", f"{name}, for each message: it has no fields", []
+        return "signals", f"{name}, for each message (the type has no fields)", []
     field, kind = lists[0]
     if not kind.is_message:
         value = list_of(field, kind)
@@ -89,18 +89,18 @@ def _only_lists(types: Interfaces, name: str, type_name: str) -> Body:
     elements = values_of(types, kind.base)
     key = _key(elements)
     if key is None:
-        comment = f"{name}(N): how many {field} there are; `each: {field}` would show each of them"
+        comment = f"{name}(N): number of {field}; `each: {field}` gives each of them"
         return "properties", comment, [f"fields: [{{path: {field}, as: count}}]"]
     shown = [key, *(each for each in elements if each is not key)][:MANY]
     return (
         "properties",
-        f"{_call(name, shown)}, one for each of {field}",
+        f"{_call(name, shown)}, one for each element of {field}",
         [f"each: {field}", *_fields(shown), *_calm(shown)],
     )
 
 
 def _key(elements: Sequence[Value]) -> Value | None:
-    """What tells an element of a list from the others."""
+    """Return the field that identifies an element of a list."""
     for wanted in ("name", "id"):
         for value in elements:
             last = value.path.rpartition(".")[2]
@@ -114,7 +114,7 @@ def _fields(values: Sequence[Value]) -> list[str]:
 
 
 def _calm(values: Sequence[Value]) -> list[str]:
-    """Numbers that always change a little are told now and then."""
+    """Return a rate and dead bands for numbers that keep changing a little."""
     if all(value.unit.digits is None for value in values):
         return []
     if not any(value.unit.band for value in values):
@@ -123,12 +123,12 @@ def _calm(values: Sequence[Value]) -> list[str]:
 
 
 def _figure(number: float) -> str:
-    """As YAML has it: without an exponent."""
+    """Return a number in YAML notation without an exponent."""
     return f"{number:.5f}".rstrip("0").rstrip(".")
 
 
 def _call(name: str, values: Sequence[Value]) -> str:
-    """How agents write it: ``odom(X, Y, Yaw): metres, metres, degrees``."""
+    """Return the AgentSpeak notation: ``odom(X, Y, Yaw): metres, metres, degrees``."""
     arguments = ", ".join(_variable(value.name) for value in values)
     head = f"{name}({arguments})" if values else name
     if not any(value.unit.word for value in values):
@@ -141,7 +141,7 @@ def _variable(name: str) -> str:
 
 
 def _kept(info: TopicInfo, type_name: str) -> list[str]:
-    """The quality of service that hears what a publisher keeps for late comers."""
+    """Return the quality of service that receives the latched messages of a publisher."""
     offers = [each.qos for each in info.publishers if each.qos is not None]
     if offers and all(each.durability == "transient_local" for each in offers):
         if all(each.reliability == "reliable" for each in offers):
@@ -153,14 +153,14 @@ def _kept(info: TopicInfo, type_name: str) -> list[str]:
 
 
 def looking(entry: Entry) -> Entry | None:
-    """The operation that looks for a property on demand."""
+    """Return the operation that reads a property on demand."""
     if "mode: on_demand" not in entry.lines:
         return None
     return Entry("operations", f"get_{entry.name}", "takes the newest message", (f"refresh: {entry.name}",))
 
 
 def publishing(types: Interfaces, name: str, topic: str, info: TopicInfo) -> list[Entry]:
-    """Operations that publish on a topic; for velocities also one that stops."""
+    """Return operations that publish on a topic; for velocities also one that stops."""
     type_name = info.types[0]
     if type_name in TWISTS:
         return _driving(name, topic, type_name)
@@ -183,8 +183,8 @@ def _driving(name: str, topic: str, type_name: str) -> list[Entry]:
         *stamp,
         f"  {inner}linear.x: $speed",
         f"  {inner}angular.z: {{value: $turn, unit: degrees}}",
-        "rate: 10   # again and again, since robots stop when nothing comes",
-        "duration: $seconds   # then it stops",
+        "rate: 10   # repeated, because robots stop without commands",
+        "duration: $seconds   # stops after this time",
     )
     comment = f"{name}(Speed, Turn, Seconds): metres per second, degrees per second"
     stop = Entry(
@@ -197,7 +197,7 @@ def _driving(name: str, topic: str, type_name: str) -> list[Entry]:
 
 
 def calling(types: Interfaces, name: str, service: str, type_name: str) -> Entry:
-    """An operation that calls a service."""
+    """Return an operation that calls a service."""
     inputs, body = _filled(types, request_type(type_name), "request")
     outputs = _results(types, f"{type_name}_Response")
     lines = [*_parameters(inputs), f"service: {service}", f"type: {type_name}", *body, *_outputs(outputs)]
@@ -205,15 +205,13 @@ def calling(types: Interfaces, name: str, service: str, type_name: str) -> Entry
 
 
 def acting(types: Interfaces, name: str, action: str, type_name: str) -> Entry:
-    """An operation that sends a goal and waits for its result."""
+    """Return an operation that sends a goal and waits for its result."""
     inputs, body = _filled(types, goal_type(type_name), "goal")
     outputs = _results(types, result_type(type_name))
     lines = [*_parameters(inputs), f"action: {action}", f"type: {type_name}", *body, *_outputs(outputs)]
     lines += [*_code(types, result_type(type_name)), *_feedback(types, name, type_name)]
     lines += [_SUCCESS[type_name]] if type_name in _SUCCESS else []
-    lines.append(
-        "suspend: cancel   # .suspend cancels the goal, so that the robot stops; .resume sends it again"
-    )
+    lines.append("suspend: cancel   # .suspend cancels the goal and stops the robot; .resume sends it again")
     return Entry("operations", name, _call(name, [*inputs, *outputs]), tuple(lines))
 
 
@@ -221,11 +219,11 @@ _SUCCESS = {
     "irobot_create_msgs/action/Dock": "success: is_docked",
     "irobot_create_msgs/action/Undock": "success: {path: is_docked, is: false}",
 }
-"""What else than its status tells whether an action went well."""
+"""Fields that decide, apart from the status, whether an action succeeded."""
 
 
 def _code(types: Interfaces, result: str) -> list[str]:
-    """The name of an error, where the result has constants for it; a number without a constant stays a number."""
+    """Return the key that gives error codes the name of their constant; other codes stay numbers."""
     known = list(constants(types, result).values())
     if "error_code" not in types.fields(result) or not known or len(set(known)) < len(known):
         return []
@@ -260,9 +258,9 @@ _TOLD_ANYWAY = (
     "error_msg",
     "error_string",
 )
-"""Fields of results that make the operation fail, with a reason."""
+"""Result fields that make the operation fail, with a reason."""
 _REMARKS = ("kobuki_msgs/action/AutoDocking_Result",)
-"""Results that hold nothing but a remark; plans of docking expect none."""
+"""Result types with nothing but a message; plans for docking do not expect an output."""
 
 
 def _results(types: Interfaces, type_name: str) -> list[Value]:
@@ -281,7 +279,7 @@ def _parameters(inputs: Sequence[Value]) -> list[str]:
 
 
 def _filled(types: Interfaces, type_name: str, key: str) -> tuple[list[Value], list[str]]:
-    """The parameters that fill a message, and the lines that do it under *key*."""
+    """Return the parameters that fill a message, and its lines under *key*."""
     values = values_of(types, type_name)
     inputs, left = values[:MANY], [value.path for value in values[MANY:]]
     filled = (f"  {value.path}: {value.as_value}{value.remark}" for value in inputs)
@@ -294,7 +292,7 @@ def _filled(types: Interfaces, type_name: str, key: str) -> tuple[list[Value], l
             inputs = [*inputs, value]
             lines += more
     if left:
-        lines.append(f"  # left as they are: {_some(left)}")
+        lines.append(f"  # unchanged: {_some(left)}")
     return inputs, [f"{key}:", *lines] if any(not line.startswith("  #") for line in lines) else []
 
 
@@ -304,33 +302,33 @@ _OCTETS = ("byte", "char", "int8", "uint8")
 
 
 def _can_be_given(kind: FieldType) -> bool:
-    """Whether an agent can write the list: places, or numbers and texts that are no covariance and no picture."""
+    """Return whether an agent can write the list: poses, or numbers and strings, but no covariances or images."""
     if kind.is_message:
         return kind.base in (*_PLACES, _TRAJECTORY_POINT)
     return not kind.fixed and kind.base not in _OCTETS
 
 
 def _list(types: Interfaces, name: str, kind: FieldType) -> tuple[Value, list[str]]:
-    """A parameter that is a list, and the lines that put it into a message."""
+    """Return a list parameter, and the lines that put it into a message."""
     if not kind.is_message:
         value = list_of(name, kind)
         return value, [f"  {name}: {value.as_value}"]
     if kind.base == _TRAJECTORY_POINT:
         return _trajectory(name)
     elements = values_of(types, kind.base)
-    told = f"a list of {_call('place', elements).partition(':')[0]}"
+    comment = f"a list of {_call('place', elements).partition(':')[0]}"
     lines = [
         f"  {name}:",
         f"    each: ${name.lower()}",
         f"    fields: {{{_elements(types, kind.base, elements)}}}",
     ]
-    return Value(name, name.lower(), "", Unit(told)), lines
+    return Value(name, name.lower(), "", Unit(comment)), lines
 
 
 def _trajectory(path: str) -> tuple[Value, list[str]]:
-    """A parameter for the points of a trajectory of joints: without points nothing would move."""
+    """Return a parameter for the points of a joint trajectory, which has no effect without points."""
     lines = [
-        f"  {path}:   # in the order of the joints: radians, or metres of a joint that slides",
+        f"  {path}:   # in the order of the joints: radians, or metres for a prismatic joint",
         "    each: $points",
         "    fields: {positions: $1, time_from_start: $2}",
     ]
@@ -338,7 +336,7 @@ def _trajectory(path: str) -> tuple[Value, list[str]]:
 
 
 def _elements(types: Interfaces, type_name: str, values: Sequence[Value]) -> str:
-    """What becomes of the parts of each element of a list."""
+    """Return how the parts of each list element are filled."""
     headers = [line.strip() for line in _headers(types, type_name)]
     parts = [
         f"{value.path}: {replace(value, name=str(number)).as_value}" for number, value in enumerate(values, 1)
@@ -347,7 +345,7 @@ def _elements(types: Interfaces, type_name: str, values: Sequence[Value]) -> str
 
 
 def _headers(types: Interfaces, type_name: str) -> list[str]:
-    """Headers are of now, and those of what has a place are of the map."""
+    """Return lines that stamp headers with the current time, and put poses into the map frame."""
     has_place = any(each in _IN_A_FRAME for each in _parts(types, type_name))
     lines = []
     for path in _header_paths(types, type_name):
@@ -360,7 +358,7 @@ _IN_A_FRAME = tuple(f"geometry_msgs/msg/{name}" for name in ("Point", "Point32",
 
 
 def _parts(types: Interfaces, type_name: str) -> Iterator[str]:
-    """The types of all messages in a message."""
+    """Yield the types of all messages in a message."""
     for kind in types.fields(type_name).values():
         if kind.is_message:
             yield kind.base
@@ -377,7 +375,7 @@ def _header_paths(types: Interfaces, type_name: str, path: str = "") -> Iterator
 
 
 def plain_name(name: str) -> str:
-    """A name for agents from a ROS name or a part of it: ``CamelCase`` becomes ``camel_case``."""
+    """Return a name for agents from a ROS name or a part of it: ``CamelCase`` becomes ``camel_case``."""
     snake = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name.strip("/")).lower()
     plain = re.sub(r"\W", "_", snake).strip("_")
     return plain if plain[:1].isalpha() and plain not in RESERVED else f"the_{plain}"

@@ -1,6 +1,4 @@
-"""The parts of a message: every path with its type and its unit, and which of them are worth a place in a belief or among
-the parameters of an operation.
-"""
+"""The fields of a message: paths with types and units, and the selection of fields for beliefs and parameters."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -16,10 +14,10 @@ HEADER = "std_msgs/msg/Header"
 _LAYOUT = "std_msgs/msg/MultiArrayLayout"
 _QUATERNION = "geometry_msgs/msg/Quaternion"
 MANY = 6
-"""More values than this make no good belief."""
+"""Number of values in a belief."""
 
 _FEW = 8
-"""More names of constants than this make no good comment."""
+"""Number of constants named in a comment."""
 
 _CHOSEN: Mapping[str, tuple[str, ...]] = {
     "geometry_msgs/msg/PoseWithCovariance": ("pose",),
@@ -30,13 +28,13 @@ _CHOSEN: Mapping[str, tuple[str, ...]] = {
     "sensor_msgs/msg/Range": ("range",),
     "sensor_msgs/msg/NavSatFix": ("latitude", "longitude", "altitude"),
 }
-"""Of some types a few fields say nearly all."""
+"""The essential fields of some types."""
 _IN_THE_PLANE: Mapping[str, tuple[str, ...]] = {
     "geometry_msgs/msg/Pose": ("position", "orientation"),
     "geometry_msgs/msg/Point": ("x", "y"),
     "geometry_msgs/msg/Point32": ("x", "y"),
 }
-"""Robots on wheels: the height is left out."""
+"""Fields for robots on wheels: the height is left out."""
 _LEFT = (
     "behavior_tree",
     "controller_id",
@@ -47,20 +45,20 @@ _LEFT = (
     "goal_index",
     "variance",
 )
-"""Fields of Nav2's goals that are better left as they are, since it then takes what its configuration says; and how sure
-a sensor is."""
+"""Fields that keep their defaults: those of Nav2's goals, for which Nav2 then uses its configuration, and the variance of
+sensors."""
 _TURNS = ("angular", "angular_velocity")
-"""Vectors of a robot on wheels of which only z is not zero."""
+"""Vectors of which only z can differ from zero on a robot on wheels."""
 
 
 @dataclass(frozen=True, slots=True)
 class Unit:
-    """How values of a unit are shown.
+    """How to show values of a unit.
 
     Attributes:
-        word: for people; empty when the unit is not known.
-        digits: decimals that mean something; None: the value is no number with decimals.
-        band: smaller changes are nothing new.
+        word: name of the unit in comments; empty if the unit is unknown.
+        digits: number of significant decimals; None for values without decimals.
+        band: dead band: smaller changes are ignored.
     """
 
     word: str = ""
@@ -91,14 +89,14 @@ _UNITS = {
 
 @dataclass(frozen=True, slots=True)
 class Value:
-    """A value of a message, as an agent gets or gives it.
+    """A value of a message, as read or given by an agent.
 
     Attributes:
-        path: in the message.
-        name: for agents, in lower case.
-        conversion: further keys of the mapping file, such as ``as: yaw, unit: degrees``; empty for the plain value.
-        unit: of the number.
-        limits: the values that the field can have, for people: names of constants, or the longest string.
+        path: path in the message.
+        name: name for agents, in lower case.
+        conversion: further keys in the mapping file, such as ``as: yaw, unit: degrees``; empty for the plain value.
+        unit: unit of the number.
+        limits: for the comment: the names of the constants, or the longest string.
     """
 
     path: str
@@ -109,12 +107,12 @@ class Value:
 
     @property
     def remark(self) -> str:
-        """A comment at the end of a line of a mapping file."""
+        """Return the comment at the end of the line."""
         return f"  # {self.limits}" if self.limits else ""
 
     @property
     def as_field(self) -> str:
-        """An entry of ``fields`` of a property."""
+        """Return the entry in the ``fields`` of a property."""
         digits = f"round: {self.unit.digits}" if self.unit.digits is not None else ""
         usual = "yaw" if "as: yaw" in self.conversion else self.path.rpartition(".")[2].lower()
         name = f"name: {self.name}" if self.name != usual else ""
@@ -123,17 +121,17 @@ class Value:
 
     @property
     def as_value(self) -> str:
-        """What stands behind the field of a message that an operation sends."""
+        """Return the value of a field in a message that an operation sends."""
         return f"{{value: ${self.name}, {self.conversion}}}" if self.conversion else f"${self.name}"
 
 
 def quoted(path: str) -> str:
-    """A path as it stands within brackets of YAML."""
+    """Return a path in the notation for brackets in YAML."""
     return f'"{path}"' if "[" in path else path
 
 
 def values_of(types: Interfaces, type_name: str) -> list[Value]:
-    """The values of a message that agents want; lists and headers are left out.  Raises `UnknownInterface`."""
+    """Return the values of a message that agents need, without lists and headers. Raises `UnknownInterface`."""
     if is_time(FieldType(type_name)):
         return [Value(".", "seconds", "", _UNITS["s"])]
     return _with_own_names(list(_walk(types, type_name, "", "")))
@@ -143,7 +141,7 @@ _TRAJECTORY = "trajectory_msgs/msg/JointTrajectory"
 
 
 def lists_of(types: Interfaces, type_name: str) -> list[tuple[str, FieldType]]:
-    """The fields of a message that are lists; also those of a trajectory of joints in it."""
+    """Return the list fields of a message, and those of a joint trajectory in it."""
     found = []
     for name, kind in types.fields(type_name).items():
         if kind.array:
@@ -154,7 +152,7 @@ def lists_of(types: Interfaces, type_name: str) -> list[tuple[str, FieldType]]:
 
 
 def list_of(path: str, kind: FieldType) -> Value:
-    """A list of plain values as one value."""
+    """Return a list of plain values as one value."""
     return Value(
         path, path.rpartition(".")[2].lower(), "", Unit("a list", 3 if kind.base in FLOATS else None)
     )
@@ -164,7 +162,7 @@ def _walk(types: Interfaces, type_name: str, path: str, unit: str) -> Iterator[V
     chosen = _CHOSEN.get(type_name) or _IN_THE_PLANE.get(type_name)
     for name, kind in types.fields(type_name).items():
         here = f"{path}.{name}" if path else name
-        told = unit_of(type_name, name) or unit  # a vector's parts have that of the vector
+        own = unit_of(type_name, name) or unit  # parts of a vector have the unit of the vector
         if kind.array or kind.base in (HEADER, _LAYOUT) or (chosen and name not in chosen):
             continue
         if kind.base == _QUATERNION:
@@ -175,13 +173,13 @@ def _walk(types: Interfaces, type_name: str, path: str, unit: str) -> Iterator[V
             elif name in _TURNS:
                 yield Value(f"{here}.z", "turn", "unit: degrees", _DEGREES_PER_SECOND)
             else:
-                yield from _walk(types, kind.base, here, told)
+                yield from _walk(types, kind.base, here, own)
         elif name not in _LEFT:
-            yield _single(types, type_name, name, kind, here, told)
+            yield _single(types, type_name, name, kind, here, own)
 
 
 def _single(types: Interfaces, type_name: str, name: str, kind: FieldType, path: str, unit: str) -> Value:
-    """A field that is no message, and has a unit."""
+    """Return the value of a plain field."""
     word = "yaw" if name == "theta" else name.lower()
     if is_time(kind):
         return Value(path, word, "", _UNITS["s"])
@@ -195,13 +193,13 @@ def _single(types: Interfaces, type_name: str, name: str, kind: FieldType, path:
 
 
 def _is_named(types: Interfaces, type_name: str, name: str) -> bool:
-    """Whether the constants of a message are names for the values of a field, each value having one."""
+    """Return whether constants name the values of a field, without two names for a value."""
     meant = list(chosen(constants(types, type_name), name, "").values())
     return name in constants_by_field(types, type_name) and len(set(meant)) == len(meant)
 
 
 def _with_own_names(values: list[Value]) -> list[Value]:
-    """Values of one name get what differs in their paths in front of it: ``start_x``, ``end_x``."""
+    """Prefix equal names with the parts of their paths that differ: ``start_x``, ``end_x``."""
     longer = [_longer(value, [each for each in values if each.name == value.name]) for value in values]
     names = [value.name for value in longer]
     return [
@@ -211,7 +209,7 @@ def _with_own_names(values: list[Value]) -> list[Value]:
 
 
 def _longer(value: Value, alike: Sequence[Value]) -> Value:
-    """The same value, with those steps of its path that others of its name do not have in front of the name."""
+    """Return a value, its name prefixed with the parts of its path that differ from *alike*."""
     paths = [each.path.split(".")[:-1] for each in alike]
     differ = [len(set(steps)) > 1 for steps in zip_longest(*paths)]
     own = [step for step, is_own in zip(value.path.split(".")[:-1], differ, strict=False) if is_own]
@@ -219,18 +217,18 @@ def _longer(value: Value, alike: Sequence[Value]) -> Value:
 
 
 Fields = Callable[[str], Mapping[str, FieldType]]
-"""Gives the fields of a message type in full form."""
+"""Returns the fields of a message type, given its full name."""
 
 
 @dataclass(frozen=True, slots=True)
 class Leaf:
-    """A value in a message that is no message itself.
+    """A plain value in a message.
 
     Attributes:
-        path: from the root, as mapping files write it; of the elements of an array, those of the first.
-        type: of the value.
-        unit: empty where there is none, or it is not known.
-        owner: type of the message that has it as a field.
+        path: path from the root, as in mapping files; for arrays, that of the first element.
+        type: type of the value.
+        unit: unit; empty if it has none or is unknown.
+        owner: type of the message with this field.
     """
 
     path: str
@@ -240,12 +238,12 @@ class Leaf:
 
     @property
     def name(self) -> str:
-        """The last field of the path."""
+        """Last field of the path."""
         return self.path.rpartition(".")[2]
 
 
 def leaves(fields: Fields, type_name: str, path: str = "", unit: str = "") -> Iterator[Leaf]:
-    """All values of a message type, in the order of its definition; raises `UnknownInterface`."""
+    """Yield all plain values of a message type, in the order of its definition; raises `UnknownInterface`."""
     for name, kind in fields(type_name).items():
         here = f"{path}.{name}" if path else name
         own = unit_of(type_name, name) or unit
@@ -258,7 +256,7 @@ def leaves(fields: Fields, type_name: str, path: str = "", unit: str = "") -> It
 
 
 def messages(fields: Fields, type_name: str) -> Iterator[str]:
-    """The type itself and the types of the messages in it, times left out; raises `UnknownInterface`."""
+    """Yield the type and the types of all nested messages, except times; raises `UnknownInterface`."""
     yield type_name
     for kind in fields(type_name).values():
         if kind.is_message and not is_time(kind):
@@ -266,12 +264,12 @@ def messages(fields: Fields, type_name: str) -> Iterator[str]:
 
 
 def is_time(kind: FieldType) -> bool:
-    """Whether a field is a time or duration: agents and mappings see seconds."""
+    """Return whether a field is a time or a duration, which agents and mappings see in seconds."""
     return kind.base in (TIME, DURATION)
 
 
 def parts(type_name: str) -> dict[str, str]:
-    """The message types of an interface by what they are: of a message itself, of a service request and response."""
+    """Return the message types of an interface: the message, or request and response, or goal, result and feedback."""
     kind = type_name.split("/")[1]
     if kind == "srv":
         return {"request": request_type(type_name), "response": response_type(type_name)}
@@ -285,7 +283,7 @@ def parts(type_name: str) -> dict[str, str]:
 
 
 def value_at(message: Any, path: str) -> Any:
-    """What stands at a path of `leaves`; None below an empty array."""
+    """Return the value at a path from `leaves`; None below an empty array."""
     for step in path.split("."):
         name, bracket, _ = step.partition("[")
         message = getattr(message, name)

@@ -1,6 +1,6 @@
-"""``jacaros ros check``: a mapping file compared with the graph in which it is to be used."""
+"""``jacaros ros check``: compare a mapping file with a graph."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from jacaros.artifacts.mapping.checking import UNCERTAIN, check_topic, type_problems
@@ -16,6 +16,7 @@ from jacaros.artifacts.mapping.declared import (
 from jacaros.cli.graph.joining import Joined
 from jacaros.cli.graph.kinds import near_names
 from jacaros.cli.graph.listening import root
+from jacaros.cli.usage import did_you_mean
 from jacaros.ros.backend import PARAMETERS
 from jacaros.ros.errors import RosError
 from jacaros.ros.graph import Endpoint, TopicInfo
@@ -23,41 +24,44 @@ from jacaros.ros.names import frame_name
 from jacaros.ros.qos import DEFAULT_QOS, SENSOR_DATA, QoS, incompatibility
 from jacaros.yaml_nodes import Problem
 
+MOST_NAMES = 8
+"""Number of known names listed in a suggested fix."""
+
 _VERBS = {OperationKind.SERVICE: "offers the service", OperationKind.ACTION: "offers the action"}
 
 
 @dataclass(frozen=True, slots=True)
 class Names:
-    """The names of an artifact's things in the graph."""
+    """Names of an artifact, resolved in the graph."""
 
     joined: Joined
     part: ArtifactPart
 
     def resolve(self, written: str) -> str:
-        """The absolute name of a topic, service, action or node."""
+        """Return the absolute name of a topic, service, action or node."""
         if self.part.namespace and not written.startswith(("/", "~")):
             written = f"{self.part.namespace}/{written}"
         return self.joined.backend.resolve(written)
 
     def frame(self, written: str) -> str:
-        """The name of a frame."""
+        """Return the name of a frame."""
         return frame_name(written, self.tf_prefix)
 
     @property
     def tf_prefix(self) -> str:
-        """What stands before names of frames: unless the file says it, what stands before relative names."""
+        """Prefix of frames: that of the file, by default the namespace."""
         if self.part.tf_prefix is not None:
             return self.part.tf_prefix
         return self.resolve("frame").rpartition("/")[0].strip("/")
 
 
 async def problems_of(joined: Joined, part: ArtifactPart, frames: dict[str, str]) -> list[Problem]:
-    """All that would not work, each with what was found and what to write.
+    """Return all problems of an artifact, each with what was found and a suggested fix.
 
     Args:
-        joined: the graph.
+        joined: graph to compare with.
         part: an artifact of the file.
-        frames: the frames that were heard.
+        frames: the frames received.
     """
     names = Names(joined, part)
     for folder in part.interfaces:
@@ -69,11 +73,11 @@ async def problems_of(joined: Joined, part: ArtifactPart, frames: dict[str, str]
         found += _of_operation(names, operation)
     for frame in part.frames:
         found += _of_frame(names, frame, frames)
-    told = {(each.line, each.column) for each in found}
+    reported = {(each.line, each.column) for each in found}
     found += [
         each
         for each in type_problems(part, joined.backend)
-        if not (each.message.endswith(UNCERTAIN) and (each.line, each.column) in told)
+        if not (each.message.endswith(UNCERTAIN) and (each.line, each.column) in reported)
     ]
     nodes = [(each.node, each.parameter, each.place) for each in part.parameters if each.node]
     nodes += [
@@ -97,8 +101,8 @@ def _of_topic(names: Names, topic: TopicPart) -> Iterator[Problem]:
     if not info.publishers:
         who = _nodes(info.subscriptions)
         yield written.place.problem(
-            f"no node publishes {name}; it has only subscriptions, of {who}",
-            "start the node that publishes it, or write an operation with `publish`",
+            f"no node publishes `{name}`; it has only subscriptions, by {who}",
+            "start the node that publishes it, or replace the property by an operation with `publish`",
         )
         return
     wrong = _of_type(topic.type_name, info.types, written.place)
@@ -114,7 +118,7 @@ def _of_topic(names: Names, topic: TopicPart) -> Iterator[Problem]:
 
 
 def _of_qos(place: Place, info: TopicInfo, requested: QoS) -> Iterator[Problem]:
-    """What the publishers do not offer."""
+    """Yield a problem for each publisher with incompatible quality of service."""
     for publisher in info.publishers:
         if publisher.qos is None:
             continue
@@ -122,13 +126,13 @@ def _of_qos(place: Place, info: TopicInfo, requested: QoS) -> Iterator[Problem]:
         if why is not None:
             node = publisher.node or "a publisher"
             yield place.problem(
-                f"no messages of {info.name} would arrive from {node}: {why}",
+                f"incompatible QoS with {node} on {info.name}: {why}",
                 f"write {_suiting(publisher.qos, requested)}",
             )
 
 
 def _suiting(offered: QoS, requested: QoS) -> str:
-    """What to ask for in the file, so that the offer is enough."""
+    """Return the quality of service to request, so that the offered one is sufficient."""
     reliability = "best_effort" if offered.reliability == "best_effort" else requested.reliability
     durability = "volatile" if offered.durability == "volatile" else requested.durability
     if durability == "volatile" and requested.deadline is None:
@@ -138,14 +142,16 @@ def _suiting(offered: QoS, requested: QoS) -> str:
 
 
 def _of_type(written: Written | None, found: Iterable[str], place: Place) -> list[Problem]:
-    """The type that a file names, compared with those that are found; `place` is that of the name."""
+    """Compare the type in the file with the types found; `place` is that of the name."""
     types = [each for each in found if each]
     if len(types) > 1:
         text = f"conflicting types: {', '.join(types)}"
         return [place.problem(text, "a node uses another type: `jacaros ros show` lists its nodes")]
     if written is None or not types or written.text == types[0]:
         return []
-    return [written.place.problem(f"its type is {types[0]}, not {written.text}", f"write type: {types[0]}")]
+    return [
+        written.place.problem(f"expected the type `{types[0]}`, found `{written.text}`", f"type: {types[0]}")
+    ]
 
 
 def _of_operation(names: Names, operation: OperationPart) -> Iterator[Problem]:
@@ -179,21 +185,21 @@ def _of_publishing(names: Names, operation: OperationPart) -> Iterator[Problem]:
         if why is not None:
             help = "qos: latched" if subscription.qos.durability == "transient_local" else "qos: default"
             node = subscription.node or "a subscription"
-            yield written.place.problem(f"{node} would receive nothing on {name}: {why}", f"write {help}")
+            yield written.place.problem(f"incompatible QoS with {node} on {name}: {why}", f"write {help}")
 
 
 def _absent(names: Names, written: Written, name: str, what: str, things: Iterable[str]) -> Problem:
-    """What is not in the graph, with what may be meant."""
+    """Return the problem for a missing name, with similar names."""
     near = near_names(name, list(things))
     if near:
-        help = f"did you mean {' or '.join(_as_written(names, each) for each in near)}?"
+        help = did_you_mean([_as_written(names, each) for each in near])
     else:
         help = "start its node; `jacaros ros list` shows all names"
-    return written.place.problem(f"{what} {name}", help)
+    return written.place.problem(f"{what} `{name}`", help)
 
 
 def _as_written(names: Names, name: str) -> str:
-    """An absolute name as the file may write it."""
+    """Return an absolute name as written in the file."""
     prefix = names.resolve("x").removesuffix("x")
     return name.removeprefix(prefix) if name.startswith(prefix) else name
 
@@ -206,42 +212,49 @@ def _of_frame(names: Names, part: FramePart, frames: dict[str, str]) -> Iterator
     unknown = [frame for frame in dict.fromkeys((target, source)) if frame not in frames]
     for frame in unknown:
         near = near_names(frame, list(frames))
-        told = f"did you mean {' or '.join(near)}?" if near else f"frames: {', '.join(sorted(frames))}"
+        help = did_you_mean(near) or f"frames: {_first(sorted(frames))}"
         prefix = names.tf_prefix
         if prefix and frame.startswith(f"{prefix}/") and frame.removeprefix(f"{prefix}/") in frames:
-            told = 'frames have no prefix here: write tf_prefix: ""'
-        yield part.place.problem(f"unknown frame {frame}", told)
+            help = 'frames of this robot have no prefix: write tf_prefix: ""'
+        yield part.place.problem(f"unknown frame `{frame}`", help)
     if not unknown and root(frames, target) != root(frames, source):
         yield part.place.problem(
-            f"the frames {target} and {source} are not connected: the root of the first is {root(frames, target)}, of the "
-            f"second on {root(frames, source)}",
-            "start the node that connects them, such as the localisation",
+            f"frames `{target}` and `{source}` are not connected: their roots are `{root(frames, target)}` and "
+            f"`{root(frames, source)}`",
+            "start the node that connects them, such as localisation",
         )
 
 
 async def _of_parameter(names: Names, node: str, parameter: str, place: Place) -> list[Problem]:
     joined = names.joined
     if PARAMETERS not in joined.backend.capabilities:
-        return [place.problem("this graph has no parameters", "remove it")]
+        return [place.problem("this graph has no parameters", "remove the entry")]
     name = names.resolve(node)
     known = joined.contents.nodes
     if name not in known:
         near = near_names(name, list(known))
         return [
             place.problem(
-                f"unknown node {name}",
-                f"did you mean {' or '.join(near)}?" if near else "`jacaros ros list` shows all nodes",
+                f"unknown node `{name}`", did_you_mean(near) or "`jacaros ros list` shows all nodes"
             )
         ]
     try:
         there = await joined.backend.parameters(name).names(joined.timeout)
     except RosError as error:
-        return [place.problem(f"node {name} does not report its parameters: {error}", "is it still running?")]
+        return [
+            place.problem(
+                f"node `{name}` does not report its parameters: {error}", "check that it is running"
+            )
+        ]
     if parameter in there:
         return []
     near = near_names(parameter, there)
-    help = f"did you mean {' or '.join(near)}?" if near else f"it has {', '.join(there) or 'none'}"
-    return [place.problem(f"node {name} has no parameter {parameter}", help)]
+    help = did_you_mean(near) or f"its parameters: {_first(there) or 'none'}"
+    return [place.problem(f"unknown parameter `{parameter}` of node `{name}`", help)]
+
+
+def _first(names: Sequence[str]) -> str:
+    return ", ".join(names[:MOST_NAMES]) + (", ..." if len(names) > MOST_NAMES else "")
 
 
 def _nodes(endpoints: Iterable[Endpoint]) -> str:

@@ -1,7 +1,7 @@
-"""Who may see a live page: the token in the path, the names of the host, and the origin of the request.
+"""Access control for live pages: the token in the path, the host names, and the origin of the request.
 
-The token keeps out other users and programs of the machine. The names of the host stop DNS rebinding, where a page of a
-stranger reaches this server under a name of its own. The origin stops scripts of other pages.
+The token keeps out other users and programs of the machine. Checking host names prevents DNS rebinding, in which a foreign
+page reaches this server under its own name. Checking the origin stops scripts of other pages.
 """
 
 import hmac
@@ -16,24 +16,24 @@ from jacaros.errors import UsageError
 
 LOOPBACK = "127.0.0.1"
 SHORTEST_TOKEN = 16
-"""Characters of a token that the user chooses."""
+"""Minimum length of a token chosen by the user."""
 _TOKEN = re.compile(r"[A-Za-z0-9._~-]+")
 _HOST = re.compile(r"(\[[0-9A-Fa-f:.]+\]|[A-Za-z0-9._-]+)(:[0-9]{1,5})?")
 _HERE = frozenset({"127.0.0.1", "localhost", "::1"})
 
 
 class Access:
-    """The rules of one server.
+    """Access rules of one server.
 
     Args:
-        address: to which the server is bound.
-        token: of the path; a random one unless given.
+        address: address that the server is bound to.
+        token: token in the path; random by default.
 
     Attributes:
-        token: of the path.
+        token: token in the path.
 
     Raises:
-        UsageError: the token is too short, or has characters that are not plain in an address.
+        UsageError: the token is too short, or contains characters with a meaning in URLs.
     """
 
     def __init__(self, address: str = LOOPBACK, token: str | None = None) -> None:
@@ -65,7 +65,7 @@ class Access:
         return self._is_any() and (_is_number(name) or name == socket.gethostname().lower())
 
     def knows_origin(self, given: Sequence[str], host: str) -> bool:
-        """Return whether a request comes from our own page, or from a program that is not a browser (no Origin)."""
+        """Return whether a request comes from our own page, or from a program other than a browser (no Origin)."""
         if not given:
             return True
         try:
@@ -85,7 +85,7 @@ def _is_loopback(address: str) -> bool:
 
 
 def _is_number(name: str) -> bool:
-    """Return whether a name of a host is an IP address, which no DNS server can point elsewhere."""
+    """Return whether a host name is an IP address, which DNS cannot redirect."""
     try:
         ipaddress.ip_address(name)
     except ValueError:

@@ -1,4 +1,4 @@
-"""The command that has an artifact execute an operation."""
+"""The command that calls an operation of an artifact."""
 
 import asyncio
 from collections.abc import Mapping
@@ -17,7 +17,7 @@ from jacaros.mas.system import System
 from jacaros.terms.values import Var, bare
 
 YOU = "you"
-"""On whose behalf operations of the page are executed."""
+"""Caller of operations called on the page."""
 
 
 def artifact_commands(system: System) -> Mapping[str, Command]:
@@ -33,7 +33,7 @@ def artifact_commands(system: System) -> Mapping[str, Command]:
 
 
 async def _operate(environment: Environment, artifact: str, written: str) -> str:
-    """Execute an operation such as ``moveForward(1)``, wait for its end, and return its results as text."""
+    """Call an operation such as ``moveForward(1)``, wait for its end, and return its results as text."""
     target = _find(environment, artifact)
     names = Names()
     outputs: Outputs = []
@@ -58,7 +58,7 @@ async def _operate(environment: Environment, artifact: str, written: str) -> str
 
 
 def _value_of(variable: Var, outputs: Outputs) -> str:
-    """Return what an operation has written into a variable, ``_`` for nothing."""
+    """Return the value of an output variable, ``_`` for none."""
     found = next((out for each, out in outputs if each is variable), None)
     return value_text(found.value) if found is not None and found.is_set else "_"
 

@@ -1,4 +1,4 @@
-"""Real time for a loop on any clock: the timers of a loop on the virtual clock ring when nobody has anything to do."""
+"""Real time for a loop on any clock: on the virtual clock, timers of the loop would fire as soon as all agents wait."""
 
 import asyncio
 import threading
@@ -9,9 +9,9 @@ PERIOD = 1 / 30
 
 
 class Beat:
-    """Wakes tasks of the running loop 30 times a second of real time, as long as any waits.
+    """Wakes the waiting tasks of the running loop 30 times per second of real time.
 
-    The waking comes from a thread, as a message from outside: it moves no virtual clock.
+    A thread wakes them like an external message, which does not advance a virtual clock.
     """
 
     def __init__(self) -> None:
@@ -32,7 +32,7 @@ class Beat:
         await future
 
     def close(self) -> None:
-        """End the thread; whoever still waits is woken."""
+        """End the thread, and wake all waiters."""
         self._closed = True
         self._wanted.set()
         self._ring()
@@ -43,7 +43,7 @@ class Beat:
             time.sleep(PERIOD)
             try:
                 self._loop.call_soon_threadsafe(self._ring)
-            except RuntimeError:  # the loop has been closed
+            except RuntimeError:  # the loop is closed
                 return
 
     def _ring(self) -> None:

@@ -1,4 +1,4 @@
-"""The commands of pages: by name, with a reply for each, whatever is wrong with it."""
+"""The commands of pages, by name; each gets a reply, even if it is invalid."""
 
 import inspect
 import math
@@ -17,11 +17,11 @@ Command = Callable[[Given], Awaitable[Any] | Any]
 
 
 class Refused(Exception):
-    """A command that cannot be executed; the text says why, in one line."""
+    """Raised for a command that cannot be executed; the text says why, in one line."""
 
 
 class Commands:
-    """What pages can do.
+    """The commands available to pages.
 
     Args:
         note: called with a text for each command that changed something.
@@ -33,15 +33,15 @@ class Commands:
 
     @property
     def names(self) -> list[str]:
-        """The names of the commands that work here, sorted."""
+        """Names of the available commands, sorted."""
         return sorted(self._known)
 
     def add(self, commands: Mapping[str, Command]) -> None:
-        """Let pages use more commands."""
+        """Add commands."""
         self._known.update(commands)
 
     def add_changes(self, commands: Mapping[str, Command]) -> None:
-        """Let pages use more commands that change the run: each success is noted."""
+        """Add commands that change the run; each success is recorded."""
         for name, command in commands.items():
             self._known[name] = self._noted(name, command)
 
@@ -55,7 +55,7 @@ class Commands:
         return noted
 
     async def answer(self, given: Given) -> dict[str, Any]:
-        """Execute a command, and return the reply."""
+        """Execute a command and return the reply."""
         reply: dict[str, Any] = {"kind": "reply", "id": given.get("id")}
         command = self._known.get(str(given.get("do")))
         if command is None:
@@ -70,13 +70,13 @@ class Commands:
 
 
 async def _result(command: Command, given: Given) -> Any:
-    with of_run():  # what a command begins is paused with the run
+    with of_run():  # tasks started by a command pause with the run
         result = command(given)
     return await result if inspect.isawaitable(result) else result
 
 
 def is_question(given: Given) -> bool:
-    """Return whether a line for the console asks only."""
+    """Return whether a console line only queries."""
     return str(given.get("text", "")).lstrip().startswith("?")
 
 
@@ -91,7 +91,7 @@ _SAID = {
     "door": "door {name} open: {open}",
     "fault": "fault {name} on: {on}",
 }
-"""How records name what was changed; other commands by name and fields."""
+"""How records name the change made by a command; other commands by name and fields."""
 
 
 def said(name: str, given: Given) -> str:
@@ -104,7 +104,7 @@ def said(name: str, given: Given) -> str:
 
 
 def one_line(error: Exception) -> str:
-    """Return what is wrong, without excerpt and help; with its place if it is in a file."""
+    """Return the error without excerpt and help, with its location if it is in a file."""
     if isinstance(error, AslError) and error.diagnostics:
         wrong = error.diagnostics[0]
         in_file = wrong.span is not None and wrong.span.file.name != TEXT
@@ -117,7 +117,7 @@ def one_line(error: Exception) -> str:
 
 
 def text_in(given: Given, name: str) -> str:
-    """Return a field that must be a text.
+    """Return a field with a string.
 
     Raises:
         Refused: it is missing, empty, or of another type.
@@ -129,7 +129,7 @@ def text_in(given: Given, name: str) -> str:
 
 
 def number_in(given: Given, name: str, default: float | None = None) -> float:
-    """Return a field that must be a finite number.
+    """Return a field with a finite number.
 
     Raises:
         Refused: it is missing without a default, or not a finite number.
@@ -141,10 +141,10 @@ def number_in(given: Given, name: str, default: float | None = None) -> float:
 
 
 def choice_in(given: Given, name: str, choices: tuple[str, ...]) -> str:
-    """Return a field that must be one of *choices*.
+    """Return a field with one of *choices*.
 
     Raises:
-        Refused: it is another one.
+        Refused: it has another value.
     """
     value = given.get(name)
     if value not in choices:
@@ -153,10 +153,10 @@ def choice_in(given: Given, name: str, choices: tuple[str, ...]) -> str:
 
 
 def flag_in(given: Given, name: str) -> bool:
-    """Return a field that must be true or false.
+    """Return a field that is true or false.
 
     Raises:
-        Refused: it is something else.
+        Refused: it has another value.
     """
     value = given.get(name)
     if not isinstance(value, bool):

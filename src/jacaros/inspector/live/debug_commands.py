@@ -1,4 +1,4 @@
-"""Commands of the debugger: pause, continue, step, speed, breakpoints, and reload of changed programs."""
+"""Debugger commands: pause, continue, step, speed, breakpoints, and reload of changed programs."""
 
 from collections.abc import Mapping
 from typing import cast
@@ -8,7 +8,7 @@ from jacaros.mas.debugging.debugger import STEPS, Debugger, Step
 
 
 def debug_commands(debugger: Debugger) -> Mapping[str, Command]:
-    """Return the commands of a debugger; the speed can be changed in real time alone."""
+    """Return the commands of a debugger; the speed can be changed only in real time."""
     commands = _DebugCommands(debugger)
     found: dict[str, Command] = {
         "pause": commands.pause,
@@ -40,11 +40,11 @@ class _DebugCommands:
         self._debugger.step(what, text_in(given, "agent") if given.get("agent") is not None else None)
 
     def speed(self, given: Given) -> None:
-        """Set the seconds of the run in a second of real time."""
+        """Set the speed, in seconds of the run per second of real time."""
         self._debugger.speed = number_in(given, "factor")
 
     def breakpoint(self, given: Given) -> list[str]:
-        """Add or remove a breakpoint; returns the texts of all."""
+        """Add or remove a breakpoint; return all breakpoints as text."""
         at = given.get("at")
         if not isinstance(at, Mapping):
             raise Refused("`at` must describe a breakpoint")
@@ -55,6 +55,6 @@ class _DebugCommands:
         return [each.text for each in self._debugger.breakpoints]
 
     def reload(self, given: Given) -> str:
-        """Read changed programs again; returns what was replaced, and what could not be, in lines."""
+        """Reload changed programs; return lines about what was replaced, and what could not be."""
         del given
         return "\n".join(self._debugger.reload())

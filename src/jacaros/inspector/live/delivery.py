@@ -1,4 +1,4 @@
-"""What one page is still to receive: bounded, and newest-only where only the newest counts."""
+"""Records waiting for one page: bounded, and newest-only where only the newest record matters."""
 
 import asyncio
 from collections import deque
@@ -8,28 +8,28 @@ from jacaros.clock import real_time
 from jacaros.inspector.live.records import LiveRecord, json_text
 
 QUEUED = 10_000
-"""Records that may wait for one page."""
+"""Maximum number of records waiting for one page."""
 PIECE = 200
-"""Records in one message: a few milliseconds to make text of."""
+"""Number of records per message, which take a few milliseconds to encode."""
 AGAIN = 2.0
-"""Seconds of real time between two beginnings for a page that is too slow."""
+"""Seconds of real time between two restarts of a page that is too slow."""
 
 
 class Past(Protocol):
-    """What happened before a page came (`jacaros.inspector.live.past.Past`)."""
+    """The records before a page connected (`jacaros.inspector.live.past.Past`)."""
 
     def records(self) -> list[LiveRecord]:
-        """Return the records that a page needs."""
+        """Return the records that a new page needs."""
 
 
 class Delivery:
     """The records for one page.
 
-    A page that is too slow loses records: it gets a note how many, then everything from the beginning, see `hello`.
+    A page that is too slow loses records: it receives their number, and then everything from the beginning; see `hello`.
 
     Args:
-        past: what happened before.
-        hello: what every beginning begins with.
+        past: records so far.
+        hello: first message of every beginning.
 
     Attributes:
         arrived: set while there is something to send.
@@ -47,13 +47,13 @@ class Delivery:
         self.arrived.set()
 
     def allow(self, commands: list[str]) -> None:
-        """Let the page know which commands work from now on."""
+        """Tell the page which commands are available from now on."""
         self._hello["can"] = commands
         self._notes.append(json_text({"kind": "can", "can": commands}))
         self.arrived.set()
 
     def offer(self, record: LiveRecord) -> None:
-        """Take a record that is new; never waits."""
+        """Take a new record; never waits."""
         if record.newest is not None:
             self._newest[record.newest] = record
         elif self._missed:
@@ -67,14 +67,14 @@ class Delivery:
         self.arrived.set()
 
     def take(self) -> str | None:
-        """Return the next message, None when there is nothing to send."""
+        """Return the next message, None if there is nothing to send."""
         if self._missed and real_time() >= self._again_at:
             self._begin_again()
         if self._notes:
             return self._notes.popleft()
         records = _piece(self._first) or _piece(self._queue)
         if not self._first and not self._queue:
-            # Last, as the page expects records in the order of time.
+            # Last, because the page expects records in time order.
             records += sorted(self._newest.values(), key=lambda each: each.number)
             self._newest.clear()
         if not records:
@@ -84,7 +84,7 @@ class Delivery:
 
     @property
     def complete(self) -> bool:
-        """Whether nothing waits."""
+        """Whether nothing is waiting."""
         return not (self._missed or self._notes or self._first or self._queue or self._newest)
 
     def _begin_again(self) -> None:

@@ -1,4 +1,4 @@
-"""A run as its live pages see it: takes what watchers are told, keeps a bounded part, and delivers it."""
+"""A run as shown on its live pages: receives the watch's records, keeps a bounded part, and delivers it."""
 
 from collections.abc import Iterable, Mapping
 from typing import Any
@@ -10,17 +10,17 @@ from jacaros.inspector.live.records import FrameRecord, LiveRecord
 from jacaros.inspector.scene import RobotView
 
 VERSION = 2
-"""Of the records."""
+"""Version of the records."""
 _NEWEST = ("laser", "believed")
-"""Events of which only the newest of each robot counts."""
+"""Events of which only the newest for each robot matters."""
 
 
 class LiveView:
-    """Shows a run to pages; told of it like a recorder, see `jacaros.inspector.watch.Watcher`.
+    """Delivers a run to pages; receives records like a recorder, see `jacaros.inspector.watch.Watcher`.
 
     Args:
-        title: of the page.
-        commands: what pages can do.
+        title: title of the page.
+        commands: commands available to pages.
         live: whether the run continues; False for a recording.
     """
 
@@ -31,20 +31,20 @@ class LiveView:
         self._number = 0
         self._last: FrameRecord | None = None
         self._held: LiveRecord | None = None
-        """The last frame, if nothing moved since the one before."""
+        """The last frame, if nothing has moved since the previous one."""
 
-    # ---- what watchers are told
+    # ---- records of the watch
 
     def world(self, drawing: Mapping[str, Any]) -> None:
         """Show the world."""
         self._take({"kind": "world", "version": VERSION, "world": drawing})
 
     def frame(self, t: float, robots: Iterable[RobotView]) -> None:
-        """Show the robots at a moment."""
+        """Show the robots at a time."""
         self._number += 1
         frame = FrameRecord(self._number, t, list(robots))
         if self._last is not None and self._last.robots == frame.robots:
-            self._held = frame  # pages see that time passes, but it is not kept
+            self._held = frame  # pages see that time passes, but the frame is not stored
         else:
             if self._held is not None:
                 self._past.take(self._held)
@@ -53,21 +53,21 @@ class LiveView:
         self._offer(frame)
 
     def text(self, t: float, agent: str, text: str) -> None:
-        """Show what an agent printed."""
+        """Show a line of an agent's output."""
         self._take({"kind": "text", "t": round(t, 3), "agent": agent, "text": text})
 
     def event(self, t: float, kind: str, data: Mapping[str, Any]) -> None:
-        """Show something that happened."""
+        """Show an event."""
         newest = f"{kind} {data.get('robot')}" if kind in _NEWEST else None
         self._take({"kind": "event", "t": round(t, 3), "event": kind, "data": data}, newest)
 
     def commands_changed(self) -> None:
-        """Let the pages know which commands work from now on."""
+        """Tell the pages which commands are available from now on."""
         for delivery in self._deliveries:
             delivery.allow(self._commands.names)
 
     def close(self) -> None:
-        """Nothing is held."""
+        """Do nothing: there is nothing to close."""
 
     def _take(self, data: Mapping[str, Any], newest: str | None = None) -> None:
         record = self._record(data, newest)
@@ -82,10 +82,10 @@ class LiveView:
         for delivery in self._deliveries:
             delivery.offer(record)
 
-    # ---- what the server asks for
+    # ---- requests of the server
 
     def begin(self) -> Delivery:
-        """Begin to deliver to another page."""
+        """Start delivering to another page."""
         hello = {
             "kind": "hello",
             "version": VERSION,
@@ -98,7 +98,7 @@ class LiveView:
         return delivery
 
     def end(self, delivery: Delivery) -> None:
-        """Deliver no more to a page."""
+        """Stop delivering to a page."""
         self._deliveries.remove(delivery)
 
     async def answer(self, command: Mapping[str, Any]) -> Mapping[str, Any]:

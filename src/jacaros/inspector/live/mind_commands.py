@@ -19,9 +19,9 @@ from jacaros.terms.unifier import undo
 from jacaros.terms.values import Var
 
 YOU = "you"
-"""The sender of messages that are written on the page."""
+"""Sender of messages written on the page."""
 ANSWERS = 20
-"""Answers to a question that are shown."""
+"""Number of answers shown for a query."""
 PERFORMATIVES = (
     "tell",
     "untell",
@@ -53,18 +53,18 @@ class _PageMind(OpenMind):
 
     @property
     def mind(self) -> Mind:
-        """The agent itself."""
+        """The agent."""
         return self._mind
 
 
 class _You:
-    """Where answers to messages of the page go, and other messages to `YOU`: they are recorded, as all messages are.
+    """Receives replies to messages of the page, and other messages to `YOU`; they are recorded like all messages.
 
     Agents do not find it among the names of the system, so broadcasts do not reach it.
     """
 
     def names(self) -> Sequence[str]:
-        """No name: nobody else is to know of the page."""
+        """No name: no other agent must know of the page."""
         return ()
 
     def find(self, name: str) -> "_You | None":
@@ -72,7 +72,7 @@ class _You:
         return self if name == YOU else None
 
     def receive(self, message: SpeechAct) -> None:
-        """Take a message: the record of its delivery shows it."""
+        """Ignore the message: the record of its delivery shows it."""
 
 
 class _MindCommands:
@@ -107,7 +107,7 @@ class _MindCommands:
             raise Refused(f"the agent does not pursue {written}")
 
     def message(self, given: Given) -> str:
-        """Send a message to an agent; returns what to print."""
+        """Send a message to an agent; return the text to print."""
         receiver, content = text_in(given, "agent"), text_in(given, "text")
         performative = choice_in(given, "performative", PERFORMATIVES)
         how = performative in ("tellHow", "untellHow")
@@ -122,7 +122,7 @@ class _MindCommands:
         return "sent; answers appear in Messages" if performative.startswith("ask") else "sent"
 
     def console(self, given: Given) -> str:
-        """Execute a line of AgentSpeak; returns what to print."""
+        """Execute a line of AgentSpeak; return the text to print."""
         mind, line = self._mind(given), text_in(given, "text").removesuffix(".")
         for prefix, execute in _LINES.items():
             if line.startswith(prefix):
@@ -134,7 +134,7 @@ class _MindCommands:
 
 
 def _ask(mind: OpenMind, formula: str) -> str:
-    """Return the answers of a formula, a line for each: ``X = 3, Y = kitchen``; ``yes`` or ``no`` without variables."""
+    """Return the answers of a formula, one per line: ``X = 3, Y = kitchen``; ``yes`` or ``no`` without variables."""
     agent = mind.mind
     if agent.running:
         raise Refused("the agent is in the middle of a step: ask again")
@@ -158,7 +158,7 @@ def _ask(mind: OpenMind, formula: str) -> str:
 
 
 def _values(names: Names) -> str:
-    """Return the variables that have a value: ``X = 3, Y = kitchen``."""
+    """Return the bound variables: ``X = 3, Y = kitchen``."""
     found = ((name, resolve(value)) for name, value in names.items())
     return ", ".join(f"{name} = {text(value)}" for name, value in found if value.__class__ is not Var)
 
@@ -193,4 +193,4 @@ _LINES: dict[str, Callable[[OpenMind, str], str]] = {
     "+": _add,
     "-": _remove,
 }
-"""How a line begins, longer beginnings first, and what it does."""
+"""First characters of a line, longer ones first, and what it does."""

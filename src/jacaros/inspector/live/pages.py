@@ -1,11 +1,11 @@
-"""The files of the page, and the answers to plain HTTP requests."""
+"""The files of the page, and responses to plain HTTP requests."""
 
 from collections.abc import Mapping
 from pathlib import Path
 
 STATIC = Path(__file__).parent.parent / "static"
 START = "page.html"
-"""The file at the address itself."""
+"""The file at the root of the address."""
 _TYPES = {
     ".html": "text/html; charset=utf-8",
     ".js": "text/javascript; charset=utf-8",
@@ -15,10 +15,10 @@ _TYPES = {
 
 
 class Pages:
-    """The files below one folder, by the paths that requests name; no other file can be read.
+    """The files below one folder, by request path; no other file is readable.
 
     Args:
-        folder: of the files.
+        folder: folder with the files.
     """
 
     def __init__(self, folder: Path = STATIC) -> None:
@@ -39,7 +39,7 @@ class Pages:
 
 
 def security_headers(host: str) -> Mapping[str, str]:
-    """Return the headers of every answer: nothing is cached, framed, guessed, or loaded from elsewhere."""
+    """Return the headers of every response: no caching, framing, type guessing, or loading from other sites."""
     policy = (
         "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; "
         f"connect-src 'self' ws://{host} wss://{host}; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"

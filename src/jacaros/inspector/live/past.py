@@ -1,4 +1,4 @@
-"""What a page needs that is opened late: the last part of the run, and the state in which that part began."""
+"""The records for a page that connects late: the last part of the run, and the state at its beginning."""
 
 from collections import deque
 from collections.abc import Callable, Mapping
@@ -8,18 +8,18 @@ from typing import Any, NamedTuple
 from jacaros.inspector.live.records import LiveRecord
 
 EVENTS, FRAMES = 20_000, 3_000
-"""Records that are kept, apart from those of the state."""
+"""Maximum number of records kept, without those of the state."""
 
 Data = Mapping[str, Any]
 
 
 class _Rule(NamedTuple):
-    """How an event changes the state: the fields that say what it is about, and whether that is over."""
+    """How an event changes the state: the fields that identify its subject, and whether the subject ends."""
 
     about: tuple[str, ...]
     over: Callable[[Data], bool] = lambda _: False
     first: bool = False
-    """The first record counts too, not the last one alone."""
+    """Whether the first record matters as well as the last."""
 
 
 _GOAL_ENDS = ("achieved", "failed", "recovered", "dropped", "replaced")
@@ -52,17 +52,17 @@ _RULES: dict[str, _Rule] = {
     "obstacle_placed": _Rule(("obstacle",)),
 }
 _AS = {"door_closed": "door_opened", "person_stands": "person_walks"}
-"""Events that take the place of another one."""
+"""Events that replace another event."""
 
 
 class State:
-    """The records that say how things are, of all that came so far: for each thing the last one."""
+    """The current state: the last record about each subject."""
 
     def __init__(self) -> None:
         self._last: dict[tuple[Any, ...], list[LiveRecord]] = {}
 
     def take(self, record: LiveRecord) -> None:
-        """Let a record change the state."""
+        """Update the state with a record."""
         data = record.data
         kind = data["kind"]
         if kind in ("world", "frame"):
@@ -79,7 +79,7 @@ class State:
             self._last[key] = records
 
     def records(self) -> list[LiveRecord]:
-        """Return the records of the state in the order of time."""
+        """Return the records of the state in time order."""
         return sorted(
             {each.number: each for row in self._last.values() for each in row}.values(), key=_number
         )
@@ -90,11 +90,11 @@ def _number(record: LiveRecord) -> int:
 
 
 class Past:
-    """A bounded part of what happened, and the state before it.
+    """A bounded number of records, and the state before them.
 
     Args:
-        events: records that are kept; the older ones are only counted in the state.
-        frames: frames that are kept.
+        events: maximum number of records kept; older ones survive only in the state.
+        frames: maximum number of frames kept.
     """
 
     def __init__(self, events: int = EVENTS, frames: int = FRAMES) -> None:
@@ -119,6 +119,6 @@ class Past:
             self._before.take(kept.popleft())
 
     def records(self) -> list[LiveRecord]:
-        """Return the state, then all records that are kept, in the order of time."""
+        """Return the state, followed by all kept records, in time order."""
         newest = sorted(self._newest.values(), key=_number)
         return [*self._before.records(), *merge(self._events, self._frames, newest, key=_number)]

@@ -14,11 +14,11 @@ from jacaros.mas.history.why import explain
 
 
 class RecordedView:
-    """Shows a recording to pages, see `jacaros.inspector.live.server.Source`.
+    """Delivers a recording to pages; see `jacaros.inspector.live.server.Source`.
 
     Args:
         recording: the recording.
-        title: of the page; the name of the project, or of the world, by default.
+        title: title of the page; the name of the project or the world by default.
     """
 
     def __init__(self, recording: Recording, title: str | None = None) -> None:
@@ -39,11 +39,11 @@ class RecordedView:
         return self._records
 
     def begin(self) -> Delivery:
-        """Begin to deliver to another page."""
+        """Start delivering to another page."""
         return Delivery(self, self._hello)
 
     def end(self, delivery: Delivery) -> None:
-        """Deliver no more: nothing is held."""
+        """Stop delivering; nothing is kept open."""
 
     async def answer(self, command: Mapping[str, Any]) -> Mapping[str, Any]:
         """Execute a command of a page."""
@@ -55,7 +55,7 @@ class RecordedView:
 
 
 def _all_records(recording: Recording) -> Iterator[Mapping[str, Any]]:
-    """Yield the records of a recording in the order of time, frames before the others of a moment."""
+    """Yield the records of a recording in time order; at equal times frames come first."""
     world, *others = records(recording)
     yield world
     frames = ({"kind": "frame", "t": frame.t, "robots": frame.robots} for frame in recording.frames)

@@ -1,4 +1,4 @@
-"""Records on their way to pages: each is made text once, whatever the number of pages."""
+"""Records on their way to pages: each is encoded once, for any number of pages."""
 
 import json
 import math
@@ -8,7 +8,7 @@ from typing import Any
 from jacaros.inspector.scene import RobotView
 
 LONGEST = 200_000
-"""Characters of a record; the texts of a longer one are cut to `_CUT` characters."""
+"""Maximum length of a record in characters; the strings of a longer one are cut to `_CUT` characters."""
 _CUT = 5_000
 
 
@@ -16,9 +16,9 @@ class LiveRecord:
     """A record, as in a line of a recording.
 
     Args:
-        number: of the record, in the order of time.
+        number: number of the record, in time order.
         data: the record as plain data.
-        newest: what it tells, if only the newest record of that counts; None when each one counts.
+        newest: subject of the record if only its newest record matters; None if every record matters.
     """
 
     __slots__ = ("_text", "data", "newest", "number")
@@ -36,11 +36,11 @@ class LiveRecord:
 
 
 class FrameRecord(LiveRecord):
-    """A frame: the robots at a moment. Most are replaced by a newer one before a page needs their data.
+    """A frame: the robots at a time. Most frames are superseded before a page needs their data.
 
     Args:
-        number: of the record.
-        t: seconds since the run began.
+        number: number of the record.
+        t: seconds since the start of the run.
         robots: the robots.
     """
 
@@ -65,7 +65,7 @@ def _row(robot: RobotView) -> list[Any]:
 
 
 def json_text(data: Any) -> str:
-    """Return *data* as JSON that browsers read: pure ASCII, null for NaN and infinite numbers, no text without end."""
+    """Return *data* as JSON that browsers can parse: ASCII, null for NaN and infinity, strings of limited length."""
     try:
         written = json.dumps(data, separators=(",", ":"), allow_nan=False, default=str)
     except ValueError:

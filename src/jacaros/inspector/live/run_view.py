@@ -1,4 +1,4 @@
-"""The live pages of a running system: their records, commands and server together."""
+"""The live pages of a running system: records, commands and server."""
 
 import asyncio
 import contextlib
@@ -19,20 +19,20 @@ from jacaros.mas.system import System
 from jacaros.sim import World
 
 FIRST_VISIT = 5.0
-"""Seconds that the end of a run waits for a browser that was opened and has not shown the run yet."""
+"""Seconds that the end of a run waits for an opened browser that has not shown the run yet."""
 
 SIGNALS = 128
-"""Exit codes from here on say that a signal has ended the run: nobody wants to wait then."""
+"""Exit codes from here on mean that a signal ended the run, which must then not wait."""
 
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """Where pages are served.
+    """Where to serve pages.
 
     Attributes:
-        address: of this machine; that of the loopback can be reached from this machine alone.
-        port: 0 for a free one.
-        token: of the path; None for a random one.
+        address: address of this machine; only this machine reaches the loopback address.
+        port: port; 0 for a free one.
+        token: token in the path; None for a random one.
     """
 
     address: str = LOOPBACK
@@ -44,16 +44,16 @@ class RunView:
     """Serves the live pages of one run.
 
     Args:
-        system: the run; it has been started.
+        system: the run; already started.
         place: where to serve.
 
     Attributes:
-        watcher: is to be told of the run.
-        address: of the page.
-        awaited: whether a browser was opened, so that the end of the run waits until it has shown something.
+        watcher: receives the run.
+        address: address of the page.
+        awaited: whether a browser was opened, so that the end of the run waits until the page has shown something.
 
     Raises:
-        UsageError: the address cannot be served, or the token is invalid.
+        UsageError: the address cannot be used, or the token is invalid.
     """
 
     def __init__(self, system: System, place: Place) -> None:
@@ -68,21 +68,21 @@ class RunView:
         self._end_debug: Callable[[], None] = lambda: None
 
     def begin(self, watch: Watch) -> None:
-        """Serve from now on, until the run ends or `close` is called.
+        """Serve until the run ends or `close` is called.
 
         Args:
-            watch: of the run; `watcher` is among its watchers.
+            watch: watch of the run, with `watcher` among its watchers.
         """
         system, add = self._system, self.commands.add_changes
         add(mind_commands(system))
         add(artifact_commands(system))
         self.commands.add({"why": self._why})
-        # The world may come into being later, when an agent first needs a robot.
+        # The world may be created later, when an agent first needs a robot.
         system.ros.watch_world(lambda world: self._let_change(world, watch.look))
         self._debug()
-        with outside_run():  # a run that is paused must be able to continue
+        with outside_run():  # a paused run must be able to continue
             self._serving = asyncio.create_task(self._serve())
-        system.close_last(self.close)  # pages see the end of the run
+        system.close_last(self.close)  # pages show the end of the run
         # A task that is cancelled before its first step executes no `finally`.
         self._serving.add_done_callback(lambda _: self._server.release())
 
@@ -91,14 +91,14 @@ class RunView:
         self.watcher.commands_changed()
 
     def _debug(self) -> None:
-        """Let pages pause and step the run, and show them its state."""
+        """Add the debugger's commands, and show its state."""
         debugger, history = self._system.debugger, self._system.history()
         self.commands.add(debug_commands(debugger))
         history.record("debug", debugger.state.data())
         self._end_debug = debugger.listen(lambda state: history.record("debug", state.data()))
 
     async def close(self) -> None:
-        """Send what waits, and disconnect the pages."""
+        """Send waiting records, and disconnect the pages."""
         self._end_debug()
         if self._serving is not None:
             self._serving.cancel()
@@ -110,7 +110,7 @@ class RunView:
             await self._server.start()
             await asyncio.get_running_loop().create_future()
         finally:
-            # The run has ended, or is interrupted.
+            # The run has ended, or was interrupted.
             code = self._system.exit_code
             if self.awaited and code is not None and code < SIGNALS:
                 await self._server.close(FIRST_VISIT, visited=True)
@@ -118,7 +118,7 @@ class RunView:
                 await self._server.close()
 
     def _why(self, given: Given) -> str:
-        """Answer a question about the run so far, in lines."""
+        """Answer a question about the run so far, as lines."""
         at = number_in(given, "at") if given.get("at") is not None else None
         return self._system.answer(text_in(given, "question"), at).text()
 

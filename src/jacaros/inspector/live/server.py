@@ -29,43 +29,43 @@ from jacaros.inspector.live.records import json_text
 LIVE = "live"
 """Path of the WebSocket below the token."""
 CONNECTIONS, PAGES = 64, 16
-"""Connections at a time, and those of them that are pages."""
+"""Maximum number of connections, and of pages among them."""
 ADMITTED = 200
-"""Connections in a second: a page loads all of its modules with fewer, and a flood of them leaves the run its turns."""
+"""Connections per second: enough for a page to load its modules, and few enough for the run to keep its turns."""
 LARGEST = 64 * 1024
-"""Bytes of a command."""
+"""Maximum size of a command, in bytes."""
 BURST = 20
 """Commands of one page between two beats."""
 PIECES = 6
-"""Messages to one page between two beats, while it receives what happened before it came."""
+"""Messages to one page between two beats while it receives the records so far."""
 PATIENCE = 20.0
-"""Seconds in which a page must take a message."""
+"""Seconds in which a page must accept a message."""
 GOODBYE = 0.5
 """Seconds for the last messages and for closing."""
 GARBAGE = 10
-"""Unreadable commands after which a page is disconnected."""
+"""Number of unreadable commands after which a page is disconnected."""
 
 Answer = Callable[[Mapping[str, Any]], Awaitable[Mapping[str, Any]]]
 
 
 class Source(Protocol):
-    """What pages are shown."""
+    """Provides the records for pages."""
 
     def begin(self) -> Delivery:
-        """Begin to deliver to another page."""
+        """Start delivering to another page."""
 
     def end(self, delivery: Delivery) -> None:
-        """Deliver no more."""
+        """Stop delivering."""
 
     async def answer(self, command: Mapping[str, Any]) -> Mapping[str, Any]:
-        """Execute a command of a page, and return the reply; raises nothing."""
+        """Execute a command of a page and return the reply; never raises."""
 
 
 def bound_socket(address: str = LOOPBACK, port: int = 0) -> socket.socket:
-    """Return a listening socket; the system chooses a free port for 0.
+    """Return a listening socket; port 0 selects a free port.
 
     Raises:
-        UsageError: the address is not one of this machine, or the port is taken.
+        UsageError: the address is not an address of this machine, or the port is in use.
     """
     family = socket.AF_INET6 if ":" in address else socket.AF_INET
     try:
@@ -82,13 +82,13 @@ class LiveServer:
     """Serves pages until it is closed.
 
     Args:
-        listening: the socket.
-        access: who may see them.
-        source: what they are shown.
-        pages: the files of the page.
+        listening: listening socket.
+        access: access rules.
+        source: provides the records.
+        pages: files of the page.
 
     Attributes:
-        visitors: pages that have been connected so far.
+        visitors: number of pages that have connected so far.
     """
 
     def __init__(
@@ -102,28 +102,28 @@ class LiveServer:
         self._deliveries: dict[ServerConnection, Delivery] = {}
         self.visitors = 0
         self._second = 0.0
-        """The real time at which the counting of `_admitted` connections began."""
+        """Real time at which the counting of `_admitted` connections started."""
         self._admitted = 0
 
     @property
     def address(self) -> str:
-        """The address of the page, with the token."""
+        """Address of the page, with the token."""
         return address_of(self._socket, self._access)
 
     @property
     def complete(self) -> bool:
-        """Whether the pages that are connected have received everything."""
+        """Whether all connected pages have received everything."""
         return all(each.complete for each in self._deliveries.values())
 
     async def start(self) -> None:
         """Begin to serve on the running loop."""
         self._beat = Beat()
-        quiet = logging.Logger("jacaros.view", logging.CRITICAL + 1)  # what strangers send is nothing to log
+        quiet = logging.Logger("jacaros.view", logging.CRITICAL + 1)  # do not log data of strangers
         self._server = await serve(
             self._talk,
             sock=self._socket,
             process_request=self._respond,
-            create_connection=cast(Any, self._connection),  # any callable will do
+            create_connection=cast(Any, self._connection),  # any callable is accepted
             server_header=None,
             compression=None,
             open_timeout=None,
@@ -136,10 +136,10 @@ class LiveServer:
         )
 
     async def close(self, patience: float = GOODBYE, visited: bool = False) -> None:
-        """Send what waits, then disconnect all.
+        """Send waiting records, then disconnect all pages.
 
         Args:
-            patience: seconds of real time that sending may take.
+            patience: maximum seconds of real time for sending.
             visited: whether to wait that long for the first page, too.
         """
         server, beat = self._server, self._beat
@@ -160,7 +160,7 @@ class LiveServer:
         beat.close()
 
     def release(self) -> None:
-        """Close the listening socket; closing twice does no harm."""
+        """Close the listening socket; closing twice is harmless."""
         self._socket.close()
 
     # ---- requests
@@ -169,7 +169,7 @@ class LiveServer:
         return _Connection(self, *arguments, **options)
 
     def admits(self) -> bool:
-        """Return whether one more connection may be opened now."""
+        """Return whether another connection may be accepted now."""
         now = real_time()
         if now - self._second >= 1.0:
             self._second, self._admitted = now, 0
@@ -177,23 +177,23 @@ class LiveServer:
         return self._admitted <= ADMITTED
 
     def opened(self, connection: "_Connection") -> None:
-        """Take note of a connection; one too many displaces the oldest that is not a page."""
+        """Register a connection; if there are too many, drop the oldest one that is not a page."""
         self._connections[connection] = None
         if len(self._connections) > CONNECTIONS:
             oldest = next((each for each in self._connections if each not in self._deliveries), connection)
             self._disconnect(oldest)
 
     def lost(self, connection: "_Connection") -> None:
-        """Take note of the end of a connection."""
+        """Remove a closed connection."""
         self._connections.pop(connection, None)
 
     def _disconnect(self, connection: ServerConnection) -> None:
-        """End a connection without waiting for the other side."""
-        if connection in self._connections:  # else its transport is closed, and cannot be aborted
+        """Abort a connection without waiting for the other side."""
+        if connection in self._connections:  # otherwise its transport is already closed
             connection.transport.abort()
 
     def _respond(self, connection: ServerConnection, request: Request) -> Response | None:
-        """Return the answer to a request; None opens the WebSocket."""
+        """Return the response to a request; None opens the WebSocket."""
         hosts = request.headers.get_all("Host")
         if not self._access.knows_host(hosts):
             return _response(HTTPStatus.FORBIDDEN, {})
@@ -217,7 +217,7 @@ class LiveServer:
     # ---- pages
 
     async def _talk(self, connection: ServerConnection) -> None:
-        """Send records to a page and execute its commands, until it goes."""
+        """Send records to a page and execute its commands until it disconnects."""
         delivery = self._deliveries[connection] = self._source.begin()
         self.visitors += 1
         sending = asyncio.create_task(self._send(connection, delivery))
@@ -246,7 +246,7 @@ class LiveServer:
                     await self._beat.next()
 
     async def _within_patience(self, connection: ServerConnection, message: str) -> None:
-        """Send a message; disconnect a page that takes nothing for `PATIENCE` seconds."""
+        """Send a message; disconnect a page that accepts nothing for `PATIENCE` seconds."""
         assert self._beat is not None
         sending = asyncio.create_task(connection.send(message))
         sending.add_done_callback(_retrieve)
@@ -262,7 +262,7 @@ class LiveServer:
         sending.result()
 
     async def _listen(self, connection: ServerConnection) -> None:
-        """Execute the commands of a page; those that wait for something do not hold up the next ones."""
+        """Execute the commands of a page; slow commands do not block later ones."""
         assert self._beat is not None
         garbage = count = 0
         running: set[asyncio.Task[None]] = set()
@@ -293,7 +293,7 @@ class LiveServer:
 
 
 class _Connection(ServerConnection):
-    """A connection that the server knows from its first byte on."""
+    """A connection registered with the server from its first byte."""
 
     def __init__(self, pages: LiveServer, *arguments: Any, **options: Any) -> None:
         super().__init__(*arguments, **options)
@@ -301,7 +301,7 @@ class _Connection(ServerConnection):
         self._is_admitted = False
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        """Begin, or end immediately if there are too many."""
+        """Start, or abort immediately if there are too many connections."""
         self._is_admitted = self._pages_server.admits()
         if not self._is_admitted:
             cast(asyncio.Transport, transport).abort()
@@ -310,19 +310,19 @@ class _Connection(ServerConnection):
         self._pages_server.opened(self)
 
     def data_received(self, data: bytes) -> None:
-        """Take data."""
+        """Receive data."""
         if self._is_admitted:
             super().data_received(data)
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """End."""
+        """End the connection."""
         if self._is_admitted:
             self._pages_server.lost(self)
             super().connection_lost(exc)
 
 
 def _retrieve(task: asyncio.Task[None]) -> None:
-    """Take note of what a task raised, also when nothing waits for it any longer."""
+    """Retrieve the exception of a task, so that asyncio does not log it as unhandled."""
     if not task.cancelled():
         task.exception()
 
@@ -344,7 +344,7 @@ def _response(status: HTTPStatus, headers: Mapping[str, str], content: bytes | N
 
 
 def _command(message: str | bytes) -> Mapping[str, Any] | None:
-    """Return the command in a message, None when it is unreadable."""
+    """Return the command in a message, None if it is unreadable."""
     try:
         command = json.loads(message)
     except (ValueError, RecursionError):

@@ -19,20 +19,20 @@ async def view(
             print(page)
             await mas.ended()
 
-    Args:
+    mas: the running system.
         mas: the running system.
-        address: of this machine; the default can be reached from this machine alone.
-        port: a free one by default.
-        token: of the path, at least 16 letters and digits; random by default.
+        address: address of this machine; by default one that only this machine can reach.
+        port: port; a free one by default.
+        token: token in the path, at least 16 letters and digits; random by default.
 
     Returns:
         The address of the page.
 
     Raises:
-        UsageError: the address cannot be served, or the token is invalid.
-        RunEnded: the system does not run.
+        UsageError: the address cannot be used, or the token is invalid.
+        RunEnded: the system is not running.
     """
-    from jacaros.inspector.live.run_view import Place, RunView  # here: the server is for those who want one
+    from jacaros.inspector.live.run_view import Place, RunView  # here: only runs with a page need a server
 
     shown = RunView(mas.system, Place(address, port, token))
     watch = watch_of(mas.system, [shown.watcher], live=True)

@@ -8,11 +8,11 @@ from jacaros.sim import World
 from jacaros.sim.description import PersonDescription
 
 RADIUS = 0.2
-"""Metres: the radius of an obstacle, unless it is given."""
+"""Default radius of an obstacle, in metres."""
 
 
 def world_commands(system: System, world: World, show: Callable[[], None]) -> Mapping[str, Command]:
-    """Return the commands for the embedded world of a system; *show* shows it when it was changed."""
+    """Return the commands for the embedded world of a system; *show* updates the view after a change."""
     commands = _WorldCommands(world, system.ros.catch_up)
     found: dict[str, Command] = {"obstacle": commands.obstacle, "person": commands.person}
     if world.robots:
@@ -27,14 +27,14 @@ def world_commands(system: System, world: World, show: Callable[[], None]) -> Ma
 def _shown(command: Command, show: Callable[[], None]) -> Command:
     def change(given: Given) -> object:
         result = command(given)
-        show()  # also while the run is paused
+        show()  # even while the run is paused
         return result
 
     return change
 
 
 class _WorldCommands:
-    """*catch_up* lets the world make the steps that are due, so that a change happens now and not earlier."""
+    """Create the commands; *catch_up* makes the due steps of the world, so that a change happens now and not earlier."""
 
     def __init__(self, world: World, catch_up: Callable[[], None]) -> None:
         self._world, self._catch_up = world, catch_up
@@ -60,7 +60,7 @@ class _WorldCommands:
             raise Refused(refused)
 
     def obstacle(self, given: Given) -> str:
-        """Place an obstacle, or with `remove` take one away; returns its name."""
+        """Place an obstacle, or remove one with `remove`; return its name."""
         self._catch_up()
         if given.get("remove") is not None:
             name = text_in(given, "remove")
@@ -70,7 +70,7 @@ class _WorldCommands:
         return self._world.add_obstacle(x, y, number_in(given, "radius", RADIUS)).name
 
     def person(self, given: Given) -> str:
-        """Let a person come, or with `remove` go; returns the name."""
+        """Add a person, or remove one with `remove`; return the name."""
         self._catch_up()
         if given.get("remove") is not None:
             name = text_in(given, "remove")
@@ -84,7 +84,7 @@ class _WorldCommands:
         return visitor.name
 
     def fault(self, given: Given) -> None:
-        """Begin or end a fault of the fault file."""
+        """Start or end a fault of the fault file."""
         self._catch_up()
         name = text_in(given, "name")
         if not flag_in(given, "on"):

@@ -106,7 +106,7 @@ function operations(context) {
     stamp: (artifact, t) => String(artifact.running.countAt(t)),
     nodes(artifact, t) {
       const last = artifact.lastOperations(t, LAST);
-      if (!last.length) return [element("p", "empty", "No operation was called yet.")];
+      if (!last.length) return [element("p", "empty", "No operation has been called yet.")];
       return [element("ul", "operations", ...last.map((each) => element("li", each.outcome, element("span", "outcome", OUTCOMES[each.outcome] ?? each.outcome),
         element("code", "", each.operation), element("span", "", ` by ${each.agent ?? "itself"} at `, momentButton(context, each.began, `op ${each.id}`)), " ",
         whyButton(context, { artifact: artifact.path, cause: each.id }, `op ${each.id}`), ...(each.reason ? [element("span", "why", each.reason)] : []))))];

@@ -20,7 +20,7 @@ export class ControlsView {
     this.speed.addEventListener("change", () => actions.run(this.speed, () => commands.send("speed", { factor: Number(this.speed.value) })));
     this.speeding = element("label", "group", "Run at ", this.speed);
     this.breakpoints = new BreakpointsForm(context, minds);
-    this.reload = actions.button("Reload", "Read changed programs again", () => this.read(), "plain");
+    this.reload = actions.button("Reload", "Reload changed programs", () => this.read(), "plain");
     root.append(this.pause, this.stepping, this.speeding, this.breakpoints.root, this.reload);
     this.state = element("div", "debug-state");
     this.state.setAttribute("role", "status");

@@ -12,7 +12,7 @@ const WORDS = {
   picked: (d) => `picked up ${d.object}`, placed: (d) => `put down ${d.object}`,
   fault: (d) => `fault ${d.fault} (${spaced(d.kind)}) ${d.state}${d.why ? `: ${d.why}` : ""}`,
   fell: () => "fell down a cliff",
-  battery_empty: () => "battery empty", command_timeout: () => "no commands for a while: stopped",
+  battery_empty: () => "battery empty", command_timeout: () => "stopped: no commands received",
   log: (d) => d.text, intervention: (d) => d.what,
   debug: (d) => (d.state === "paused" ? `paused${d.why && d.why !== "pause" ? `: ${d.why}` : ""}` : "continues"),
   ended: (d) => `the run ended with code ${d.code}`,

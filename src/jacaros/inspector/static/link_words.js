@@ -36,7 +36,7 @@ export function planName(plan) {
 export function placeName({ file, line }) { return `${shortName(file)}:${line}`; }
 
 /** Why a plan was not taken, in words. */
-export function refusalWords(why) { return why || "it is applicable, too, but another plan came first"; }
+export function refusalWords(why) { return why || "also applicable, but another plan came first"; }
 
 function rest(what, topic) {
   const text = String(what ?? "").replace(topic ?? "", "").replace(/^[:\s]+/, "");

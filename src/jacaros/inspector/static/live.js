@@ -72,7 +72,7 @@ class Connection {
   lose() {
     this.commands.disconnect();
     if (this.page.run.over) { this.page.notice("The run has ended. You can still go back in time."); return; }
-    this.page.notice("The connection to the run was lost. Trying again …");
+    this.page.notice("Connection to the run lost. Reconnecting …");
     setTimeout(() => this.connect(), this.wait * 1000);
     this.wait = Math.min(LONGEST_WAIT, this.wait * 2);
   }

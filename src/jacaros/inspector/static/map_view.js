@@ -32,7 +32,7 @@ export class MapView {
     legend.setAttribute("aria-label", "Layers of the map");
     this.laserButton = this.layerButton("laser", "Laser");
     legend.append(this.layerButton("trail", "Path so far"), this.laserButton,
-      this.zoomButton("+", "Enlarge the map", 1.4), this.zoomButton("−", "Reduce the map", 1 / 1.4));
+      this.zoomButton("+", "Zoom in", 1.4), this.zoomButton("−", "Zoom out", 1 / 1.4));
     return legend;
   }
 

@@ -44,7 +44,7 @@ export class PlanList {
         whyButton(this.context, { agent: mind.name, cause: last.id }, `${key} last`)));
     }
     if (reasons.length) lines.push(element("ul", "reasons", ...reasons.map((reason, n) => this.reason(mind, reason, `${key} ${n}`))));
-    if (!last && !reasons.length) lines.push(element("p", "empty", "No event asked for this plan so far."));
+    if (!last && !reasons.length) lines.push(element("p", "empty", "No event has triggered this plan yet."));
     return lines;
   }
 

@@ -25,7 +25,7 @@ export class Track {
   since(t) { return this.times[indexAt(this.times, t)]; }
 }
 
-/** Index of the last of the sorted `times` that is at most `t`, -1 when there is none. */
+/** Index of the last of the sorted `times` that is at most `t`; -1 without any. */
 export function indexAt(times, t) {
   let low = 0, high = times.length;
   while (low < high) {

@@ -1,1 +1,1 @@
-"""Faults of a simulated world: what goes wrong in it, when, and what that does."""
+"""Fault injection in the embedded world: fault files, their schedule and their effects."""

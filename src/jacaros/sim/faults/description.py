@@ -7,11 +7,11 @@ from typing import Final
 from jacaros.sim.description import PersonDescription, Pose
 
 WHEELS: Final = ("wheel_slip", "blocked_wheel")
-"""Kinds that concern the wheels of a robot."""
+"""Kinds that affect the wheels of a robot."""
 MESSAGES: Final = ("dead", "frozen", "nan", "lost", "delayed", "duplicated")
-"""Kinds that concern the messages of a topic."""
+"""Kinds that affect the messages of a topic."""
 ACTIONS: Final = ("aborted_action",)
-"""Kinds that concern the goals of an action."""
+"""Kinds that affect the goals of an action."""
 AT_ONCE: Final = ("kidnapped_robot", "battery_drop")
 """Kinds without duration."""
 
@@ -32,7 +32,7 @@ KEYS: Final[Mapping[str, tuple[str, ...]]] = {
     "duplicated": ("topic", "copies"),
     "aborted_action": ("action", "share"),
 }
-"""Further keys by kind of fault; all kinds have ``at`` and ``for``, and those of wheels and of one moment ``robot``."""
+"""Further keys by kind; all kinds have ``at`` and ``for``, and kinds of wheels or without duration also ``robot``."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,9 +40,9 @@ class Fault:
     """One fault.
 
     Attributes:
-        name: its name in the ground truth and in its service.
+        name: name in the ground truth and in its service.
         kind: one of `KEYS`.
-        at: seconds of the world at which it begins; None: only on request.
+        at: start in seconds of the world; None: only on request.
         lasts: duration in seconds; None: until `Faults.end`.
         robot: name of the affected robot, "" for none.
         topic, action: absolute names.
@@ -51,9 +51,9 @@ class Fault:
         pose: new pose of a kidnapped robot.
         level: remaining charge of the battery, in percent.
         place: name of the door or the dock.
-        person: the person that appears.
-        seconds, jitter: delay of messages, and the maximum of its random part.
-        copies: deliveries of each message.
+        person: person who appears.
+        seconds, jitter: delay of messages, and maximum of its random part, in seconds.
+        copies: number of deliveries of each message.
     """
 
     name: str

@@ -39,7 +39,7 @@ def load_faults(path: str | Path, world: WorldDescription) -> tuple[Fault, ...]:
     """Read a fault file.
 
     Raises:
-        WorldError: the file is missing, wrong, or does not fit the *world*; its text has all mistakes.
+        WorldError: the file does not exist, has mistakes, or does not match the *world*; the text lists all mistakes.
     """
     text, problems, faults = _read(Path(path), world)
     if problems:
@@ -48,10 +48,10 @@ def load_faults(path: str | Path, world: WorldDescription) -> tuple[Fault, ...]:
 
 
 def read_faults(text: str, world: WorldDescription, name: str = "faults") -> tuple[Fault, ...]:
-    """Read the text of a fault file; errors call it *name*.
+    """Read the text of a fault file; *name* is its name in errors.
 
     Raises:
-        WorldError: the text is wrong; the error has all mistakes.
+        WorldError: the text is malformed; the error lists all mistakes.
     """
     problems, faults = _faults(text, world)
     if problems:
@@ -66,7 +66,7 @@ def is_fault_file(path: Path) -> bool:
 
 
 def fault_file_problems(path: Path) -> tuple[str, list[Problem]]:
-    """Return the text of a fault file and all mistakes that do not depend on a world."""
+    """Return the text of a fault file, and all mistakes that do not depend on a world."""
     text, problems, _ = _read(path, None)
     return text, problems
 
@@ -156,7 +156,7 @@ def _placed(fault: Fault, node: Node, entries: dict[str, Node], world: WorldDesc
 
 
 def _landing(node: Node, name: str, world: WorldDescription | None) -> Pose:
-    """Read where a robot is put down; doors do not count, as they can be open by then."""
+    """Read where a robot is put down; closed doors are ignored, because they may be open by then."""
     mistakes = len(node.problems)
     pose = read_pose(node.mapping("x", "y", "yaw_degrees"))
     robots = () if world is None or len(node.problems) > mistakes else world.robots

@@ -1,4 +1,4 @@
-"""The ROS graph of a world with faults: messages from and to the world can be lost, late or wrong, and goals aborted.
+"""The ROS graph of a world with faults: messages of the world can be lost, late or wrong, and goals aborted.
 
 Faults act where the world joins the graph, so they affect agents and all other nodes alike.
 """
@@ -18,12 +18,12 @@ from jacaros.sim.faults.schedule import Faults
 
 
 class FaultyGraph:
-    """A graph whose topics and actions have faults; the rest is unchanged.
+    """A graph with faults on some topics and actions; everything else is unchanged.
 
     Args:
         backend: the graph.
-        faults: of the world.
-        clock: for delayed messages.
+        faults: faults of the world.
+        clock: clock for delayed messages.
     """
 
     def __init__(self, backend: Backend, faults: Faults, clock: Clock) -> None:
@@ -100,8 +100,8 @@ class FaultyGraph:
 
     def _pass_on(self, topic: str, message: Any, send: Callable[[Any], None]) -> None:
         passing: Sequence[tuple[float, Any]] = ((0.0, message),)
-        for way in self._faults.ways(topic):
-            passing = [(late + later, out) for late, each in passing for later, out in way(each)]
+        for effect in self._faults.effects(topic):
+            passing = [(late + later, out) for late, each in passing for later, out in effect(each)]
         for late, each in passing:
             if late > 0.0:
                 self._clock.call_later(late, partial(send, each))

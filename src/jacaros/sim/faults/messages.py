@@ -9,8 +9,8 @@ from typing import Any
 
 from jacaros.sim.faults.description import Fault
 
-Way = Callable[[Any], Sequence[tuple[float, Any]]]
-"""Takes a message, and returns the messages that arrive instead, each with its delay in seconds; empty if it is lost."""
+Effect = Callable[[Any], Sequence[tuple[float, Any]]]
+"""Takes a message and returns the messages delivered instead, each with its delay in seconds; empty if it is lost."""
 
 _KEPT = frozenset(
     {"header", "angle_min", "angle_max", "angle_increment", "range_min", "range_max", "scan_time"}
@@ -18,7 +18,7 @@ _KEPT = frozenset(
 """Fields that describe a sensor and are not measurements."""
 
 
-def way_of(fault: Fault, seed: int) -> Way:
+def effect_of(fault: Fault, seed: int) -> Effect:
     """Return the effect of a fault on the messages of its topic."""
     chance = random.Random(f"{seed}/{fault.name}/messages")
     if fault.kind == "dead":
@@ -50,7 +50,7 @@ class _Frozen:
 
 
 def _without_numbers(message: Any) -> Any:
-    """Set every floating-point measurement to NaN."""
+    """Set all floating-point measurements to NaN."""
     for name in _fields(message):
         value = getattr(message, name)
         if name in _KEPT or "covariance" in name:
@@ -60,7 +60,7 @@ def _without_numbers(message: Any) -> Any:
         elif _fields(value):
             _without_numbers(value)
         elif not isinstance(value, str | bytes) and isinstance(value, Iterable):
-            # Of arrays (numpy's, and array.array, as of ROS 2) the items as Python has them.
+            # For arrays (numpy, and array.array in ROS 2), the items as Python values.
             items = list(getattr(value, "tolist", value.__iter__)())
             if items and all(isinstance(item, float) for item in items):
                 setattr(message, name, [math.nan] * len(items))

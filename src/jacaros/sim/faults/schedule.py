@@ -9,15 +9,15 @@ from typing import Any, Protocol
 from jacaros.errors import UsageError
 from jacaros.sim.description import PersonDescription, WorldDescription
 from jacaros.sim.faults.description import ACTIONS, MESSAGES, Fault
-from jacaros.sim.faults.messages import Way, way_of
+from jacaros.sim.faults.messages import Effect, effect_of
 from jacaros.sim.robot.robot import Robot
 
 Undo = Callable[[], object]
 Abort = Callable[[str], object]
-"""Aborts a goal, because of a fault."""
+"""Aborts a goal because of a fault."""
 
 
-class Stricken(Protocol):
+class FaultyWorld(Protocol):
     """The part of `jacaros.sim.world.World` that faults use."""
 
     description: WorldDescription
@@ -40,20 +40,20 @@ class Refused(Exception):
 class Faults:
     """The faults of a world, by name.
 
-    Each beginning and end is an event ``fault`` of the ground truth, with ``fault`` (its name), ``kind`` and ``state``:
-    ``begins``, ``ends`` or ``refused``, then with ``why``.
+    Each start and end is an event ``fault`` of the ground truth, with ``fault`` (its name), ``kind`` and ``state``:
+    ``begins``, ``ends``, or ``refused`` with ``why``.
 
     Args:
-        world: the affected world.
+        world: affected world.
         faults: its faults.
 
     Attributes:
-        by_name: the faults.
-        next: time of the next beginning or end, in seconds of the world; infinite if there is none.
+        by_name: faults by name.
+        next: time of the next start or end, in seconds of the world; infinite without one.
         topics, actions: all topics and actions with faults, active or not.
     """
 
-    def __init__(self, world: Stricken, faults: Iterable[Fault] = ()) -> None:
+    def __init__(self, world: FaultyWorld, faults: Iterable[Fault] = ()) -> None:
         self._world = world
         self.by_name = {fault.name: fault for fault in faults}
         self.topics = frozenset(fault.topic for fault in self.by_name.values() if fault.topic)
@@ -61,26 +61,26 @@ class Faults:
         self._begins = {fault.name: fault.at for fault in self.by_name.values() if fault.at is not None}
         self._ends: dict[str, float] = {}
         self._undo: dict[str, Undo] = {}
-        self._ways: dict[str, dict[str, Way]] = {}
+        self._effects: dict[str, dict[str, Effect]] = {}
         self._aborting: dict[str, tuple[str, Callable[[], bool]]] = {}
-        """Active faults that abort goals: their actions, and whether the next goal is aborted."""
+        """Active faults that abort goals: their actions, and a function that decides about the next goal."""
         self._goals: dict[Abort, str] = {}
         self._look_ahead()
 
     @property
     def at_work(self) -> list[str]:
-        """Names of the active faults, the oldest first."""
+        """Names of the active faults, oldest first."""
         return list(self._undo)
 
-    def ways(self, topic: str) -> Iterable[Way]:
-        """Return the effects of active faults on messages of a topic, the oldest first."""
-        return self._ways.get(topic, {}).values()
+    def effects(self, topic: str) -> Iterable[Effect]:
+        """Return the effects of active faults on the messages of a topic, oldest first."""
+        return self._effects.get(topic, {}).values()
 
     def watch_goal(self, action: str, abort: Abort) -> Undo:
-        """Have *abort* called with the name of a fault that aborts goals of *action*, at once if one is active.
+        """Call *abort* with the name of each fault that aborts goals of *action*; immediately if one is active.
 
         Returns:
-            what ends that.
+            A function that stops this.
         """
         for name, (meant, happens) in self._aborting.items():
             if meant == action and happens():
@@ -90,7 +90,7 @@ class Faults:
         return partial(self._goals.pop, abort, None)
 
     def step(self, time: float) -> None:
-        """End and begin the faults that are due at *time* (seconds of the world), ends first."""
+        """End and start the faults that are due at *time* (seconds of the world), ends first."""
         for name in [name for name, end in self._ends.items() if end <= time]:
             self.end(name)
         for name in [name for name, begin in self._begins.items() if begin <= time]:
@@ -102,10 +102,10 @@ class Faults:
         self.next = min((*self._begins.values(), *self._ends.values()), default=math.inf)
 
     def begin(self, name: str) -> str | None:
-        """Begin a fault; an active fault continues.
+        """Start a fault; an active fault continues.
 
         Returns:
-            The reason why it cannot begin, or None.
+            Why it cannot start, or None.
 
         Raises:
             UsageError: the fault is unknown.
@@ -141,7 +141,7 @@ class Faults:
             self._tell(fault, "ends")
 
     def switch(self, name: str, on: bool) -> str | None:
-        """Begin or end a fault; return why it cannot begin, or None.
+        """Start or end a fault; return why it cannot start, or None.
 
         Raises:
             UsageError: the fault is unknown.
@@ -166,9 +166,9 @@ class Faults:
             Refused, UsageError: the fault cannot happen now.
         """
         if fault.kind in MESSAGES:
-            ways = self._ways.setdefault(fault.topic, {})
-            ways[fault.name] = way_of(fault, self._world.description.seed)
-            return partial(ways.pop, fault.name)
+            active = self._effects.setdefault(fault.topic, {})
+            active[fault.name] = effect_of(fault, self._world.description.seed)
+            return partial(active.pop, fault.name)
         if fault.kind in ACTIONS:
             happens = _chance(self._world, fault)
             self._aborting[fault.name] = fault.action, happens
@@ -179,40 +179,40 @@ class Faults:
         return _EFFECTS[fault.kind](self._world, fault)
 
 
-def _chance(world: Stricken, fault: Fault) -> Callable[[], bool]:
-    """Return whether a fault happens the next time, for its share of all times."""
+def _chance(world: FaultyWorld, fault: Fault) -> Callable[[], bool]:
+    """Return a function that decides each time whether a fault happens, with the probability ``share``."""
     draw = random.Random(f"{world.description.seed}/{fault.name}/{fault.kind}").random
     return lambda: draw() < fault.share
 
 
-def _slip(world: Stricken, fault: Fault) -> Undo:
+def _slip(world: FaultyWorld, fault: Fault) -> Undo:
     robot = world.robot(fault.robot)
     draw = random.Random(f"{world.description.seed}/{fault.name}/slip").random
     robot.grip = lambda: max(0.0, 1.0 - 2.0 * fault.share * draw())
     return partial(setattr, robot, "grip", None)
 
 
-def _block(world: Stricken, fault: Fault) -> Undo:
+def _block(world: FaultyWorld, fault: Fault) -> Undo:
     robot = world.robot(fault.robot)
     robot.blocked_wheel = fault.wheel
     return partial(setattr, robot, "blocked_wheel", "")
 
 
-def _kidnap(world: Stricken, fault: Fault) -> None:
+def _kidnap(world: FaultyWorld, fault: Fault) -> None:
     world.robot(fault.robot).put_down(fault.pose)
 
 
-def _drop(world: Stricken, fault: Fault) -> None:
+def _drop(world: FaultyWorld, fault: Fault) -> None:
     battery = world.robot(fault.robot).battery
     battery.level = min(battery.level, fault.level)
 
 
-def _cut_current(world: Stricken, fault: Fault) -> Undo:
+def _cut_current(world: FaultyWorld, fault: Fault) -> Undo:
     world.dead_docks.add(fault.place)
     return partial(world.dead_docks.discard, fault.place)
 
 
-def _close_door(world: Stricken, fault: Fault) -> Undo:
+def _close_door(world: FaultyWorld, fault: Fault) -> Undo:
     if not world.doors[fault.place]:
         return lambda: None
     why = world.move_door(fault.place, opened=False)
@@ -221,18 +221,18 @@ def _close_door(world: Stricken, fault: Fault) -> Undo:
     return partial(world.move_door, fault.place, opened=True)
 
 
-def _jam_door(world: Stricken, fault: Fault) -> Undo:
+def _jam_door(world: FaultyWorld, fault: Fault) -> Undo:
     world.stuck_doors[fault.place] = _chance(world, fault)
     return partial(world.stuck_doors.pop, fault.place, None)
 
 
-def _let_come(world: Stricken, fault: Fault) -> Undo:
+def _let_come(world: FaultyWorld, fault: Fault) -> Undo:
     assert fault.person is not None
     world.add_person(fault.person)
     return partial(world.remove_person, fault.name)
 
 
-_EFFECTS: dict[str, Callable[[Stricken, Fault], Undo | None]] = {
+_EFFECTS: dict[str, Callable[[FaultyWorld, Fault], Undo | None]] = {
     "wheel_slip": _slip,
     "blocked_wheel": _block,
     "kidnapped_robot": _kidnap,

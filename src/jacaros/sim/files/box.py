@@ -1,4 +1,4 @@
-"""A ``box`` among the walls of a world file: solid furniture, of which a kind and a colour may be known::
+"""A ``box`` among the walls of a world file: solid furniture with an optional kind and colour::
 
 box: {from: [2, 2], to: [2.5, 3], kind: table, color: brown}      # or color: "#8b5a2b"
 """
@@ -22,7 +22,7 @@ COLORS = {
     "white": "#f4f4f4",
     "yellow": "#f2c14e",
 }
-"""What the names of colours mean, as ``#rrggbb``."""
+"""Colour names as ``#rrggbb``."""
 _RGB = re.compile(r"#[0-9a-f]{6}")
 
 
@@ -36,7 +36,7 @@ def read_box(node: Node) -> Furniture:
 
 
 def read_color(node: Node) -> str:
-    """Read a colour: a name or ``#rrggbb``; gives ``#rrggbb``."""
+    """Read a colour, a name or ``#rrggbb``; return it as ``#rrggbb``."""
     text = node.text().lower()
     if text in COLORS or not text:
         return COLORS.get(text, "")

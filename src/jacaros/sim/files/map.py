@@ -1,8 +1,8 @@
-"""Maps of ROS's map_server (a YAML file and an image) as walls; and worlds as such maps.
+"""Maps of ROS's map_server (a YAML file and an image) as walls, and worlds as maps.
 
-Their keys are those of `jacaros.map_header`; the origin must not be rotated.
+The keys are those of `jacaros.map_header`; the origin must not be rotated.
 
-Unknown cells are not walls: lasers see through them, and robots can drive there.
+Unknown cells are not walls: laser beams and robots pass through them.
 """
 
 import difflib
@@ -19,16 +19,16 @@ from jacaros.yaml_syntax import read_text, top_keys
 
 FREE, OCCUPIED, UNKNOWN = 0, 1, 2
 _ROOM_FOR_ROBOT = 0.4
-"""Metres of free floor around a robot that is placed automatically."""
+"""Metres of free floor around an automatically placed robot."""
 _LATTICE = 0.25
-"""Metres between the places tried for it."""
+"""Metres between the candidate places for it."""
 
 
 @dataclass(frozen=True, slots=True)
 class OccupancyMap:
-    """Cells in rows from the bottom, each `FREE`, `OCCUPIED` or `UNKNOWN`.
+    """Cells in rows from the bottom: `FREE`, `OCCUPIED` or `UNKNOWN`.
 
-    ``resolution`` is the side of a cell, ``x_min`` and ``y_min`` are the lower left corner, in metres.
+    ``resolution`` is the side of a cell; ``x_min`` and ``y_min`` are the lower left corner; all in metres.
     """
 
     resolution: float
@@ -50,7 +50,7 @@ class OccupancyMap:
         return self.y_min + row * self.resolution
 
     def boxes(self) -> list[Rectangle]:
-        """Rectangles that cover the occupied cells, none of them twice."""
+        """Return disjoint rectangles that cover the occupied cells."""
         found: list[Rectangle] = []
         open_runs: dict[tuple[int, int], int] = {}
         for row in range(self.height + 1):
@@ -63,7 +63,7 @@ class OccupancyMap:
         return found
 
     def walls(self) -> list[Segment]:
-        """The boundary of the occupied cells: horizontal pieces, then vertical ones, each as long as it goes."""
+        """Return the boundary of the occupied cells: horizontal segments, then vertical ones, each as long as possible."""
         found: list[Segment] = []
         before = bytes(self.width)
         for row in range(self.height + 1):
@@ -80,7 +80,7 @@ class OccupancyMap:
         return found
 
     def known_part(self) -> Rectangle:
-        """The smallest rectangle with all known cells; the whole map if there are none."""
+        """Return the bounding rectangle of all known cells; the whole map without known cells."""
         known = self.cells.translate(_KNOWN)
         rows = [row for row in range(self.height) if 1 in known[row * self.width : (row + 1) * self.width]]
         columns = [column for column in range(self.width) if 1 in known[column :: self.width]]
@@ -123,7 +123,7 @@ _KNOWN = bytes(0 if value == UNKNOWN else 1 for value in range(256))
 
 
 def _runs(row: bytes) -> list[tuple[int, int]]:
-    """Where solid cells begin, and where they end."""
+    """Return the start and end of each run of solid cells."""
     found: list[tuple[int, int]] = []
     begin = row.find(1)
     while begin >= 0:
@@ -135,7 +135,7 @@ def _runs(row: bytes) -> list[tuple[int, int]]:
 
 
 def _changes(one: bytes, other: bytes) -> list[tuple[int, int]]:
-    """Stretches along two lines of cells where one of them is solid and the other is not; the same one all along."""
+    """Return the stretches along two rows of cells where always the same one of them is solid and the other is not."""
     if one == other:
         return []
     a, b = int.from_bytes(one), int.from_bytes(other)
@@ -144,13 +144,13 @@ def _changes(one: bytes, other: bytes) -> list[tuple[int, int]]:
 
 
 def is_map(path: Path) -> bool:
-    """Return whether a YAML file looks like a map of map_server, with mistakes or without."""
+    """Return whether a YAML file looks like a map of map_server, with or without mistakes."""
     keys = top_keys(path)
     return "image" in keys and len(keys & set(KEYS)) > 1
 
 
 def read_map(path: Path) -> tuple[str, list[Problem], OccupancyMap | None]:
-    """Return the text of a map file, all mistakes in it and its image, and the map if there are none."""
+    """Return the text of a map file, all mistakes in it and its image, and the map if it has no mistakes."""
     try:
         text, wrong = read_text(path)
     except OSError as error:
@@ -189,7 +189,7 @@ _CELLS = {100: OCCUPIED, 0: FREE, -1: UNKNOWN}
 
 
 def free_place(found: OccupancyMap | None, problems: list[Problem]) -> tuple[float, float] | None:
-    """Return a free place for a robot; None if there is none, which is added to *problems*."""
+    """Return a free place for a robot; None without one, after adding a problem to *problems*."""
     place = found.free_place(_ROOM_FOR_ROBOT) if found is not None else None
     if found is not None and place is None:
         problems.append(
@@ -213,7 +213,7 @@ def _image(node: Node, path: Path) -> GreyImage | None:
 
 
 def near_file(path: Path, pattern: str) -> str:
-    """Return a "did you mean" for a file of a similar name beside *path*; empty if there is none."""
+    """Return a "did you mean" for a file of a similar name next to *path*; empty without one."""
     try:
         near = difflib.get_close_matches(path.name, [each.name for each in path.parent.glob(pattern)], 1)
     except (OSError, ValueError):
@@ -222,7 +222,7 @@ def near_file(path: Path, pattern: str) -> str:
 
 
 def map_of_world(world: WorldDescription, image: str) -> tuple[str, bytes]:
-    """Return a world's map with open doors: the text of its YAML file, and the bytes of the image called *image*."""
+    """Return the map of a world with open doors: the text of its YAML file, and the bytes of the image named *image*."""
     grid = Grid(world)
     width, height = grid.width - 2, grid.height - 2
     shades = bytes(0 if value else 254 for value in grid.occupancy())

@@ -10,12 +10,12 @@ from jacaros.yaml_nodes import Node
 
 
 def read_objects(node: Node) -> tuple[ObjectDescription, ...]:
-    """Read all objects, in the order of the file; each must have a name of its own."""
+    """Read all objects, in the order of the file; their names must differ."""
     found: list[ObjectDescription] = []
     for item in node.sequence():
         each = _object(item)
         if any(other.name == each.name for other in found):
-            item.wrong(f"there is an object '{each.name}' already", "give it another name")
+            item.wrong(f"duplicate object '{each.name}'", "give it another name")
         found.append(each)
     return tuple(found)
 

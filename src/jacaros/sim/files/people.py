@@ -2,12 +2,12 @@
 
 people:
   - name: ann
-    path: [[0, 0], [2, 0], [2, 2]]    # points; ann starts at the first
+    path: [[0, 0], [2, 0], [2, 2]]    # points; ann starts at the first one
     speed: 1                          # m/s
     pause: 0                          # seconds at each point
-    loop: true                        # from the last point to the first, and so on; false: ends at the last
+    loop: true                        # continues from the last point to the first; false: stops at the last
     radius: 0.25
-    careless: false                   # true: does not stop before robots
+    careless: false                   # true: does not stop in front of robots
     color: red
 """
 
@@ -47,20 +47,20 @@ def read_path(node: Node) -> tuple[tuple[float, float], ...]:
         if before == after:
             node.wrong(
                 f"{node.what} has the point [{after[0]:g}, {after[1]:g}] twice in a row",
-                "leave one of them out",
+                "remove one of them",
             )
     return points
 
 
 def check_people(items: list[Node], world: WorldDescription, walled: bool) -> None:
-    """Report duplicate names of people and robots, and paths that touch a wall or a robot's place.
+    """Report duplicate names of people and robots, and paths that touch a wall or a robot's initial pose.
 
     Closed doors are allowed: people wait in front of them.
     """
     names = {robot.name for robot in world.robots}
     for item, person in zip(items, world.people, strict=True):
         if person.name in names:
-            item.wrong(f"the name '{person.name}' is taken", "give each person and robot a name of its own")
+            item.wrong(f"duplicate name '{person.name}'", "give each person and robot a different name")
         names.add(person.name)
         _check_path(item, person, world, walled)
 
@@ -70,15 +70,18 @@ def _check_path(item: Node, person: PersonDescription, world: WorldDescription, 
     for robot in world.robots:
         dx, dy, reach = robot.pose.x - x, robot.pose.y - y, robot.radius + person.radius
         if dx * dx + dy * dy < reach * reach:
-            item.wrong(f"'{person.name}' begins where the robot '{robot.name}' stands", "begin elsewhere")
+            item.wrong(
+                f"'{person.name}' starts at the place of the robot '{robot.name}'",
+                "start the path at another point",
+            )
     for ax, ay, bx, by in person.legs():
         where = f"the path of '{person.name}' from [{ax:g}, {ay:g}] to [{bx:g}, {by:g}]"
         if walled and not (world.bounds.contains(ax, ay) and world.bounds.contains(bx, by)):
-            item.wrong(f"{where} leaves the world", "the border has walls")
+            item.wrong(f"{where} leaves the world", "keep the path inside the walls of the border")
         elif any(
             Segment(ax, ay, bx, by).gap(wall) < person.radius - _TOUCHING for wall in world.segments
         ) or any(box.contains(ax, ay) for box in world.boxes):
             item.wrong(
-                f"{where} is nearer to a wall than the radius of {person.radius:g} m",
+                f"{where} passes a wall at less than the radius of {person.radius:g} m",
                 "lead the path around it",
             )

@@ -1,4 +1,4 @@
-"""Whether a robot fits where a world file or a fault file puts it."""
+"""Whether a robot fits at a place given in a world file or a fault file."""
 
 import math
 from collections.abc import Iterable
@@ -7,19 +7,19 @@ from jacaros.sim.contact import WallIndex, push_out_rectangle
 from jacaros.sim.description import Pose, RobotDescription, Segment, WorldDescription
 
 _TOUCHING = 0.001
-"""Metres that a robot may overlap a wall: the error of a rounded place."""
+"""Metres that a robot may overlap a wall: the error of a rounded coordinate."""
 
 
 def place_problem(
     robot: RobotDescription, pose: Pose, world: WorldDescription, solid: Iterable[Segment]
 ) -> tuple[str, str]:
-    """Return what is wrong with putting a *robot* at *pose* and a help, both empty if it fits.
+    """Return what is wrong with putting a *robot* at *pose*, and a help; both are empty if it fits.
 
     Args:
-        robot: its radius or footprint counts, not its own pose.
-        pose: the place, in metres and radians.
-        world: its boxes, and its bounds if they have walls.
-        solid: the walls that count.
+        robot: its radius or footprint is used, not its own pose.
+        pose: place, in metres and radians.
+        world: its boxes, and its bounds if it has border walls.
+        solid: walls to consider.
     """
     x, y, _ = pose
     walls = tuple(solid)

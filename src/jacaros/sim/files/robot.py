@@ -1,9 +1,9 @@
 """The ``robots`` part of a world file: one mapping to a `RobotDescription`.
 
-Every key is optional; these are the defaults, except for the noise of odometry and laser (0)::
+All keys are optional; these are the defaults, except for the noise of odometry and laser (0)::
 
     - name: turtlebot
-      kind: turtlebot               # or turtlebot2, turtlebot3, turtlebot4: other defaults, see `jacaros.sim.robot.kinds`
+      kind: turtlebot               # or turtlebot2, turtlebot3, turtlebot4, with other defaults: `jacaros.sim.robot.kinds`
       namespace: ""                 # prefix of the topics
       pose: {x: 0, y: 0, yaw_degrees: 0}
       radius: 0.17                  # or footprint: [length, width], a rectangle
@@ -11,7 +11,7 @@ Every key is optional; these are the defaults, except for the noise of odometry 
                command_timeout: 0.5}
       battery: {level: 100, drain_per_second: 0.01, drain_per_metre: 0.02, drain_per_turn: 0,
                 charge_per_second: 5}
-      odometry: {origin: world,     # or start: counts from where the robot stood at first
+      odometry: {origin: world,     # or start: counts from the initial pose
                  noise_per_metre: 0.02, noise_degrees_per_turn: 2, noise_degrees_per_metre: 1}
       laser: {enabled: true, beams_per_turn: 360, field_degrees: 360, range_min: 0.1, range_max: 10,
               noise: 0.01, publish: on demand}    # or always
@@ -40,11 +40,11 @@ from jacaros.yaml_nodes import Node
 _NAMESPACE = re.compile(r"/?[A-Za-z][A-Za-z0-9_]*(/[A-Za-z][A-Za-z0-9_]*)*")
 
 _REACH = 0.35
-"""Metres that a gripper reaches unless it says otherwise."""
+"""Default reach of a gripper, in metres."""
 
 
 def read_robot(node: Node) -> RobotDescription:
-    """Read one robot; missing values are those of its kind, at the origin."""
+    """Read one robot; the defaults are those of its kind, at the origin."""
     entries = node.mapping(
         "name",
         "kind",
@@ -91,7 +91,7 @@ def _footprint(node: Node) -> tuple[float, float]:
 
 
 def _radius(node: Node | None, footprint: tuple[float, float] | None, usual: float) -> float:
-    """That of the circle round a rectangular footprint, if there is one."""
+    """Return the radius: that of the circle around a rectangular footprint, if there is one."""
     if footprint is not None:
         length, width = footprint
         return 0.5 * math.sqrt(length * length + width * width)
@@ -99,7 +99,7 @@ def _radius(node: Node | None, footprint: tuple[float, float] | None, usual: flo
 
 
 def read_pose(entries: dict[str, Node]) -> Pose:
-    """A pose from the keys ``x``, ``y`` (metres) and ``yaw_degrees``, each 0 when it is not there."""
+    """Read a pose from the keys ``x``, ``y`` (metres) and ``yaw_degrees``, each 0 by default."""
 
     def value(key: str) -> float:
         return entries[key].number() if key in entries else 0.0
@@ -131,7 +131,7 @@ class _Section:
         return entry.number(minimum, maximum, default) if entry is not None else default
 
     def angle(self, key: str, default: float, minimum: float = 0.0, maximum: float = 1e9) -> float:
-        """An angle in radians, as its default is; the file has degrees."""
+        """Return an angle in radians, like its default; the file has degrees."""
         return radians(self.number(key, 0.0, minimum, maximum)) if key in self.entries else default
 
     def truth(self, key: str, default: bool) -> bool:
@@ -177,7 +177,7 @@ def _odometry(node: Node | None) -> OdometrySettings:
     return OdometrySettings(
         from_start=origin is not None and origin.choice("world", "start") == "start",
         per_metre=section.number("noise_per_metre", 0.0),
-        # The error of a whole turn is that of 2 pi radians, and errors add up by their squares.
+        # The error of a whole turn is that of 2 pi radians, and the squares of errors add up.
         per_radian=per_turn / math.sqrt(TWO_PI),
         turn_per_metre=radians(section.number("noise_degrees_per_metre", 0.0)),
     )

@@ -7,15 +7,15 @@ Lengths are metres, dirt is in grams::
       from: [3, 1]
       to: [9, 3]
       dirt:
-        dust: 40                                              # on the whole floor, but not below furniture
-        stains: {grams: 5, from: [4, 1], to: [5, 2]}          # here only
+        dust: 40                                              # on the whole floor except below furniture
+        stains: {grams: 5, from: [4, 1], to: [5, 2]}          # only in this area
 """
 
 from jacaros.sim.description import Dirt, Rectangle, Room
 from jacaros.yaml_nodes import Node
 
 LARGEST = 10_000.0
-"""Square metres of dirt in one piece: a million cells of 10 cm."""
+"""Largest area of one field of dirt, in square metres: a million cells of 10 cm."""
 _MOST = 1e9
 
 
@@ -43,7 +43,7 @@ def _dirt(kind: Node, node: Node, room: Rectangle) -> Dirt:
     if (x_max - x_min) * (y_max - y_min) > LARGEST:
         node.wrong(
             f"{node.what} covers more than {LARGEST:g} square metres",
-            "give it a smaller place with 'from' and 'to'",
+            "give it a smaller area with 'from' and 'to'",
         )
     return Dirt(kind.text(), grams, area)
 
@@ -54,7 +54,7 @@ def read_rectangle(node: Node) -> Rectangle:
 
 
 def corners_of(node: Node, entries: dict[str, Node]) -> Rectangle:
-    """The rectangle between the opposite corners ``from`` and ``to`` among the *entries* of a node."""
+    """Return the rectangle between the opposite corners ``from`` and ``to`` among the *entries* of a node."""
     if not {"from", "to"} <= entries.keys():
         return Rectangle(0.0, 0.0, 1.0, 1.0)
     ax, ay = entries["from"].pair()

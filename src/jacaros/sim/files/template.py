@@ -10,7 +10,7 @@ _NEW = """\
 # A world of two rooms. Lengths are metres, angles degrees counter-clockwise from the x axis.
 name: {name}
 size: [6, 4]                                  # centred at (0, 0); or bounds: {{from: [x, y], to: [x, y]}}
-border: walls                                 # around all of it; or open
+border: walls                                 # around the whole world; or open
 walls:
   - segment: [[0, -2], [0, -0.6]]             # a doorway of 1.2 m between the rooms
   - segment: [[0, 0.6], [0, 2]]
@@ -18,18 +18,18 @@ walls:
 rooms:
   kitchen: {{from: [-3, -2], to: [0, 2]}}       # with dirt: {{from: [-3, -2], to: [0, 2], dirt: {{dust: 40}}}}
   living_room: {{from: [0, -2], to: [3, 2]}}
-# doors:                                      # agents open and close them, see /doors/hall/open
+# doors:                                      # agents open and close them with the service /doors/hall/open
 #   - {{name: hall, segment: [[0, -0.6], [0, 0.6]], open: true}}
 docks:
   - {{name: dock, x: -2.5, y: 0, yaw_degrees: 0}}
 robots:
   - name: turtlebot
     pose: {{x: -2, y: 0, yaw_degrees: 0}}
-    odometry: {{noise_per_metre: 0.02, noise_degrees_per_turn: 2}}   # wheels slip; without this they never do
-    # namespace: robot_1                      # prefix of its topics; several robots need different ones
+    odometry: {{noise_per_metre: 0.02, noise_degrees_per_turn: 2}}   # wheel slip; remove for exact odometry
+    # namespace: robot_1                      # prefix of its topics; must differ between robots
     # battery: {{level: 100, drain_per_second: 0.01, drain_per_metre: 0.02}}
-    # tools: {{vacuum: {{removes: [dust]}}}}        # cleaning tools, see /cleaning/tool
-# people:                                     # who walk from point to point, and stop before robots
+    # tools: {{vacuum: {{removes: [dust]}}}}        # cleaning tools, used with the topic /cleaning/tool
+# people:                                     # walk from point to point, and stop in front of robots
 #   - {{name: ann, path: [[1, -1], [1, 1]], pause: 2, loop: true}}
 """
 
@@ -44,17 +44,17 @@ docks:
 robots:
   - name: turtlebot
     pose: {{x: {x}, y: {y}, yaw_degrees: 0}}
-    odometry: {{noise_per_metre: 0.02, noise_degrees_per_turn: 2}}   # wheels slip; without this they never do
+    odometry: {{noise_per_metre: 0.02, noise_degrees_per_turn: 2}}   # wheel slip; remove for exact odometry
 """
 
 
 def new_world(name: str) -> str:
-    """The text of a world with two rooms."""
+    """Return the text of a world file with two rooms."""
     return _NEW.format(name=_quoted(name))
 
 
 def world_of_map(path: Path, map_file: Path) -> str:
-    """Return a world file for *path*, with the walls of a map and a robot at a free place.
+    """Return the text of a world file for *path*, with the walls of a map and a robot at a free place.
 
     Raises:
         WorldError: the map has mistakes, or no free place.
@@ -78,12 +78,12 @@ def world_of_map(path: Path, map_file: Path) -> str:
 
 
 def described_map(image: Path, path: Path, resolution: float) -> str:
-    """Return a map file for *path* and an image; the origin is its lower left corner."""
+    """Return the text of a map file for *path* and an image; the origin is the lower left corner of the image."""
     return (
         f"image: {_quoted(shown_from(path.parent, image))}\nresolution: {resolution:g}\norigin: [0, 0, 0]\n"
     )
 
 
 def _quoted(text: str) -> str:
-    r"""A text of YAML: quotes and backslashes are written as ``\"`` and ``\\``."""
+    r"""Return a YAML string, with quotes and backslashes as ``\"`` and ``\\``."""
     return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'

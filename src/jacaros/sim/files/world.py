@@ -1,10 +1,10 @@
 """World files: YAML text to a `WorldDescription`.
 
-Lengths are metres, times seconds, levels percent and angles degrees; internally, angles are
-radians.  Every key except ``robots`` is optional; for those of robots see `jacaros.sim.files.robot`::
+Lengths are in metres, times in seconds, levels in percent and angles in degrees (radians internally). All keys except
+``robots`` are optional; for those of robots see `jacaros.sim.files.robot`::
 
     name: patrol
-    map: office.yaml                  # of map_server, see `jacaros.sim.files.map`; its walls and bounds
+    map: office.yaml                  # a map of map_server; see `jacaros.sim.files.map`
     size: [6, 6]                      # centred at the origin; or bounds: {from: [x, y], to: [x, y]}
     border: walls                     # or open (the default)
     seed: 1
@@ -14,13 +14,13 @@ radians.  Every key except ``robots`` is optional; for those of robots see `jaca
         closed: true
       - box: {from: [2, 2], to: [2.5, 3], kind: table, color: brown}
     rooms:
-      kitchen: {from: [1, 1], to: [3, 3]}    # and dirt, see `jacaros.sim.files.room`
+      kitchen: {from: [1, 1], to: [3, 3]}    # for dirt see `jacaros.sim.files.room`
     docks:
       - {name: dock, x: 1, y: 1, yaw_degrees: 0, radius: 0.25}
     doors:
       - {name: kitchen, segment: [[1, 0], [1, 1]], open: false}
     cliffs:
-      - {from: [-3, -3], to: [-2, -2]}       # no floor, such as the head of stairs
+      - {from: [-3, -3], to: [-2, -2]}       # no floor, such as the top of stairs
     robots:
       - name: turtlebot
         pose: {x: 0, y: 0, yaw_degrees: 0}
@@ -77,20 +77,20 @@ _KEYS = (
     "objects",
 )
 _TELLING = frozenset(_KEYS) - {"name", "seed"}
-"""Keys that few other YAML files have."""
+"""Keys that are rare in other YAML files."""
 _DOOR_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 
 
 def shipped_worlds() -> list[str]:
-    """Names of the worlds that come with the package."""
+    """Return the names of the worlds shipped with the package."""
     return sorted(path.stem for path in _WORLDS.glob("*.yaml"))
 
 
 def find_world(name: str) -> Path:
-    """The file of a shipped world's *name* or of a path.
+    """Return the path of a world file, given its path or the name of a shipped world.
 
     Raises:
-        UnknownWorld: when there is neither.
+        UnknownWorld: there is neither.
     """
     for path in (Path(name), _WORLDS / f"{name}.yaml"):
         if is_file(path):
@@ -111,10 +111,10 @@ def _meant(name: str) -> str:
 
 
 def load_world(name: str) -> WorldDescription:
-    """Read the world file of a path or of a shipped world's name.
+    """Read a world file, given its path or the name of a shipped world.
 
     Raises:
-        WorldError: the file is missing or wrong; the error has all mistakes.
+        WorldError: the file does not exist or has mistakes; the error lists all of them.
     """
     path = find_world(name)
     text, problems, description = _read(path)
@@ -124,22 +124,26 @@ def load_world(name: str) -> WorldDescription:
 
 
 def is_world(path: Path) -> bool:
-    """Whether a YAML file is a world file, wrong as it may be: it has robots, or two other keys of a world; or a map."""
+    """Return whether a YAML file is a map or a world file (robots or two other keys of a world), even with mistakes."""
     keys = top_keys(path)
     return is_map(path) or ("artifacts" not in keys and ("robots" in keys or len(keys & _TELLING) > 1))
 
 
 def world_problems(path: Path) -> tuple[str, list[Problem]]:
-    """Return the text of a world file and all its mistakes."""
+    """Return the text of a world file, and all its mistakes."""
     text, problems, _ = _read(path)
     return text, problems
 
 
 def read_world(text: str, name: str = "world") -> WorldDescription:
-    """Read the text of a world file; errors call it *name*.  Paths in it are relative to the current folder.
+    """Read the text of a world file; paths in it are relative to the current folder.
+
+    Args:
+        text: YAML.
+        name: name of the file in errors.
 
     Raises:
-        WorldError: the text is wrong; the error has all mistakes.
+        WorldError: the text has mistakes; the error lists all of them.
     """
     problems, description = _described(text, Path())
     if description is None:
@@ -158,7 +162,7 @@ def _read(path: Path) -> tuple[str, list[Problem], WorldDescription | None]:
 
 
 def _read_as_world(path: Path) -> tuple[str, list[Problem], WorldDescription | None]:
-    """The world of a map: its walls, and a TurtleBot at the free place nearest to (0, 0)."""
+    """Return a world with the walls of a map, and a TurtleBot at the free place nearest to (0, 0)."""
     text, problems, found = read_map(path)
     place = free_place(found, problems)
     if found is None or place is None:
@@ -212,7 +216,7 @@ def _world(document: Node, folder: Path) -> WorldDescription:
         people=tuple(read_person(person) for person in people),
         seed=entries["seed"].whole(0, 0) if "seed" in entries else 0,
     )
-    if not document.problems:  # else places may be made up
+    if not document.problems:  # otherwise places may be placeholders
         walled = "border" in entries and entries["border"].value == "walls"
         _check_places(robots, world)
         check_people(people, world, walled)
@@ -220,7 +224,7 @@ def _world(document: Node, folder: Path) -> WorldDescription:
 
 
 def _check_places(items: list[Node], world: WorldDescription) -> None:
-    """Note robots that are outside the world, in furniture, over a cliff, or in a wall or a closed door."""
+    """Report robots that are outside the world, in furniture, over a cliff, or in a wall or a closed door."""
     solid = (*world.segments, *(door.segment for door in world.doors if not door.open))
     for item, robot in zip(items, world.robots, strict=True):
         x, y, _ = robot.pose
@@ -282,7 +286,7 @@ def _wall(node: Node, segments: list[Segment], boxes: list[Furniture]) -> None:
 
 
 def _straight(shape: Node, segments: list[Segment], several: bool = False, closed: bool = False) -> None:
-    """Read the points of a segment, or of *several* connected ones, and add the segments."""
+    """Read the points of a segment, or of *several* connected segments, and add them to *segments*."""
     mistakes = len(shape.problems)
     points = [point.pair() for point in shape.sequence()]
     if len(shape.problems) > mistakes:
@@ -296,9 +300,7 @@ def _straight(shape: Node, segments: list[Segment], several: bool = False, close
         points.append(points[0])
     for (ax, ay), (bx, by) in itertools.pairwise(points):
         if (ax, ay) == (bx, by):
-            shape.wrong(
-                f"{shape.what} has the point [{ax:g}, {ay:g}] twice in a row", "leave one of them out"
-            )
+            shape.wrong(f"{shape.what} has the point [{ax:g}, {ay:g}] twice in a row", "remove one of them")
         else:
             segments.append(Segment(ax, ay, bx, by))
 
@@ -341,7 +343,7 @@ def _doors(node: Node | None) -> tuple[Door, ...]:
 
 
 def _check_robots(node: Node, items: list[Node]) -> None:
-    """Two robots must differ in name and in topics, and there must be one at least."""
+    """Report robots with the same name or the same topics, and a world without robots."""
     seen: dict[tuple[str, str], int] = {}
     if not items and isinstance(node.value, list):
         node.wrong("a world needs a robot", "add '- name: turtlebot' under 'robots'")

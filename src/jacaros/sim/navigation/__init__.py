@@ -1,1 +1,1 @@
-"""Navigation of a simulated robot: plan paths, follow them, dock, and offer this as actions."""
+"""Navigation of a simulated robot: planning, path following and docking, served as actions."""

@@ -8,36 +8,36 @@ from jacaros.ros.action import GoalStatus
 from jacaros.sim.navigation.docking import FAILED_TO_STAGE, Docking
 from jacaros.sim.navigation.failure import NavigationFailure
 from jacaros.sim.navigation.frames import ODOMETRY, Frames, FrameUnknown, fault_of, fill_in
-from jacaros.sim.navigation.offers import Execute, Goal, Offers
 from jacaros.sim.navigation.placement import Placement
+from jacaros.sim.navigation.servers import Execute, Goal, Servers
 
 _DOCK_AT = 0.5
-"""Metres that a dock may be off the pose that a goal names."""
+"""Tolerance in metres between a dock and the pose in a goal."""
 
 
 class DockServers:
-    """Offers docking of one robot.
+    """Serves docking of one robot.
 
     Args:
-        docking: docks it.
-        frames: its frames.
-        offers: its action servers.
+        docking: docks the robot.
+        frames: frames of the robot.
+        servers: action servers of the robot.
     """
 
-    def __init__(self, docking: Docking, frames: Frames, offers: Offers) -> None:
-        self.docking, self.frames, self.offers = docking, frames, offers
+    def __init__(self, docking: Docking, frames: Frames, servers: Servers) -> None:
+        self.docking, self.frames, self.servers = docking, frames, servers
         self._navigator = docking.navigator
-        self._backend = offers.backend
+        self._backend = servers.backend
 
     def offer_nav2(self) -> None:
         """``/dock_robot`` and ``/undock_robot``."""
-        self.offers.action(
+        self.servers.action(
             "/dock_robot",
             "nav2_msgs/action/DockRobot",
             self._dock_robot,
             lambda goal: None if goal.use_dock_id else fault_of(goal.dock_pose),
         )
-        self.offers.action("/undock_robot", "nav2_msgs/action/UndockRobot", self._undock_robot)
+        self.servers.action("/undock_robot", "nav2_msgs/action/UndockRobot", self._undock_robot)
 
     def offer_create3(self) -> None:
         """``/dock``, ``/undock``, ``/drive_distance`` and ``/rotate_angle``."""
@@ -49,7 +49,7 @@ class DockServers:
     def _create3(
         self, name: str, action: str, execute: Execute, cannot: Callable[[], str | None] = lambda: None
     ) -> None:
-        """A Create 3 refuses what it cannot do, and a second goal of what it is doing."""
+        """Serve an action that, like a Create 3, rejects impossible goals, and a second goal while one is running."""
         running = 0
 
         async def carry_out(goal: Goal) -> Mapping[str, Any]:
@@ -61,13 +61,13 @@ class DockServers:
                 running -= 1
 
         def accept(request: Any) -> str | None:
-            return f"{name} is at work; cancel that goal first" if running else cannot()
+            return f"{name} is running; cancel that goal first" if running else cannot()
 
-        self.offers.action(name, f"irobot_create_msgs/action/{action}", carry_out, accept)
+        self.servers.action(name, f"irobot_create_msgs/action/{action}", carry_out, accept)
 
     def offer_kobuki(self) -> None:
         """``/dock_drive_action``."""
-        self.offers.action(
+        self.servers.action(
             "/dock_drive_action",
             "kobuki_msgs/action/AutoDocking",
             self._auto_docking,
@@ -102,8 +102,8 @@ class DockServers:
 
     async def _undock_robot(self, goal: Goal) -> Mapping[str, Any]:
         if not self.docking.docked:
-            # Nav2 sees no need, and aborts without a code.
-            goal.abort("the robot is in no dock", success=False)
+            # Nav2 has nothing to do, and aborts without a code.
+            goal.abort("the robot is not docked", success=False)
         try:
             await self.docking.undock(goal.request.max_undocking_time or math.inf)
         except NavigationFailure as failure:
@@ -112,16 +112,16 @@ class DockServers:
 
     def _cannot_dock(self) -> str | None:
         if self.docking.docked:
-            return "the robot is docked already"
+            return "the robot is already docked"
         return "no dock in sight" if self.docking.visible_dock() is None else None
 
     def _cannot_undock(self) -> str | None:
-        return None if self.docking.docked else "the robot is in no dock"
+        return None if self.docking.docked else "the robot is not docked"
 
     async def _dock(self, goal: Goal) -> Mapping[str, Any]:
         dock = self.docking.visible_dock()
         goal.feedback(sees_dock=dock is not None)
-        if dock is None:  # it was pushed, since the goal was accepted
+        if dock is None:  # the robot was pushed after the goal was accepted
             goal.abort("no dock in sight", is_docked=False)
         try:
             await self.docking.dock(dock, True, lambda state: goal.feedback(sees_dock=True))
@@ -152,25 +152,25 @@ class DockServers:
     async def _drive_distance(self, goal: Goal) -> Mapping[str, Any]:
         request = goal.request
         speed = min(max(request.max_translation_speed, 0.02), self._navigator.robot.description.limits.speed)
-        with self._navigator.wheels.held() as hold:
+        with self._navigator.wheels.claimed() as claim:
             made = await self._navigator.straight(
-                hold, request.distance, speed, lambda left: goal.feedback(remaining_travel_distance=left)
+                claim, request.distance, speed, lambda left: goal.feedback(remaining_travel_distance=left)
             )
         pose = self._pose()
         if abs(made) < abs(request.distance) - 0.02:
-            goal.abort(f"something is in the way after {abs(made):.2f} m", pose=pose)
+            goal.abort(f"blocked after {abs(made):.2f} m", pose=pose)
         return {"pose": pose}
 
     async def _rotate_angle(self, goal: Goal) -> Mapping[str, Any]:
         request = goal.request
         rate = min(max(request.max_rotation_speed, 0.05), self._navigator.robot.description.limits.turn_rate)
-        with self._navigator.wheels.held() as hold:
+        with self._navigator.wheels.claimed() as claim:
             made = await self._navigator.rotate(
-                hold, request.angle, rate, lambda left: goal.feedback(remaining_angle_travel=left)
+                claim, request.angle, rate, lambda left: goal.feedback(remaining_angle_travel=left)
             )
         pose = self._pose()
         if abs(made) < abs(request.angle) - 0.05:
-            goal.abort(f"the robot does not turn any further after {abs(made):.2f} rad", pose=pose)
+            goal.abort(f"blocked after {abs(made):.2f} rad", pose=pose)
         return {"pose": pose}
 
     def _pose(self) -> Any:
@@ -184,4 +184,4 @@ class DockServers:
 
 
 _KOBUKI = {1: "GET_STREAM", 2: "SCAN", 3: "ALIGNED", 4: "DOCKED_IN"}
-"""States of the Kobuki's docking that are nearest to Nav2's."""
+"""The states of the Kobuki's docking that are nearest to those of Nav2."""

@@ -1,4 +1,4 @@
-"""Driving into docks and out of them."""
+"""Docking and undocking."""
 
 import math
 from collections.abc import Callable
@@ -6,22 +6,22 @@ from collections.abc import Callable
 from jacaros.sim.description import Dock
 from jacaros.sim.navigation.driver import STOP
 from jacaros.sim.navigation.failure import NavigationFailure
+from jacaros.sim.navigation.laser_perception import hidden
 from jacaros.sim.navigation.navigator import Navigator
 from jacaros.sim.navigation.placement import Placement, distance
 from jacaros.sim.navigation.planner import GOAL_MARGIN
-from jacaros.sim.navigation.sight import hidden
 from jacaros.sim.navigation.trip import go
 from jacaros.sim.navigation.wheels import PERIOD
 
 STAGING = 0.5
-"""Metres before the dock where the robot lines up."""
+"""Distance of the staging pose from the dock, in metres."""
 DOCK_NOT_IN_DB, DOCK_NOT_VALID, FAILED_TO_STAGE, FAILED_TO_CONTROL, FAILED_TO_CHARGE = 901, 902, 903, 905, 906
 DOCKING_TIMEOUT = 907
 """Error codes of Nav2's ``DockRobot`` and ``UndockRobot``."""
 NAV_TO_STAGING_POSE, INITIAL_PERCEPTION, CONTROLLING, WAIT_FOR_CHARGE = 1, 2, 3, 4
-"""States of its feedback."""
+"""States of the feedback of ``DockRobot``."""
 SEEN_FROM = 2.0
-"""Metres from which a robot sees a dock."""
+"""Distance at which a robot detects a dock, in metres."""
 _CHARGES_WITHIN = 2.0
 _UNDOCKED = 0.12
 _BACK_SPEED = 0.2
@@ -33,7 +33,7 @@ class Docking:
     """Docks and undocks one robot.
 
     Args:
-        navigator: drives it.
+        navigator: drives the robot.
     """
 
     def __init__(self, navigator: Navigator) -> None:
@@ -46,10 +46,10 @@ class Docking:
         return self.navigator.robot.dock is not None
 
     def dock_called(self, name: str) -> Dock:
-        """The dock of that name.
+        """Return the dock with that name.
 
         Raises:
-            NavigationFailure: there is none.
+            NavigationFailure: the name is unknown.
         """
         docks = self.navigator.docks()
         for dock in docks:
@@ -59,10 +59,10 @@ class Docking:
         raise NavigationFailure(DOCK_NOT_IN_DB, f"unknown dock '{name}'; docks: {known}")
 
     def dock_near(self, place: Placement, within: float) -> Dock:
-        """The nearest dock, at most *within* metres from a place.
+        """Return the nearest dock, at most *within* metres from a place.
 
         Raises:
-            NavigationFailure: there is none.
+            NavigationFailure: no dock is that near.
         """
 
         def apart(dock: Dock) -> float:
@@ -74,7 +74,7 @@ class Docking:
         return min(near, key=apart)
 
     def visible_dock(self) -> Dock | None:
-        """The nearest dock that the robot sees from where it is."""
+        """Return the nearest dock that the robot detects from its pose."""
         self.navigator.time.catch_up()
         robot, seen = self.navigator.robot, []
         for dock in self.navigator.docks():
@@ -86,11 +86,11 @@ class Docking:
         return min(seen, key=lambda pair: pair[0])[1] if seen else None
 
     async def dock(self, dock: Dock, stage: bool, tell: TellState, limit: float = math.inf) -> None:
-        """Drive to before the dock (with *stage*, in at most *limit* seconds), into it, and wait for current.
+        """Drive to the staging pose (if *stage*, within *limit* seconds), into the dock, and wait for the charging current.
 
         Raises:
-            NavigationFailure: with the codes of this file.
-            Overtaken: another goal has the wheels.
+            NavigationFailure: docking failed; with the codes of this file.
+            Overtaken: another goal has claimed the wheels.
         """
         robot = self.navigator.robot
         if self.docked and robot.dock is dock:
@@ -102,39 +102,39 @@ class Docking:
         tell(CONTROLLING)
         await self._part(FAILED_TO_CONTROL, self._berth(dock))
         tell(WAIT_FOR_CHARGE)
-        with self.navigator.wheels.held() as hold:
+        with self.navigator.wheels.claimed() as claim:
             for _ in range(round(_CHARGES_WITHIN / PERIOD)):
                 if self.docked:
                     return
-                await hold.drive(STOP)
+                await claim.drive(STOP)
         raise NavigationFailure(FAILED_TO_CHARGE, f"dock '{dock.name}' gives no current")
 
     async def undock(self, limit: float = math.inf) -> None:
-        """Leave the dock, backwards if there is room, else forwards, in at most *limit* seconds.
+        """Leave the dock within *limit* seconds: backwards if there is room, otherwise forwards.
 
         Raises:
-            NavigationFailure: something is in the way.
-            Overtaken: another goal has the wheels.
+            NavigationFailure: the way is blocked.
+            Overtaken: another goal has claimed the wheels.
         """
         dock = self.navigator.robot.dock
         if not self.docked or dock is None:
             return
         clock = self.navigator.time.clock
         over = clock.now() + limit
-        with self.navigator.wheels.held() as hold:
+        with self.navigator.wheels.claimed() as claim:
             for sign in (-1.0, 1.0):
-                await self.navigator.straight(hold, sign * STAGING, _BACK_SPEED, limit=over - clock.now())
+                await self.navigator.straight(claim, sign * STAGING, _BACK_SPEED, limit=over - clock.now())
                 pose = self.navigator.pose()
                 if distance((pose.x, pose.y), (dock.pose.x, dock.pose.y)) > dock.radius + _UNDOCKED:
                     return
         if clock.now() >= over:
-            raise NavigationFailure(DOCKING_TIMEOUT, f"not out of dock '{dock.name}' after {limit:g} s")
+            raise NavigationFailure(DOCKING_TIMEOUT, f"still in dock '{dock.name}' after {limit:g} s")
         raise NavigationFailure(FAILED_TO_CONTROL, f"no room to leave dock '{dock.name}'")
 
     async def turn_away(self) -> None:
-        """Turn round, as a Create 3 does at the end of undocking."""
-        with self.navigator.wheels.held() as hold:
-            await self.navigator.rotate(hold, math.pi, 1.0)
+        """Turn round, as a Create 3 does after undocking."""
+        with self.navigator.wheels.claimed() as claim:
+            await self.navigator.rotate(claim, math.pi, 1.0)
 
     async def _part(self, code: int, place: Placement | None, limit: float = math.inf) -> None:
         if place is None:
@@ -151,7 +151,7 @@ class Docking:
         return place if self._room(place) else None
 
     def _berth(self, dock: Dock) -> Placement:
-        """Return the docked position: as near to the dock's middle as walls allow."""
+        """Return the docked pose: as near to the middle of the dock as walls allow."""
         berth = Placement.at(*dock.pose)
         for step in range(math.floor(0.8 * dock.radius / 0.02) + 1):
             place = Placement(*berth.point(-0.02 * step, 0.0), berth.cosine, berth.sine)

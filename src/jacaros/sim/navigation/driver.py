@@ -1,6 +1,6 @@
-"""Driving along a route of straight pieces: pure pursuit for a round robot that can turn on the spot.
+"""Path following by pure pursuit, for a round robot that can turn on the spot.
 
-Numbers in, a command out.
+Pure functions: numbers in, a command out.
 """
 
 import itertools
@@ -17,12 +17,12 @@ from jacaros.sim.robot.motion import clamp
 
 
 class Route:
-    """Straight pieces from point to point.
+    """A path of straight segments.
 
     Attributes:
-        points: where they begin and end.
-        length: of all of them, in metres.
-        done: metres along the way that the robot has come; it never goes back.
+        points: start, corners and end.
+        length: total length, in metres.
+        done: distance covered along the path, in metres; never decreases.
     """
 
     def __init__(self, points: Sequence[Point]) -> None:
@@ -35,13 +35,13 @@ class Route:
 
     @property
     def remaining(self) -> float:
-        """Metres that are left."""
+        """Remaining distance, in metres."""
         return self.length - self.done
 
     def advance(self, place: Point, window: float = 0.8) -> float:
-        """Note that the robot is at *place*; gives how far it is beside the way, in metres.
+        """Update the progress for a robot at *place*; return the distance from the path, in metres.
 
-        Only the next *window* metres are looked at: a way may come back to where it was.
+        Only the next *window* metres are searched, because a path may return to an earlier place.
         """
         best, best_at = math.inf, self.done
         first = max(0, bisect_right(self._at, self.done) - 1)
@@ -64,7 +64,7 @@ class Route:
         return best
 
     def point(self, at: float) -> Point:
-        """Return the point *at* metres along the path, at most its end."""
+        """Return the point at *at* metres along the path, at most its end."""
         if at >= self.length:
             return self.points[-1]
         index = max(0, bisect_right(self._at, at) - 1)
@@ -74,30 +74,30 @@ class Route:
         return ax + share * (bx - ax), ay + share * (by - ay)
 
     def samples(self, ahead: float, step: float = 0.1) -> list[Point]:
-        """Points of the next *ahead* metres of the way, its end among them if it is so near."""
+        """Return points on the next *ahead* metres of the path, including its end if that is near enough."""
         count = math.floor(min(ahead, self.remaining) / step)
         points = [self.point(self.done + index * step) for index in range(count + 1)]
         return [*points, self.points[-1]] if ahead >= self.remaining else points
 
 
 TURN_IN_PLACE = 0.8
-"""Tangent of the bearing above which the robot turns on the spot before it drives."""
+"""Tangent of the bearing above which the robot turns on the spot before driving."""
 _DRIVE_AGAIN = 0.15
 KEEP_OFF = 0.08
-"""Metres that the robot keeps from other robots in front of it."""
+"""Distance in metres that the robot keeps from robots in front of it."""
 PASSING = 0.05
-"""Metres that it keeps from those it passes."""
+"""Distance in metres that the robot keeps from robots that it passes."""
 _PASSING_SPEED = 0.2
 _SLOWEST = 0.04
 _LOOK_AHEAD = 0.2
 _LOOK_AHEAD_TIME = 0.4
 _PREDICTED = 0.5
 _SKIN = 0.012
-"""Metres to a wall (beside the radius) below which the robot does not come nearer."""
+"""Clearance in metres (in addition to the radius) at which the robot does not approach a wall further."""
 
 
 class Command(NamedTuple):
-    """Return the command for the wheels: m/s and rad/s."""
+    """A command for the wheels: m/s and rad/s."""
 
     speed: float
     turn_rate: float
@@ -116,16 +116,16 @@ class Pace:
 
     @classmethod
     def within(cls, limits: RobotLimits, speed: float) -> "Pace":
-        """The pace of a robot with *limits* that should drive no faster than *speed*."""
+        """Return the limits of a robot for navigation at a speed of at most *speed*."""
         return cls(min(speed, limits.speed), min(1.5, limits.turn_rate), 0.5 * limits.acceleration)
 
 
 class Driver:
-    """Drives one route.
+    """Drives along one path.
 
     Args:
-        planner: knows where walls are.
-        pace: how fast to drive.
+        planner: knows the walls.
+        pace: limits of speed and acceleration.
     """
 
     def __init__(self, planner: Planner, pace: Pace) -> None:
@@ -134,7 +134,7 @@ class Driver:
         self._speed = 0.0
 
     def command(self, pose: Placement, route: Route, others: Sequence[Circle] = ()) -> Command:
-        """The command for now; *route* must know how far the robot is (`Route.advance`)."""
+        """Return the next command; *route* must be up to date (`Route.advance`)."""
         here = (pose.x, pose.y)
         target, ahead = self._target(here, route)
         forward, left = pose.local(*target)
@@ -154,7 +154,7 @@ class Driver:
         return Command(speed, clamp(speed * curvature, self.pace.turn_rate))
 
     def heading(self, pose: Placement, wanted: Placement, tolerance: float) -> Command | None:
-        """The command that turns to the heading of *wanted*; None when it is reached to *tolerance* radians."""
+        """Return a command that turns to the heading of *wanted*; None if it is reached to *tolerance* radians."""
         forward = pose.cosine * wanted.cosine + pose.sine * wanted.sine
         left = pose.cosine * wanted.sine - pose.sine * wanted.cosine
         if forward > 0.0 and abs(left) <= tolerance:
@@ -162,7 +162,7 @@ class Driver:
         return Command(0.0, self._turn(forward, left))
 
     def _target(self, here: Point, route: Route) -> tuple[Point, float]:
-        """The point to drive to, and how far ahead it is: no further than where the straight way is free."""
+        """Return the target point and its distance: at most as far as the straight line to it is free."""
         ahead = _LOOK_AHEAD + _LOOK_AHEAD_TIME * self._speed
         while ahead > 0.06:
             target = route.point(route.done + ahead)
@@ -186,7 +186,7 @@ class Driver:
         return max(_SLOWEST, math.sqrt(2.0 * self.pace.braking * max(0.0, route.remaining)) - 0.05)
 
     def _for_others(self, pose: Placement, others: Sequence[Circle]) -> float:
-        """Slower the nearer another robot is in front: 0 at `KEEP_OFF`, unless there is room to pass it."""
+        """Return a speed that falls with the distance of robots ahead, to 0 at `KEEP_OFF` unless there is room to pass."""
         speed = self.pace.speed
         for x, y, radius in others:
             forward, left = pose.local(x, y)
@@ -201,12 +201,12 @@ class Driver:
         return speed
 
     def _for_walls(self, pose: Placement, speed: float, curvature: float) -> float:
-        """As fast as the next half second does not come too near to a wall."""
+        """Return the highest speed that keeps the next half second clear of walls."""
         grid, least = self.planner.grid, self.planner.radius + _SKIN
         now = grid.clearance_at(pose.x, pose.y)
         for share in (1.0, 0.5, 0.25):
             reach = speed * share * _PREDICTED
-            # The middle of the arc to first order: the arc is short.
+            # The middle of the arc to first order, because the arc is short.
             half = 0.5 * reach * reach * curvature
             x, y = pose.point(reach, half)
             then = grid.clearance_at(x, y)
@@ -216,7 +216,7 @@ class Driver:
 
 
 def in_the_way(route: Route, others: Sequence[Circle], radius: float, ahead: float) -> bool:
-    """Whether one of *others* stands on the next *ahead* metres of a robot's way."""
+    """Return whether one of *others* stands on the next *ahead* metres of a robot's path."""
     if not others:
         return False
     points = route.samples(ahead)

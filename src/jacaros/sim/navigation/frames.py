@@ -1,7 +1,7 @@
-"""The frames of one robot: their names, and goals given in any of them.
+"""Frames of one robot: their names, and goals given in any of them.
 
-The tree is that of REP 105: ``map``, ``odom``, ``base_footprint``, ``base_link``, ``base_scan``.  Frames of a robot with
-a namespace have it in front (``robot_1/odom``), and its ``robot_1/map`` lies on the ``map`` that all robots share.
+The tree follows REP 105: ``map``, ``odom``, ``base_footprint``, ``base_link``, ``base_scan``. Frames of a robot with a
+namespace have it as a prefix (``robot_1/odom``), and its ``robot_1/map`` equals the ``map`` shared by all robots.
 """
 
 import math
@@ -20,16 +20,16 @@ _PATIENCE = 1.0
 
 
 class FrameUnknown(Exception):
-    """A pose is given in a frame that tf does not know."""
+    """Raised for a pose in a frame that tf does not know."""
 
 
 class Frames:
-    """The frames of one robot.
+    """Frames of one robot.
 
     Args:
-        backend: the graph, whose tf knows other frames.
-        namespace: of the robot, or "".
-        localisation: where it believes to be.
+        backend: graph, whose tf knows other frames.
+        namespace: namespace of the robot, or "".
+        localisation: estimated pose of the robot.
     """
 
     def __init__(self, backend: Backend, namespace: str, localisation: Localisation) -> None:
@@ -38,10 +38,10 @@ class Frames:
         self.localisation = localisation
 
     async def on_map(self, stamped: Any) -> Placement:
-        """A ``geometry_msgs/msg/PoseStamped`` as a place on the map; its stamp does not count, as in Nav2's planner.
+        """Transform a ``geometry_msgs/msg/PoseStamped`` to the map; its stamp is ignored, as in Nav2's planner.
 
         Raises:
-            FrameUnknown: its frame is not known.
+            FrameUnknown: its frame is unknown.
         """
         pose = pose_of(stamped.pose)
         frame = stamped.header.frame_id.strip("/")
@@ -56,17 +56,17 @@ class Frames:
 
     async def _from_tf(self, frame: str) -> Placement:
         if not frame:
-            raise FrameUnknown(f"the pose names no frame; write '{MAP}' into header.frame_id")
+            raise FrameUnknown(f"the pose has no frame; set header.frame_id to '{MAP}'")
         try:
             found = await self._backend.tf_wait(MAP, frame, timeout=_PATIENCE)
         except (TransformUnavailable, CapabilityMissing) as problem:
-            raise FrameUnknown(f"frame '{frame}' is not known: {problem}") from None
+            raise FrameUnknown(f"unknown frame '{frame}': {problem}") from None
         x, y, _ = found.translation
         return Placement.from_quaternion(x, y, found.rotation)
 
 
 def pose_of(pose: Any) -> Placement:
-    """A ``geometry_msgs/msg/Pose`` in the plane."""
+    """Return a ``geometry_msgs/msg/Pose`` in the plane."""
     place, rotation = pose.position, pose.orientation
     return Placement.from_quaternion(place.x, place.y, (rotation.x, rotation.y, rotation.z, rotation.w))
 
@@ -81,14 +81,14 @@ def pose_fault(pose: Any) -> str | None:
     place, rotation = pose.position, pose.orientation
     turn = (rotation.x, rotation.y, rotation.z, rotation.w)
     if not all(math.isfinite(value) for value in (place.x, place.y, *turn)):
-        return "the pose has numbers that are not finite"
+        return "the pose contains NaN or infinity"
     if sum(value * value for value in turn) < 1e-6:
-        return "the orientation of the pose is not a rotation: all its components are 0; write w: 1 for straight ahead"
+        return "the orientation of the pose is zero and not a rotation; write w: 1 for straight ahead"
     return None
 
 
 def fill_in(stamped: Any, place: Placement, frame: str, time: float) -> Any:
-    """Write a place into a ``geometry_msgs/msg/PoseStamped``; gives the message."""
+    """Write a place into a ``geometry_msgs/msg/PoseStamped``; return the message."""
     stamp(stamped.header.stamp, time)
     stamped.header.frame_id = frame
     pose = stamped.pose

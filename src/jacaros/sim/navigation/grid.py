@@ -1,6 +1,6 @@
-"""The world as a robot's map knows it: how far every cell of the floor is from the nearest wall.
+"""The map of a robot: the distance of every cell of the floor from the nearest wall.
 
-The cheapest way between two cells is found by A*, eight neighbours a cell.
+A* finds the cheapest path between two cells, with eight neighbours per cell.
 """
 
 import heapq
@@ -10,10 +10,10 @@ from collections.abc import Sequence
 from jacaros.sim.description import Segment, WorldDescription
 
 RESOLUTION = 0.05
-"""Side of a cell in metres; doubled until a large world has no more than `MOST_CELLS`."""
+"""Side of a cell in metres; doubled until a large world has at most `MOST_CELLS`."""
 MOST_CELLS = 250_000
 REACH = 0.6
-"""Metres up to which distances from walls are known; further away is all the same."""
+"""Maximum distance in metres that is computed: larger distances make no difference."""
 
 
 class Grid:
@@ -21,10 +21,10 @@ class Grid:
 
     Attributes:
         resolution: side of a cell, in metres.
-        width, height: columns and rows, the ring included.
-        x_min, y_min: corner of the map proper, without the ring.
-        clearance: metres from the centre of each cell to the nearest wall or cliff, at most `REACH`; 0 inside furniture
-            and cliffs and in the ring.
+        width, height: columns and rows, including the ring.
+        x_min, y_min: corner of the map without the ring, in metres.
+        clearance: distance in metres from the centre of each cell to the nearest wall or cliff, at most `REACH`; 0 inside
+            furniture and cliffs, and in the ring.
     """
 
     def __init__(self, world: WorldDescription) -> None:
@@ -104,12 +104,12 @@ class Grid:
         return None
 
     def centre(self, cell: int) -> tuple[float, float]:
-        """The point in the middle of a cell."""
+        """Return the centre of a cell."""
         row, column = divmod(cell, self.width)
         return self.x_min + (column - 0.5) * self.resolution, self.y_min + (row - 0.5) * self.resolution
 
     def clearance_at(self, x: float, y: float) -> float:
-        """Metres from a point to the nearest wall, interpolated between the four cells around; 0 outside."""
+        """Return the distance in metres to the nearest wall, interpolated between four cells; 0 outside."""
         across, up = (x - self.x_min) / self.resolution + 0.5, (y - self.y_min) / self.resolution + 0.5
         column, row = math.floor(across), math.floor(up)
         if not (0 <= column < self.width - 1 and 0 <= row < self.height - 1):
@@ -122,7 +122,7 @@ class Grid:
         return (1.0 - v) * below + v * above
 
     def occupancy(self) -> list[int]:
-        """The map as ``nav_msgs/msg/OccupancyGrid`` wants it: rows from the bottom, 0 free, 100 wall or furniture."""
+        """Return the data of a ``nav_msgs/msg/OccupancyGrid``: rows from the bottom, 0 free, 100 wall or furniture."""
         edge = 0.5 * self.resolution + 1e-9
         return [
             100 if self.clearance[row * self.width + column] <= edge else 0
@@ -143,8 +143,8 @@ def cheapest_path(weights: Sequence[float], width: int, start: int, goal: int) -
         start, goal: cells; the start can be a blocked cell.
 
     Returns:
-        The cells from start to goal, both included; None without a path.  A step costs its length (in cells)
-        times the weight of the cell it leads to.  Of ways that cost the same, always the same one is found.
+        The cells from start to goal, both included; None if there is no path. A step costs its length (in cells) times the
+        weight of its second cell. Among equally cheap paths, the result is always the same.
     """
     if not weights[goal]:
         return None

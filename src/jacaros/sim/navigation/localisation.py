@@ -1,4 +1,4 @@
-"""Where a robot believes to be on the map: its odometry, put right now and then."""
+"""The estimated pose of a robot on the map: its odometry, corrected at intervals."""
 
 import math
 
@@ -9,23 +9,23 @@ from jacaros.sim.trigonometry import PI, sine_cosine
 PERIOD = 0.5
 """Seconds between two corrections of the odometry."""
 SURE = 0.2
-"""Metres, and radians, that a pose may be off whatever it says of itself."""
+"""Errors in metres and radians that are always corrected, whatever the accuracy claimed by a received pose."""
 FOUND = (0.0025, 0.001)
-"""Variances of a pose that scans have put right: of x and of y (m²), and of the heading (rad²)."""
+"""Variances of a pose corrected by scans: of x and y (m²), and of the heading (rad²)."""
 _SAME = 1e-6
 
 
 class Localisation:
-    """The transform from map to odometry, as a robot with a good laser finds it.
+    """The transform from map to odometry, as estimated by a robot with a good laser.
 
-    Twice a second it takes away all errors that odometry has piled up; between two corrections the robot
-    trusts its wheels.  (Matching scans with the map is not what this world is for, so the correction is taken from the
-    true pose.)  A wrong pose makes it lost, as AMCL: it then uses odometry alone.
+    Twice a second it removes the accumulated error of odometry; between corrections the robot trusts its wheels. (Scan
+    matching is out of scope, so corrections use the true pose.) As with AMCL, a wrong initial pose makes the robot lost: it
+    then uses odometry alone.
 
     Attributes:
-        map_to_odom: where the odometry frame stands on the map.
-        variances: of the estimate; `FOUND`, or those of the received pose.
-        lost: whether the last received pose was too far off to be corrected by scans.
+        map_to_odom: pose of the odometry frame on the map.
+        variances: variances of the estimate: `FOUND`, or those of the received pose.
+        lost: whether the last received pose was too wrong for scans to correct.
     """
 
     def __init__(self, robot: Robot) -> None:
@@ -37,24 +37,24 @@ class Localisation:
         self._put_downs = robot.put_downs
 
     def update(self, time: float) -> None:
-        """Correct the transform if that is due at *time* (seconds of the world)."""
+        """Correct the transform if a correction is due at *time* (seconds of the world)."""
         if self._robot.put_downs != self._put_downs:
             self._put_downs = self._robot.put_downs
-            self.lost = True  # nothing tells it that it was carried away
+            self.lost = True  # nothing tells the robot that it was moved
         if time < self._next or self.lost:
             return
         self._next = time + PERIOD
         self.variances = FOUND
         found = self._truth().then(self._odometry().inverse())
         known = self.map_to_odom
-        # Rounding alone must not make a robot with faultless odometry hop.
+        # Rounding errors must not move a robot with exact odometry.
         if max(abs(a - b) for a, b in zip(found, known, strict=True)) > _SAME:
             self.map_to_odom = found
 
     def believe(self, place: Placement, radius: float, turn: float, time: float) -> None:
-        """Set the robot's pose, within *radius* metres and *turn* radians, at *time* (see `update`).
+        """Set the robot's pose, accurate to *radius* metres and *turn* radians, at *time* (see `update`).
 
-        With the truth within that, and within `SURE` at the least, the next correction finds it.
+        If the true pose is within that accuracy (at least `SURE`), the next correction finds it.
         """
         truth = self._truth()
         apart = distance((place.x, place.y), (truth.x, truth.y))
@@ -66,7 +66,7 @@ class Localisation:
         self._next = time + PERIOD
 
     def pose(self) -> Placement:
-        """The robot's pose on the map, as it believes."""
+        """Return the estimated pose on the map."""
         return self.map_to_odom.then(self._odometry())
 
     def belief(self, time: float) -> Placement:

@@ -1,4 +1,4 @@
-"""Nav2's navigation actions and move_base's, all by the same navigator.
+"""Navigation actions of Nav2 and of move_base, served by the same navigator.
 
 Names, fields and error codes are those of Nav2 (Jazzy; ``error_msg`` of Kilted) and of ROS 1's move_base.
 """
@@ -13,8 +13,8 @@ from jacaros.ros.backend import Backend, Sample, Subscription
 from jacaros.sim.navigation.failure import NO_POSES, TF_ERROR, NavigationFailure, through_poses
 from jacaros.sim.navigation.frames import MAP, Frames, FrameUnknown, fault_of, fill_in
 from jacaros.sim.navigation.navigator import Navigator
-from jacaros.sim.navigation.offers import Goal, Offers
 from jacaros.sim.navigation.placement import Placement
+from jacaros.sim.navigation.servers import Goal, Servers
 from jacaros.sim.navigation.trip import Progress, go
 from jacaros.sim.navigation.wheels import Overtaken
 
@@ -24,17 +24,17 @@ _TO_POSE, _THROUGH_POSES = "navigate_to_pose", "navigate_through_poses"
 
 
 class NavigationServers:
-    """Offers navigation of one robot.
+    """Serves navigation of one robot.
 
     Args:
-        navigator: drives it.
-        frames: its frames.
-        offers: its action servers.
+        navigator: drives the robot.
+        frames: frames of the robot.
+        servers: action servers of the robot.
     """
 
-    def __init__(self, navigator: Navigator, frames: Frames, offers: Offers) -> None:
-        self.navigator, self.frames, self.offers = navigator, frames, offers
-        self._backend: Backend = offers.backend
+    def __init__(self, navigator: Navigator, frames: Frames, servers: Servers) -> None:
+        self.navigator, self.frames, self.servers = navigator, frames, servers
+        self._backend: Backend = servers.backend
         self._subscriptions: list[Subscription] = []
         self._simple: asyncio.Task[None] | None = None
         self._navigator: str | None = None
@@ -42,23 +42,23 @@ class NavigationServers:
     def offer_nav2(self) -> None:
         """``/navigate_to_pose``, ``/navigate_through_poses``, ``/follow_waypoints``, the topic ``/goal_pose``, and the
         services ``/global_costmap/clear_entirely_global_costmap`` and ``/local_costmap/clear_entirely_local_costmap``."""
-        self.offers.action(
+        self.servers.action(
             "/navigate_to_pose",
             "nav2_msgs/action/NavigateToPose",
             self._to_pose,
             lambda goal: fault_of(goal.pose),
         )
-        self.offers.action(
+        self.servers.action(
             "/navigate_through_poses",
             "nav2_msgs/action/NavigateThroughPoses",
             self._through_poses,
             _poses_fault,
         )
-        self.offers.action(
+        self.servers.action(
             "/follow_waypoints", "nav2_msgs/action/FollowWaypoints", self._waypoints, _poses_fault
         )
         for map_ in ("global", "local"):
-            self.offers.service(
+            self.servers.service(
                 f"/{map_}_costmap/clear_entirely_{map_}_costmap",
                 "nav2_msgs/srv/ClearEntireCostmap",
                 self._forget_obstacles,
@@ -67,33 +67,33 @@ class NavigationServers:
 
     def offer_move_base(self) -> None:
         """``/move_base``, the topic ``/move_base_simple/goal`` and the service ``/move_base/clear_costmaps``."""
-        self.offers.action(
+        self.servers.action(
             "/move_base", "move_base_msgs/action/MoveBase", self._move_base, overtaken=GoalStatus.CANCELED
         )
-        self.offers.service("/move_base/clear_costmaps", "std_srvs/srv/Empty", self._forget_obstacles)
+        self.servers.service("/move_base/clear_costmaps", "std_srvs/srv/Empty", self._forget_obstacles)
         self._hear("/move_base_simple/goal")
 
     def close(self) -> None:
-        """Leave the topics; the actions are closed with their offers."""
+        """Withdraw the topics; the actions are withdrawn by `Servers.close`."""
         for subscription in self._subscriptions:
             subscription.close()
         if self._simple is not None:
             self._simple.cancel()
 
     def _forget_obstacles(self, request: Any) -> Mapping[str, Any]:
-        """Forget the doors that were closed; other robots are looked at anew for every way."""
-        self.navigator.sight.forget()
+        """Forget closed doors; other robots are perceived anew for every path."""
+        self.navigator.perception.forget()
         return {}
 
     def _hear(self, topic: str) -> None:
-        name = self.offers.prefix + topic
+        name = self.servers.prefix + topic
         self._subscriptions.append(self._backend.subscription(name, POSE, self._simple_goal))
 
     @contextmanager
     def _navigating(self, navigator: str, goal: Goal) -> Iterator[None]:
-        """Nav2's two navigators take over from themselves only: the other one accepts a goal and aborts it."""
+        """Run a goal; like Nav2's two navigators, preempt only goals of the same one, and abort those of the other."""
         if self._navigator not in (None, navigator):
-            goal.abort(f"{self._navigator} is at work; cancel that goal first")
+            goal.abort(f"{self._navigator} is running; cancel that goal first")
         self._navigator = navigator
         try:
             yield
@@ -123,7 +123,7 @@ class NavigationServers:
         def tell(progress: Progress) -> None:
             goal.feedback(base_position=self._stamped(progress.pose))
 
-        # move_base takes any goal, and then aborts those that make no sense.
+        # move_base accepts any goal, and aborts invalid ones.
         fault = fault_of(goal.request.target_pose)
         if fault is not None:
             goal.abort(fault)
@@ -131,7 +131,7 @@ class NavigationServers:
         return {}
 
     async def _waypoints(self, goal: Goal) -> Mapping[str, Any]:
-        """Stop at each waypoint; one that cannot be reached is missed, and the next one tried."""
+        """Stop at each waypoint; if one cannot be reached, record it as missed and try the next."""
         poses = _poses(goal.request)
         if not poses:
             goal.abort("the goal has no waypoints", error_code=NO_VALID_WAYPOINTS)
@@ -166,7 +166,7 @@ class NavigationServers:
             goal.abort(failure.text, error_code=coded(failure.code))
 
     async def _drive(self, poses: list[Any], tell: Callable[[Progress], None]) -> None:
-        self.navigator.pose()  # localises
+        self.navigator.pose()  # updates the estimate
         try:
             places = [await self.frames.on_map(pose) for pose in poses]
         except FrameUnknown as problem:
@@ -189,7 +189,7 @@ class NavigationServers:
         }
 
     def _simple_goal(self, sample: Sample) -> None:
-        """A goal without an action: it has no feedback or result."""
+        """Start a goal without an action, which has no feedback or result."""
         if fault_of(sample.message) is not None:
             self._backend.rosout("error", f"goal on {sample.topic}: {fault_of(sample.message)}")
             return
@@ -201,13 +201,13 @@ class NavigationServers:
         try:
             await self._drive([pose], lambda progress: None)
         except NavigationFailure as failure:
-            self._backend.rosout("error", f"the goal pose is not reached: {failure.text}")
+            self._backend.rosout("error", f"cannot reach the goal pose: {failure.text}")
         except Overtaken:
             return
 
 
 def _poses(request: Any) -> list[Any]:
-    """The poses of a goal: a plain list, or ``nav_msgs/msg/Goals`` since Kilted."""
+    """Return the poses of a goal: a list, or ``nav_msgs/msg/Goals`` since Kilted."""
     return list(getattr(request.poses, "goals", request.poses))
 
 

@@ -16,11 +16,11 @@ from jacaros.sim.navigation.grid import Grid, cheapest_path
 from jacaros.sim.navigation.placement import Point, distance
 
 MARGIN = 0.06
-"""Metres that a planned way keeps from walls at the least, beside the robot's radius."""
+"""Minimum distance in metres of a planned path from walls, in addition to the robot's radius."""
 COMFORT = 0.25
-"""Metres from walls beyond which a way is not any better."""
+"""Distance in metres from walls beyond which a path does not get better."""
 GOAL_MARGIN = 0.03
-"""A goal may be so near to a wall (metres beside the radius); the last bit is driven slowly."""
+"""Minimum distance in metres of a goal from walls, in addition to the radius; the last part is driven slowly."""
 _ESCAPE = 0.5
 _DISLIKE = 3.0
 
@@ -29,11 +29,11 @@ Circle = tuple[float, float, float]
 
 
 class Planner:
-    """Plans for robots of one size on one map.
+    """Plans paths for robots of one size on one map.
 
     Args:
-        grid: the map.
-        radius: of the robot, in metres.
+        grid: map.
+        radius: radius of the robot, in metres.
     """
 
     def __init__(self, grid: Grid, radius: float) -> None:
@@ -50,7 +50,7 @@ class Planner:
         return 1.0 + _DISLIKE * nearness * nearness
 
     def plan(self, start: Point, goal: Point, obstacles: Iterable[Circle] = ()) -> list[Point]:
-        """Find a way as few straight pieces, from *start* to *goal*, both included.
+        """Return a path of few straight segments from *start* to *goal*, both included.
 
         Raises:
             NavigationFailure: there is no path.
@@ -60,7 +60,9 @@ class Planner:
         goal_cell = self._goal(goal, weights)
         cells = cheapest_path(weights, self.grid.width, start_cell, goal_cell)
         if cells is None:
-            raise NavigationFailure(NO_VALID_PATH, f"no path from {told(start)} to {told(goal)}")
+            raise NavigationFailure(
+                NO_VALID_PATH, f"no path from {coordinates(start)} to {coordinates(goal)}"
+            )
         points = [start, *map(self.grid.centre, cells[1:-1] if len(cells) > 2 else cells[1:]), goal]
         if self.grid.cell(*goal) != goal_cell:
             points.insert(-1, self.grid.centre(goal_cell))
@@ -69,11 +71,11 @@ class Planner:
         return _distinct(self._straighten(points, weights))
 
     def free(self, a: Point, b: Point) -> bool:
-        """Whether the straight way keeps clear of walls."""
+        """Return whether the straight line keeps clear of walls."""
         return self._line_cost(a, b, self.weights) < math.inf
 
     def _around(self, obstacles: Iterable[Circle]) -> Sequence[float]:
-        """The weights, with the obstacles stamped in."""
+        """Return the weights with the obstacles added."""
         weights: Sequence[float] = self.weights
         for x, y, radius in obstacles:
             if weights is self.weights:
@@ -84,26 +86,28 @@ class Planner:
     def _start(self, start: Point, weights: Sequence[float]) -> int:
         cell = self.grid.cell(*start)
         if cell is None:
-            raise NavigationFailure(START_OUTSIDE_MAP, f"the robot is outside of the map, at {told(start)}")
+            raise NavigationFailure(
+                START_OUTSIDE_MAP, f"the robot is outside the map, at {coordinates(start)}"
+            )
         free = self._nearest_free(start, weights, _ESCAPE)
         if free is None:
-            raise NavigationFailure(START_OCCUPIED, f"the robot is hemmed in at {told(start)}")
+            raise NavigationFailure(START_OCCUPIED, f"no free floor around the robot at {coordinates(start)}")
         return free
 
     def _goal(self, goal: Point, weights: Sequence[float]) -> int:
         if self.grid.cell(*goal) is None:
-            raise NavigationFailure(GOAL_OUTSIDE_MAP, f"the goal {told(goal)} is outside of the map")
+            raise NavigationFailure(GOAL_OUTSIDE_MAP, f"the goal {coordinates(goal)} is outside of the map")
         if self.grid.clearance_at(*goal) < self.radius + GOAL_MARGIN:
             raise NavigationFailure(
-                GOAL_OCCUPIED, f"the goal {told(goal)} is too near to a wall or inside of one"
+                GOAL_OCCUPIED, f"the goal {coordinates(goal)} is inside or too near a wall"
             )
         free = self._nearest_free(goal, weights, MARGIN + 2.0 * self.grid.resolution)
         if free is None:
-            raise NavigationFailure(NO_VALID_PATH, f"the goal {told(goal)} is occupied")
+            raise NavigationFailure(NO_VALID_PATH, f"the goal {coordinates(goal)} is occupied")
         return free
 
     def _nearest_free(self, point: Point, weights: Sequence[float], reach: float) -> int | None:
-        """The nearest cell, at most *reach* metres away, where the robot may be."""
+        """Return the nearest cell, at most *reach* metres away, where the robot may be."""
         cell = self.grid.cell(*point)
         assert cell is not None
         if weights[cell]:
@@ -121,7 +125,7 @@ class Planner:
         return best
 
     def _straighten(self, points: list[Point], weights: Sequence[float]) -> list[Point]:
-        """Leave out points between which the straight way is no worse."""
+        """Remove points where the straight line costs at most the same."""
         costs = [0.0]
         for before, after in itertools.pairwise(points):
             cost = self._line_cost(before, after, weights)
@@ -144,12 +148,12 @@ class Planner:
         return kept
 
     def _line_cost(self, a: Point, b: Point, weights: Sequence[float]) -> float:
-        """What the straight way costs, in metres of plain floor; infinite where it is blocked."""
+        """Return the cost of the straight line, in metres of open floor; infinite if it is blocked."""
         grid, length = self.grid, distance(a, b)
         if grid.cell(*a) is None or grid.cell(*b) is None:
             return math.inf
         pieces = max(1, math.ceil(length / (0.5 * grid.resolution)))
-        # In cells; this is the busiest loop of all navigation, so nothing is called in it.
+        # In cells; this is the busiest loop of navigation, so it calls nothing.
         scale, width = 1.0 / grid.resolution, grid.width
         x, y = (a[0] - grid.x_min) * scale + 1.0, (a[1] - grid.y_min) * scale + 1.0
         dx, dy = (b[0] - a[0]) * scale / pieces, (b[1] - a[1]) * scale / pieces
@@ -163,7 +167,7 @@ class Planner:
 
 
 def _stamp(weights: list[float], grid: Grid, x: float, y: float, radius: float) -> None:
-    # In cells, from the middle of the first one.
+    # In cells, from the centre of the first one.
     across, up = (x - grid.x_min) / grid.resolution + 0.5, (y - grid.y_min) / grid.resolution + 0.5
     reach = radius / grid.resolution
     for row in range(max(0, math.ceil(up - reach)), min(grid.height - 1, math.floor(up + reach)) + 1):
@@ -183,5 +187,5 @@ def _distinct(points: list[Point]) -> list[Point]:
     return kept
 
 
-def told(point: Point) -> str:
+def coordinates(point: Point) -> str:
     return f"({point[0]:.2f}, {point[1]:.2f})"

@@ -1,4 +1,4 @@
-"""Getting a robot to poses on the map: plan, drive, wait for others or go round them, give up with a reason."""
+"""Drive a robot to poses on the map: plan, drive, wait for others or go around them, or fail with a reason."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -13,15 +13,15 @@ from jacaros.sim.navigation.failure import (
 )
 from jacaros.sim.navigation.navigator import Navigator
 from jacaros.sim.navigation.placement import Placement, Point, distance
-from jacaros.sim.navigation.planner import Circle, told
-from jacaros.sim.navigation.wheels import PERIOD, Hold
+from jacaros.sim.navigation.planner import Circle, coordinates
+from jacaros.sim.navigation.wheels import PERIOD, Claim
 
 TOLERANCE = 0.05
-"""Metres from the goal at which the robot has arrived."""
+"""Distance from the goal in metres at which the robot has arrived."""
 YAW_TOLERANCE = 0.05
-"""The same for its heading, in radians."""
+"""The same for the heading, in radians."""
 PATIENCE = 3.0
-"""Seconds without getting anywhere before something else is tried; a little more for each further robot."""
+"""Seconds without progress before a recovery; slightly more for each further robot."""
 MOST_RECOVERIES = 3
 """Number of failed attempts in a row after which the goal is aborted."""
 _MOVED = 0.25
@@ -36,12 +36,12 @@ _LATER = 1.3
 _FEEDBACK_EVERY = 2
 _STILL = 0.15
 _DETOUR = 1.0
-"""Metres by which a way round others must be longer to be left again when they have gone."""
+"""Length in metres that a detour around others must save before it is abandoned when they have gone."""
 
 
 @dataclass(frozen=True, slots=True)
 class Progress:
-    """How far a goal is: the believed pose, seconds since it began, metres and poses that are left, recoveries so far."""
+    """Progress of a goal: estimated pose, seconds since its start, remaining metres and poses, number of recoveries."""
 
     pose: Placement
     time: float
@@ -54,21 +54,21 @@ Tell = Callable[[Progress], None]
 
 
 async def go(navigator: Navigator, goals: Sequence[Placement], tell: Tell, limit: float = math.inf) -> None:
-    """Drive through all *goals* and stop at the last one, with its heading.
+    """Drive through all *goals*, and stop at the last one, with its heading.
 
     Args:
-        navigator: the robot.
+        navigator: robot.
         goals: poses on the map.
         tell: receives progress, a few times per second.
-        limit: seconds after which the goal is aborted; there is also a limit by the length of the path.
+        limit: seconds after which the goal is aborted; the length of the path sets a limit, too.
 
     Raises:
-        NavigationFailure: it cannot be done.
-        Overtaken: another goal has the wheels.
+        NavigationFailure: a goal cannot be reached.
+        Overtaken: another goal has claimed the wheels.
     """
-    with navigator.wheels.held() as hold:
+    with navigator.wheels.claimed() as claim:
         try:
-            await Trip(navigator, goals, tell, limit).run(hold)
+            await Trip(navigator, goals, tell, limit).run(claim)
         finally:
             navigator.path = ()
 
@@ -77,10 +77,10 @@ class Trip:
     """Drives a robot through poses.
 
     Args:
-        navigator: the robot.
-        goals: the poses, on the map.
+        navigator: robot.
+        goals: poses on the map.
         tell: receives progress, a few times per second.
-        limit: seconds it may take.
+        limit: maximum duration in seconds.
     """
 
     def __init__(
@@ -91,7 +91,7 @@ class Trip:
         self._began = self._clock.now()
         self._pose = navigator.pose()
         self._others: list[Circle] = []
-        # Two that stand in each other's way must not step back and come again at the same time.
+        # Two robots that block each other must not step back and return at the same time.
         self._patience = PATIENCE + _LATER * (
             list(navigator.time.world.robots).index(navigator.robot.name) % 4
         )
@@ -106,18 +106,18 @@ class Trip:
         self._drive_along(self._first_way())
         self._allowance = min(limit, _LEAST_ALLOWANCE + 4.0 * self._route.length / navigator.pace.speed)
 
-    async def run(self, hold: Hold) -> None:
+    async def run(self, claim: Claim) -> None:
         """Drive to the end; see `go`."""
         while not self._arrived():
             self._check()
             if self._clock.now() - self._marked > self._patience:
-                await self._recover(hold)
-            await hold.drive(self._driver.command(self._pose, self._route, self._others))
+                await self._recover(claim)
+            await claim.drive(self._driver.command(self._pose, self._route, self._others))
             self._look()
             self._follow()
-        await self._turn(hold)
+        await self._turn(claim)
 
-    async def _turn(self, hold: Hold) -> None:
+    async def _turn(self, claim: Claim) -> None:
         """Turn to the heading of the last goal."""
         self._marked = self._clock.now()
         while (command := self._driver.heading(self._pose, self.goals[-1], YAW_TOLERANCE)) is not None:
@@ -126,8 +126,8 @@ class Trip:
                 self._clock.now() - self._marked
                 > 2.0 * PATIENCE + 2.0 * math.pi / self.navigator.pace.turn_rate
             ):
-                raise NavigationFailure(FAILED_TO_MAKE_PROGRESS, "the robot does not get to its heading")
-            await hold.drive(command)
+                raise NavigationFailure(FAILED_TO_MAKE_PROGRESS, "the robot cannot reach the heading")
+            await claim.drive(command)
             self._look()
         self._report()
 
@@ -145,10 +145,10 @@ class Trip:
         if self.navigator.robot.battery.empty:
             raise NavigationFailure(FAILED_TO_MAKE_PROGRESS, "the battery is empty")
         if self._clock.now() - self._began > self._allowance:
-            raise NavigationFailure(TIMEOUT, f"not there after {self._allowance:g} s")
+            raise NavigationFailure(TIMEOUT, f"goal not reached after {self._allowance:g} s")
 
     def _follow(self) -> None:
-        """Update the robot's position on the path, and replan when the path is no longer good."""
+        """Update the progress on the path, and replan when the path is blocked."""
         here = (self._pose.x, self._pose.y)
         beside = self._route.advance(here)
         while self._vias and self._route.done >= self._vias[0] - TOLERANCE:
@@ -168,7 +168,7 @@ class Trip:
             self._report()
 
     def _got_on(self) -> bool:
-        """Whether the robot has moved or turned since that was last noted."""
+        """Return whether the robot has moved or turned since the last call that returned true."""
         now, then = self._pose, self._mark
         turned = now.cosine * then.cosine + now.sine * then.sine < _TURNED
         return turned or distance((now.x, now.y), (then.x, then.y)) > _MOVED
@@ -191,15 +191,15 @@ class Trip:
         try:
             way = self._way(self._others)
         except NavigationFailure:
-            # Others may be gone when the robot comes there; walls will not.
+            # Others may be gone when the robot arrives; walls will not.
             return self._way(())
         self._note_detour(way, Route(free).length)
         return way
 
     def _plan_again(self) -> None:
-        """Plan around the obstacles; without a path keep the old one."""
+        """Plan around the obstacles; if there is no path, keep the old one."""
         self._planned = self._clock.now()
-        # To find that there is none takes longest; it need not be found again while the same things stand there.
+        # Finding that there is no path takes longest; do not repeat it while the obstacles are unchanged.
         if self._hopeless is not None and _stand_still(self._hopeless, self._others):
             return
         try:
@@ -212,14 +212,14 @@ class Trip:
         self._drive_along(way)
 
     def _note_detour(self, way: list[Point], without: float) -> None:
-        """Remember for whom *way* is much longer than the *without* metres there would be without others."""
+        """Record the obstacles that make *way* much longer than *without*, its length in metres without them."""
         if Route(way).length > without + _DETOUR:
             self._avoided = self._others
 
     def _reconsider(self) -> None:
-        """Return from a detour to the direct path when the robot sees that the obstacles are gone."""
+        """Return from a detour to the direct path when the robot sees that the obstacles have gone."""
         self._planned = self._clock.now()
-        if not all(self.navigator.sight.covers((x, y), self._pose) for x, y, _ in self._avoided):
+        if not all(self.navigator.perception.covers((x, y), self._pose) for x, y, _ in self._avoided):
             return
         vias = self._vias
         try:
@@ -233,7 +233,7 @@ class Trip:
             self._vias = vias
 
     def _way(self, others: Sequence[Circle]) -> list[Point]:
-        """The way through all goals that are left, in a wide berth round *others* if there is room for that."""
+        """Return the path through all remaining goals, keeping well away from *others* if there is room."""
         if others:
             try:
                 return self._way_around(others, _ROOMS[0])
@@ -242,11 +242,11 @@ class Trip:
         return self._way_around(others, _ROOMS[1])
 
     def _way_around(self, others: Sequence[Circle], room: float) -> list[Point]:
-        """The way that keeps *room* metres more from *others* than from walls; `_vias` are set to match."""
+        """Return the path that keeps *room* metres more distance from *others* than from walls; updates `_vias`."""
         planner, pose = self.navigator.planner, self._pose
         obstacles = []
         for x, y, radius in others:
-            # A little to the left of where it is: who meets passes on the right.
+            # Slightly to the left of the other: robots that meet pass on the right.
             forward, left = pose.local(x, y)
             shift = _KEEP_RIGHT if forward > 0.0 and room == _ROOMS[0] else 0.0
             obstacles.append((*pose.point(forward, left + shift), radius + room))
@@ -259,32 +259,32 @@ class Trip:
         return points
 
     def _drive_along(self, points: list[Point]) -> None:
-        if len(points) < 2:  # the robot stands there already
+        if len(points) < 2:  # already there
             points = [points[0], points[0]]
         self.navigator.path = points
         self._route = Route(points)
         self._driver = self.navigator.driver()
 
-    async def _recover(self, hold: Hold) -> None:
-        """Try something else: step back if there is room, wait a moment, plan anew."""
+    async def _recover(self, claim: Claim) -> None:
+        """Recover: step back if there is room, wait a moment, and replan."""
         if self._in_a_row >= MOST_RECOVERIES:
             self._give_up()
         self._recoveries += 1
         self._in_a_row += 1
         self._stuck_at = (self._pose.x, self._pose.y)
         if self.navigator.free_at(self._pose, -_BACK, self._others):
-            await self.navigator.straight(hold, -_BACK, 0.15)
+            await self.navigator.straight(claim, -_BACK, 0.15)
         else:
             for _ in range(round(1.0 / PERIOD)):
-                await hold.drive(STOP)
+                await claim.drive(STOP)
         self._look()
         self._plan_again()
         self._mark, self._marked = self._pose, self._clock.now()
 
     def _give_up(self) -> None:
-        here = told((self._pose.x, self._pose.y))
+        here = coordinates((self._pose.x, self._pose.y))
         radius = self.navigator.robot.description.radius
-        for name, door in self.navigator.sight.closed_doors(self._pose).items():
+        for name, door in self.navigator.perception.closed_doors(self._pose).items():
             if in_the_way(self._route, door, radius, self._route.remaining):
                 raise NavigationFailure(
                     NO_VALID_PATH, f"the door '{name}' is closed, and there is no other path"
@@ -293,13 +293,14 @@ class Trip:
             if in_the_way(self._route, [(x, y, other)], radius, self._route.remaining):
                 who = "another robot or a person" if self.navigator.time.world.people else "another robot"
                 raise NavigationFailure(
-                    NO_VALID_PATH, f"{who} blocks the path at {told((x, y))}, and there is no other path"
+                    NO_VALID_PATH,
+                    f"{who} blocks the path at {coordinates((x, y))}, and there is no other path",
                 )
-        raise NavigationFailure(FAILED_TO_MAKE_PROGRESS, f"the robot does not get any further at {here}")
+        raise NavigationFailure(FAILED_TO_MAKE_PROGRESS, f"the robot is stuck at {here}")
 
 
 def _stand_still(before: Sequence[Circle], now: Sequence[Circle]) -> bool:
-    """Return whether the obstacles are unchanged, as far as a robot can perceive."""
+    """Return whether the obstacles are unchanged, as far as the robot perceives."""
     return len(before) == len(now) and all(
         distance((ax, ay), (bx, by)) < _STILL for (ax, ay, _), (bx, by, _) in zip(before, now, strict=True)
     )

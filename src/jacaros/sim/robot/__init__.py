@@ -1,1 +1,1 @@
-"""One robot of the world: its state and motion, its place in the ROS graph, its sensors and its gripper."""
+"""A robot of the world: its state and motion, its ROS interfaces, its sensors and its gripper."""

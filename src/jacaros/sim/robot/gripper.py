@@ -1,20 +1,20 @@
 """The gripper of a robot: ``/gripper_controller/gripper_cmd`` (``control_msgs/action/GripperCommand``).
 
-As under ros2_control's gripper controller, a goal succeeds when the fingers are where they should be (``reached_goal``)
-or when something between them stops them (``stalled``), and a newer goal takes over from an older one.
+As with ros2_control's gripper controller, a goal succeeds when the fingers have reached their position (``reached_goal``)
+or when an object between them stops them (``stalled``), and a newer goal preempts an older one.
 """
 
 import math
 from collections.abc import Mapping
 from typing import Any, Final
 
-from jacaros.sim.navigation.offers import Goal, Offers
+from jacaros.sim.navigation.servers import Goal, Servers
 from jacaros.sim.objects import Thing
 from jacaros.sim.robot.motion import approach
 from jacaros.sim.robot.on_graph import RobotOnGraph
 
 OPENING: Final = 0.1
-"""Metres between the fingers when they are open, as they are at first."""
+"""Metres between the open fingers, which is their initial position."""
 _SPEED = 0.1
 _PERIOD = 0.1
 
@@ -25,9 +25,9 @@ class Gripper:
     def __init__(self, at: RobotOnGraph) -> None:
         self._at, self._objects = at, at.time.world.objects
         self._opening = OPENING
-        self._offers = Offers(at.backend, at.prefix)
+        self._servers = Servers(at.backend, at.prefix)
         if at.robot.description.gripper_reach:
-            self._offers.action(
+            self._servers.action(
                 "/gripper_controller/gripper_cmd", "control_msgs/action/GripperCommand", self._move, _refuse
             )
 
@@ -63,7 +63,7 @@ class Gripper:
         return False
 
     def _between(self, opening: float) -> Thing | None:
-        """What the fingers meet on their way from here to *opening*, if they are closing."""
+        """Return the object that the closing fingers meet on their way to *opening*."""
         if opening >= self._opening:
             return None
         found = self._objects.before(self._at.robot)
@@ -71,7 +71,7 @@ class Gripper:
 
     def close(self) -> None:
         """Withdraw the action."""
-        self._offers.close()
+        self._servers.close()
 
 
 def _refuse(request: Any) -> str | None:

@@ -1,6 +1,6 @@
-"""Robots that a world file names by their kind: what their makers and drivers say of them.
+"""Robots that a world file names by kind, with the data of their makers and drivers.
 
-A robot without a kind is a ``turtlebot``: the robot of the thesis, whose laser sees all around.
+A robot without a kind is a ``turtlebot``: the robot of the thesis, with a laser that covers all directions.
 """
 
 from collections.abc import Mapping
@@ -13,7 +13,7 @@ USUAL: Final = "turtlebot"
 
 KINDS: Final[Mapping[str, RobotDescription]] = {
     USUAL: RobotDescription(),
-    # Kobuki: its data sheet and kobuki_node.  It has no laser: a depth camera's image is turned into a scan.
+    # Kobuki: its data sheet and kobuki_node. It has no laser: a depth camera image is converted to a scan.
     "turtlebot2": RobotDescription(
         radius=0.177,
         limits=RobotLimits(speed=0.7, turn_rate=PI, acceleration=0.8, command_timeout=0.6),
@@ -34,4 +34,4 @@ KINDS: Final[Mapping[str, RobotDescription]] = {
         navigation=NavigationSettings(speed=0.26),
     ),
 }
-"""The defaults of each kind."""
+"""Defaults of each kind."""

@@ -1,4 +1,4 @@
-"""The lights and the loudspeaker of a robot, as a Create 3 (TurtleBot 4) has them: the ground truth knows what they do.
+"""Lights and loudspeaker of a robot, as on a Create 3 (TurtleBot 4); their commands are recorded in the ground truth.
 
 =========================== ========================================= ====================================
 topic (below the namespace) type                                      event of the ground truth
@@ -14,7 +14,7 @@ from jacaros.sim.robot.on_graph import RobotOnGraph
 
 
 class LightsAndSound:
-    """Takes the commands for the lights and the loudspeaker of one robot."""
+    """Receives the commands for the lights and the loudspeaker of one robot."""
 
     def __init__(self, at: RobotOnGraph) -> None:
         self._at = at
@@ -26,7 +26,7 @@ class LightsAndSound:
         self._subscriptions = [each for each in heard if each is not None]
 
     def _light(self, sample: Sample) -> None:
-        """Colours as ``#rrggbb``, counter-clockwise from the front; none when the robot has its lights back."""
+        """Record colours as ``#rrggbb``, counter-clockwise from the front; none if the robot controls its lights."""
         message = sample.message
         leds = message.leds if message.override_system else ()
         colors = [f"#{led.red:02x}{led.green:02x}{led.blue:02x}" for led in leds]
@@ -35,7 +35,7 @@ class LightsAndSound:
             self._note("lights", {"colors": colors})
 
     def _play(self, sample: Sample) -> None:
-        """Notes as pairs of a frequency (Hz) and seconds."""
+        """Record notes as pairs of frequency (Hz) and duration (s)."""
         notes = [[int(note.frequency), to_seconds(note.max_runtime)] for note in sample.message.notes]
         self._note("sound", {"notes": notes, "append": bool(sample.message.append)})
 
@@ -44,6 +44,6 @@ class LightsAndSound:
         self._at.time.world.note(self._at.robot.name, kind, data)
 
     def close(self) -> None:
-        """Leave the topics."""
+        """Withdraw the topics."""
         for subscription in self._subscriptions:
             subscription.close()

@@ -1,6 +1,6 @@
-"""Differential drive: how a base with limits moves through one step of time.  Pure functions on numbers.
+"""Differential drive: the motion of a base with limits in one time step. Pure functions on numbers.
 
-Odometry is a second pose, integrated from what the wheels did, with seeded errors when they are wanted.
+Odometry is a second pose, integrated from the motion of the wheels, with optional seeded errors.
 """
 
 import math
@@ -11,7 +11,7 @@ from jacaros.sim.trigonometry import sine_cosine, wrap
 
 
 def clamp(value: float, most: float) -> float:
-    """*value*, its magnitude cut to *most*."""
+    """Limit the magnitude of *value* to *most*."""
     if value > most:
         return most
     if value < -most:
@@ -20,7 +20,7 @@ def clamp(value: float, most: float) -> float:
 
 
 def approach(now: float, wanted: float, most: float) -> float:
-    """Move *now* towards *wanted* by *most* at the most."""
+    """Move *now* towards *wanted* by at most *most*."""
     if wanted > now + most:
         return now + most
     if wanted < now - most:
@@ -36,7 +36,7 @@ def ramp(
     limits: RobotLimits,
     dt: float,
 ) -> tuple[float, float]:
-    """Speed and turn rate (m/s, rad/s) after *dt* seconds of approaching the wanted ones within *limits*."""
+    """Return speed and turn rate (m/s, rad/s) after *dt* seconds of approaching the wanted ones within *limits*."""
     return (
         approach(speed, clamp(wanted_speed, limits.speed), limits.acceleration * dt),
         approach(turn_rate, clamp(wanted_turn_rate, limits.turn_rate), limits.turn_acceleration * dt),
@@ -44,7 +44,7 @@ def ramp(
 
 
 def advance(x: float, y: float, yaw: float, distance: float, turn: float) -> tuple[float, float, float]:
-    """The pose after *distance* metres along an arc of *turn* radians, by the midpoint rule."""
+    """Return the pose after *distance* metres along an arc of *turn* radians, by the midpoint rule."""
     if distance != 0.0:
         sine, cosine = sine_cosine(yaw + 0.5 * turn)
         x += distance * cosine
@@ -52,19 +52,19 @@ def advance(x: float, y: float, yaw: float, distance: float, turn: float) -> tup
     return x, y, (wrap(yaw + turn) if turn != 0.0 else yaw)
 
 
-# A uniform number of width sqrt(12) has the variance 1.  No Gaussian: its logarithm comes from the C library.
+# A uniform number of width sqrt(12) has variance 1. Not a Gaussian, whose logarithm comes from the C library.
 _WIDTH = math.sqrt(12.0)
 
 
 class Odometry:
-    """Where the robot believes to be.
+    """The pose estimated from the wheels.
 
-    Errors are drawn with a standard deviation that grows with the square root of the way made in the step,
-    hence of its duration: what adds up over a metre does not depend on the length of the steps.
+    The standard deviation of errors grows with the square root of the distance in the step, hence of its duration: the
+    error accumulated over a metre does not depend on the length of the steps.
 
     Attributes:
         x, y, yaw: the estimated pose (metres, radians).
-        rolled, turned: metres and radians that the wheels have made in all, with their signs.
+        rolled, turned: total signed distance (m) and rotation (rad) of the wheels.
     """
 
     __slots__ = ("_draw", "rolled", "settings", "turned", "x", "y", "yaw")
@@ -76,7 +76,7 @@ class Odometry:
         self._draw = random.Random(seed).random
 
     def step(self, distance: float, turn: float) -> None:
-        """Take note of *distance* metres and *turn* radians that the wheels made in one step."""
+        """Add *distance* metres and *turn* radians made by the wheels in one step."""
         settings = self.settings
         self.rolled += distance
         self.turned += turn

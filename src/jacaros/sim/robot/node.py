@@ -1,4 +1,4 @@
-"""One robot of the world as a ROS node: its topics.
+"""The ROS topics of one robot of the world.
 
 =========================================== ============================= ==========================
 topic (below the robot's namespace)         type                          direction and rate
@@ -54,10 +54,10 @@ SENSORS: Final[Sequence[Callable[[RobotOnGraph], Sensor]]] = (
     CameraSensor,
     ObjectRecognition,
 )
-"""The sensors of every robot, in the order of publishing."""
+"""Sensors of every robot, in publishing order."""
 
 ACTUATORS: Final[Sequence[Callable[[RobotOnGraph], Actuator]]] = (LightsAndSound, Gripper)
-"""What every robot does for the graph, besides driving and cleaning."""
+"""Other ROS interfaces of every robot, besides driving and cleaning."""
 
 COMMANDS: Final = ("/cmd_vel", "/cmd_vel_mux/input/navi", "/mobile_base/commands/velocity")
 """Topics of velocity commands: those of most robots, of the Kobuki's multiplexer, and of its base."""
@@ -67,10 +67,10 @@ class RobotNode:
     """The topics of one robot.
 
     Args:
-        time: the world, on a clock.
-        robot: which of its robots.
-        backend: the graph; it is started already.
-        sensors: its sensors.
+        time: the world on a clock.
+        robot: robot of that world.
+        backend: graph; already started.
+        sensors: sensors of the robot.
     """
 
     def __init__(
@@ -95,7 +95,9 @@ class RobotNode:
             *(self.backend.subscription(self.prefix + topic, twist, self._command) for topic in COMMANDS),
             self.backend.subscription(self.prefix + "/cleaning/task", text, self._task),
             self.backend.subscription(
-                self.prefix + "/initialpose", "geometry_msgs/msg/PoseWithCovarianceStamped", self._told_pose
+                self.prefix + "/initialpose",
+                "geometry_msgs/msg/PoseWithCovarianceStamped",
+                self._receive_pose,
             ),
         ]
         if self.robot.description.tools:
@@ -115,31 +117,31 @@ class RobotNode:
         self.time.catch_up()
         self.time.world.use_tool(self.robot.name, str(sample.message.data))
 
-    def _told_pose(self, sample: Sample) -> None:
-        """Receive the robot's pose, for example from rviz; as AMCL does, accept poses in the map's frame only."""
-        header, told = sample.message.header, sample.message.pose
-        covariance = [float(value) for value in told.covariance]
-        fault = pose_fault(told.pose)
+    def _receive_pose(self, sample: Sample) -> None:
+        """Receive a pose for the robot, for example from rviz; as AMCL does, accept only poses in the map frame."""
+        header, received = sample.message.header, sample.message.pose
+        covariance = [float(value) for value in received.covariance]
+        fault = pose_fault(received.pose)
         if header.frame_id.strip("/") not in ("", MAP, self._at.frame_prefix + MAP):
             fault = f"it must be in the frame '{MAP}', not '{header.frame_id}'"
         if not all(math.isfinite(value) and value >= 0.0 for value in covariance[::7]):
-            fault = "its covariance makes no sense"
+            fault = "its covariance is invalid"
         if fault is not None:
             self.backend.rosout("warn", f"the pose on {sample.topic} is ignored: {fault}")
             return
         self.time.catch_up()
         radius = 2.0 * math.sqrt(max(covariance[0], covariance[7]))
         turn = 2.0 * math.sqrt(covariance[35])
-        self.localisation.believe(pose_of(told.pose), radius, turn, self.time.world.time)
+        self.localisation.believe(pose_of(received.pose), radius, turn, self.time.world.time)
 
     def publish(self) -> None:
-        """Publish the sensors that are due at this tick of 20 Hz, after the world has caught up."""
+        """Publish the sensors that are due at this 20 Hz tick, after the world has caught up."""
         for sensor in self._sensors:
             sensor.publish(self._ticks)
         self._ticks += 1
 
     def close(self) -> None:
-        """Leave all topics."""
+        """Withdraw all topics."""
         for subscription in self._subscriptions:
             subscription.close()
         for part in (*self._sensors, *self._actuators):

@@ -1,4 +1,4 @@
-"""A robot's place in a ROS graph, and the interfaces of its sensors and actuators.
+"""A robot's access to the ROS graph, and the interfaces of its sensors and actuators.
 
 A sensor is a class with `publish` and `close`, made from a `RobotOnGraph`.  To add one, write the class and list it in
 `jacaros.sim.robot.node.SENSORS`.
@@ -21,13 +21,13 @@ TICKS_PER_SECOND = 20
 
 @dataclass(frozen=True)
 class RobotOnGraph:
-    """A robot of the world and its place in a ROS graph.
+    """A robot of the world with its access to a ROS graph.
 
     Attributes:
-        time: the world, on a clock.
-        robot: which of its robots.
-        backend: the graph; it is started already.
-        localisation: its estimated pose.
+        time: the world on a clock.
+        robot: robot of that world.
+        backend: graph; already started.
+        localisation: estimated pose.
     """
 
     time: WorldTime
@@ -37,13 +37,13 @@ class RobotOnGraph:
 
     @property
     def prefix(self) -> str:
-        """The prefix of the robot's topics."""
+        """Prefix of the robot's topics."""
         namespace = self.robot.description.namespace
         return f"/{namespace}" if namespace else ""
 
     @property
     def frame_prefix(self) -> str:
-        """The prefix of its frames."""
+        """Prefix of the robot's frames."""
         namespace = self.robot.description.namespace
         return f"{namespace}/" if namespace else ""
 
@@ -77,14 +77,14 @@ class Sensor(Protocol):
     """A publisher of a robot's state or measurements."""
 
     def publish(self, ticks: int) -> None:
-        """Publish if due at this tick of 20 Hz, after the world has caught up."""
+        """Publish if due at this 20 Hz tick, after the world has caught up."""
 
     def close(self) -> None:
-        """Leave the topics."""
+        """Withdraw the topics."""
 
 
 class Actuator(Protocol):
-    """A device of a robot that the graph commands."""
+    """A device of a robot that is commanded through the graph."""
 
     def close(self) -> None:
-        """Leave the graph."""
+        """Withdraw its interfaces."""

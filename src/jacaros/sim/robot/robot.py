@@ -1,4 +1,4 @@
-"""One robot of a running world: its true state, its battery, and what a step of time does to it."""
+"""One robot of a running world: its true state, its battery, and its behaviour in a time step."""
 
 import math
 from collections.abc import Callable
@@ -12,12 +12,12 @@ from jacaros.sim.robot.motion import Odometry, advance, ramp
 from jacaros.sim.trigonometry import sine_cosine
 
 STILL_SPEED = 0.02
-"""A robot slower than this (m/s) stands still as far as a dock is concerned."""
+"""Speed in m/s below which a dock considers a robot at rest."""
 STILL_TURN_RATE = 0.1
-"""The same for turning on the spot (rad/s)."""
+"""The same for turning on the spot, in rad/s."""
 
 HALF_TRACK = 0.115
-"""Metres from the middle to a wheel, as of a TurtleBot 2."""
+"""Distance from the centre to a wheel in metres, as of a TurtleBot 2."""
 
 WALL = "wall"
 
@@ -26,16 +26,16 @@ class Robot:
     """The true state of a robot.
 
     Attributes:
-        description: how it is made.
-        x, y, yaw: the true pose (metres, radians); speed, turn_rate: of the base (m/s, rad/s).
-        odometry: where it believes to be.  odometer: metres truly driven.
-        battery: its battery.  dock: the dock it stands in, or None.
-        fallen: whether it fell down a cliff, after which it does not move.
-        grip: gives how much of what the wheels roll moves the robot, from 0 to 1, for each step; None: all of it.
+        description: description from the world file.
+        x, y, yaw: true pose (metres, radians); speed, turn_rate: velocity of the base (m/s, rad/s).
+        odometry: estimated pose. odometer: metres truly driven.
+        battery: its battery. dock: dock that it stands in, or None.
+        fallen: whether it has fallen down a cliff, after which it does not move.
+        grip: returns the fraction of the wheel motion that moves the robot, from 0 to 1, for each step; None for full grip.
         blocked_wheel: ``left``, ``right`` or ``both``; "" for none.
-        dead_docks: names of docks that give no current.
-        put_downs: number of times it was put elsewhere.
-        touching: names of what it touches: ``wall`` or other robots.  contacts: on which side, by those names.
+        dead_docks: names of docks without charging current.
+        put_downs: number of times it was put down elsewhere.
+        touching: names of what it touches: ``wall`` or other robots. contacts: the side of each contact, by name.
     """
 
     def __init__(
@@ -67,16 +67,16 @@ class Robot:
 
     @property
     def fed(self) -> bool:
-        """Whether a dock gives it current."""
+        """Whether a dock supplies it with current."""
         return self.dock is not None and self.dock.name not in self.dead_docks
 
     @property
     def moving(self) -> bool:
-        """True while the base moves or has a command to."""
-        return self.speed != 0.0 or self.turn_rate != 0.0 or self._told_to_move()
+        """Whether the base moves or has a command to move."""
+        return self.speed != 0.0 or self.turn_rate != 0.0 or self._has_command()
 
     def sample(self, time: float) -> Sample:
-        """The state as a point of the path."""
+        """Return the state as a point of the path."""
         battery = self.battery
         return Sample(
             time,
@@ -90,7 +90,7 @@ class Robot:
         )
 
     def command(self, speed: float, turn_rate: float) -> None:
-        """Take a velocity command (m/s, rad/s); the next step obeys it.  Nonsense numbers mean: stop."""
+        """Set a velocity command (m/s, rad/s) for the next step; numbers that are not finite mean stop."""
         if not (math.isfinite(speed) and math.isfinite(turn_rate)):
             self._tell(self, "bad_command", {"speed": repr(speed), "turn_rate": repr(turn_rate)})
             speed = turn_rate = 0.0
@@ -99,11 +99,11 @@ class Robot:
         self.wanted_speed, self.wanted_turn_rate = speed, turn_rate
         self._silence = 0.0
 
-    def _told_to_move(self) -> bool:
+    def _has_command(self) -> bool:
         return self.wanted_speed != 0.0 or self.wanted_turn_rate != 0.0
 
     def step(self, dt: float, walls: WallIndex) -> None:
-        """Drive for *dt* seconds, walls included; other robots and docks are the world's affair."""
+        """Drive for *dt* seconds, with contacts to walls; the world handles other robots and docks."""
         self._touched = {}
         if not self.moving:
             if WALL in self.touching:
@@ -127,7 +127,7 @@ class Robot:
         before_x, before_y = self.x, self.y
         self.x, self.y, self.yaw = advance(self.x, self.y, self.yaw, distance, turn)
         if self._leave_walls(walls):
-            # Wheels against a wall stall: they roll as far as the robot truly came along its heading.
+            # Wheels stall at a wall: they roll only as far as the robot truly moved along its heading.
             sine, cosine = sine_cosine(self.yaw - 0.5 * turn)
             came = (self.x - before_x) * cosine + (self.y - before_y) * sine
             distance = min(max(came, 0.0), distance) if distance > 0.0 else max(min(came, 0.0), distance)
@@ -138,7 +138,7 @@ class Robot:
         self.battery.step(dt, rolled, turned, self.fed)
 
     def _roll(self, dt: float) -> tuple[float, float]:
-        """Metres and radians that the wheels make in a step of *dt* seconds."""
+        """Return distance (m) and rotation (rad) of the wheels in a step of *dt* seconds."""
         distance, turn = self.speed * dt, self.turn_rate * dt
         if not self.blocked_wheel:
             return distance, turn
@@ -148,7 +148,7 @@ class Robot:
         return 0.5 * (left + right), 0.5 * (right - left) / HALF_TRACK
 
     def put_down(self, pose: Pose) -> None:
-        """Be lifted, and put down at another place; the wheels do not notice."""
+        """Put the robot down at another place; the wheels do not notice."""
         self.x, self.y, self.yaw = pose
         self.speed = self.turn_rate = 0.0
         self.put_downs += 1
@@ -157,14 +157,14 @@ class Robot:
         """Brake immediately, without a ramp, when commands cease or the battery is empty."""
         late = self._silence + 1e-9 > self.description.limits.command_timeout
         self._silence += dt
-        if late and self._told_to_move():
+        if late and self._has_command():
             self._tell(self, "command_timeout", {"speed": self.speed, "turn_rate": self.turn_rate})
         if late or self.battery.empty:
             self.wanted_speed = self.wanted_turn_rate = 0.0
             self.speed = self.turn_rate = 0.0
 
     def _leave_walls(self, walls: WallIndex) -> bool:
-        """Push out of the walls; True when that moved the robot."""
+        """Push the robot out of the walls; return whether it moved."""
         near = walls.near(self.x, self.y)
         if not near:
             return False
@@ -181,7 +181,7 @@ class Robot:
         return pushed
 
     def touch(self, other: str, push_x: float, push_y: float, side: str, walls: WallIndex, dt: float) -> None:
-        """Be pushed (metres) by another robot that stands to one *side*."""
+        """Apply a push (metres) by another robot on one *side*."""
         self._touched[other] = side
         if self.fallen or (push_x == 0.0 and push_y == 0.0):
             return
@@ -196,7 +196,7 @@ class Robot:
         self._leave_walls(walls)
 
     def side(self, towards_x: float, towards_y: float) -> str:
-        """Which side of the robot looks to a direction of the world: front, back, left or right."""
+        """Return the side of the robot that faces a direction of the world: front, back, left or right."""
         sine, cosine = sine_cosine(self.yaw)
         ahead = towards_x * cosine + towards_y * sine
         left = towards_y * cosine - towards_x * sine
@@ -218,14 +218,14 @@ class Robot:
         self.contacts = self._touched
 
     def settle_fall(self, cliffs: tuple[Rectangle, ...]) -> None:
-        """End of a step: a robot whose centre is over a cliff has fallen, and stays there."""
+        """End a step: a robot with its centre over a cliff falls, and stays there."""
         if not self.fallen and any(cliff.contains(self.x, self.y) for cliff in cliffs):
             self.fallen = True
             self.speed = self.turn_rate = self.wanted_speed = self.wanted_turn_rate = 0.0
             self._tell(self, "fell", {})
 
     def settle_dock(self, docks: tuple[Dock, ...]) -> None:
-        """End of a step: in a dock or not?  Passing through one is not docking."""
+        """End a step: update the dock. Passing through a dock is not docking."""
         dock = None
         if abs(self.speed) <= STILL_SPEED and abs(self.turn_rate) <= STILL_TURN_RATE:
             dock = next((dock for dock in docks if self._within(dock)), None)
@@ -235,7 +235,7 @@ class Robot:
             if dock is not None:
                 self._tell(self, "docked", {"dock": dock.name})
             self.dock = dock
-            # At once, not in the next step: a robot in its dock that is not charged would be taken to be full.
+            # Immediately, not in the next step: a docked robot that is not charging would seem to be full.
             self.battery.feed(self.fed)
 
     def _within(self, dock: Dock) -> bool:
@@ -251,8 +251,8 @@ class Battery:
     """A battery with a level in percent, 0 to 100.
 
     Attributes:
-        level: percent left.
-        charging: True while a dock gives it current and it is not full.
+        level: remaining percent.
+        charging: whether a dock supplies current and the battery is not full.
     """
 
     __slots__ = ("charging", "level", "settings")
@@ -263,12 +263,12 @@ class Battery:
         self.charging = False
 
     def step(self, dt: float, distance: float, turn: float, docked: bool) -> None:
-        """Let *dt* seconds pass in which the robot drove *distance* metres and turned *turn* radians."""
+        """Advance by *dt* seconds in which the robot drove *distance* metres and turned *turn* radians."""
         settings = self.settings
         drain = settings.drain_per_second * dt
         drain += settings.drain_per_metre * abs(distance) + settings.drain_per_radian * abs(turn)
         if docked:
-            # The dock feeds the robot too, so a full battery stays full.
+            # The dock supplies the robot, too, so a full battery stays full.
             level = self.level + settings.charge_per_second * dt
             self.level = 100.0 if level > 100.0 else level
         else:
@@ -281,10 +281,10 @@ class Battery:
 
     @property
     def empty(self) -> bool:
-        """True when the motors have no current."""
+        """Whether the motors have no current."""
         return self.level <= 0.0
 
     @property
     def voltage(self) -> float:
-        """Volts, falling in a straight line from a full to an empty four-cell battery."""
+        """Volts, linear between a full and an empty four-cell battery."""
         return EMPTY_VOLTAGE + (FULL_VOLTAGE - EMPTY_VOLTAGE) * self.level / 100.0

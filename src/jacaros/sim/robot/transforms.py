@@ -1,7 +1,7 @@
 """The transforms of one robot (map, odometry, base and laser), and its ``amcl_pose``.
 
-The estimated pose is published after moving, latched.  The semantics are those of
-``nav2_amcl`` and of ROS 1's ``amcl``; the distances are the defaults of Nav2's.
+The estimated pose is published after motion, latched, as by ``nav2_amcl`` and ROS 1's ``amcl``; the distances are the
+defaults of Nav2's.
 """
 
 import math
@@ -22,11 +22,11 @@ _HERE = Placement(0.0, 0.0)
 
 
 class RobotTransforms:
-    """Publishes one robot's frames, with subscribers only.
+    """Publishes one robot's frames while there are subscribers.
 
-    ``map`` to ``odom`` and ``odom`` to ``base_footprint`` go to ``/tf``, twenty times a second.  ``base_footprint`` to
+    ``map`` to ``odom`` and ``odom`` to ``base_footprint`` are published on ``/tf`` at 20 Hz. ``base_footprint`` to
     ``base_link`` to ``base_scan``, all at the same place, ``base_link`` to ``camera_optical_frame``, and the robot's own
-    ``map`` if it has a namespace, go to ``/tf_static``, once.
+    ``map`` if it has a namespace, are published on ``/tf_static``, once.
     """
 
     def __init__(self, at: RobotOnGraph) -> None:
@@ -36,20 +36,20 @@ class RobotTransforms:
         self._publisher = self._join()
         self._static_is_out = False
         if at.backend.name != "memory":
-            # On other graphs it is not known who listens to /tf_static alone.
+            # Other graphs do not report subscriptions to /tf_static alone.
             self._publish_static()
 
     def _join(self) -> Publisher | None:
         if TRANSFORMS not in self._backend.capabilities:
             return None
-        # Not `tf_broadcast`, which cannot tell whether anybody listens.
+        # Not `tf_broadcast`, which does not report subscriptions.
         try:
             return self._backend.publisher("/tf", "tf2_msgs/msg/TFMessage", QoS(depth=100))
-        except UnknownInterface:  # tf2_msgs is not everywhere where ROS 2 is
+        except UnknownInterface:  # not every ROS 2 installation has tf2_msgs
             return None
 
     def publish(self, ticks: int) -> None:
-        """Publish where the robot believes to be, at every tick."""
+        """Publish the estimated pose at every tick."""
         del ticks
         publisher = self._publisher
         if publisher is None or not publisher.subscription_count:
@@ -74,7 +74,7 @@ class RobotTransforms:
                 own_map = self._transform("", MAP, _HERE)
                 own_map.header.frame_id = MAP
                 self._backend.tf_broadcast(own_map, static=True)
-        except RosError:  # the type is there, as the publisher's was
+        except RosError:  # the type exists, as that of the publisher did
             return
 
     def _of_camera(self) -> Any:
@@ -110,7 +110,7 @@ _LATCHED = QoS(durability="transient_local", depth=1)
 
 
 class AmclPose:
-    """Publishes the estimated pose of one robot on the map; computes nothing before the first subscription."""
+    """Publishes the estimated pose of one robot on the map; idle until the first subscription."""
 
     def __init__(self, at: RobotOnGraph) -> None:
         self._time, self._robot, self._localisation = at.time, at.robot, at.localisation
@@ -121,7 +121,7 @@ class AmclPose:
         self._variances: tuple[float, float] | None = None
 
     def publish(self, ticks: int) -> None:
-        """Publish the pose if the robot has moved, or its place is known more or less well than before."""
+        """Publish the pose if the robot has moved, or the accuracy of its pose has changed."""
         del ticks
         if not self._is_wanted:
             if not self._publisher.subscription_count:
@@ -146,7 +146,7 @@ class AmclPose:
 
     def _send(self, place: Placement, variances: tuple[float, float]) -> None:
         message = self._publisher.message()
-        # An array of the message's own; a list of 36 numbers would be looked at one by one.
+        # An array owned by the message; a list of 36 numbers would be checked one by one.
         covariance = message.pose.covariance
         covariance[0] = covariance[7] = variances[0]
         covariance[35] = variances[1]

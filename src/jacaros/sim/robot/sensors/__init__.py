@@ -1,1 +1,1 @@
-"""The sensors of a robot: what each one measures, and the topic on which it publishes."""
+"""The sensors of a robot, with their topics."""

@@ -1,4 +1,4 @@
-"""A small colour and depth camera that looks ahead.
+"""A small colour and depth camera that faces ahead.
 
 ======================================= ================================= ==========================
 topic (below the namespace)             type                              rate
@@ -59,7 +59,7 @@ class CameraSensor:
             self._send_info()
 
     def _looking_at(self) -> list[tuple[Segment, Look]]:
-        """The walls with how they look, sorted out anew when a door has moved."""
+        """Return the walls with their looks; recomputed when a door has moved."""
         world = self._world
         if self._segments is not world.segments:
             looks = {door.segment: _DOOR for door in world.description.doors}
@@ -109,12 +109,12 @@ class CameraSensor:
 
 
 def _matrix(message: Any, name: str) -> Any:
-    """A matrix of a ``CameraInfo``: its name is in capitals on ROS 1."""
+    """Return a matrix of a ``CameraInfo``, whose name is in capitals on ROS 1."""
     return getattr(message, name) if hasattr(message, name) else getattr(message, name.upper())
 
 
 def _coloured(look: Look, colour: str) -> Look:
-    """The same in a colour ``#rrggbb``; "" leaves it as it is."""
+    """Return the same look in a colour ``#rrggbb``; "" for no change."""
     if not colour:
         return look
     return Look(look.height, (int(colour[1:3], 16), int(colour[3:5], 16), int(colour[5:7], 16)))

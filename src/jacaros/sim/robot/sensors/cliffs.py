@@ -25,7 +25,7 @@ _SENSORS: Final[Mapping[str, float]] = {"LEFT": 60.0, "CENTER": 0.0, "RIGHT": -6
 
 
 def sees_cliff(robot: Robot, degrees: float, cliffs: tuple[Rectangle, ...]) -> bool:
-    """Whether a sensor at the rim of *robot*, *degrees* to the left of straight ahead, has no floor below it."""
+    """Return whether a sensor at the rim of *robot*, *degrees* to the left of straight ahead, is over a cliff."""
     if not cliffs or robot.fallen:
         return robot.fallen
     sine, cosine = sine_cosine(robot.yaw + radians(degrees))
@@ -44,7 +44,7 @@ class CliffSensors:
         self._dropped = False
 
     def publish(self, ticks: int) -> None:
-        """Publish what has changed."""
+        """Publish changes."""
         del ticks
         if not self._cliffs:
             return

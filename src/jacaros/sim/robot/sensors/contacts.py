@@ -1,4 +1,4 @@
-"""Bumpers, cliffs and the dock, in the messages of the robots that have these sensors.
+"""Bumpers, cliffs and docks, in the message types of the robots that have these sensors.
 
 =================================== ================================================= ===================
 topic (below the namespace)         type                                              like a
@@ -18,7 +18,7 @@ from typing import Any
 
 from jacaros.ros.backend import Publisher
 from jacaros.ros.message import constant
-from jacaros.sim.navigation.sight import hidden
+from jacaros.sim.navigation.laser_perception import hidden
 from jacaros.sim.robot.on_graph import RobotOnGraph
 from jacaros.sim.robot.sensors.cliffs import sees_cliff
 
@@ -30,7 +30,7 @@ _WHEEL_RADIUS = 0.033
 _TICKS_PER_TURN = 4096
 _HALF_TRACK = 0.08
 _BUMPERS = {"left": "bump_left", "front": "bump_front_center", "right": "bump_right"}
-"""Frames of the Create 3's bumper; it has none at the back."""
+"""Frames of the Create 3's bumper zones; there is no zone at the back."""
 _CLIFFS = {
     "cliff_side_left": 60.0,
     "cliff_front_left": 15.0,
@@ -76,7 +76,7 @@ class RobotContacts:
             self._publish_core(self._core, docked)
 
     def _publish_core(self, publisher: Any, docked: bool) -> None:
-        """A Kobuki's battery, in whole tenths of a volt: 13.2 V are empty, 16.5 V full, and no battery is full before."""
+        """Publish a Kobuki's battery in tenths of a volt: 13.2 V is empty, 16.5 V full, and it never reads full before."""
         battery = self._robot.battery
         message = publisher.message(battery=math.floor(132.0 + 0.33 * battery.level + 1e-6))
         state = (

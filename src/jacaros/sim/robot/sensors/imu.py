@@ -4,7 +4,7 @@ from jacaros.sim.robot.on_graph import RobotOnGraph
 from jacaros.sim.trigonometry import sine_cosine
 
 GRAVITY = 9.80665
-"""What an accelerometer measures upwards at rest, in m/s²."""
+"""Acceleration measured upwards at rest, in m/s²."""
 _LONGEST_STEP = 0.2
 """Longest gap between two messages, in seconds, over which an acceleration is computed."""
 
@@ -12,8 +12,8 @@ _LONGEST_STEP = 0.2
 class ImuSensor:
     """``/imu``: heading, turn rate and acceleration, 20 Hz with subscribers.
 
-    The heading is the true one, as of an ideal compass, whatever odometry believes.  The acceleration has that of
-    gravity, and is the mean since the message before.
+    The heading is the true one, as of an ideal compass. The acceleration includes gravity, and is the mean since the last
+    message.
     """
 
     def __init__(self, at: RobotOnGraph) -> None:
@@ -38,7 +38,7 @@ class ImuSensor:
         self._publisher.publish(message)
 
     def _gained(self) -> float:
-        """The acceleration ahead since the message before, in m/s²."""
+        """Return the forward acceleration since the last message, in m/s²."""
         now, speed = self._at.time.world.time, self._at.robot.speed
         passed, gained = now - self._time, speed - self._speed
         self._time, self._speed = now, speed

@@ -1,4 +1,4 @@
-"""The laser range finder: plain Python or numpy, whichever is faster for the world; their ranges are equal."""
+"""The laser range finder, in plain Python or numpy, whichever is faster for the world; the ranges are equal."""
 
 import random
 from collections.abc import Iterable, Sequence
@@ -11,21 +11,21 @@ FEW_WALLS = 4
 """Number of walls up to which plain Python is as fast as numpy, and saves its import."""
 
 FEW_CIRCLES = 2
-"""The same for the number of robots and people within reach."""
+"""The same for the number of robots and people in range."""
 
 
 class Laser:
     """One robot's laser.
 
     Attributes:
-        settings: how it is made.
-        beams: its beams; ``angle_min``, ``angle_max`` and ``angle_increment`` are there.
+        settings: settings from the world file.
+        beams: its beams, with ``angle_min``, ``angle_max`` and ``angle_increment``.
     """
 
     def __init__(
         self, settings: LaserSettings, segments: Sequence[Segment], seed: str, with_numpy: bool | None = None
     ) -> None:
-        """*with_numpy* forces one of the two ways, which give the same bits; None chooses the faster."""
+        """Create the laser; *with_numpy* selects an implementation, None the faster one. Both return the same bits."""
         self.settings = settings
         self.beams = Beams(settings)
         self._segments = segments
@@ -34,11 +34,11 @@ class Laser:
         self._arrays: Any = None
 
     def look_at(self, segments: Sequence[Segment]) -> None:
-        """See other walls from now on."""
+        """Replace the walls."""
         self._segments, self._arrays = segments, None
 
     def scan(self, x: float, y: float, yaw: float, others: Iterable[Circle] = ()) -> list[float]:
-        """Ranges (metres) of the swept field, counter-clockwise; ``inf`` where nothing is within reach."""
+        """Return ranges (metres) of the field of view, counter-clockwise; ``inf`` for no echo in range."""
         noise, reach = self.settings.noise, self.settings.range_max
         swept = self._sweep(x, y, yaw, [each for each in others if _near(each, x, y, reach + noise)])
         swept = swept[self.beams.first : self.beams.last]
@@ -52,7 +52,7 @@ class Laser:
             sweep_circles(ranges, circles, x, y, yaw, self.beams)
             return ranges
         if self._arrays is None:
-            # numpy takes a third of a second to import: only the first wanted scan pays for it.
+            # numpy takes a third of a second to import: pay for it only at the first scan.
             from jacaros.sim.robot.sensors.laser_numpy import WallArrays
 
             self._arrays = WallArrays(self._segments, self.beams)

@@ -1,7 +1,7 @@
 """The laser range finder on numpy: the operations of `jacaros.sim.robot.sensors.laser_plain.sweep_walls` in the same order.
 
-Its ranges equal those of the plain version to the last bit, also with numpy's processor-specific paths
-switched off, because nothing but ``+ - * /`` and a minimum makes them.
+Its ranges equal those of the plain version to the last bit, even with numpy's processor-specific code disabled, because
+they are computed with ``+ - * /`` and a minimum only.
 """
 
 import math
@@ -16,7 +16,7 @@ from jacaros.sim.trigonometry import PI, TWO_PI, sine_cosine
 
 
 class WallArrays:
-    """The walls of a world and the beams of one laser as arrays, made once."""
+    """The walls of a world and the beams of one laser as arrays, created once."""
 
     def __init__(self, segments: Sequence[Segment], beams: Beams) -> None:
         table: Any = numpy.array(segments, dtype=numpy.float64).reshape(-1, 4)
@@ -74,7 +74,7 @@ class WallArrays:
 
 
 def _expand(first: Any, candidates: Any) -> tuple[Any, Any]:
-    """One flat list of (wall or circle, beam number) pairs from the first beam and the count of each."""
+    """Return a flat list of (wall or circle, beam number) pairs from the first beam and the count of each."""
     wall = numpy.repeat(numpy.arange(len(first)), candidates)
     begin = numpy.cumsum(candidates) - candidates
     number = numpy.arange(len(wall)) - begin[wall] + first[wall]

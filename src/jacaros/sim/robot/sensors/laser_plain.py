@@ -1,8 +1,8 @@
-"""The laser range finder in plain Python: exact, and the oracle of the numpy version.
+"""The laser range finder in plain Python: exact, and the reference for the numpy version.
 
-The sweep intersects a wall only with the beams between the bearings of its two ends.  The bearings come from
-the C library's arctangent, which merely *chooses* candidates (one beam more on each side makes its last bit
-irrelevant); the ranges themselves are made of ``+ - * /`` and square roots.
+The sweep intersects a wall only with the beams between the bearings of its two ends. The bearings come from the C
+library's arctangent, which only *selects* candidates (one more beam on each side makes its last bit irrelevant); the
+ranges themselves are computed with ``+ - * /`` and square roots.
 """
 
 import math
@@ -12,16 +12,16 @@ from jacaros.sim.description import LaserSettings, Segment
 from jacaros.sim.trigonometry import PI, TWO_PI, sine_cosine
 
 Circle = tuple[float, float, float]
-"""Another robot: centre and radius, in metres."""
+"""A round obstacle: centre and radius, in metres."""
 
 
 class Beams:
-    """The directions of one laser: beam 0 looks backwards (-pi), the others follow counter-clockwise.
+    """The directions of one laser: beam 0 points backwards (-pi), the others follow counter-clockwise.
 
     Attributes:
-        count: beams of a whole turn.
-        first, last: the beams of the swept field are ``first`` to ``last``, ``last`` excluded.
-        angle_min, angle_increment: bearing of the first swept beam and step, in radians.
+        count: beams of a full turn.
+        first, last: the field of view is the beams from ``first`` to ``last`` (excluded).
+        angle_min, angle_increment: bearing of the first beam in the field of view, and step, in radians.
     """
 
     def __init__(self, settings: LaserSettings) -> None:
@@ -40,12 +40,12 @@ class Beams:
 
     @property
     def angle_max(self) -> float:
-        """Bearing of the last swept beam, in radians."""
+        """Bearing of the last beam in the field of view, in radians."""
         return -PI + (self.last - 1) * self.angle_increment
 
 
 def sweep_walls(segments: Iterable[Segment], x: float, y: float, yaw: float, beams: Beams) -> list[float]:
-    """Distances (metres) of a whole turn of beams from the pose to the nearest wall, ``inf`` for none."""
+    """Return distances (metres) of a full turn of beams to the nearest wall, ``inf`` for none."""
     sine, cosine = sine_cosine(yaw)
     xs = [cosine * c - sine * s for c, s in zip(beams.cosines, beams.sines, strict=True)]
     ys = [sine * c + cosine * s for c, s in zip(beams.cosines, beams.sines, strict=True)]

@@ -1,14 +1,14 @@
-"""The odometry of a robot, from what its wheels did."""
+"""The odometry of a robot, from the motion of its wheels."""
 
 from jacaros.sim.robot.on_graph import RobotOnGraph
 from jacaros.sim.trigonometry import sine_cosine
 
-# Fields are assigned one by one: at twenty messages a second this is five times as fast as making nested messages from
-# keywords, and the world's own steps are cheaper than those would be.
+# Fields are assigned one by one: at 20 messages per second this is five times as fast as nested messages made from
+# keywords, which would cost more than the steps of the world.
 
 
 class OdometrySensor:
-    """``/odom``: what the wheels did, 20 Hz."""
+    """``/odom``: the motion of the wheels, 20 Hz."""
 
     def __init__(self, at: RobotOnGraph) -> None:
         self._at = at

@@ -1,17 +1,17 @@
-"""The objects that a robot recognises in its camera's view: ``/jason/perception`` (``perception_msgs/msg/perception``).
+"""The objects that a robot recognises in its camera image: ``/jason/perception`` (``perception_msgs/msg/perception``).
 
 The original JaCaROS receives this topic from a vision program.
 """
 
 from collections.abc import Iterator
 
-from jacaros.sim.navigation.sight import hidden
+from jacaros.sim.navigation.laser_perception import hidden
 from jacaros.sim.robot.on_graph import RobotOnGraph
 from jacaros.sim.robot.sensors.rendering import FOCAL_LENGTH, WIDTH
 from jacaros.sim.trigonometry import sine_cosine
 
 RANGE = 4.0
-"""Metres from which objects are recognised."""
+"""Distance up to which objects are recognised, in metres."""
 _TICKS_PER_MESSAGE = 10
 
 

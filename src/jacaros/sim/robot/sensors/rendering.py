@@ -1,7 +1,7 @@
 """Rendering of camera images of a flat world with heights and colours: one ray per column, no textures, no shadows.
 
-The camera is a pinhole, level and looking ahead.  Columns are counted from the left, rows from the top.  A ray goes on
-behind what it meets, for a low thing hides only the lower part of a high one.
+The camera is a pinhole, level and facing ahead. Columns are counted from the left, rows from the top. A ray continues
+behind what it meets, because a low object hides only the lower part of a high one.
 """
 
 import math
@@ -17,20 +17,20 @@ from jacaros.sim.trigonometry import radians, sine_cosine
 WIDTH, HEIGHT = 80, 60
 """Columns and rows of an image."""
 CAMERA_HEIGHT = 0.3
-"""Metres from the floor to the camera."""
+"""Height of the camera above the floor, in metres."""
 _FIELD = radians(60.0)
 _SINE, _COSINE = sine_cosine(0.5 * _FIELD)
 FOCAL_LENGTH: Final = 0.5 * WIDTH * _COSINE / _SINE
-"""Of a field of view of 60 degrees, in pixels."""
+"""Focal length in pixels, for a field of view of 60 degrees."""
 _NEAR = 0.02
 _DIMMING = 0.15
-"""How much darker things get with each metre."""
+"""Loss of brightness per metre."""
 
 Colour = tuple[int, int, int]
 _SKY: Colour = (196, 208, 218)
 _FLOOR: Colour = (150, 146, 138)
 _SLOPES = tuple((0.5 * WIDTH - column - 0.5) / FOCAL_LENGTH for column in range(WIDTH))
-"""Metres to the left for each metre ahead, for each column."""
+"""Metres to the left per metre ahead, for each column."""
 _FLOOR_DEPTHS = tuple(
     FOCAL_LENGTH * CAMERA_HEIGHT / (row + 0.5 - 0.5 * HEIGHT) if 2 * row >= HEIGHT else math.inf
     for row in range(HEIGHT)
@@ -38,14 +38,14 @@ _FLOOR_DEPTHS = tuple(
 
 
 class Look(NamedTuple):
-    """How a thing looks: its height in metres, and its colour as red, green and blue, 0 to 255."""
+    """The look of an object: its height in metres, and its colour as red, green and blue, 0 to 255."""
 
     height: float
     colour: Colour
 
 
 Hit = tuple[float, Look]
-"""What a ray meets: how far ahead (metres, along the view, not along the ray), and how it looks."""
+"""A hit of a ray: distance ahead (metres, along the view, not along the ray), and look."""
 
 
 def columns(
@@ -55,7 +55,7 @@ def columns(
     y: float,
     yaw: float,
 ) -> list[list[Hit]]:
-    """What the ray of each column meets, the farthest first."""
+    """Return the hits of the ray of each column, farthest first."""
     sine, cosine = sine_cosine(yaw)
     hits: list[list[Hit]] = [[] for _ in range(WIDTH)]
     for (ax, ay, bx, by), look in walls:
@@ -81,7 +81,7 @@ def _depth(hit: Hit) -> float:
 
 
 def _meet_wall(hits: list[list[Hit]], look: Look, a: float, a_left: float, b: float, b_left: float) -> None:
-    """Note a wall between two points, each metres ahead and to the left."""
+    """Add the hits of a wall between two points, each metres ahead and to the left."""
     if a < _NEAR and b < _NEAR:
         return
     ahead, left = b - a, b_left - a_left
@@ -103,7 +103,7 @@ def _column(ahead: float, left: float) -> float:
 
 
 def _meet_disc(hits: list[list[Hit]], look: Look, ahead: float, left: float, radius: float) -> None:
-    """Note an upright cylinder; a camera inside of it does not see it."""
+    """Add the hits of an upright cylinder; a camera inside it does not see it."""
     if ahead + radius < _NEAR:
         return
     rest = ahead * ahead + left * left - radius * radius
@@ -117,7 +117,7 @@ def _meet_disc(hits: list[list[Hit]], look: Look, ahead: float, left: float, rad
 
 
 def _rows(hit: Hit) -> tuple[int, int]:
-    """The first row that a thing fills in its column, and the first one below it."""
+    """Return the first row that an object fills in its column, and the first row below it."""
     depth, look = hit
     top = 0.5 * HEIGHT - FOCAL_LENGTH * (look.height - CAMERA_HEIGHT) / depth
     bottom = 0.5 * HEIGHT + FOCAL_LENGTH * CAMERA_HEIGHT / depth
@@ -125,7 +125,7 @@ def _rows(hit: Hit) -> tuple[int, int]:
 
 
 def colours(seen: list[list[Hit]]) -> bytes:
-    """The image as ``rgb8``, row by row."""
+    """Return the image as ``rgb8``, row by row."""
     image = bytearray(_BACKGROUND)
     stride = 3 * WIDTH
     for column, hits in enumerate(seen):
@@ -140,7 +140,7 @@ def colours(seen: list[list[Hit]]) -> bytes:
 
 
 def depths(seen: list[list[Hit]]) -> bytes:
-    """The depth image as ``32FC1`` (little-endian): metres ahead, ``inf`` where nothing is."""
+    """Return the depth image as ``32FC1`` (little-endian): metres ahead, ``inf`` for nothing."""
     image = array("f", (depth for depth in _FLOOR_DEPTHS for _ in range(WIDTH)))
     for column, hits in enumerate(seen):
         for hit in hits:

@@ -1,4 +1,4 @@
-"""The sonar of a robot: its echo comes from the nearest point in its cone."""
+"""The sonar of a robot, whose echo comes from the nearest point in its cone."""
 
 import math
 from collections.abc import Iterable
@@ -12,13 +12,13 @@ from jacaros.sim.trigonometry import radians, sine_cosine
 FIELD = radians(30.0)
 """Width of the cone, in radians."""
 RANGE_MIN, RANGE_MAX = 0.02, 4.0
-"""Metres that it can measure; farther echoes are not heard."""
+"""Maximum range in metres; there is no echo from farther away."""
 _TICKS_PER_ECHO = 2
 _EDGE_SINE, _EDGE_COSINE = sine_cosine(0.5 * FIELD)
 
 
 def echo(segments: Iterable[Segment], circles: Iterable[Circle], x: float, y: float, yaw: float) -> float:
-    """Metres from a sonar to the nearest point in its cone, ``inf`` for none."""
+    """Return the distance in metres from a sonar to the nearest point in its cone, ``inf`` for none."""
     sine, cosine = sine_cosine(yaw)
     nearest = math.inf
     for ax, ay, bx, by in segments:
@@ -35,10 +35,10 @@ def echo(segments: Iterable[Segment], circles: Iterable[Circle], x: float, y: fl
 
 
 def _of_segment(ax: float, ay: float, bx: float, by: float) -> float:
-    """The nearest point of what the cone (ahead is x) cuts out of a segment."""
+    """Return the distance to the nearest point of a segment within the cone (ahead is x)."""
     first, last = 0.0, 1.0
     for side in (1.0, -1.0):
-        # Metres inside of this edge of the cone, at both ends.
+        # Metres inside this edge of the cone, at both ends.
         at_a = _EDGE_SINE * ax + side * _EDGE_COSINE * ay
         at_b = _EDGE_SINE * bx + side * _EDGE_COSINE * by
         if at_a < 0.0 and at_b < 0.0:
@@ -56,8 +56,8 @@ def _of_segment(ax: float, ay: float, bx: float, by: float) -> float:
 
 
 def _of_circle(cx: float, cy: float, radius: float) -> float:
-    """The nearest point of a disc in the cone; *cy* is not negative, as both sides are alike."""
-    if _EDGE_SINE * cx - _EDGE_COSINE * cy >= 0.0:  # its centre is in the cone
+    """Return the distance to the nearest point of a disc within the cone; *cy* is not negative, by symmetry."""
+    if _EDGE_SINE * cx - _EDGE_COSINE * cy >= 0.0:  # the centre is in the cone
         return max(0.0, math.sqrt(cx * cx + cy * cy) - radius)
     along, across = _EDGE_COSINE * cx + _EDGE_SINE * cy, _EDGE_COSINE * cy - _EDGE_SINE * cx
     root = radius * radius - across * across

@@ -1,4 +1,4 @@
-"""Laser perception: other robots, people and doors in view."""
+"""Laser perception: robots, people and doors in view."""
 
 import math
 from collections.abc import Iterable
@@ -10,19 +10,19 @@ from jacaros.sim.robot.robot import Robot
 from jacaros.sim.world import World
 
 RANGE = 3.0
-"""Metres up to which a robot cares for others, and for doors."""
+"""Distance in metres up to which other robots and doors are considered."""
 _LEAF = -0.03
-"""Radius of the circles that a closed door is taken for: it is kept off from like a wall, not like a robot."""
+"""Radius of the circles that stand for a closed door: navigation treats it as a wall, not as a robot."""
 _BETWEEN = 0.1
-"""Metres between the middles of those circles, at most."""
+"""Maximum distance in metres between the centres of those circles."""
 
 
-class Sight:
-    """What a robot sees, on the map where it believes to be.  A robot without a laser sees nothing.
+class LaserPerception:
+    """What a robot perceives, on the map at its estimated pose. A robot without a laser perceives nothing.
 
     Args:
         world: the world.
-        robot: the robot with the laser.
+        robot: robot with the laser.
     """
 
     def __init__(self, world: World, robot: Robot) -> None:
@@ -32,7 +32,7 @@ class Sight:
         self._closed: set[str] = set()
 
     def robots(self, believed: Placement) -> list[Circle]:
-        """The robots, people and obstacles that no wall hides."""
+        """Return the robots, people and obstacles that no wall hides."""
         world = self._world
         if self._reach <= 0.0 or not (len(world.robots) > 1 or world.people or world.obstacles.by_name):
             return []
@@ -43,7 +43,7 @@ class Sight:
         return seen
 
     def closed_doors(self, believed: Placement) -> dict[str, list[Circle]]:
-        """The doors that were closed when the robot saw them last, each as a row of circles."""
+        """Return the doors that were closed when last seen, each as a row of circles."""
         doors = self._world.description.doors
         if not doors:
             return {}
@@ -82,7 +82,7 @@ def _points(door: Door) -> list[Point]:
 
 
 def hidden(walls: Iterable[Segment], ax: float, ay: float, bx: float, by: float) -> bool:
-    """Whether a wall crosses the straight line between two points."""
+    """Return whether a wall crosses the straight line between two points."""
     dx, dy = bx - ax, by - ay
     for cx, cy, ex, ey in walls:
         of_c, of_e = dx * (cy - ay) - dy * (cx - ax), dx * (ey - ay) - dy * (ex - ax)

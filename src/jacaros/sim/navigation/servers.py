@@ -1,6 +1,6 @@
 """The action and service servers of a robot, as far as their types are installed.
 
-Results fit whatever release is installed.
+Results match the installed release.
 """
 
 from collections.abc import Awaitable, Callable, Mapping
@@ -16,10 +16,10 @@ Execute = Callable[["Goal"], Awaitable[Mapping[str, Any]]]
 
 
 class Goal:
-    """A goal of one of the robot's actions, under way.
+    """An active goal of one of the robot's actions.
 
     Attributes:
-        request: the goal message.
+        request: goal message.
         feedback: sends fields of a feedback message to the client.
     """
 
@@ -29,21 +29,21 @@ class Goal:
         self.feedback = served.feedback
 
     def abort(self, why: str, /, **result: Any) -> NoReturn:
-        """End the goal as aborted: why, in words, and fields of the result."""
+        """Abort the goal, with a reason and fields of the result."""
         raise Abort(why, self.result({**result, "error_msg": why}))
 
     def result(self, fields: Mapping[str, Any]) -> dict[str, Any]:
-        """Leave out what the installed release of the action does not have (``error_msg`` came with Kilted)."""
+        """Remove fields that the installed release of the action lacks (``error_msg`` came with Kilted)."""
         known = self._backend.fields(result_type(self._type_name))
         return {name: value for name, value in fields.items() if name in known}
 
 
-class Offers:
-    """The action servers of one robot.
+class Servers:
+    """The servers of one robot.
 
     Args:
-        backend: the graph.
-        prefix: of the robot's names, "" or "/robot_1".
+        backend: graph.
+        prefix: prefix of the robot's names: "" or "/robot_1".
     """
 
     def __init__(self, backend: Backend, prefix: str) -> None:
@@ -58,9 +58,9 @@ class Offers:
         accept: Accept | None = None,
         overtaken: GoalStatus = GoalStatus.ABORTED,
     ) -> None:
-        """Offer an action whose newer goals take over from older ones, which then end as *overtaken*.
+        """Offer an action whose newer goals preempt older ones, which then end as *overtaken*.
 
-        An action whose type is unknown is left out, and that is logged.
+        If the type of the action is unknown, log a warning instead.
         """
         if ACTIONS not in self.backend.capabilities:
             return
@@ -81,7 +81,7 @@ class Offers:
         self._servers.append(server)
 
     def service(self, name: str, type_name: str, handler: Handler) -> None:
-        """Offer a service; where its type is unknown, log a warning."""
+        """Offer a service; if its type is unknown, log a warning instead."""
         try:
             self._servers.append(self.backend.service(self.prefix + name, type_name, handler))
         except UnknownInterface:
