@@ -60,7 +60,7 @@ def _without_numbers(message: Any) -> Any:
         elif _fields(value):
             _without_numbers(value)
         elif not isinstance(value, str | bytes) and isinstance(value, Iterable):
-            # Of arrays (numpy's, and array.array, as of ROS 2) the items as Python has them.
+            # Of arrays the items as Python has them.
             items = list(getattr(value, "tolist", value.__iter__)())
             if items and all(isinstance(item, float) for item in items):
                 setattr(message, name, [math.nan] * len(items))
