@@ -7,6 +7,7 @@
 #                    make bench BENCH=--quick   about 3 minutes, writes nothing; JASON=/path/to/jason adds Jason
 # make experiment    the experiment of docs/experiment.md, in about 15 minutes; rewrites the page and its charts
 # make reference     reference pages and pictures generated from the code
+# make release       wheel, source distribution and bill of materials (CycloneDX) in dist/, the same on every machine
 #
 # PYTHON=python3.12 make demo   use another interpreter (3.11 or newer)
 # make test PARTS="unit docs"   run some parts only; `.venv/bin/python tools/test_all.py --list` lists them
@@ -14,7 +15,7 @@
 VENV := .venv
 PYTHON ?= $(shell tools/find_python.sh)
 
-.PHONY: demo test test-all quick coverage reference experiment bench clean
+.PHONY: demo test test-all quick coverage reference experiment bench release clean
 
 demo: $(VENV)/.installed
 	$(VENV)/bin/python tools/demo.py
@@ -38,6 +39,12 @@ reference: $(VENV)/.installed-dev
 
 experiment: $(VENV)/.installed-dev
 	$(VENV)/bin/python experiment/run.py
+
+release: $(VENV)/.installed-dev
+	rm -rf dist
+	$(VENV)/bin/python tools/build_release.py dist
+	$(VENV)/bin/twine check --strict dist/*
+	PYTHON=$(VENV)/bin/python tools/make_sbom.sh dist
 
 bench: $(VENV)/.installed $(VENV)-bench/.installed
 	$(VENV)/bin/python benchmarks/bench.py $(BENCH)

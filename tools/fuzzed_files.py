@@ -26,7 +26,7 @@ from jacaros.mas.loading import load_deployment
 from jacaros.ros.drivers.rosbridge.link import Link
 from jacaros.ros.parameter_store import checked_value
 from jacaros.ros.protocols.rosbridge_messages import Translator
-from jacaros.ros.typestore import RosbagsSchema
+from jacaros.ros.typestore import DefinitionSchema
 from jacaros.sim.files.world import load_world
 from jacaros.sim.ground_truth import GroundTruth, Sample
 
@@ -374,7 +374,7 @@ def _frames() -> list[bytes]:
     return [json.dumps(each).encode() for each in _FRAMES] + [cbor2.dumps(each) for each in _FRAMES]
 
 
-_TRANSLATOR = Translator(RosbagsSchema())
+_TRANSLATOR = Translator(DefinitionSchema())
 
 
 def _read_frame(_: Path, data: bytes) -> str:

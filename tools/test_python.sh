@@ -11,7 +11,7 @@ scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 "$python" -m venv "$scratch/venv"
 wheel=$(echo "$root"/runs/dist/*.whl)
-"$scratch/venv/bin/python" -m pip install --quiet --disable-pip-version-check "$wheel[behaviour-trees]" pytest hypothesis
+"$scratch/venv/bin/python" -m pip install --quiet --disable-pip-version-check "$wheel[behaviour-trees]" pytest hypothesis numpy rosbags
 "$scratch/venv/bin/python" --version
 cd "$root"
 "$scratch/venv/bin/python" -m pytest -q -p no:cacheprovider "${@:-tests/unit}" -m "not browser"

@@ -12,9 +12,9 @@ from typing import Any
 from jacaros.ros.errors import UnknownInterface
 from jacaros.ros.message import constant
 from jacaros.ros.names import feedback_type, goal_type, result_type
-from jacaros.ros.typestore import RosbagsSchema
+from jacaros.ros.typestore import DefinitionSchema
 
-_SCHEMA = RosbagsSchema()
+_SCHEMA = DefinitionSchema()
 _PACKAGE = re.compile(r"(\w+_msgs|std_srvs|\w+_interfaces)(?:\.(msg|srv|action))?")
 _PARTS = {"Goal": goal_type, "Result": result_type, "Feedback": feedback_type}
 

@@ -11,15 +11,15 @@ import pytest
 JACAROS = str(Path(sys.executable).parent / "jacaros")
 
 NO_ROSPY = """\
-error: the ros1 backend needs the Python library rospy, which cannot be imported (No module named 'rospy'). \
-On Debian 12 install python3-rospy and the message packages with apt-get and use a venv made by \
+error: --ros ros1 needs the package rospy (No module named 'rospy')
+  = help: on Debian 12 install python3-rospy and the message packages with apt-get and use a venv made by \
 `/usr/bin/python3 -m venv --system-site-packages`; tools/install_ros1.sh does both. \
-On a robot with its own ROS 1, source its setup file first.
+On a robot with its own ROS 1, source its setup file first
 """
 NO_RCLPY = """\
-error: the ros2 backend needs the Python library rclpy, which cannot be imported (No module named 'rclpy'). \
-On Linux x86-64 run `pip install 'jacaros[ros2]'`; tools/install_ros2.sh makes a complete venv. \
-On a robot with its own ROS 2, source its setup file first.
+error: --ros ros2 needs the package rclpy (No module named 'rclpy')
+  = help: on Linux x86-64 run `pip install 'jacaros[ros2]'`; tools/install_ros2.sh makes a complete venv. \
+On a robot with its own ROS 2, source its setup file first
 """
 
 COUNTER = """\

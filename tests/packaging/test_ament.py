@@ -9,6 +9,8 @@ from xml.etree import ElementTree
 
 import pytest
 
+from jacaros.version import VERSION
+
 ROOT = Path(__file__).parents[2]
 
 
@@ -54,7 +56,7 @@ def test_package_xml_is_what_the_ros_tools_expect(request: pytest.FixtureRequest
 
 def test_setup_py_contains_the_package(tree: Path) -> None:
     assert setup(tree, "--name") == "jacaros"
-    assert setup(tree, "--version") == "0.1.0"
+    assert setup(tree, "--version") == VERSION
 
 
 READING = """

@@ -4,9 +4,16 @@ import ast
 import re
 import subprocess
 import tomllib
+from importlib import metadata
 from pathlib import Path
+from typing import Any
 from urllib.parse import urlparse
 from xml.etree import ElementTree
+
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
+from packaging.version import Version
+from ruamel.yaml import YAML
 
 import jacaros
 
@@ -31,6 +38,7 @@ HOSTS = {
     "127.0.0.1",
     "localhost",
     "docs.oasis-open.org",  # the format SARIF
+    "github.com",  # the repository itself, see REPOSITORY
     "json.schemastore.org",  # the name of its schema
     "keepachangelog.com",
     "semver.org",
@@ -39,6 +47,9 @@ HOSTS = {
     "www.w3.org",
 }
 """Hosts that an address in the repository may name."""
+
+
+REPOSITORY = "https://github.com/jacaros/jacaros"
 
 
 def tracked() -> list[Path]:
@@ -78,6 +89,71 @@ def test_addresses_use_known_hosts_only() -> None:
         and "{" not in address
     }
     assert strange == set()
+
+
+def test_addresses_at_github_are_those_of_the_project() -> None:
+    strange = {
+        (path, address)
+        for path, text in texts()
+        for address in re.findall(r"https?://github\.com[^\s\"'<>)\]}`,;]*", text)
+        if not address.startswith(REPOSITORY)
+    }
+    assert strange == set()
+
+
+def project() -> dict[str, Any]:
+    """The table ``project`` of pyproject.toml."""
+    table: dict[str, Any] = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    return table
+
+
+def pinned() -> dict[str, str]:
+    """Versions in constraints.txt, by canonical name."""
+    lines = (ROOT / "constraints.txt").read_text().splitlines()
+    return dict(line.split("==") for line in lines if not line.startswith("#"))
+
+
+def test_constraints_satisfy_what_the_project_requires() -> None:
+    versions = pinned()
+    extras = project()["optional-dependencies"].values()
+    for text in [*project()["dependencies"], *(each for extra in extras for each in extra)]:
+        wanted = Requirement(text)
+        assert wanted.specifier.contains(versions[canonicalize_name(wanted.name)]), text
+
+
+def test_constraints_hold_all_that_the_base_install_brings_along() -> None:
+    versions, waiting, seen = pinned(), [Requirement(text) for text in project()["dependencies"]], set()
+    while waiting:
+        name = canonicalize_name(waiting.pop().name)
+        if name not in seen:
+            seen.add(name)
+            further = map(Requirement, metadata.requires(name) or ())
+            waiting += [
+                each for each in further if each.marker is None or each.marker.evaluate({"extra": ""})
+            ]
+    assert {name for name in seen if name not in versions} == set()
+    assert all(canonicalize_name(name) == name and Version(version) for name, version in versions.items())
+
+
+def test_the_base_install_has_neither_numpy_nor_rosbags() -> None:
+    assert {Requirement(text).name for text in project()["dependencies"]} == {
+        "click",
+        "rich",
+        "ruamel.yaml",
+        "websockets",
+    }
+
+
+def test_the_citation_has_what_the_format_requires() -> None:
+    cited = YAML(typ="safe").load((ROOT / "CITATION.cff").read_text())
+    assert cited["cff-version"] == "1.2.0"
+    assert cited.keys() >= {"message", "title", "authors", "type", "license", "repository-code", "abstract"}
+    assert cited["version"] == jacaros.__version__
+    assert re.fullmatch(r"\d{4}-\d\d-\d\d", cited["date-released"])
+    assert [reference["type"] for reference in cited["references"]][:2] == ["thesis", "conference-paper"]
+    for person in (cited, *cited["references"]):
+        assert person["title"]
+        assert all("name" in author or "family-names" in author for author in person["authors"])
 
 
 def test_there_is_one_version() -> None:

@@ -5,7 +5,7 @@ from importlib.metadata import PackageNotFoundError, version
 
 import click
 
-_LIBRARIES = ("rosbags", "ruamel.yaml", "click", "rich", "numpy")
+_LIBRARIES = ("click", "rich", "ruamel.yaml", "websockets", "numpy")
 
 
 @click.command("version")

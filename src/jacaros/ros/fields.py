@@ -1,8 +1,7 @@
-"""The types of message fields, read from the three notations in which client libraries tell them."""
+"""The types of message fields, read from the notations of ROS 1's and ROS 2's client libraries."""
 
 import re
 from dataclasses import dataclass, replace
-from typing import Any
 
 TIME = "builtin_interfaces/msg/Time"
 DURATION = "builtin_interfaces/msg/Duration"
@@ -47,7 +46,7 @@ class FieldType:
 
     @property
     def is_numeric(self) -> bool:
-        """Arrays of the elements are numpy arrays where the client library lets them."""
+        """The elements are numbers or booleans."""
         return self.base in INTEGER_RANGES or self.base in FLOATS or self.base == "bool"
 
     def __str__(self) -> str:
@@ -98,21 +97,6 @@ def _ros2_single(text: str) -> FieldType:
     if match := _ROS2_STRING.fullmatch(text):
         return FieldType("string", bound=int(match["bound"] or 0))
     return FieldType(_full(_ROS2_BASES.get(text, text)))
-
-
-_NAME, _ARRAY = "NAME", "ARRAY"
-
-
-def from_rosbags(description: Any) -> FieldType:
-    """Read the nested tuples of the ``rosbags`` typestore."""
-    node, content = description
-    if node.name == "BASE":
-        base, bound = str(content[0]), content[1]
-        return FieldType({"octet": "byte"}.get(base, base), bound=bound)
-    if node.name == _NAME:
-        return FieldType(content)
-    element, length = content
-    return replace(from_rosbags(element), array=True, length=length, fixed=node.name == _ARRAY)
 
 
 def _full(base: str) -> str:

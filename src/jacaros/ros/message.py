@@ -1,7 +1,7 @@
 """Messages made from keywords and dictionaries, and the few things that differ between client libraries.
 
 An artifact author sees one kind of message object everywhere: attributes for fields, numbers, texts, nested
-messages, and something indexable and iterable for arrays (numpy arrays, tuples, lists or ``bytes``, as the
+messages, and something indexable and iterable for arrays (`array.array`, numpy arrays, tuples, lists or ``bytes``, as the
 client library likes it).  What differs is done here: stamps, defaults and the checking of values.
 """
 
@@ -15,7 +15,6 @@ from jacaros.ros.errors import MessageMismatch, NameInvalid
 from jacaros.ros.fields import DURATION, TIME, FieldType
 from jacaros.ros.values import array_of_numbers, single_value, written
 
-_NO_FIELDS = ("__msgtype__", "structure_needs_at_least_one_member")
 TIMES = (TIME, DURATION)
 DEFAULTS: Mapping[str, Mapping[str, object]] = {
     "geometry_msgs/msg/Quaternion": {"w": 1.0},
@@ -35,7 +34,7 @@ rotations."""
 
 
 class Schema(Protocol):
-    """What a family of message classes (of rospy, rclpy or rosbags) tells about itself."""
+    """What a family of message classes (of rospy, rclpy or our own) tells about itself."""
 
     def fields(self, type_name: str) -> Mapping[str, FieldType]:
         """Fields of a message type in full form, in order; raises `UnknownInterface`."""
@@ -47,7 +46,7 @@ class Schema(Protocol):
         """Make a message with the library's own defaults; raises `UnknownInterface`."""
 
     def numbers(self, field: FieldType, values: Any) -> Any:
-        """Turn a one-dimensional numpy array into what the library keeps in *field*."""
+        """Turn what `array_of_numbers` gives into what the library keeps in *field*."""
 
     def single(self, field: FieldType, value: Any) -> Any:
         """Turn a checked number, bool or text into what the library keeps in *field*."""
@@ -244,7 +243,7 @@ def type_of(message: Any) -> str:
         package, _, short = genpy_name.partition("/")
         return f"{package}/msg/{short}"
     name: str = getattr(kind, "__msgtype__", None) or kind.__name__.replace("__", "/")
-    if "/" in name:  # rosbags
+    if "/" in name:  # ours
         return name
     return f"{kind.__module__.partition('.')[0]}/msg/{name}"  # rclpy: nav_msgs.msg._odometry.Odometry
 
@@ -275,7 +274,7 @@ def field_names(message: Any) -> list[str] | None:
     kind = type(message)
     if hasattr(kind, "get_fields_and_field_types"):  # rclpy
         return list(kind.get_fields_and_field_types())
-    if hasattr(kind, "__dataclass_fields__"):  # rosbags
+    if hasattr(kind, "__dataclass_fields__"):  # ours
         return _dataclass_fields(kind)
     if hasattr(kind, "_slot_types"):  # genpy
         return list(kind.__slots__)
@@ -288,10 +287,5 @@ _names_by_class: dict[type, list[str]] = {}
 def _dataclass_fields(kind: type) -> list[str]:
     names = _names_by_class.get(kind)
     if names is None:
-        # What rosbags marks as a class variable (constants) is a field to Python all the same.
-        names = _names_by_class[kind] = [
-            field.name
-            for field in dataclasses.fields(kind)
-            if field.name not in _NO_FIELDS and not str(field.type).startswith("ClassVar")
-        ]
+        names = _names_by_class[kind] = [field.name for field in dataclasses.fields(kind)]
     return names

@@ -56,7 +56,7 @@ MIDDLEWARES: Mapping[str, Middleware] = {
         "jacaros.ros.drivers.ros1.backend:BACKEND",
         library="rospy",
         install=(
-            "On Debian 12 install python3-rospy and the message packages with apt-get and use a venv made by "
+            "on Debian 12 install python3-rospy and the message packages with apt-get and use a venv made by "
             "`/usr/bin/python3 -m venv --system-site-packages`; tools/install_ros1.sh does both. On a robot with its own "
             "ROS 1, source its setup file first"
         ),
@@ -74,7 +74,7 @@ MIDDLEWARES: Mapping[str, Middleware] = {
         "jacaros.ros.drivers.ros2.backend:BACKEND",
         library="rclpy",
         install=(
-            "On Linux x86-64 run `pip install 'jacaros[ros2]'`; tools/install_ros2.sh makes a complete venv. On a robot "
+            "on Linux x86-64 run `pip install 'jacaros[ros2]'`; tools/install_ros2.sh makes a complete venv. On a robot "
             "with its own ROS 2, source its setup file first"
         ),
         option="domain_id",
@@ -86,7 +86,7 @@ MIDDLEWARES: Mapping[str, Middleware] = {
     "rosbridge": Middleware(
         "jacaros.ros.drivers.rosbridge.backend:BACKEND",
         library="cbor2",
-        install="Run `pip install 'jacaros[rosbridge]'`",
+        install="pip install 'jacaros[rosbridge]'",
         option="bridge",
         keyword="url",
         variable="ROSBRIDGE_URI",

@@ -60,8 +60,7 @@ def _backend_class(kind: str, chosen: Middleware) -> Any:
     except ImportError as problem:
         if chosen.library and not (problem.name or "").startswith("jacaros"):
             raise BackendUnavailable(
-                f"the {kind} backend needs the Python library {chosen.library}, which cannot be imported ({problem}). "
-                f"{chosen.install}."
+                f"error: --ros {kind} needs the package {chosen.library} ({problem})\n  = help: {chosen.install}"
             ) from problem
         if chosen.backend != kind:
             raise

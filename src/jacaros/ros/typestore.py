@@ -1,47 +1,90 @@
-"""Genuine message definitions without a ROS installation: the ``rosbags`` typestore as a `Schema`.
+"""Message types without a ROS installation: a `Schema` made from definition files.
 
-Loading the store takes about 0.15 s, so it is done when the first message type is asked for, once a process.
+The types of ROS 2 Jazzy are in one file, ``interfaces/jazzy.msg``. A type is parsed, and its class made, at first use;
+all runs of a process share the classes.
 """
 
-import re
+import dataclasses
+import keyword
 from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+from jacaros.ros.definition_format import Definition, parse_definition
 from jacaros.ros.errors import UnknownInterface
-from jacaros.ros.fields import FieldType, from_rosbags
-from jacaros.ros.interfaces import definition, split_action, split_service
+from jacaros.ros.fields import FieldType
+from jacaros.ros.interfaces import BUILT_IN, definition, split_action, split_service
 from jacaros.ros.message import DEFAULTS
 from jacaros.ros.names import feedback_type, goal_type, request_type, response_type, result_type
 from jacaros.ros.values import zeros
 
-_FILLER = "structure_needs_at_least_one_member"
-"""What ROS 2 puts into empty messages."""
-_WSTRING = re.compile(r"^\s*wstring\b", re.MULTILINE)
-"""A text with wide characters: ours are all the same."""
 _ZEROS: Mapping[str, object] = {"string": "", "bool": False, "float32": 0.0, "float64": 0.0}
 
 
-@lru_cache(maxsize=1)
-def _store() -> Any:
-    from rosbags.typesys import Stores, get_typestore  # costs more than the rest of the start together
+class _Store:
+    """The types that are known in this process."""
 
-    return get_typestore(Stores.ROS2_JAZZY)
+    def __init__(self) -> None:
+        file = (BUILT_IN / "jazzy.msg").read_text(encoding="utf-8")
+        parts = (part.partition("\n") for part in file.split(f"{'=' * 80}\nMSG: ")[1:])
+        self._texts = {name: text for name, _, text in parts}
+        self._definitions: dict[str, Definition] = {}
+        self._classes: dict[str, type] = {}
+
+    def names(self) -> set[str]:
+        """Names of all types, in full form."""
+        return {*self._texts, *self._definitions}
+
+    def __contains__(self, type_name: str) -> bool:
+        return type_name in self._definitions or type_name in self._texts
+
+    def definition(self, type_name: str) -> Definition:
+        found = self._definitions.get(type_name)
+        if found is None:
+            text, package = self._texts[type_name], type_name.split("/")[0]
+            found = self._definitions[type_name] = parse_definition(text, package)
+        return found
+
+    def add(self, type_name: str, added: Definition) -> None:
+        self._definitions[type_name] = added
+
+    def message_class(self, type_name: str) -> type:
+        found = self._classes.get(type_name)
+        if found is None:
+            found = self._classes[type_name] = _message_class(type_name, self.definition(type_name))
+        return found
+
+
+@lru_cache(maxsize=1)
+def _store() -> _Store:
+    return _Store()
+
+
+def _message_class(type_name: str, described: Definition) -> type:
+    names = [_python_name(name) for name in described.fields]
+    constants = {_python_name(name): value for name, value in described.constants.items()}
+    namespace = {**constants, "__msgtype__": type_name}
+    return dataclasses.make_dataclass(type_name.replace("/", "__"), names, namespace=namespace)
+
+
+def _python_name(field: str) -> str:
+    """Return the attribute for a field: a keyword of Python has an underscore appended."""
+    return f"{field}_" if keyword.iskeyword(field) else field
 
 
 def stored_types() -> list[str]:
     """Names of all message types of the store, in full form, sorted."""
-    return sorted(_store().types)
+    return sorted(_store().names())
 
 
 def is_stored(type_name: str) -> bool:
     """Whether a type in full form is in the store already."""
-    return type_name in _store().types
+    return type_name in _store()
 
 
-class RosbagsSchema:
-    """Message classes of ROS 2 Jazzy from ``rosbags``, plus definitions found in folders.
+class DefinitionSchema:
+    """Message classes of ROS 2 Jazzy, plus those of definitions found in folders.
 
     Args:
         roots: the user's own definition folders; see `jacaros.ros.interfaces`.
@@ -62,10 +105,7 @@ class RosbagsSchema:
         fields = self._fields.get(type_name)
         if fields is None:
             self._require(type_name)
-            described = _store().fielddefs[type_name][1]
-            fields = self._fields[type_name] = {
-                name: from_rosbags(kind) for name, kind in described if name != _FILLER
-            }
+            fields = self._fields[type_name] = _store().definition(type_name).fields
         return fields
 
     def new(self, type_name: str) -> Any:
@@ -76,7 +116,7 @@ class RosbagsSchema:
         return maker()
 
     def numbers(self, field: FieldType, values: Any) -> Any:
-        """Keep numpy arrays as they are."""
+        """Keep arrays as they are."""
         return values
 
     def single(self, field: FieldType, value: Any) -> Any:
@@ -98,11 +138,11 @@ class RosbagsSchema:
         """
         kind = type_name.split("/")[1]
         part = request_type(type_name) if kind == "srv" else goal_type(type_name)
-        if part not in _store().types:
+        if part not in _store():
             self._definition(type_name, "service" if kind == "srv" else "action", kind)
 
     def _require(self, type_name: str) -> None:
-        if type_name in _store().types:
+        if type_name in _store():
             return
         whole, _, part = type_name.rpartition("_")
         if "/srv/" in type_name and part in ("Request", "Response"):
@@ -125,7 +165,7 @@ class RosbagsSchema:
         split: Callable[[str], Sequence[str]],
     ) -> None:
         types = [name(type_name) for name in names]
-        if all(part in _store().types for part in types):
+        if all(part in _store() for part in types):
             return
         text = self._definition(type_name, what, type_name.split("/")[1])
         try:
@@ -145,16 +185,14 @@ class RosbagsSchema:
         return text
 
     def _register(self, type_name: str, text: str) -> None:
-        from rosbags.typesys import get_types_from_msg
-
-        # Read as if it were a message: the parser looks for types without a package beside the type itself.
-        package, _, name = type_name.split("/")
-        [parsed] = get_types_from_msg(_WSTRING.sub("string", text), f"{package}/msg/{name}").values()
-        for _, kind in parsed[1]:
-            field = from_rosbags(kind)
+        try:
+            parsed = parse_definition(text, type_name.split("/")[0])
+        except ValueError as problem:
+            raise UnknownInterface(f"the definition of {type_name} is wrong: {problem}") from None
+        for field in parsed.fields.values():
             if field.is_message:
                 self._require(field.base)
-        _store().register({type_name: parsed})
+        _store().add(type_name, parsed)
 
     def _compile(self, type_name: str) -> Callable[[], Any]:
         """A function that makes a message, written out as one expression: nested messages need no calls between."""
@@ -164,21 +202,19 @@ class RosbagsSchema:
 
     def _message(self, type_name: str, names: dict[str, Any]) -> str:
         """An expression that makes a message; *names* takes what it refers to."""
-        fields = self.fields(type_name)
         defaults = DEFAULTS.get(type_name, {})
         values = [
             repr(defaults[name]) if name in defaults else self._value(field, names)
-            for name, field in fields.items()
+            for name, field in self.fields(type_name).items()
         ]
-        # By place: a field may have a name that Python keeps for itself.
-        return f"{_named(_store().types[type_name], names)}({', '.join(values) or '0'})"
+        return f"{_named(_store().message_class(type_name), names)}({', '.join(values)})"
 
     def _value(self, field: FieldType, names: dict[str, Any]) -> str:
         if not field.array:
             return self._single(field, names)
         length = field.length if field.fixed else 0
         if field.is_numeric:
-            return f"{_named(zeros(field, length), names)}.copy()"
+            return f"{_named(zeros(field, length), names)}[:]"
         return f"[{self._single(field, names)} for _ in range({length})]" if length else "[]"
 
     def _single(self, field: FieldType, names: dict[str, Any]) -> str:

@@ -1,5 +1,7 @@
 """Checking of single values and arrays of numbers against the type of a field."""
 
+from array import array
+from collections.abc import Iterable, Mapping, Set
 from typing import Any
 
 from jacaros.ros.fields import FLOATS, INTEGER_RANGES, FieldType
@@ -55,46 +57,62 @@ def _integer(base: str, value: Any) -> int:
     return value
 
 
+_TYPECODES = {
+    "float64": "d",
+    "float32": "f",
+    "int8": "b",
+    "uint8": "B",
+    "byte": "B",
+    "char": "B",
+    "int16": "h",
+    "uint16": "H",
+    "int32": "i",
+    "uint32": "I",
+    "int64": "q",
+    "uint64": "Q",
+}
+"""Element types of `array.array`, as rclpy uses them too."""
+
+
 def array_of_numbers(field: FieldType, values: Any) -> Any:
-    """Give *values* as a one-dimensional numpy array of the field's type.
+    """Give *values* as an `array.array` of the field's type, or as a list for booleans.
+
+    Lists, tuples, ranges, bytes, arrays of numpy and whatever else is iterable are taken.
 
     Raises:
-        TypeError: these are no numbers, or floating-point numbers for integers.
+        TypeError: these are no numbers, or floating-point numbers with fractions for integers.
         ValueError: wrong length or out of range.
     """
-    import numpy  # not at the top: many systems send no array at all, and numpy takes 0.1 s to import
-
-    if isinstance(values, bytes | bytearray | memoryview):
-        given = numpy.frombuffer(values, dtype=numpy.uint8)
-    elif isinstance(values, str | dict):
-        raise TypeError(f"{values!r} is given")
-    else:
-        given = numpy.asarray(values)
-    if given.size == 0:
-        given = zeros(field, 0)
-    dtype = zeros(field, 0).dtype
-    if given.ndim != 1 or given.dtype.kind not in ("b" if field.base == "bool" else "iuf"):
+    if isinstance(values, str | Mapping | Set) or not isinstance(values, Iterable):
         raise TypeError(f"{_shortened(values)} is given")
-    if field.length and (len(given) != field.length if field.fixed else len(given) > field.length):
-        raise ValueError(f"{len(given)} elements are given")
-    if given.dtype == dtype:
-        return given
-    if dtype.kind != "f":
-        if given.dtype.kind == "f" and not bool((given == numpy.floor(given)).all()):
-            raise TypeError("numbers with fractions are given")
-        low, high = INTEGER_RANGES[field.base]
-        if given.size and (given.min() < low or given.max() > high):
-            raise ValueError(
-                f"numbers from {given.min()} to {given.max()} are given; allowed: {low} to {high}"
-            )
-    return given.astype(dtype)
+    made = _converted(field, values)
+    if field.length and (len(made) != field.length if field.fixed else len(made) > field.length):
+        raise ValueError(f"{len(made)} elements are given")
+    return made
+
+
+def _converted(field: FieldType, values: Any) -> Any:
+    if isinstance(values, bytes | bytearray | memoryview):
+        values = array("B", bytes(values))  # numbers, not the machine's bytes of other numbers
+    code = _TYPECODES.get(field.base)
+    if code is not None and isinstance(values, array):
+        if values.typecode == code:
+            return values
+    elif hasattr(values, "tolist"):
+        values = values.tolist()
+    if code is not None:
+        try:
+            return array(code, values)
+        except (OverflowError, TypeError):
+            pass  # one of them is no such number, or one such as 3.0 for an integer
+    checked: list[Any] = [single_value(field.element, each) for each in values]
+    return checked if code is None else array(code, checked)
 
 
 def zeros(field: FieldType, length: int) -> Any:
-    """Make a numpy array of *length* zeros of the field's type."""
-    import numpy
-
-    return numpy.zeros(length, {"byte": "uint8", "char": "uint8"}.get(field.base, field.base))
+    """Make *length* zeros of the field's type: an `array.array`, or a list for booleans."""
+    code = _TYPECODES.get(field.base)
+    return [False] * length if code is None else array(code, bytes(length * array(code).itemsize))
 
 
 def _shortened(values: Any) -> str:

@@ -16,7 +16,7 @@ from jacaros.ros.graph import Endpoint, GraphContents, TopicInfo
 from jacaros.ros.handoff import in_thread, post
 from jacaros.ros.lifetime import Lifetime
 from jacaros.ros.node import Node, NodeSettings, Parts
-from jacaros.ros.typestore import RosbagsSchema
+from jacaros.ros.typestore import DefinitionSchema
 from mqtt_driver.topics import MqttFeed, MqttPublisher, MqttSubscription, parts_of
 
 NODES = "jacaros/nodes"
@@ -42,7 +42,7 @@ class MqttBackend(Node):
     def __init__(self, settings: NodeSettings, broker: str | None = None) -> None:
         super().__init__(
             settings,
-            RosbagsSchema(settings.interface_paths),
+            DefinitionSchema(settings.interface_paths),
             Lifetime(settings.log, self._send_rest, threaded=True),
         )
         self.broker = broker or os.environ.get("MQTT_BROKER") or "127.0.0.1:1883"

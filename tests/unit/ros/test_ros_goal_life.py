@@ -17,10 +17,10 @@ from jacaros.ros.action_serving import CLOSED, PREEMPTED, ServedGoals
 from jacaros.ros.errors import CallTimedOut, ServiceError
 from jacaros.ros.message import MessageFactory
 from jacaros.ros.pending_goal import ENDING
-from jacaros.ros.typestore import RosbagsSchema
+from jacaros.ros.typestore import DefinitionSchema
 
 COUNT = "jacaros_interfaces/action/Count"
-FACTORY = MessageFactory(RosbagsSchema())
+FACTORY = MessageFactory(DefinitionSchema())
 
 
 class Loop:

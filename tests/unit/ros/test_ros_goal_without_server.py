@@ -9,7 +9,7 @@ from jacaros.clock import VirtualClock, run
 from jacaros.ros.action_calling import GoalSender
 from jacaros.ros.errors import ServerUnavailable
 from jacaros.ros.message import MessageFactory
-from jacaros.ros.typestore import RosbagsSchema
+from jacaros.ros.typestore import DefinitionSchema
 
 COUNT = "jacaros_interfaces/action/Count"
 
@@ -28,7 +28,7 @@ class Carrier:
         self.sent: list[str] = []
         self._absent = absent
         self._loop = asyncio.get_running_loop()
-        self.sender = GoalSender(clock, print, MessageFactory(RosbagsSchema()), "/count", COUNT)
+        self.sender = GoalSender(clock, print, MessageFactory(DefinitionSchema()), "/count", COUNT)
         self.sender.wire = self
 
     def new_id(self) -> str:

@@ -11,7 +11,7 @@ pytest.importorskip("websockets")
 
 from jacaros.ros.protocols.rosbridge_messages import Translator
 from jacaros.ros.protocols.rosbridge_wire import LONGEST, OPEN_AT_ONCE, Fragments, frames
-from jacaros.ros.typestore import RosbagsSchema
+from jacaros.ros.typestore import DefinitionSchema
 
 SCAN, IMAGE, STAMP = (
     "sensor_msgs/msg/LaserScan",
@@ -21,19 +21,19 @@ SCAN, IMAGE, STAMP = (
 
 
 @pytest.fixture
-def schema() -> RosbagsSchema:
+def schema() -> DefinitionSchema:
     """The message classes."""
-    return RosbagsSchema(())
+    return DefinitionSchema(())
 
 
 @pytest.fixture
-def translator(schema: RosbagsSchema) -> Translator:
+def translator(schema: DefinitionSchema) -> Translator:
     """What is tested."""
     return Translator(schema)
 
 
 def test_times_are_written_as_the_robots_ros_does_and_read_in_both_notations(
-    schema: RosbagsSchema, translator: Translator
+    schema: DefinitionSchema, translator: Translator
 ) -> None:
     time = schema.new(STAMP)
     time.sec, time.nanosec = 7, 9
@@ -101,3 +101,26 @@ def test_incomplete_operations_are_limited_and_forgotten_with_the_connection() -
     assert fragments.add(half(OPEN_AT_ONCE, 1)) == {"op": "x"}
     fragments.clear()
     assert fragments.add(half(OPEN_AT_ONCE - 1, 1)) is None
+
+
+@pytest.mark.parametrize(
+    ("tag", "octets", "numbers"),
+    [
+        (64, b"\x01\xff", [1.0, 255.0]),
+        (77, b"\xff\xff\x02\x00", [-1.0, 2.0]),
+        (73, b"\xff\xff\x00\x02", [-1.0, 2.0]),
+        (84, b"\x00\x3c\x00\xc0", [1.0, -2.0]),
+        (80, b"\x3c\x00\xc0\x00", [1.0, -2.0]),
+        (82, b"\x3f\xf8" + b"\x00" * 6, [1.5]),
+    ],
+)
+def test_typed_arrays_of_all_kinds_are_read(
+    translator: Translator, tag: int, octets: bytes, numbers: list[float]
+) -> None:
+    assert translator.decode(SCAN, {"ranges": cbor2.CBORTag(tag, octets)}).ranges.tolist() == numbers
+
+
+@pytest.mark.parametrize("tag", [84, 85])
+def test_half_an_element_is_refused(translator: Translator, tag: int) -> None:
+    with pytest.raises(ValueError, match="field ranges"):
+        translator.decode(SCAN, {"ranges": cbor2.CBORTag(tag, b"\x00\x00\x00")})

@@ -7,7 +7,7 @@ import pytest
 from jacaros.ros.errors import UnknownInterface
 from jacaros.ros.interfaces import split_action, split_service
 from jacaros.ros.message import MessageFactory, constant, plain
-from jacaros.ros.typestore import RosbagsSchema
+from jacaros.ros.typestore import DefinitionSchema
 
 
 def write(folder: Path, name: str, text: str) -> None:
@@ -24,7 +24,7 @@ def test_an_action_has_three_parts_with_constants_and_other_types_of_ours(tmp_pa
         "# what to cook\nDish dish\nkitchen_msgs/Dish[] more\n---\nuint16 NONE=0\nuint16 BURNT=7\nuint16 error_code\n"
         "wstring error_msg\n---\nfloat32 done 0.5\ngeometry_msgs/Pose pose\n",
     )
-    schema = RosbagsSchema([tmp_path])
+    schema = DefinitionSchema([tmp_path])
     factory = MessageFactory(schema)
     schema.action("kitchen_msgs/action/Cook")
     fields = schema.fields("kitchen_msgs/action/Cook_Goal")
@@ -43,7 +43,7 @@ def test_an_action_has_three_parts_with_constants_and_other_types_of_ours(tmp_pa
 def test_parts_are_known_without_asking_for_the_whole(tmp_path: Path) -> None:
     write(tmp_path, "kitchen_msgs/action/Wash.action", "int32 plates\n---\n---\nint32 left\n")
     write(tmp_path, "kitchen_msgs/srv/Open.srv", "string door\n---\nbool open\n")
-    schema = RosbagsSchema([tmp_path])
+    schema = DefinitionSchema([tmp_path])
     assert list(schema.fields("kitchen_msgs/action/Wash_Feedback")) == ["left"]
     assert list(schema.fields("kitchen_msgs/action/Wash_Result")) == []
     assert plain(schema.new("kitchen_msgs/action/Wash_Result")) == {}
@@ -61,7 +61,7 @@ def test_parts_are_known_without_asking_for_the_whole(tmp_path: Path) -> None:
     ],
 )
 def test_unknown_types_are_told(name: str, message: str) -> None:
-    schema = RosbagsSchema()
+    schema = DefinitionSchema()
     with pytest.raises(UnknownInterface, match=message):
         schema.action(name) if name.endswith("action/Nothing") else schema.fields(name)
 
@@ -69,7 +69,7 @@ def test_unknown_types_are_told(name: str, message: str) -> None:
 def test_a_definition_that_refers_to_an_unknown_type_is_told(tmp_path: Path) -> None:
     write(tmp_path, "kitchen_msgs/action/Serve.action", "no_msgs/Table table\n---\n---\n")
     with pytest.raises(UnknownInterface, match="no_msgs/msg/Table"):
-        RosbagsSchema([tmp_path]).action("kitchen_msgs/action/Serve")
+        DefinitionSchema([tmp_path]).action("kitchen_msgs/action/Serve")
 
 
 def test_a_definition_without_its_lines_is_told(tmp_path: Path) -> None:
@@ -77,7 +77,7 @@ def test_a_definition_without_its_lines_is_told(tmp_path: Path) -> None:
     with pytest.raises(
         UnknownInterface, match=r"definition of kitchen_msgs/action/Half is wrong.*two lines ---"
     ):
-        RosbagsSchema([tmp_path]).action("kitchen_msgs/action/Half")
+        DefinitionSchema([tmp_path]).action("kitchen_msgs/action/Half")
     with pytest.raises(ValueError, match="a line ---"):
         split_service("int32 a\n")
     assert split_action("int32 a\n---\n---\n") == ("int32 a\n", "\n", "\n")

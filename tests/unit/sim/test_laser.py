@@ -139,3 +139,11 @@ def test_two_lasers_with_and_without_numpy_agree_in_a_world_with_robots() -> Non
     for step in range(20):
         pose = (-3.0 + 0.1 * step, -1.0, 0.05 * step)
         assert plain.scan(*pose, others) == fast.scan(*pose, others)
+
+
+def test_without_numpy_a_laser_in_a_large_world_sees_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+    walls = [(float(x), -9.0, float(x), 9.0) for x in range(2, 12)]
+    with_numpy = Laser(LaserSettings(), walls, "s").scan(0.0, 0.0, 0.3)
+    monkeypatch.setitem(sys.modules, "jacaros.sim.robot.sensors.laser_numpy", None)
+    laser = Laser(LaserSettings(), walls, "s")
+    assert [laser.scan(0.0, 0.0, 0.3), laser.scan(0.0, 0.0, 0.3)] == [with_numpy] * 2

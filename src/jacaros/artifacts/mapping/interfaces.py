@@ -10,7 +10,7 @@ from typing import Any, Protocol
 from jacaros.ros.fields import FLOATS, INTEGER_RANGES, FieldType
 from jacaros.ros.interfaces import BUILT_IN, installed
 from jacaros.ros.message import MessageFactory
-from jacaros.ros.typestore import RosbagsSchema, stored_types
+from jacaros.ros.typestore import DefinitionSchema, stored_types
 
 _CONSTANT = re.compile(r"[A-Z][A-Z0-9_]*")
 
@@ -29,7 +29,7 @@ class StoredInterfaces:
     """The definitions that come with the package or are installed here: what is checked where there is no middleware."""
 
     def __init__(self, folders: tuple[Path, ...] = ()) -> None:
-        self._factory = MessageFactory(RosbagsSchema((*folders, *installed())))
+        self._factory = MessageFactory(DefinitionSchema((*folders, *installed())))
 
     def fields(self, type_name: str) -> Mapping[str, FieldType]:
         """Fields of a type."""

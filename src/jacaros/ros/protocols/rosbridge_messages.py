@@ -1,4 +1,4 @@
-"""Messages as the rosbridge protocol writes them, from and to the message objects of `RosbagsSchema`.
+"""Messages as the rosbridge protocol writes them, from and to the message objects of `DefinitionSchema`.
 
 The notation is that of ``rosbridge_library.internal.message_conversion``: arrays of octets in base64, times as ``secs`` and
 ``nsecs`` on ROS 1 and ``sec`` and ``nanosec`` on ROS 2, and ``null`` for the floating-point numbers that JSON cannot write
@@ -12,14 +12,19 @@ every type: at arrays of a fixed length, for instance, they lose the message.
 import base64
 import binascii
 import math
+import struct
+import sys
+from array import array
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Any
 
 from jacaros.ros.fields import DURATION, FLOATS, TIME, FieldType
-from jacaros.ros.typestore import RosbagsSchema
-from jacaros.ros.values import zeros
+from jacaros.ros.typestore import DefinitionSchema
+from jacaros.ros.values import array_of_numbers
 
 _OCTETS = ("uint8", "char")
+_ONE_OCTET = (*_OCTETS, "byte", "int8", "bool")
 _ROS1_FIELDS: Mapping[str, Mapping[str, str]] = {
     "sensor_msgs/msg/CameraInfo": {"d": "D", "k": "K", "r": "R", "p": "P"}
 }
@@ -39,7 +44,7 @@ class Translator:
         ros_version: 1 or 2: in whose notation to write; reading understands both.
     """
 
-    def __init__(self, schema: RosbagsSchema) -> None:
+    def __init__(self, schema: DefinitionSchema) -> None:
         self._schema = schema
         self._encoders: dict[str, Encoder] = {}
         self._decoders: dict[str, Decoder] = {}
@@ -208,46 +213,66 @@ def _sequence(values: Any) -> list[Any]:
 def _numbers(field: FieldType) -> Decoder:
     """Reads an array of numbers: a list, octets in base64, or what CBOR makes of it."""
 
-    def decode(values: Any) -> Any:
-        import numpy  # here: many systems have no array at all
+    unbounded = replace(field, length=0, fixed=False)
 
-        dtype = zeros(field, 0).dtype
-        packed = unpacked(values)
-        if packed is not None:
-            return packed.astype(dtype)
-        if isinstance(values, bytes) and dtype.itemsize == 1:
-            return numpy.frombuffer(values, dtype=dtype).copy()
-        if isinstance(values, str) and dtype.itemsize == 1:
-            return numpy.frombuffer(binascii.a2b_base64(values, strict_mode=True), dtype=dtype).copy()
-        numbers = _sequence(values)
-        if field.base in FLOATS:
+    def decode(values: Any) -> Any:
+        numbers: Any = unpacked(values)
+        if numbers is None and isinstance(values, bytes) and field.base in _ONE_OCTET:
+            numbers = values
+        if numbers is None and isinstance(values, str) and field.base in _ONE_OCTET:
+            numbers = binascii.a2b_base64(values, strict_mode=True)
+        if numbers is None:
+            numbers = _sequence(values)
+        if field.base == "bool":
+            return [bool(number) for number in numbers]
+        if field.base in FLOATS and numbers is values:
             numbers = [math.nan if number is None else number for number in numbers]
-        with numpy.errstate(over="ignore"):  # too large for a float32: infinite
-            return numpy.array(numbers, dtype=dtype)
+        return array_of_numbers(unbounded, numbers)
 
     return decode
 
 
 _LITTLE = {
-    64: "u1",
-    68: "u1",
-    69: "<u2",
-    70: "<u4",
-    71: "<u8",
-    72: "i1",
-    77: "<i2",
-    78: "<i4",
-    79: "<i8",
-    84: "<f2",
-    85: "<f4",
-    86: "<f8",
+    64: "B",
+    68: "B",
+    69: "H",
+    70: "I",
+    71: "Q",
+    72: "b",
+    77: "h",
+    78: "i",
+    79: "q",
+    84: "e",
+    85: "f",
+    86: "d",
 }
-_BIG = {65: ">u2", 66: ">u4", 67: ">u8", 73: ">i2", 74: ">i4", 75: ">i8", 80: ">f2", 81: ">f4", 82: ">f8"}
-_ARRAYS = _LITTLE | _BIG
-"""Tags of typed arrays, and their elements as numpy writes them."""
+_BIG = {65: "H", 66: "I", 67: "Q", 73: "h", 74: "i", 75: "q", 80: "e", 81: "f", 82: "d"}
+"""Tags of typed arrays, and their elements as the module `struct` writes them."""
 
 
-def worth_packing(schema: RosbagsSchema, type_name: str) -> bool:
+def unpacked(value: Any) -> "array[Any] | None":
+    """Give a typed array of CBOR as Python's; None when *value* is none that is known.
+
+    Raises:
+        ValueError: its octets are no whole number of elements.
+    """
+    tag = getattr(value, "tag", -1)
+    kind = _LITTLE.get(tag) or _BIG.get(tag)
+    if kind is None or not isinstance(value.value, bytes):
+        return None
+    order = "big" if tag in _BIG else "little"
+    if kind == "e":  # of 16 bits, which arrays of Python do not have
+        if len(value.value) % 2:
+            raise ValueError(f"{len(value.value)} octets of numbers with 2 are given")
+        sign = ">" if order == "big" else "<"
+        return array("f", struct.unpack(f"{sign}{len(value.value) // 2}e", value.value))
+    made = array(kind, value.value)
+    if order != sys.byteorder:
+        made.byteswap()
+    return made
+
+
+def worth_packing(schema: DefinitionSchema, type_name: str) -> bool:
     """Whether CBOR pays for a type, and servers can write all of its fields."""
     fields = list(_all_fields(schema, type_name, set()))
     return all(_can_be_packed(field) for field in fields) and any(
@@ -255,7 +280,7 @@ def worth_packing(schema: RosbagsSchema, type_name: str) -> bool:
     )
 
 
-def _all_fields(schema: RosbagsSchema, type_name: str, seen: set[str]) -> list[FieldType]:
+def _all_fields(schema: DefinitionSchema, type_name: str, seen: set[str]) -> list[FieldType]:
     if type_name in seen:
         return []
     seen.add(type_name)
@@ -269,13 +294,3 @@ def _can_be_packed(field: FieldType) -> bool:
     if field.base == "byte":
         return False
     return not field.array or (not field.length and field.base != "string")
-
-
-def unpacked(value: Any) -> Any:
-    """Give a typed array as numpy's; None when *value* is none that is known."""
-    kind = _ARRAYS.get(getattr(value, "tag", -1))
-    if kind is None or not isinstance(value.value, bytes):
-        return None
-    import numpy  # here: many systems have no array at all
-
-    return numpy.frombuffer(value.value, dtype=kind)

@@ -1,4 +1,4 @@
-"""Interface definitions: those of the ``rosbags`` store and of files, and what neither knows from the server's rosapi."""
+"""Interface definitions: those of the package and of files, and what neither knows from the server's rosapi."""
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -7,7 +7,7 @@ from typing import Any
 
 from jacaros.ros.errors import UnknownInterface
 from jacaros.ros.names import message_type
-from jacaros.ros.typestore import RosbagsSchema, is_stored
+from jacaros.ros.typestore import DefinitionSchema, is_stored
 
 Ask = Callable[[str, dict[str, Any]], dict[str, Any] | None]
 """Calls a service of rosapi and waits for the fields of its response; None when there is none, `TimeoutError` when there is
@@ -50,8 +50,8 @@ _INTEGER = re.compile(r"-?\d+")
 _CONSTANT = re.compile(r"[A-Z][A-Z0-9_]*")
 
 
-class BridgeSchema(RosbagsSchema):
-    """Message classes of `RosbagsSchema` that also knows what the server can tell.
+class BridgeSchema(DefinitionSchema):
+    """Message classes of `DefinitionSchema` that also knows what the server can tell.
 
     Args:
         roots: the user's own definition folders.

@@ -60,7 +60,7 @@ def _without_numbers(message: Any) -> Any:
         elif _fields(value):
             _without_numbers(value)
         elif not isinstance(value, str | bytes) and isinstance(value, Iterable):
-            # For arrays (numpy, and array.array in ROS 2), the items as Python values.
+            # For arrays, the items as Python values.
             items = list(getattr(value, "tolist", value.__iter__)())
             if items and all(isinstance(item, float) for item in items):
                 setattr(message, name, [math.nan] * len(items))

@@ -1,7 +1,7 @@
 """A ROS graph inside the process: nothing to install, deterministic, as fast as the loop.
 
-Topics, services, actions, parameters and quality of service behave as on ROS 2; the message classes are the genuine
-definitions from ``rosbags``.  A published message is handed over by reference, one turn of the loop per message, in the
+Topics, services, actions, parameters and quality of service behave as on ROS 2; the message classes have the
+genuine definitions.  A published message is handed over by reference, one turn of the loop per message, in the
 order of publishing; so messages are read-only from `publish` on.
 """
 

@@ -7,7 +7,7 @@ from jacaros.ros.errors import RosError
 from jacaros.ros.lifetime import Lifetime
 from jacaros.ros.node import M, Node, NodeSettings
 from jacaros.ros.parameter_store import DeclaredParameters
-from jacaros.ros.typestore import RosbagsSchema
+from jacaros.ros.typestore import DefinitionSchema
 
 
 class MemoryNode(Node):
@@ -19,7 +19,7 @@ class MemoryNode(Node):
     """
 
     def __init__(self, settings: NodeSettings, graph: MemoryGraph | None) -> None:
-        self.schema = RosbagsSchema(settings.interface_paths)
+        self.schema = DefinitionSchema(settings.interface_paths)
         super().__init__(settings, self.schema, Lifetime(settings.log))
         self.graph = graph if graph is not None else MemoryGraph()
         self.declared = DeclaredParameters(

@@ -73,7 +73,7 @@ class GenpySchema:
 
     def numbers(self, field: FieldType, values: Any) -> Any:
         """Turn an array into ``bytes`` for octets, into a list for the rest: what genpy serialises."""
-        return values.tobytes() if field.base == "uint8" else values.tolist()
+        return values.tobytes() if field.base == "uint8" else list(values)
 
     def single(self, field: FieldType, value: Any) -> Any:
         """Keep plain values as they are."""

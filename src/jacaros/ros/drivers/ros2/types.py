@@ -1,6 +1,5 @@
 """The message and service classes of ROS 2's Python packages as a `Schema`, and values of parameters in rclpy's terms."""
 
-import array
 from collections.abc import Mapping
 from functools import cache
 from importlib import import_module
@@ -8,6 +7,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
+import numpy  # rclpy needs it, too
 from rclpy.parameter import Parameter  # type: ignore[import-not-found]
 
 from jacaros.ros.errors import ParameterRefused, UnknownInterface
@@ -16,21 +16,6 @@ from jacaros.ros.interfaces.ros2_package import PACKAGE, origin
 
 _PARTS = {"srv": ("Request", "Response"), "action": ("Goal", "Result", "Feedback")}
 """The messages that services and actions are made of."""
-
-_TYPECODES = {
-    "float64": "d",
-    "float32": "f",
-    "int8": "b",
-    "uint8": "B",
-    "char": "B",
-    "int16": "h",
-    "uint16": "H",
-    "int32": "i",
-    "uint32": "I",
-    "int64": "q",
-    "uint64": "Q",
-}
-"""Element types of sequences that rclpy keeps as `array.array`."""
 
 
 class RosidlSchema:
@@ -56,12 +41,10 @@ class RosidlSchema:
         return self.message_class(type_name)()
 
     def numbers(self, field: FieldType, values: Any) -> Any:
-        """Turn an array into what rclpy checks fastest: numpy for fixed lengths, `array.array` else."""
+        """Turn an array into what rclpy checks fastest: numpy's for fixed lengths."""
         if field.base == "byte":
-            return [bytes([value]) for value in values.tolist()]
-        if field.base == "bool":
-            return values.tolist()
-        return values if field.fixed else array.array(_TYPECODES[field.base], values.tobytes())
+            return [bytes([value]) for value in values]
+        return numpy.array(values) if field.fixed and field.base != "bool" else values
 
     def single(self, field: FieldType, value: Any) -> Any:
         """Turn an octet into ``bytes``; keep other plain values as they are."""

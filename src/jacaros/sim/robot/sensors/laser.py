@@ -47,21 +47,28 @@ class Laser:
         return [value if value <= reach else float("inf") for value in swept]
 
     def _sweep(self, x: float, y: float, yaw: float, circles: list[Circle]) -> list[float]:
+        if self._with_numpy and self._arrays is None:
+            self._arrays = self._wall_arrays()
         if not self._with_numpy:
             ranges = sweep_walls(self._segments, x, y, yaw, self.beams)
             sweep_circles(ranges, circles, x, y, yaw, self.beams)
             return ranges
-        if self._arrays is None:
-            # numpy takes a third of a second to import: pay for it only at the first scan.
-            from jacaros.sim.robot.sensors.laser_numpy import WallArrays
-
-            self._arrays = WallArrays(self._segments, self.beams)
         if len(circles) > FEW_CIRCLES:
             swept: list[float] = self._arrays.sweep(x, y, yaw, circles)
         else:
             swept = self._arrays.sweep(x, y, yaw)
             sweep_circles(swept, circles, x, y, yaw, self.beams)
         return swept
+
+    def _wall_arrays(self) -> Any:
+        """Return the walls as arrays; None where numpy, which is optional, is not installed."""
+        try:
+            # numpy takes a third of a second to import: only the first wanted scan pays for it.
+            from jacaros.sim.robot.sensors.laser_numpy import WallArrays
+        except ImportError:
+            self._with_numpy = False
+            return None
+        return WallArrays(self._segments, self.beams)
 
 
 def _near(circle: Circle, x: float, y: float, reach: float) -> bool:
