@@ -43,7 +43,7 @@ class ArtifactBehaviour(Behaviour):
         super().__init__(name)
         self.wake: Callable[[], None] = nothing
         self.board = self.attach_blackboard_client()
-        self._told: str | None = None
+        self._reported: str | None = None
 
     def setup(self, **given: Any) -> None:
         """Be joined with the environment; `TreeRunner` does it, or ``tree.setup(session=...)``.
@@ -56,7 +56,7 @@ class ArtifactBehaviour(Behaviour):
         """
         self.session = session_of(self, given)
         self.wake = given.get("wake", nothing)
-        self._told = None
+        self._reported = None
 
     def let_go(self) -> None:
         """Give up at once what is under way: the tree ends, perhaps in disorder."""
@@ -87,5 +87,5 @@ class ArtifactBehaviour(Behaviour):
             self.session.environment.log(f"[{self.session.name}] behaviour '{self.name}': {text}")
 
     def _is_news(self, text: str) -> bool:
-        told, self._told = self._told, text
+        told, self._reported = self._reported, text
         return told != text

@@ -62,7 +62,7 @@ class TreeRunner:
         self._setup: dict[str, Any] = {**(setup or {}), "session": session, "wake": self.wake}
         self._running = self._due = self._ends = False
         self._waiting: asyncio.Future[None] | None = None
-        self._told: dict[Behaviour, None] = {}
+        self._reported: dict[Behaviour, None] = {}
 
     async def run(self, forever: bool = False) -> Status:
         """Set the tree up and tick it until its root is done.
@@ -150,14 +150,14 @@ class TreeRunner:
                     behaviour.stop(Status.INVALID)
         finally:
             if self.session.observer is not None:
-                self._tell(self.session.observer)
+                self._report(self.session.observer)
             self.tree.shutdown()
 
     @contextmanager
     def _observed(self) -> Iterator[None]:
         """Around a tick: who observes the session hears of the behaviours before the operations that they begin."""
-        tell = self.session.observer
-        if tell is None:
+        report = self.session.observer
+        if report is None:
             yield
             return
         told: list[tuple[str, str, object, str]] = []
@@ -165,24 +165,24 @@ class TreeRunner:
         try:
             yield
         finally:
-            self.session.observer = tell
-            self._tell(tell)
+            self.session.observer = report
+            self._report(report)
             for news in told:
-                tell(*news)
+                report(*news)
 
-    def _tell(self, tell: Observer) -> None:
+    def _report(self, report: Observer) -> None:
         """Tell which behaviours run now, and how those ended that ran before."""
-        before, self._told = self._told, {}
+        before, self._reported = self._reported, {}
         for behaviour in reversed(list(self.tree.root.iterate())):  # parents come before their children
             # Operations are told by the session, with their arguments and reasons.
             if behaviour.status is Status.RUNNING and not isinstance(behaviour, Act):
-                self._told[behaviour] = None
+                self._reported[behaviour] = None
         for behaviour in reversed(before):
-            if behaviour not in self._told:
+            if behaviour not in self._reported:
                 state = _ENDS.get(behaviour.status, "dropped")
-                tell(
+                report(
                     state, behaviour.name, behaviour, behaviour.feedback_message if state == "failed" else ""
                 )
-        for behaviour in self._told:
+        for behaviour in self._reported:
             if behaviour not in before:
-                tell("executing", behaviour.name, behaviour, "")
+                report("executing", behaviour.name, behaviour, "")

@@ -162,7 +162,7 @@ def _workspace_of(situation: Situation, artifact: ArtifactId) -> Workspace:
     return situation.environment.workspace(artifact.workspace)
 
 
-def _told(situation: Situation, finish: Finish) -> Told:
+def _reported(situation: Situation, finish: Finish) -> Told:
     """Let an action end as what was asked of a workspace ended."""
     return lambda outcome: finish(of_operation(outcome, [], situation.references))
 
@@ -200,7 +200,7 @@ def focus(situation: Situation, call: Call, finish: Finish) -> None:
         # Of its own body and session an agent perceives everything anyway.
         finish(succeeded())
         return
-    workspace, told = _workspace_of(situation, artifact), _told(situation, finish)
+    workspace, told = _workspace_of(situation, artifact), _reported(situation, finish)
     situation.focused.begin(workspace, artifact, call.namespace, told, only)
 
 
@@ -245,7 +245,7 @@ def focus_when_available(situation: Situation, call: Call, finish: Finish) -> Un
         raise not_joined(workspace.path)
     present = next((a for a in workspace.artifacts() if a.name == wanted), None)
     if present is not None:
-        situation.focused.begin(workspace, present, call.namespace, _told(situation, finish), only)
+        situation.focused.begin(workspace, present, call.namespace, _reported(situation, finish), only)
         return None
 
     def look(artifact: ArtifactId, is_there: bool) -> None:
@@ -256,7 +256,7 @@ def focus_when_available(situation: Situation, call: Call, finish: Finish) -> Un
             finish(refused(not_joined(workspace.path), situation.references))
             return
         with suppress(UnknownArtifact):  # somebody has disposed it at once: the next one is waited for
-            situation.focused.begin(workspace, artifact, call.namespace, _told(situation, finish), only)
+            situation.focused.begin(workspace, artifact, call.namespace, _reported(situation, finish), only)
             stop()
 
     stop = workspace.watch(look)

@@ -167,7 +167,7 @@ class FocusedArtifacts:
         self._focused.setdefault(artifact, {})[namespace] = workspace
         self._watch(workspace, artifact.name.startswith(_PERSONAL))
         if is_first:
-            self._tell(ADD, workspace, artifact)
+            self._report(ADD, workspace, artifact)
 
     def end(self, artifact: ArtifactId, namespace: str | None) -> None:
         """Stop to focus an artifact in a namespace; without effect when it is not focused there."""
@@ -220,9 +220,9 @@ class FocusedArtifacts:
     def _lose(self, workspace: Workspace, artifact: ArtifactId) -> None:
         for namespace in self._focused.pop(artifact):
             self._filtered.pop((artifact, namespace), None)
-        self._tell(REMOVE, workspace, artifact)
+        self._report(REMOVE, workspace, artifact)
 
-    def _tell(self, kind: str, workspace: Workspace, artifact: ArtifactId) -> None:
+    def _report(self, kind: str, workspace: Workspace, artifact: ArtifactId) -> None:
         self._notice([self._focusing(kind, workspace, artifact)])
         watcher = self._watchers.get(workspace.path)
         if watcher is not None:

@@ -15,7 +15,7 @@ from jacaros.env.values import Atom, Structure
 from jacaros.terms.values import functor_of, list_items
 
 
-class Teller(Protocol):
+class NeedListener(Protocol):
     """Who is told what becomes of what a plan needs."""
 
     def acquired(self, number: int) -> None:
@@ -37,12 +37,12 @@ class HeldNeed:
     Args:
         number: of the act that asks for it.
         arbiter: of the environment.
-        teller: is told what becomes of it.
+        listener: is told what becomes of it.
         yields: it may be taken away.
     """
 
-    def __init__(self, number: int, arbiter: Arbiter, teller: Teller, yields: bool) -> None:
-        self._number, self._arbiter, self._teller = number, arbiter, teller
+    def __init__(self, number: int, arbiter: Arbiter, listener: NeedListener, yields: bool) -> None:
+        self._number, self._arbiter, self._listener = number, arbiter, listener
         self.can_yield = yields
         self._begun = self._lost = False
         self.claim: Claim
@@ -56,7 +56,7 @@ class HeldNeed:
         """The plan begins, or continues."""
         if not self._begun:
             self._begun = True
-            self._teller.acquired(self._number)
+            self._listener.acquired(self._number)
         self._found()
 
     def preempted(self, claim: Claim, resource: str) -> None:
@@ -67,7 +67,7 @@ class HeldNeed:
     def refused(self, claim: Claim, reason: Structure | Atom) -> None:
         """The plan fails, or what it had lost is lost for good."""
         name = reason.arguments[0] if isinstance(reason, Structure) else ""
-        self._teller.unavailable(self._number, OperationFailed(f"{claim.who} cannot have {name}", reason))
+        self._listener.unavailable(self._number, OperationFailed(f"{claim.who} cannot have {name}", reason))
 
     def pause(self) -> None:
         """The program has suspended the intention: others may have it."""
@@ -86,12 +86,12 @@ class HeldNeed:
     def _lose(self, resource: str) -> None:
         if not self._lost:
             self._lost = True
-            self._teller.preempted(self._number, local_name(resource))
+            self._listener.preempted(self._number, local_name(resource))
 
     def _found(self) -> None:
         if self._lost:
             self._lost = False
-            self._teller.regained(self._number)
+            self._listener.regained(self._number)
 
 
 class Needs:
@@ -100,11 +100,11 @@ class Needs:
     Args:
         agent: name of the agent.
         environment: where the resources are.
-        teller: is told what becomes of them.
+        listener: is told what becomes of them.
     """
 
-    def __init__(self, agent: str, environment: Environment, teller: Teller) -> None:
-        self._agent, self._environment, self._teller = agent, environment, teller
+    def __init__(self, agent: str, environment: Environment, listener: NeedListener) -> None:
+        self._agent, self._environment, self._listener = agent, environment, listener
         self._held: dict[int, HeldNeed] = {}
 
     def __contains__(self, number: object) -> bool:
@@ -132,7 +132,7 @@ class Needs:
         uses = together(
             self._resolved(use, focused, near) for use in _read(str(each) for each in list_items(names))
         )
-        need = HeldNeed(act.id, self._environment.arbiter, self._teller, act.yields)
+        need = HeldNeed(act.id, self._environment.arbiter, self._listener, act.yields)
         self._held[act.id] = need
         who = f"[{self._agent}] {goal}"
         blocks = "" if act.yields else self._agent

@@ -33,7 +33,7 @@ class GoalListener(Protocol):
         """The goal is over; called once."""
 
 
-class GoalTelling(Protocol):
+class GoalReporter(Protocol):
     """Who brings the news of all goals of an action to their clients."""
 
     def feedback(self, goal_id: str, message: Any) -> None:
@@ -43,19 +43,19 @@ class GoalTelling(Protocol):
         """A goal is over; called once for each."""
 
 
-class OneGoalOf:
+class SingleGoalListener:
     """The `GoalListener` of one goal of somebody who brings the news of all."""
 
-    def __init__(self, telling: GoalTelling, goal_id: str) -> None:
-        self._telling, self._goal_id = telling, goal_id
+    def __init__(self, reporter: GoalReporter, goal_id: str) -> None:
+        self._reporter, self._goal_id = reporter, goal_id
 
     def feedback(self, message: Any) -> None:
         """Pass feedback on."""
-        self._telling.feedback(self._goal_id, message)
+        self._reporter.feedback(self._goal_id, message)
 
     def ended(self, outcome: Outcome) -> None:
         """Pass the end on."""
-        self._telling.ended(self._goal_id, outcome)
+        self._reporter.ended(self._goal_id, outcome)
 
 
 class GoalUnderWay:
@@ -66,7 +66,7 @@ class GoalUnderWay:
         goal_id: str,
         request: Any,
         send: Callable[[Any], Any],
-        tell: Callable[["GoalUnderWay", Outcome], None],
+        report: Callable[["GoalUnderWay", Outcome], None],
     ) -> None:
         self.goal_id = goal_id
         self.request = request
@@ -74,7 +74,7 @@ class GoalUnderWay:
         self.task: asyncio.Task[Any] | None = None
         self.overtaken = self.stopped = self.over = False
         self._send = send
-        self._tell = tell
+        self._report = report
 
     def feedback(self, message: Any = None, /, **fields: Any) -> None:
         """Tell the client how far the goal is; after the goal's end nothing."""
@@ -87,7 +87,7 @@ class GoalUnderWay:
         """Tell the end, unless it was told."""
         if not self.over:
             self.over = True
-            self._tell(self, outcome)
+            self._report(self, outcome)
 
     def stop(self) -> None:
         """Throw ``CancelledError`` into the code that carries the goal out."""

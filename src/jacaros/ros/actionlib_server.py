@@ -135,7 +135,7 @@ class ActionlibServer:
             return
         goal.change(State.ACTIVE)
         self._served.begin(goal_id, message.goal, _Listener(self, goal))
-        self._tell()
+        self._report()
 
     def _new_id(self) -> str:
         """The id of a goal that came without one."""
@@ -155,7 +155,7 @@ class ActionlibServer:
                 wanted, sample.message.stamp, State.RECALLING, told_until=self._later()
             )
         self._cancelled_until = max(self._cancelled_until, until)
-        self._tell()
+        self._report()
 
     # What they are told:
 
@@ -198,17 +198,17 @@ class ActionlibServer:
                 header={"stamp": self._node.clock.now()}, status=self._status_of(goal), result=given
             )
         )
-        self._tell()
+        self._report()
 
     def _tell_regularly(self) -> None:
         now = self._node.clock.elapsed
         over = [goal_id for goal_id, goal in self._goals.items() if (goal.told_until or now) < now]
         for goal_id in over:
             del self._goals[goal_id]
-        self._tell()
+        self._report()
         self._timer = self._node.clock.call_later(STATUS_PERIOD, self._tell_regularly)
 
-    def _tell(self) -> None:
+    def _report(self) -> None:
         if not self._closed:
             self._status.publish(
                 self._status.message(

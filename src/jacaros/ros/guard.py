@@ -222,7 +222,7 @@ class Guard:
         now = asyncio.get_running_loop().time()
         self._tripped_at, self._cancelled_at = now, -math.inf
         self._brake(now)
-        self._tell(tripped=why)
+        self._report(tripped=why)
         self._log(f"warning: {self._node}: {why}; the guard {self._brakes.described} until they return")
 
     def _release(self) -> None:
@@ -258,10 +258,10 @@ class Guard:
             self._brakes.simulated_time = message["simulated_time"]
             self._wanted = (_pairs(message["topics"]), _pairs(message["actions"]))
             if self._watch.tripped:
-                self._tell(tripped=self._watch.tripped)
+                self._report(tripped=self._watch.tripped)
             else:
                 self._cover()
-            self._tell(ready=True)
+            self._report(ready=True)
         if message.get("leaving"):
             self._watch.expect_end()
         if message.get("permit"):
@@ -276,7 +276,7 @@ class Guard:
         self._watch.armed = any(self._wanted)
         self._brakes.cover(*self._wanted)
 
-    def _tell(self, **fields: Any) -> None:
+    def _report(self, **fields: Any) -> None:
         if self._writer is not None:
             self._writer.write(line(**fields))
 

@@ -119,13 +119,13 @@ def ask(
     """
     answer: concurrent.futures.Future[Any] = concurrent.futures.Future()
 
-    def tell(result: T | None, problem: Exception | None) -> None:
+    def report(result: T | None, problem: Exception | None) -> None:
         if problem is not None:
             answer.set_exception(problem)
         else:
             answer.set_result(result)
 
-    alive = post(loop, question, tell)
+    alive = post(loop, question, report)
     while alive:
         # Not `result(timeout)`: the problem that was told may be a TimeoutError itself.
         if concurrent.futures.wait([answer], timeout=0.2).done:

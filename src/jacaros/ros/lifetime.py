@@ -81,7 +81,7 @@ class Lifetime:
         self._open = True
         self._hooking: set[int] = set()
         """Threads that are running the hooks."""
-        self._told = False
+        self._reported = False
         # No lock of Python's: a second signal may raise an exception while one is held, which then stays locked.
         self._stopped: queue.SimpleQueue[None] = queue.SimpleQueue()
         self._finishing = threading.Lock()
@@ -156,7 +156,7 @@ class Lifetime:
 
     def stop_soon(self) -> None:
         """Stop the robots as soon as the loop has a turn; callable in a signal handler."""
-        self._told = True
+        self._reported = True
         if self._loop is None or not post(self._loop, self.stop):
             self.stop()
 
@@ -174,7 +174,7 @@ class Lifetime:
 
     def stop_if_late(self, deadline: float) -> None:
         """Stop the robots here, in a thread, if the loop was told to and has not done so by *deadline* (monotonic)."""
-        if self._told:
+        if self._reported:
             try:
                 self._stopped.get(timeout=max(0.0, deadline - time.monotonic()))
             except queue.Empty:

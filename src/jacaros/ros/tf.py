@@ -78,7 +78,7 @@ class TransformListener:
         self._listening = False
         self._buffer = TransformBuffer(self._log)
         self._latest = 0.0
-        self._told: set[str] = set()
+        self._reported: set[str] = set()
         self._waiting: list[Callable[[], None]] = []
 
     def listen(self) -> None:
@@ -151,8 +151,8 @@ class TransformListener:
                 ),
                 static,
             )
-            if fault is not None and fault not in self._told:
-                self._told.add(fault)
+            if fault is not None and fault not in self._reported:
+                self._reported.add(fault)
                 self._log(f"{sample.topic}: {fault}; it is left out")
         for look_again in list(self._waiting):
             look_again()

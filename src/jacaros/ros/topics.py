@@ -26,7 +26,7 @@ class _TopicEnd(Generic[N]):
         self.qos = qos
         self._node = node
         self._closed = False
-        self._told: set[object] = set()
+        self._reported: set[object] = set()
 
     @property
     def node_name(self) -> str:
@@ -77,10 +77,10 @@ class TopicPublisher(_TopicEnd[N]):
             if self._node.tracer is not None:
                 self._node.tracer.sent_message(self.topic, message, CURRENT.get())
 
-    def tell(self, text: str, key: object = None) -> None:
+    def report(self, text: str, key: object = None) -> None:
         """Log why what is published reaches nobody, once for each *key* (the text by default)."""
-        if not self._closed and (key or text) not in self._told:
-            self._told.add(key or text)
+        if not self._closed and (key or text) not in self._reported:
+            self._reported.add(key or text)
             self._node.log(text)
 
     def _send(self, message: Any) -> None:
@@ -120,7 +120,7 @@ class TopicSubscription(_TopicEnd[N]):
         why = None if node.tracer is None else node.tracer.received_message(self.topic, message)
         self._callback(Sample(message, self.topic, node.clock.now(), why))
 
-    def tell(self, trouble: TopicTrouble, text: str, key: object = None) -> None:
+    def report(self, trouble: TopicTrouble, text: str, key: object = None) -> None:
         """Tell of trouble, on the loop.
 
         Args:
@@ -128,36 +128,36 @@ class TopicSubscription(_TopicEnd[N]):
             text: one line for people.
             key: told once for each of these; each time without one.
         """
-        if self._closed or key in self._told:
+        if self._closed or key in self._reported:
             return
         if key is not None:
-            self._told.add(key)
+            self._reported.add(key)
         if self._on_event is None:
             self._node.log(text)
         else:
             # Later: the one who subscribes does not have the subscription yet.
             self._loop.call_soon(self._tell_now, TopicEvent(trouble, text))
 
-    def tell_other_type(self, who: str, theirs: str) -> None:
+    def report_type_mismatch(self, who: str, theirs: str) -> None:
         """Tell, once for each type, that messages of another type are published."""
-        self.tell(
+        self.report(
             TopicTrouble.OTHER_TYPE,
             f"topic {self.topic}: {who} publishes {theirs}, not {self.type_name}; write {theirs} here to receive it",
             theirs,
         )
 
-    def tell_qos(self, problem: str, whose: str = "", key: object = None) -> None:
+    def report_qos(self, problem: str, whose: str = "", key: object = None) -> None:
         """Tell that a publisher (*whose*: to whom we are not connected) offers less than is asked for."""
-        self.tell(
+        self.report(
             TopicTrouble.INCOMPATIBLE_QOS,
             f"topic {self.topic}: not connected{whose}, because {problem}; ask for no more than is offered",
             key,
         )
 
-    def tell_deadline(self, first: bool) -> None:
+    def report_deadline(self, first: bool) -> None:
         """Tell that a deadline passed without a message; the log hears only of the *first* after a message."""
         if first or self._on_event is not None:
-            self.tell(
+            self.report(
                 TopicTrouble.DEADLINE_MISSED,
                 f"topic {self.topic}: no message came for {self.qos.deadline:g} s, which is the deadline",
             )
@@ -183,15 +183,15 @@ class Reader(Protocol):
     def put(self, message: Any) -> None:
         """Take a message, from any thread from which the feed gets it."""
 
-    def tell(self, trouble: TopicTrouble, text: str, key: object = None) -> None:
+    def report(self, trouble: TopicTrouble, text: str, key: object = None) -> None:
         """Tell of trouble, on the loop."""
 
 
 R = TypeVar("R", bound=Reader)
-F = TypeVar("F", bound="TopicFeed[Any]")
+F = TypeVar("F", bound="TopicMultiplexer[Any]")
 
 
-class TopicFeed(Generic[R]):
+class TopicMultiplexer(Generic[R]):
     """The process's one subscription of a topic at the middleware, shared by ours; a driver defines `_leave`.
 
     Args:
@@ -247,15 +247,15 @@ class TopicFeed(Generic[R]):
     def see_type(self, type_name: str | None) -> None:
         """Be told which type the topic has in the graph, if that is known."""
         if type_name not in (None, self.known_as):
-            self.tell(
+            self.report(
                 f"topic {self.topic} carries {type_name}, but {self.type_name} was asked for: nothing will be received; "
                 f"write {type_name}"
             )
 
-    def tell(self, text: str) -> None:
+    def report(self, text: str) -> None:
         """Tell each reader, once, that what others publish is not what it asked for."""
         for reader in self.readers:
-            reader.tell(TopicTrouble.OTHER_TYPE, text, text)
+            reader.report(TopicTrouble.OTHER_TYPE, text, text)
 
     def _leave(self) -> None:
         """Leave the topic: nobody here listens to it any more."""
@@ -266,35 +266,39 @@ class SharedSubscription(TopicSubscription[N]):
     """A subscription that reads from a feed, made with the first one of its topic and left with the last.
 
     Args:
-        feeds: those of the node by topic.
-        new_feed: makes one for a node, a topic and a type.
+        multiplexers: those of the node by topic.
+        new_multiplexer: makes one for a node, a topic and a type.
         node, wanted: as for `TopicSubscription`.
     """
 
     def __init__(
-        self, node: N, wanted: Wanted, feeds: dict[str, F], new_feed: Callable[[N, str, str], F]
+        self, node: N, wanted: Wanted, multiplexers: dict[str, F], new_multiplexer: Callable[[N, str, str], F]
     ) -> None:
         super().__init__(node, wanted)
         topic, type_name = wanted.topic, wanted.type_name
-        self._feeds = feeds
-        if topic not in feeds:
-            feeds[topic] = new_feed(node, topic, type_name)
-        self._feed: TopicFeed[Any] | None = feeds[topic]
-        if self._feed.type_name == type_name:
-            self._feed.add(self)
+        self._multiplexers = multiplexers
+        if topic not in multiplexers:
+            multiplexers[topic] = new_multiplexer(node, topic, type_name)
+        self._multiplexer: TopicMultiplexer[Any] | None = multiplexers[topic]
+        if self._multiplexer.type_name == type_name:
+            self._multiplexer.add(self)
         else:
-            self.tell(
+            self.report(
                 TopicTrouble.OTHER_TYPE,
-                f"topic {topic} is received as {self._feed.type_name} in this process already, not as {type_name}: "
-                f"nothing will be received; write {self._feed.type_name}",
+                f"topic {topic} is received as {self._multiplexer.type_name} in this process already, not as {type_name}: "
+                f"nothing will be received; write {self._multiplexer.type_name}",
             )
-            self._feed = None
+            self._multiplexer = None
 
     @property
     def publisher_count(self) -> int:
         """How many publishers are connected now."""
-        return 0 if self._feed is None or self._closed else self._feed.publisher_count
+        return 0 if self._multiplexer is None or self._closed else self._multiplexer.publisher_count
 
     def _leave(self) -> None:
-        if self._feed is not None and self._feed.remove(self) and self._feeds.get(self.topic) is self._feed:
-            del self._feeds[self.topic]
+        if (
+            self._multiplexer is not None
+            and self._multiplexer.remove(self)
+            and self._multiplexers.get(self.topic) is self._multiplexer
+        ):
+            del self._multiplexers[self.topic]

@@ -17,7 +17,7 @@ class Absence:
     """Waits in vain for one thing: who tries again and again tells people of the first, the tenth, the hundredth ..."""
 
     def __init__(self) -> None:
-        self._told = False
+        self._reported = False
         self._waits = 0
 
     def wait(self) -> bool:
@@ -25,16 +25,16 @@ class Absence:
         self._waits += 1
         return str(self._waits).strip("0") == "1"
 
-    def tell(self, log: Callable[[str], None], what: str) -> None:
+    def report(self, log: Callable[[str], None], what: str) -> None:
         """Tell people that it is awaited."""
-        self._told = True
+        self._reported = True
         log(f"waiting for the {what}")
 
     def end(self, log: Callable[[str], None], what: str) -> None:
         """It is there: people hear so if they were told of waiting, and the next wait is the first again."""
-        if self._told:
+        if self._reported:
             log(f"found the {what}")
-        self._told, self._waits = False, 0
+        self._reported, self._waits = False, 0
 
 
 class Waiting:
@@ -70,9 +70,9 @@ class Waiting:
         if not self._absence.wait():
             return self
         if self._quiet > 0.0:
-            self._timer = self._clock.call_later(self._quiet, self._tell)
+            self._timer = self._clock.call_later(self._quiet, self._report)
         else:
-            self._tell()
+            self._report()
         return self
 
     def __exit__(
@@ -83,8 +83,8 @@ class Waiting:
         if kind is None:
             self._absence.end(self._log, self._what)
 
-    def _tell(self) -> None:
-        self._absence.tell(self._log, self._what)
+    def _report(self) -> None:
+        self._absence.report(self._log, self._what)
         self._timer = self._clock.call_later(MISSING_AFTER, self._missing)
 
     def _missing(self) -> None:

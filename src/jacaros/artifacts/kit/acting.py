@@ -7,7 +7,7 @@ R                     what happened
 ====================  ==============================================================================================
 rejected              the server refused the goal; the robot has done nothing
 aborted(Code,Text)    the server gave up: the result's ``error_code`` (0 without one), and what the server says of it;
-                      `Conduct.aborted` may give another code, and more arguments
+                      `GoalOptions.aborted` may give another code, and more arguments
 canceled              somebody else cancelled the goal
 timeout(S)            S seconds were too few; the goal is cancelled
 server_unavailable    no server offered the action within 5 s; the robot has done nothing
@@ -62,7 +62,7 @@ class GoalFailed(Exception):
 
 
 @dataclass(frozen=True, slots=True)
-class Conduct:
+class GoalOptions:
     """How a goal is followed.
 
     Attributes:
@@ -84,13 +84,13 @@ class Conduct:
     aborted: "Callable[[Any], tuple[object, ...]] | None" = None
 
 
-class Pursuit:
+class GoalRunner:
     """The life of one goal, from the request of an operation to the result.
 
     Args:
         client: of the action.
         goal: fields of the goal.
-        conduct: how it is followed.
+        options: how it is followed.
         clock: measures the times.
         execution: the operation; it tells of pauses.
         log: takes a line about trouble that harms nobody.
@@ -100,12 +100,12 @@ class Pursuit:
         self,
         client: ActionClient,
         goal: Mapping[str, Any],
-        conduct: Conduct,
+        options: GoalOptions,
         clock: Clock,
         execution: OperationExecution,
         log: Callable[[str], None],
     ) -> None:
-        self._client, self._goal, self._conduct = client, goal, conduct
+        self._client, self._goal, self._options = client, goal, options
         self._clock, self._execution, self._log = clock, execution, log
         self._used = self._limit = 0.0
         self._heeded = self._held = False
@@ -119,7 +119,7 @@ class Pursuit:
         Raises:
             GoalFailed: with one of the reasons of this file.
         """
-        forget = None if self._conduct.suspend == "go_on" else self._execution.on_pause(self._on_pause)
+        forget = None if self._options.suspend == "go_on" else self._execution.on_pause(self._on_pause)
         try:
             while True:
                 if forget is not None:
@@ -146,18 +146,18 @@ class Pursuit:
 
     @property
     def _paused(self) -> bool:
-        return self._conduct.suspend != "go_on" and self._execution.paused
+        return self._options.suspend != "go_on" and self._execution.paused
 
     def _heed(self, under_way: bool) -> None:
         """Hear the feedback, or no more: a goal that is being cancelled may go on with it for a while."""
         if under_way != self._heeded:
             self._heeded = under_way
-            if self._conduct.under_way is not None:
-                self._conduct.under_way(under_way)
+            if self._options.under_way is not None:
+                self._options.under_way(under_way)
 
     def _hear(self, feedback: Any) -> None:
-        if self._heeded and self._conduct.on_feedback is not None:
-            self._conduct.on_feedback(feedback)
+        if self._heeded and self._options.on_feedback is not None:
+            self._options.on_feedback(feedback)
 
     async def _once(self) -> Outcome | None:
         """Send the goal and follow it; None when it was cancelled because the intention was suspended."""
@@ -182,14 +182,14 @@ class Pursuit:
 
     async def _send(self) -> GoalHandle | None:
         """Send the goal; None when the intention was suspended before the server accepted it, which cancels it."""
-        conduct = self._conduct
+        options = self._options
         began, share, self._limit = self._clock.elapsed, ACCEPTANCE, ACCEPTANCE
-        if conduct.timeout is not None and conduct.timeout - self._used < ACCEPTANCE:
-            share, self._limit = conduct.timeout - self._used, conduct.timeout
+        if options.timeout is not None and options.timeout - self._used < ACCEPTANCE:
+            share, self._limit = options.timeout - self._used, options.timeout
         sending = asyncio.ensure_future(self._client.send(self._goal, self._hear, share))
         try:
             while not sending.done():
-                if conduct.suspend == "cancel":
+                if options.suspend == "cancel":
                     await self._first_of(sending, None)
                     if self._paused and not sending.done():
                         sending.cancel()  # which cancels the goal, should the server accept it
@@ -206,10 +206,10 @@ class Pursuit:
             _forget(sending)
 
     async def _follow(self, handle: GoalHandle, ending: "asyncio.Future[Outcome]") -> Outcome | None:
-        timeout = self._conduct.timeout
+        timeout = self._options.timeout
         while not ending.done():
             if self._paused:
-                if self._conduct.suspend == "pause" and await self._is_held():
+                if self._options.suspend == "pause" and await self._is_held():
                     await self._rest(ending)
                 elif await self._is_cancelled(handle, ending):
                     return None
@@ -266,7 +266,7 @@ class Pursuit:
     async def _is_held(self) -> bool:
         """Pause the goal at its server; False when that failed."""
         self._held = True
-        problem = await self._switch(self._conduct.pause, "paused")
+        problem = await self._switch(self._options.pause, "paused")
         # A server that was asked and did not answer may have paused.
         self._held = problem is None or isinstance(problem, CallTimedOut)
         return problem is None
@@ -274,7 +274,7 @@ class Pursuit:
     async def _release(self) -> bool:
         """Let the server go on that was paused: with the goal, or with those of others after it; False when it does not."""
         if self._held:
-            self._held = await self._switch(self._conduct.resume, "resumed") is not None
+            self._held = await self._switch(self._options.resume, "resumed") is not None
         return not self._held
 
     async def _switch(self, switch: Switch | None, what: str) -> Exception | None:
@@ -303,7 +303,7 @@ class Pursuit:
         if outcome.status is GoalStatus.CANCELED:
             text = outcome.text or f"the goal of {self._client.name} was cancelled by somebody else"
             raise GoalFailed(text, "canceled")
-        explain = self._conduct.aborted
+        explain = self._options.aborted
         code, *more = (error_code(outcome.result),) if explain is None else explain(outcome.result)
         text = outcome.text or error_text(outcome.result)
         told = f": {text}" if text else ""

@@ -7,7 +7,7 @@ from typing import Any, ClassVar, Protocol, TypeVar
 from jacaros.artifacts.kit.connection import MATCH_TIMEOUT, Connection, Matching, MissingTopic
 from jacaros.artifacts.kit.faults import Faults, Listener
 from jacaros.artifacts.kit.options import Reader, WrongOption, read_arguments, text, watching
-from jacaros.artifacts.kit.services import Offer
+from jacaros.artifacts.kit.services import ServedOperation
 from jacaros.env.artifact import Artifact, internal_operation
 from jacaros.env.errors import InvalidArtifact
 from jacaros.env.operation import marks_of
@@ -245,14 +245,14 @@ class ConnectedArtifact(Artifact):
     def faults_at(self, topic: str) -> Faults:
         """The same for a topic by its absolute name."""
 
-        def tell(why: Structure, text: str) -> None:
+        def report(why: Structure, text: str) -> None:
             self.log(text)
-            self.start(self.tell_bad_message, topic, why)
+            self.start(self.report_bad_message, topic, why)
 
-        return Faults(topic, tell)
+        return Faults(topic, report)
 
     @internal_operation
-    def tell_bad_message(self, topic: str, why: object) -> None:
+    def report_bad_message(self, topic: str, why: object) -> None:
         """Signal ``bad_message(Topic, Why)``."""
         self.signal("bad_message", topic, why)
 
@@ -281,7 +281,7 @@ class ConnectedArtifact(Artifact):
                 `jacaros.artifacts.kit.services.Reply`; see `jacaros.artifacts.kit.services` for what its failure
                 means.  Another function takes the request, gives the response, and stands outside of all operations.
         """
-        offer = self._offer(handler)
+        offer = self._served_operation(handler)
         handle = handler if offer is None else offer.handler(type_name)
         return self.kept(self.ros.service(self.robot_topic(name), type_name, handle))
 
@@ -300,14 +300,14 @@ class ConnectedArtifact(Artifact):
                 `jacaros.artifacts.kit.services.Reply`; or another function as `jacaros.ros.action.Execute`.
             policy: which goals are accepted, and whether a newer one takes over.
         """
-        offer = self._offer(execute)
+        offer = self._served_operation(execute)
         code = execute if offer is None else offer.execute(type_name)
         return self.kept(self.ros.action_server(self.robot_topic(name), type_name, code, policy))
 
-    def _offer(self, operation: Callable[..., Any]) -> Offer | None:
+    def _served_operation(self, operation: Callable[..., Any]) -> ServedOperation | None:
         declared = self._steps.interface.own(operation, 2)
         if declared is not None:
-            return Offer(self.ros, self._steps, self.id, declared)
+            return ServedOperation(self.ros, self._steps, self.id, declared)
         if marks_of(getattr(operation, "__func__", operation)):
             raise InvalidArtifact(
                 f"{operation.__qualname__} cannot serve requests: write it with two parameters, request and reply"

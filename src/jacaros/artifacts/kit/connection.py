@@ -87,11 +87,11 @@ def _watch(backend: Backend, connection: Connection) -> None:
     if connections is None:
         connections = _watched[backend] = WeakSet()
 
-        def tell(connected: bool, everybody: WeakSet[Connection] = connections) -> None:
+        def report(connected: bool, everybody: WeakSet[Connection] = connections) -> None:
             for each in list(everybody):
                 each.look()
 
-        backend.on_connection(tell)
+        backend.on_connection(report)
     connections.add(connection)
 
 

@@ -32,7 +32,7 @@ from jacaros.env.values import Structure
 from jacaros.ros.backend import Sample
 from jacaros.ros.message import to_seconds
 
-Tell = Callable[[Structure, str], None]
+Report = Callable[[Structure, str], None]
 """Takes the reason, and a text for people."""
 
 SILENCE = 5.0
@@ -44,15 +44,15 @@ class Faults:
 
     Args:
         topic: absolute name.
-        tell: told of the first of a kind, the tenth, the hundredth and so on.
+        report: told of the first of a kind, the tenth, the hundredth and so on.
 
     Attributes:
         counts: how many there were of each kind, such as ``not_finite``.
     """
 
-    def __init__(self, topic: str, tell: Tell) -> None:
+    def __init__(self, topic: str, report: Report) -> None:
         self.counts: dict[str, int] = {}
-        self._topic, self._tell = topic, tell
+        self._topic, self._report = topic, report
 
     @property
     def total(self) -> int:
@@ -69,7 +69,7 @@ class Faults:
         times = self.counts[why.functor] = self.counts.get(why.functor, 0) + 1
         if str(times).strip("0") == "1":
             again = f" ({times} times by now)" if times > 1 else ""
-            self._tell(why, f"{self._topic}: {text}{again}")
+            self._report(why, f"{self._topic}: {text}{again}")
 
     def not_finite(self, what: str, number: float) -> None:
         """Note that a message was dropped because of a number."""

@@ -4,7 +4,14 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any
 
-from jacaros.artifacts.kit.acting import Conduct, GoalFailed, Pursuit, Suspending, Switch, missing_number
+from jacaros.artifacts.kit.acting import (
+    GoalFailed,
+    GoalOptions,
+    GoalRunner,
+    Suspending,
+    Switch,
+    missing_number,
+)
 from jacaros.artifacts.kit.sensing_artifact import SensingArtifact
 from jacaros.artifacts.kit.services import CallFailure, call
 from jacaros.env.errors import InvalidArtifact
@@ -110,9 +117,13 @@ class RosArtifact(SensingArtifact):
         missing = missing_number(goal)
         if missing is not None:
             self.fail(f"the goal's {missing} is not a number; nothing was sent", "wrong_value", missing)
-        conduct = Conduct(timeout, self._feedback(on_feedback), under_way, suspend, pause, resume, aborted)
+        options = GoalOptions(
+            timeout, self._feedback(on_feedback), under_way, suspend, pause, resume, aborted
+        )
         try:
-            return await self.step(Pursuit(client, goal, conduct, self.clock, self.current, self.log).run())
+            return await self.step(
+                GoalRunner(client, goal, options, self.clock, self.current, self.log).run()
+            )
         except GoalFailed as failed:
             self.fail(str(failed), failed.functor, *failed.arguments)
         except MessageMismatch as error:

@@ -70,7 +70,7 @@ class Reply:
         self.message = message if message is not None else self._ros.message(self._type_name, **fields)
 
 
-class Offer:
+class ServedOperation:
     """A service or action of an artifact whose requests one of its operations serves.
 
     Args:
@@ -119,11 +119,11 @@ class Offer:
         """Carry the operation out; cancelling this cancels it, and is over when its ``finally`` has run."""
         done: asyncio.Future[OperationOutcome] = asyncio.get_running_loop().create_future()
 
-        def tell(outcome: OperationOutcome) -> None:
+        def report(outcome: OperationOutcome) -> None:
             if not done.done():
                 done.set_result(outcome)
 
-        wanted = OperationRequest(self._artifact, self._declared.name, (request, reply), None, on_done=tell)
+        wanted = OperationRequest(self._artifact, self._declared.name, (request, reply), None, on_done=report)
         execution = self._steps.start(self._declared, wanted)
         if execution is None:
             raise RequestFailed(f"artifact {self._artifact.name} takes no requests any more")

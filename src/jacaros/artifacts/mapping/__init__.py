@@ -9,7 +9,7 @@ file                                           what it holds
 `paths`, `units`, `decoding`, `encoding`       out of messages, and into them
 `rows`                                         of a message, or of each element of an array
 `artifact`, `host`, `operation_methods`        the class that is made of it
-`feeds`, `frames`, `parameters`                properties and signals
+`updaters`, `frames`, `parameters`                properties and signals
 `deriving`, `stamped_frames`                   properties and signals composed of events of others; frames at the
                                                stamps of messages
 `operating`, `publishing`, `type_search`       operations; types that the file leaves out

@@ -13,14 +13,14 @@ from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.artifacts.mapping.checking import type_problems
 from jacaros.artifacts.mapping.declared import ArtifactPart, MappingError, MappingFile, Place
 from jacaros.artifacts.mapping.deriving import Derivation, with_angles
-from jacaros.artifacts.mapping.feeds import Feed, Topic
 from jacaros.artifacts.mapping.file import find_mapping, load_mapping, shipped_mappings
-from jacaros.artifacts.mapping.frames import FrameFeed
+from jacaros.artifacts.mapping.frames import FrameUpdater
 from jacaros.artifacts.mapping.host import Elements, Tap
 from jacaros.artifacts.mapping.manual import Documentation, parameter_words
 from jacaros.artifacts.mapping.operating import Operations
 from jacaros.artifacts.mapping.operation_methods import methods, motion_uses
 from jacaros.artifacts.mapping.parameters import NodeParameter, OwnParameter, kept_by_master
+from jacaros.artifacts.mapping.topic_multiplexer import TopicMultiplexer, Updater
 from jacaros.artifacts.mapping.type_search import TypeSearch
 from jacaros.env.artifact import internal_operation
 from jacaros.env.errors import UnknownArtifactType
@@ -58,7 +58,7 @@ class MappedArtifact(RosArtifact):
             self.fail(str(error), "wrong_mapping", self.mapping.file)
         if self.part.connected is not False and "watch_connection" not in self.options:
             self.options = {**self.options, "watch_connection": self.part.connected}
-        self._told: set[object] = set()
+        self._reported: set[object] = set()
         self._notes: dict[str, tuple[object, ...]] = {}
         self._followers: dict[str, list[Callable[[Values], None]]] = {}
         self.readings: dict[str, Reading] = {}
@@ -72,19 +72,19 @@ class MappedArtifact(RosArtifact):
         }
         search = TypeSearch(self)
         self.operating = Operations(self)
-        topics: dict[object, Topic] = {}
+        topics: dict[object, TopicMultiplexer] = {}
         for part in self.part.topics:
-            feed = Feed(self, part)
+            updater = Updater(self, part)
             assert part.topic is not None
             key = (part.topic.text, part.type_name and part.type_name.text, part.qos)
             if key in topics:
-                topics[key].feeds.append(feed)
+                topics[key].updaters.append(updater)
             else:
-                topics[key] = Topic(self, part.topic, part.type_name, part.qos, [feed])
+                topics[key] = TopicMultiplexer(self, part.topic, part.type_name, part.qos, [updater])
         for topic in topics.values():
             topic.begin(search)
         for frame in self.part.frames:
-            self.kept(FrameFeed(self, frame))
+            self.kept(FrameUpdater(self, frame))
         for parameter in self.part.parameters:
             if parameter.declaration is None:
                 self.kept(NodeParameter(self, parameter))
@@ -181,14 +181,14 @@ class MappedArtifact(RosArtifact):
 
     # ---- reports
 
-    def tell_once(self, key: object, place: Place, message: str, help: str = "") -> None:
+    def report_once(self, key: object, place: Place, message: str, help: str = "") -> None:
         """Tell people what is wrong, with the line of the mapping, the first time only."""
-        if key in self._told:
+        if key in self._reported:
             return
-        self._told.add(key)
-        self.tell([place.problem(message, help)])
+        self._reported.add(key)
+        self.report([place.problem(message, help)])
 
-    def tell(self, problems: list[Problem]) -> None:
+    def report(self, problems: list[Problem]) -> None:
         """Tell people what is wrong."""
         lines = self.mapping.text.splitlines()
         for problem in problems:
@@ -197,12 +197,12 @@ class MappedArtifact(RosArtifact):
     def on_topic_event(self, topic: str, place: Place) -> Callable[[TopicEvent], None]:
         """What is done about trouble at a topic: it is told once for each kind."""
 
-        def tell(event: TopicEvent) -> None:
+        def report(event: TopicEvent) -> None:
             weak = event.trouble is TopicTrouble.INCOMPATIBLE_QOS
             help = "write qos: sensor_data, which hears any publisher" if weak else ""
-            self.tell_once((topic, event.trouble), place, event.text, help)
+            self.report_once((topic, event.trouble), place, event.text, help)
 
-        return tell
+        return report
 
 
 class TunedArtifact(MappedArtifact):

@@ -14,8 +14,8 @@ from jacaros.artifacts.mapping.declared import (
     TopicPart,
     Written,
 )
-from jacaros.artifacts.mapping.decoding import taker
-from jacaros.artifacts.mapping.encoding import filler, fitting
+from jacaros.artifacts.mapping.decoding import reader
+from jacaros.artifacts.mapping.encoding import builder, fitting
 from jacaros.artifacts.mapping.interfaces import Interfaces
 from jacaros.artifacts.mapping.paths import WrongPath
 from jacaros.artifacts.mapping.rows import extractor
@@ -95,9 +95,9 @@ def _check_operation(
     types = message_types(operation.kind, written.text)
     if not known(written, types[0], interfaces, problems):
         return
-    filler(fitting(operation, types[0], interfaces), types[0], interfaces, problems)
+    builder(fitting(operation, types[0], interfaces), types[0], interfaces, problems)
     if operation.at_end is not None:
-        filler(operation.at_end, types[0], interfaces, problems)
+        builder(operation.at_end, types[0], interfaces, problems)
     if types[1:]:
         check_answer(operation, types[1], interfaces, problems)
     for feedback in operation.feedback:
@@ -120,12 +120,12 @@ def check_answer(
     code = () if operation.code is None else (operation.code,)
     for field in (*operation.outputs, *code, *operation.aborted):
         _tried(
-            field.place, lambda field=field: taker(field, FieldType(type_name), None, interfaces), problems
+            field.place, lambda field=field: reader(field, FieldType(type_name), None, interfaces), problems
         )
     success = operation.success
     if success is not None:
         field = FieldPart(success.path, success.place)
-        _tried(success.place, lambda: taker(field, FieldType(type_name), None, interfaces), problems)
+        _tried(success.place, lambda: reader(field, FieldType(type_name), None, interfaces), problems)
 
 
 def _tried(place: Place, make: Callable[..., Any], problems: list[Problem]) -> None:

@@ -19,7 +19,7 @@ from jacaros.ros.message import TIMES, to_seconds
 
 QUATERNION = "geometry_msgs/msg/Quaternion"
 
-Take = Callable[[Any, Any, int], tuple[object, ...]]
+Read = Callable[[Any, Any, int], tuple[object, ...]]
 """Takes a message, its current element (the message again without ``each``) and the place of that."""
 
 Convert = Callable[[Any], object]
@@ -39,7 +39,7 @@ class Unshowable(Exception):
         self.path, self.help, self.functor = path, help, functor
 
 
-def taker(field: FieldPart, message: FieldType, element: FieldType | None, interfaces: Interfaces) -> Take:
+def reader(field: FieldPart, message: FieldType, element: FieldType | None, interfaces: Interfaces) -> Read:
     """A function that takes the values of *field*.
 
     Args:

@@ -110,7 +110,7 @@ class Derivation:
             part = self._part
             message = f"{part.name}: {self._told_dropped} late messages dropped"
             help_ = "give it more time: lateness: 0.2"
-            self._host.tell_once((part.name, self._told_dropped), part.place, message, help_)
+            self._host.report_once((part.name, self._told_dropped), part.place, message, help_)
 
     def _emit(self, kind: str, values: Values) -> None:
         host, name = self._host, self._part.name

@@ -41,7 +41,7 @@ Give = Callable[[Sequence[object], float], Any]
 """Gives one value."""
 
 
-def filler(
+def builder(
     values: Sequence[ValuePart],
     type_name: str,
     interfaces: Interfaces,
@@ -81,7 +81,7 @@ def fitting(part: OperationPart, type_name: str, interfaces: Interfaces) -> tupl
     """The fields of an operation that fit a version of the type; those that stand first when none do."""
     for values in (part.values, *part.other_values) if part.other_values else ():
         problems: list[Problem] = []
-        filler(values, type_name, interfaces, problems)
+        builder(values, type_name, interfaces, problems)
         if not problems:
             return values
     return part.values
@@ -318,7 +318,7 @@ def _each(
     path = part.target.text
     if not leaf.array or not leaf.is_message:
         raise WrongPath(f"'each' fills a list of messages, and {path} is {leaf}", "write a value")
-    fill = filler(part.elements, leaf.base, interfaces, problems, adapt)
+    fill = builder(part.elements, leaf.base, interfaces, problems, adapt)
     number = part.parameter
 
     def of_elements(arguments: Sequence[object], now: float) -> Any:

@@ -13,7 +13,7 @@ from jacaros.ros.protocols.transform import Transform
 from jacaros.ros.waiting import MISSING_AFTER
 
 
-class FrameFeed:
+class FrameUpdater:
     """A property from a transform; it is there while the transform is known.
 
     Args:
@@ -28,7 +28,7 @@ class FrameFeed:
         self._values = values_of(part.fields)
         self._notes = [(note.name, note.path.text, converted(note.conversion)) for note in part.annotations]
         self._taps = host.taps.get(part.name, ())
-        self._told = -1.0
+        self._reported = -1.0
         self._began = host.clock.elapsed
         try:
             host.ros.tf_listen()
@@ -52,8 +52,8 @@ class FrameFeed:
         )
         values = self._values(transform)
         self._reading.take(values)
-        if self._taps and (transform.stamp != self._told or not transform.stamp):
-            self._told = transform.stamp
+        if self._taps and (transform.stamp != self._reported or not transform.stamp):
+            self._reported = transform.stamp
             for tap in self._taps:
                 tap(transform.stamp, values, None)
 
@@ -62,7 +62,7 @@ class FrameFeed:
         part = self._part
         if self._host.clock.elapsed - self._began >= MISSING_AFTER:
             message = f"{part.name} is not known: {error}; still listening"
-            self._host.tell_once(
+            self._host.report_once(
                 part.name, part.place, message, "are the nodes that send these frames running?"
             )
 

@@ -22,7 +22,7 @@ from jacaros.artifacts.mapping.declared import (
     ValuePart,
 )
 from jacaros.artifacts.mapping.decoding import octet, owner_of
-from jacaros.artifacts.mapping.encoding import filler, fitting
+from jacaros.artifacts.mapping.encoding import builder, fitting
 from jacaros.artifacts.mapping.interfaces import (
     Interfaces,
     chosen,
@@ -78,7 +78,7 @@ def _properties(part: ArtifactPart, interfaces: Interfaces) -> Iterator[str]:
         told = frame.description or f"frame {frame.source} in {frame.target}"
         words = [_of_transform(field) for field in frame.fields]
         told += _kept(frame.history)
-        yield f"{usage(frame.name, frame.fields)}: {_told(told, frame.fields, words)}."
+        yield f"{usage(frame.name, frame.fields)}: {_described(told, frame.fields, words)}."
     for parameter in part.parameters:
         yield f"{parameter.name}(Value): {_of_parameter(parameter)}."
     for derived in part.derived:
@@ -153,7 +153,7 @@ def _observed(topic: TopicPart, type_name: str, told: str, interfaces: Interface
             element = _element(topic, FieldType(type_name), interfaces)
             fields = fields_of(topic, element or FieldType(type_name), interfaces)
             words = [word_for_field(each, FieldType(type_name), element, interfaces) for each in fields]
-    return f"{usage(topic.name, fields)}: {_told(told, fields or (), words)}."
+    return f"{usage(topic.name, fields)}: {_described(told, fields or (), words)}."
 
 
 def _element(topic: TopicPart, message: FieldType, interfaces: Interfaces) -> FieldType | None:
@@ -178,7 +178,7 @@ def _of_transform(field: FieldPart) -> str:
     return with_unit("number", unit, field.conversion.digits)
 
 
-def _told(told: str, fields: tuple[FieldPart, ...], words: list[str]) -> str:
+def _described(told: str, fields: tuple[FieldPart, ...], words: list[str]) -> str:
     """What a property is, and what its values are."""
     names, place = variables(fields), 0
     values = []
@@ -229,7 +229,7 @@ def _likely_type(part: OperationPart, interfaces: Interfaces) -> str:
     if part.kind is OperationKind.PUBLISH and part.values:
         for type_name in VELOCITIES:
             problems: list[Problem] = []
-            filler(part.values, type_name, interfaces, problems)
+            builder(part.values, type_name, interfaces, problems)
             if not problems:
                 return type_name
     return ""

@@ -8,14 +8,14 @@ from jacaros.artifacts.kit.acting import error_code, error_text
 from jacaros.artifacts.kit.services import MESSAGES
 from jacaros.artifacts.mapping.checking import check_answer, message_types
 from jacaros.artifacts.mapping.declared import FieldPart, OperationKind, OperationPart, Source, Success
-from jacaros.artifacts.mapping.decoding import Take, Unshowable, taker
-from jacaros.artifacts.mapping.encoding import Fill, WrongValue, filler, fitting
-from jacaros.artifacts.mapping.feeds import Feed, feedback_feed
+from jacaros.artifacts.mapping.decoding import Read, Unshowable, reader
+from jacaros.artifacts.mapping.encoding import Fill, WrongValue, builder, fitting
 from jacaros.artifacts.mapping.host import Host
 from jacaros.artifacts.mapping.operation_methods import arity
 from jacaros.artifacts.mapping.parameters import own_name, parameter_converter
 from jacaros.artifacts.mapping.paths import getter, read_path
 from jacaros.artifacts.mapping.publishing import Publishing
+from jacaros.artifacts.mapping.topic_multiplexer import Updater, feedback_updater
 from jacaros.artifacts.mapping.type_search import ask_type
 from jacaros.env.artifact import Out
 from jacaros.env.values import Atom, plain
@@ -71,7 +71,7 @@ class Operations:
             if arity(host.part, part) == 0
         }
         for part, runner in zip(parts, self._runners, strict=True):
-            if isinstance(runner, _Pursuing) and part.suspend == "pause":
+            if isinstance(runner, _ActionOperation) and part.suspend == "pause":
                 # That these operations are of the right kind was seen when the file was read.
                 runner.switches = (plain[part.pause.text], plain[part.resume.text])  # type: ignore[assignment]
 
@@ -80,7 +80,7 @@ class Operations:
         await self._runners[number].run(inputs, outs)
 
 
-class _Answered:
+class _RemoteOperation:
     """What services and actions share: a request that is filled, an answer that is taken apart."""
 
     what = "service"
@@ -88,7 +88,7 @@ class _Answered:
     def __init__(self, host: Host, part: OperationPart) -> None:
         self._host, self._part = host, part
         self._fill: Fill | None = None
-        self._takes: list[Take] = []
+        self._takes: list[Read] = []
         self._check = part.success
         if part.type_name is not None:
             self._open(part.type_name.text)
@@ -97,14 +97,14 @@ class _Answered:
         host, part = self._host, self._part
         types = message_types(part.kind, type_name)
         problems: list[Problem] = []
-        fill = filler(fitting(part, types[0], host.ros), types[0], host.ros, problems, host.adapted)
+        fill = builder(fitting(part, types[0], host.ros), types[0], host.ros, problems, host.adapted)
         check_answer(part, types[1], host.ros, problems)
         self._more(types, problems)
         if problems:
-            host.tell(problems)
+            host.report(problems)
             host.fail(f"{part.name} does not fit the type {type_name}", "wrong_mapping", part.name)
         answer = FieldType(types[1])
-        self._takes = [taker(field, answer, None, host.ros) for field in part.outputs]
+        self._takes = [reader(field, answer, None, host.ros) for field in part.outputs]
         if part.success is None and not part.any_success and "success" in host.ros.fields(types[1]):
             self._check = Success(read_path("success"), part.place)
         self._connect(type_name)
@@ -142,7 +142,7 @@ class _Answered:
             out.set(value)
 
 
-class _Calling(_Answered):
+class _ServiceOperation(_RemoteOperation):
     """One operation with ``service``."""
 
     _client: Client
@@ -179,27 +179,27 @@ NOT_SHOWN = Atom("unknown")
 """A value of a failed goal's result that agents cannot have, such as NaN."""
 
 
-class _Pursuing(_Answered):
+class _ActionOperation(_RemoteOperation):
     """One operation with ``action``."""
 
     what = "action"
     _client: ActionClient
 
     def __init__(self, host: Host, part: OperationPart) -> None:
-        self._feeds: list[Feed] = [feedback_feed(host, each) for each in part.feedback]
+        self._updaters: list[Updater] = [feedback_updater(host, each) for each in part.feedback]
         self._under_way = 0
-        self._code: Take | None = None
-        self._aborted: list[Take] = []
+        self._code: Read | None = None
+        self._aborted: list[Read] = []
         self.switches: tuple[Switch, Switch] | tuple[()] = ()
         super().__init__(host, part)
 
     def _more(self, types: tuple[str, ...], problems: list[Problem]) -> None:
         part, answer, ros = self._part, FieldType(types[1]), self._host.ros
         if not problems:
-            self._code = None if part.code is None else taker(part.code, answer, None, ros)
-            self._aborted = [taker(field, answer, None, ros) for field in part.aborted]
-        for feed in self._feeds:
-            feed.prepare(types[2], problems)
+            self._code = None if part.code is None else reader(part.code, answer, None, ros)
+            self._aborted = [reader(field, answer, None, ros) for field in part.aborted]
+        for updater in self._updaters:
+            updater.prepare(types[2], problems)
 
     def _connect(self, type_name: str) -> None:
         self._client = self._host.action_client(self._part.target.text, type_name)
@@ -215,8 +215,8 @@ class _Pursuing(_Answered):
             self._client,
             self._fields(inputs),
             timeout=part.timeout,
-            on_feedback=self._feed if self._feeds else None,
-            under_way=self._count if self._feeds else None,
+            on_feedback=self._updater if self._updaters else None,
+            under_way=self._count if self._updaters else None,
             suspend=part.suspend,
             pause=pause,
             resume=resume,
@@ -234,7 +234,7 @@ class _Pursuing(_Answered):
         code = error_code(result) if self._code is None else self._shown(self._code, result)[0]
         return (code, *(value for take in self._aborted for value in self._shown(take, result)))
 
-    def _shown(self, take: Take, result: Any) -> Sequence[object]:
+    def _shown(self, take: Read, result: Any) -> Sequence[object]:
         try:
             return take(result, result, 0)
         except Unshowable:
@@ -246,17 +246,17 @@ class _Pursuing(_Answered):
             # Later: what a failing step starts does not begin.
             asyncio.get_running_loop().call_soon(self._withdraw)
 
-    def _feed(self, message: Any) -> None:
-        for feed in self._feeds:
-            feed.take_message(message, None, self._client.name)
+    def _updater(self, message: Any) -> None:
+        for updater in self._updaters:
+            updater.take_message(message, None, self._client.name)
 
     def _withdraw(self) -> None:
         if not self._under_way:
-            for feed in self._feeds:
-                feed.withdraw()
+            for updater in self._updaters:
+                updater.withdraw()
 
 
-class _OfNode:
+class _ParameterOperation:
     """What the operations on parameters of nodes share."""
 
     def __init__(self, host: Host, part: OperationPart) -> None:
@@ -282,7 +282,7 @@ class _OfNode:
         self._host.fail(str(error), "service_failed", node)
 
 
-class _Setting(_OfNode):
+class _SetParameter(_ParameterOperation):
     """One operation with ``set_parameter``."""
 
     async def run(self, inputs: Sequence[object], outs: Sequence[Out]) -> None:
@@ -326,7 +326,7 @@ class _Setting(_OfNode):
         return str(value) if isinstance(value, Atom) else value
 
 
-class _Getting(_OfNode):
+class _GetParameter(_ParameterOperation):
     """One operation with ``get_parameter``."""
 
     async def run(self, inputs: Sequence[object], outs: Sequence[Out]) -> None:
@@ -343,7 +343,7 @@ class _Getting(_OfNode):
                 self._host.fail(f"{error}: {error.help}", error.functor, error.path)
 
 
-class _Asking:
+class _RequestOperation:
     """One operation with ``refresh`` or ``read``."""
 
     def __init__(self, host: Host, part: OperationPart) -> None:
@@ -362,10 +362,10 @@ class _Asking:
 
 _RUNNERS: dict[OperationKind, Any] = {
     OperationKind.PUBLISH: Publishing,
-    OperationKind.SERVICE: _Calling,
-    OperationKind.ACTION: _Pursuing,
-    OperationKind.SET: _Setting,
-    OperationKind.GET: _Getting,
-    OperationKind.REFRESH: _Asking,
-    OperationKind.READ: _Asking,
+    OperationKind.SERVICE: _ServiceOperation,
+    OperationKind.ACTION: _ActionOperation,
+    OperationKind.SET: _SetParameter,
+    OperationKind.GET: _GetParameter,
+    OperationKind.REFRESH: _RequestOperation,
+    OperationKind.READ: _RequestOperation,
 }

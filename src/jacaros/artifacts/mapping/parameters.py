@@ -133,7 +133,7 @@ class OwnParameter:
     def _ignore(self, value: ParameterValue, why: str) -> None:
         place, node = self._part.place, self._host.ros.node_name
         told = f"the parameter {node}/{self._name} was set to {value!r}, which is ignored: {why}"
-        self._host.tell([place.problem(told, "set another value")])
+        self._host.report([place.problem(told, "set another value")])
 
     def _take(self, value: ParameterValue) -> None:
         if not self._closed:
@@ -248,7 +248,7 @@ class NodeParameter:
             self._withdraw()
             part = self._part
             told = f"{part.name} is not shown: {error}"
-            self._host.tell_once((part.name, error.functor), part.place, told, error.help)
+            self._host.report_once((part.name, error.functor), part.place, told, error.help)
 
     def _withdraw(self) -> None:
         if self._reading.newest is not None:
@@ -258,13 +258,13 @@ class NodeParameter:
         self._withdraw()
         part = self._part
         if isinstance(error, ParameterUnknown):
-            self._host.tell_once(
+            self._host.report_once(
                 part.name, part.place, f"{part.name} is not known: {error}", "write another name"
             )
         if isinstance(error, ServiceUnavailable):
             self._vain += 1
         if self._vain == PATIENT:
-            self._host.tell_once(
+            self._host.report_once(
                 (part.name, "node"),
                 part.place,
                 f"{part.name} is not known so far: nobody answers for node {self._node}; still trying",

@@ -7,7 +7,7 @@ from typing import Any
 from jacaros.artifacts.kit.acting import missing_number
 from jacaros.artifacts.kit.connection import Matching
 from jacaros.artifacts.mapping.declared import OperationPart, Source, ValuePart
-from jacaros.artifacts.mapping.encoding import Fill, WrongValue, filler, fitting
+from jacaros.artifacts.mapping.encoding import Fill, WrongValue, builder, fitting
 from jacaros.artifacts.mapping.host import Host
 from jacaros.artifacts.mapping.type_search import ask_type
 from jacaros.artifacts.robots.motion_claim import GUARD_TRIPPED, Claim, Motions, motions_of
@@ -46,11 +46,11 @@ class Publishing:
         host, part = self._host, self._part
         problems: list[Problem] = []
         values = fitting(part, type_name, host.ros)
-        self._fill = filler(values, type_name, host.ros, problems, host.adapted)
+        self._fill = builder(values, type_name, host.ros, problems, host.adapted)
         if (end := self._end_values(type_name, values)) is not None:
-            self._fill_end = filler(end, type_name, host.ros, problems, host.adapted)
+            self._fill_end = builder(end, type_name, host.ros, problems, host.adapted)
         if problems:
-            host.tell(problems)
+            host.report(problems)
             host.fail(f"{part.name} does not fit the type {type_name}", "wrong_mapping", part.name)
         self._publisher = host.publisher(part.target.text, type_name, part.qos or DEFAULT_QOS)
         self._matching = host.matching_of(
@@ -180,7 +180,7 @@ class Publishing:
     def _warn_unmatched(self, message: str, help: str) -> None:
         """Warn once of a topic without subscribers: its name or type may be wrong."""
         assert self._publisher is not None
-        self._host.tell_once((self._publisher.topic, "unmatched"), self._part.target.place, message, help)
+        self._host.report_once((self._publisher.topic, "unmatched"), self._part.target.place, message, help)
 
     def _filled(self, inputs: Sequence[object]) -> tuple[Any, bool]:
         """The fields of the message, and whether it sets a robot in motion."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from jacaros.artifacts.mapping.declared import FieldPart, RangeOfView, TopicPart, Written
-from jacaros.artifacts.mapping.decoding import Take, taker
+from jacaros.artifacts.mapping.decoding import Read, reader
 from jacaros.artifacts.mapping.interfaces import Interfaces
 from jacaros.artifacts.mapping.paths import WHOLE, Getter, Path, WrongPath, follow, getter, read_path
 from jacaros.env.values import Structure
@@ -102,9 +102,9 @@ class _Maker:
         if self.part.frame is not None:
             self._require_frame(self.part.frame)
         fields = self._fields()
-        takes = [take for field in fields if (take := self._taker(field)) is not None]
+        takes = [take for field in fields if (take := self._reader(field)) is not None]
         notes = [
-            (field.name, take) for field in self.part.annotations if (take := self._taker(field)) is not None
+            (field.name, take) for field in self.part.annotations if (take := self._reader(field)) is not None
         ]
         view = self._view() if self.part.view is not None else None
         key = self._key(fields)
@@ -127,18 +127,18 @@ class _Maker:
             self.wrong(self.part.place, error)
             return ()
 
-    def _taker(self, field: FieldPart) -> Take | None:
+    def _reader(self, field: FieldPart) -> Read | None:
         try:
-            return taker(field, self.message, self.element, self.interfaces)
+            return reader(field, self.message, self.element, self.interfaces)
         except (WrongPath, UnknownInterface) as error:
             self.wrong(field.place, error)
             return None
 
-    def _key(self, fields: Sequence[FieldPart]) -> Take | None:
+    def _key(self, fields: Sequence[FieldPart]) -> Read | None:
         if self.part.each is None:
             return None
         field = self.part.key or (fields[0] if fields else None)
-        return self._taker(field) if field is not None else None
+        return self._reader(field) if field is not None else None
 
     def _view(self) -> Callable[[Any, Any, int], tuple[float, float] | None]:
         """Where an element is; None when it is certainly out of view."""
@@ -171,7 +171,7 @@ class _Maker:
 
         return number
 
-    def _single(self, takes: list[Take], notes: list[tuple[str, Take]], view: Any) -> Extract:
+    def _single(self, takes: list[Read], notes: list[tuple[str, Read]], view: Any) -> Extract:
         def rows(message: Any) -> list[Row]:
             place = view(message, message, 0) if view is not None else (0.0, 0.0)
             if place is None or not all(map(math.isfinite, place)):
@@ -181,7 +181,7 @@ class _Maker:
         return rows
 
     def _several(
-        self, get: Getter, takes: list[Take], notes: list[tuple[str, Take]], view: Any, key: Take | None
+        self, get: Getter, takes: list[Read], notes: list[tuple[str, Read]], view: Any, key: Read | None
     ) -> Extract:
         def rows(message: Any) -> list[Row]:
             found = []
@@ -197,13 +197,13 @@ class _Maker:
         return rows
 
 
-def _values(takes: list[Take], message: Any, element: Any, place: int) -> tuple[object, ...]:
+def _values(takes: list[Read], message: Any, element: Any, place: int) -> tuple[object, ...]:
     if len(takes) == 1:
         return takes[0](message, element, place)
     return tuple([value for take in takes for value in take(message, element, place)])
 
 
-def _noted(notes: list[tuple[str, Take]], message: Any, element: Any, place: int) -> tuple[object, ...]:
+def _noted(notes: list[tuple[str, Read]], message: Any, element: Any, place: int) -> tuple[object, ...]:
     if not notes:
         return ()
     return tuple([Structure(name, tuple(take(message, element, place))) for name, take in notes])

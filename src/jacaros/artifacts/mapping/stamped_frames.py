@@ -103,6 +103,6 @@ class StampedFrames:
             message = (
                 f"{part.name}: {count} message{'s' if count > 1 else ''} without a transform dropped: {error}"
             )
-            self._host.tell_once(
+            self._host.report_once(
                 (part.name, "frames", count), part.place, message, "give it more time: lateness: 1"
             )

@@ -80,7 +80,7 @@ class TypeSearch:
             return await self._host.step(self._host.ros.contents())
         except CapabilityMissing as error:
             for each in self._wanted:
-                self._host.tell_once(
+                self._host.report_once(
                     each, each.written.place, str(error), "write the type: type: package/msg/Type"
                 )
             return None
@@ -94,7 +94,7 @@ class TypeSearch:
                 each.found(found)
 
     def _miss(self, wanted: Wanted) -> None:
-        self._host.tell_once(
+        self._host.report_once(
             wanted,
             wanted.written.place,
             f"the topic {wanted.name} is missing, and without it its type is not known; still waiting",

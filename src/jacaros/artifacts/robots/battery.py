@@ -81,7 +81,7 @@ class ArtSimBattery(RosArtifact):
         expire = self.options.get("expire")
         assert expire is None or isinstance(expire, float)
         policy = ReadingPolicy(on_demand=True, expire=expire)
-        self._told = self.kept(
+        self._reported = self.kept(
             Reading(policy, self.clock, None, Outlet(withdraw=partial(self.start, self.forget_battery)))
         )
         self.follows_robot = self._follows_robot()
@@ -166,7 +166,7 @@ class ArtSimBattery(RosArtifact):
             elif self._full_since == math.inf or (rises and level < FULL):
                 self._full_since = self.clock.elapsed
             self.start(self.show_battery, level, charging, cause=sample.cause)
-            self._told.take((level,))
+            self._reported.take((level,))
 
     def _charge(self, told: float) -> float | None:
         """The charge as a share of 1; None when the message tells none."""
@@ -226,5 +226,5 @@ class ArtSimBattery(RosArtifact):
     async def get_current_battery(self, level: Out) -> None:
         """Give the charge in percent; ``no_battery(5)`` when a robot does not tell it within 5 s."""
         if self._level == UNKNOWN:
-            await self.newest(self._told, "no_battery")
+            await self.newest(self._reported, "no_battery")
         level.set(self._level)

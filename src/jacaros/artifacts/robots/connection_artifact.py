@@ -60,7 +60,7 @@ class ArtRos(RosArtifact):
         self.ros.on_connection(self._connection_changed)
         self.at_dispose(self._close)
         if isinstance(self.clock, RosClock):
-            self.at_dispose(self.clock.on_jump(lambda by: self.start(self.tell_jump, by)))
+            self.at_dispose(self.clock.on_jump(lambda by: self.start(self.report_jump, by)))
 
     def _close(self) -> None:
         self._closed = True
@@ -78,7 +78,7 @@ class ArtRos(RosArtifact):
             self.remove_property("connected")
 
     @internal_operation
-    def tell_jump(self, by: float) -> None:
+    def report_jump(self, by: float) -> None:
         """Signal that time jumped, back if *by* is below zero."""
         self.signal("clock_jumped" if by < 0 else "clock_jumped_ahead", abs(by))
 

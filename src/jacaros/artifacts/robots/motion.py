@@ -146,7 +146,7 @@ class Motion:
         unwatch = self._holding.watch(self._claim.wake)
         ignore = self._wheels.on_interruption(lambda: self._claim.interrupt(GUARD_TRIPPED))
         try:
-            await self._enter_lane()
+            await self._claim_wheels()
             await self._drive()
         finally:
             forget()
@@ -175,10 +175,10 @@ class Motion:
         """Have the robot to ourselves and standing: it may still roll from before."""
         ready = False
         while not ready:
-            await self._enter_lane()
+            await self._claim_wheels()
             ready = await self._stand()
 
-    async def _enter_lane(self) -> None:
+    async def _claim_wheels(self) -> None:
         """Have the wheels; a motion that is suspended meanwhile is not among those that `Motions.abort` ends."""
         execution, claims = self._execution, self._wheels.motions.claims
         self._holding.enter()

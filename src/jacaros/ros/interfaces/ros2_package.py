@@ -75,7 +75,7 @@ def definitions(root: Path = BUILT_IN) -> Iterator[Definition]:
             yield Definition(path.parent.parent.name, kind, path.stem, path)
 
 
-def look_alikes(root: Path = BUILT_IN) -> dict[str, Definition]:
+def similar_types(root: Path = BUILT_IN) -> dict[str, Definition]:
     """What goes into `PACKAGE`, by place in it.
 
     Raises:
@@ -94,14 +94,16 @@ def look_alikes(root: Path = BUILT_IN) -> dict[str, Definition]:
 @cache
 def origin(kind: str, name: str) -> str | None:
     """Give the package that a type of `PACKAGE` looks like; None when it is our own, or there is none."""
-    packages = [found.package for found in look_alikes().values() if (found.kind, found.name) == (kind, name)]
+    packages = [
+        found.package for found in similar_types().values() if (found.kind, found.name) == (kind, name)
+    ]
     return packages[0] if packages and packages[0] != PACKAGE else None
 
 
 def write_package(folder: Path, package: str = PACKAGE, root: Path = BUILT_IN) -> Path:
     """Write a package below *folder*, in place of what was there of it, and give its path."""
     if package == PACKAGE:
-        chosen = look_alikes(root)
+        chosen = similar_types(root)
     else:
         chosen = {found.relative: found for found in definitions(root) if found.package == package}
     if not chosen:

@@ -41,7 +41,7 @@ LOOKED = 30.0
 """Seconds for which it is believed that a silent server is alive that was found in the graph with fresh eyes."""
 
 
-class SignsOfLife:
+class FailureDetector:
     """Watches over the server of an action while a goal is under way.
 
     Not every living server answers: one whose code blocks its only thread does not, until the goal is over.  So silence
@@ -50,15 +50,18 @@ class SignsOfLife:
 
     Args:
         probe: asks the server for a sign; `probe_answered` tells of it.
-        tell: is told that the server seems to be gone (False) and that it is not (True).
+        report: is told that the server seems to be gone (False) and that it is not (True).
         look: looks whether the server is in the graph that a newcomer finds; `looked` tells of it.
     """
 
     def __init__(
-        self, probe: Callable[[], None], tell: Callable[[bool], None], look: Callable[[], None] = lambda: None
+        self,
+        probe: Callable[[], None],
+        report: Callable[[bool], None],
+        look: Callable[[], None] = lambda: None,
     ) -> None:
         self._probe = probe
-        self._tell = tell
+        self._report = report
         self._look = look
         self._heard = 0.0
         self._goal_began = 0.0
@@ -76,7 +79,7 @@ class SignsOfLife:
         if self._suspected:
             self._suspected = False
             self._misleading = True
-            self._tell(True)
+            self._report(True)
 
     def probe_answered(self) -> None:
         """The server has answered a probe."""
@@ -91,14 +94,14 @@ class SignsOfLife:
                 self.heard()
         elif self._look_began is not None and self._heard < self._look_began and not self._suspected:
             self._suspected = True
-            self._tell(False)
+            self._report(False)
 
     def goal_begins(self) -> None:
         """The server has accepted a goal."""
         self._goal_began = time.monotonic()
         self._probed = self._answered = None
 
-    def stranger(self) -> None:
+    def reset(self) -> None:
         """Another server is there: what was learnt about the former does not count."""
         self._answers = self._misleading = self._suspected = False
         self._probed = self._answered = self._look_began = None
@@ -123,9 +126,9 @@ class SignsOfLife:
         if under_way and not self._misleading:
             self._check_answers(now)
         if under_way and (self._misleading or not self._answers):
-            self._doubt(now, self._goal_began + GETTING_GOING)
+            self._suspect(now, self._goal_began + GETTING_GOING)
         elif self._waiting_since is not None:
-            self._doubt(now, self._waiting_since)
+            self._suspect(now, self._waiting_since)
 
     def _check_answers(self, now: float) -> None:
         if self._answered is not None and now > self._answered + GETTING_GOING:
@@ -140,15 +143,15 @@ class SignsOfLife:
             elif now > self._probed + SILENCE:
                 if not self._suspected:
                     self._suspected = True
-                    self._tell(False)
-                    self._look_anew(now)
+                    self._report(False)
+                    self._check_again(now)
                 self._ask(now)
 
-    def _doubt(self, now: float, since: float) -> None:
+    def _suspect(self, now: float, since: float) -> None:
         if now > max(self._heard, since) + SILENCE:
-            self._look_anew(now)
+            self._check_again(now)
 
-    def _look_anew(self, now: float) -> None:
+    def _check_again(self, now: float) -> None:
         if self._look_began is None or now > self._look_began + LOOKED:
             self._look_began = now
             self._look()

@@ -124,7 +124,7 @@ def _failure(service: str, text: object) -> ServiceError:
     return CallFailed(f"service {service}: {words}")
 
 
-class Sight(Generic[T]):
+class Polled(Generic[T]):
     """Something of the graph that rosapi can tell, as it was seen a short time ago.
 
     Nothing is asked while nobody wants to know: reading the value asks again, and gives what is known.  What was seen over

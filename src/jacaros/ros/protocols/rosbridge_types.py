@@ -63,7 +63,7 @@ class BridgeSchema(RosbagsSchema):
         super().__init__(roots)
         self._ask = ask
         self._describe = describe
-        self._told: dict[str, str] = {}
+        self._reported: dict[str, str] = {}
 
     def _require(self, type_name: str) -> None:
         action, _, part = type_name.rpartition("_")
@@ -79,8 +79,8 @@ class BridgeSchema(RosbagsSchema):
             for ours in (_ROS1_ONLY, _PARAMETER_SERVICES):
                 if type_name in ours:
                     return ours[type_name]
-            if type_name in self._told:  # part of a type that the server has told
-                return self._told[type_name]
+            if type_name in self._reported:  # part of a type that the server has told
+                return self._reported[type_name]
             reason = self._describe()
             if reason is not None:
                 raise UnknownInterface(f"{unknown} ({reason})") from None
@@ -105,7 +105,7 @@ class BridgeSchema(RosbagsSchema):
             whole, *others = typedefs
             parts.append(definition_text(whole))
             for other in others:
-                self._told.setdefault(message_type(other["type"]), definition_text(other))
+                self._reported.setdefault(message_type(other["type"]), definition_text(other))
         return "---\n".join(parts)
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from jacaros.artifacts.mapping.declared import FieldPart, TopicPart
 from jacaros.artifacts.mapping.decoding import MessageHandle, Unshowable
-from jacaros.artifacts.mapping.encoding import WrongValue, filler
+from jacaros.artifacts.mapping.encoding import WrongValue, builder
 from jacaros.artifacts.mapping.file import read_mapping
 from jacaros.artifacts.mapping.interfaces import stored_interfaces
 from jacaros.artifacts.mapping.rows import extractor
@@ -230,7 +230,7 @@ def filled(type_name: str, fields: str, *arguments: object, parameters: str = "[
     text = f"operations: {{go: {{publish: t, parameters: {parameters}, fields: {fields}}}}}"
     part = read_mapping(text).artifacts["mapping"].operations[0]
     problems: list[Any] = []
-    fill = filler(part.values, type_name, stored_interfaces(), problems)
+    fill = builder(part.values, type_name, stored_interfaces(), problems)
     assert problems == []
     assert fill is not None
     return stored_interfaces().message(type_name, **fill(arguments, 100.5))

@@ -10,7 +10,7 @@ from robot_lab import Lab, Watcher, in_lab
 
 from jacaros.artifacts.mapping.artifact import mapped_type
 from jacaros.artifacts.mapping.declared import OperationKind
-from jacaros.artifacts.mapping.encoding import filler, fitting
+from jacaros.artifacts.mapping.encoding import builder, fitting
 from jacaros.artifacts.mapping.file import find_mapping, load_mapping, shipped_mappings
 from jacaros.artifacts.mapping.interfaces import stored_interfaces
 from jacaros.env import ArtifactId, Out
@@ -378,7 +378,7 @@ def test_the_poses_of_kilted_are_a_message_of_their_own() -> None:
     goal_type = "nav2_msgs/action/NavigateThroughPoses_Goal"
     problems: list[Problem] = []
     kilted: Any = Kilted()
-    fill = filler(fitting(operation, goal_type, kilted), goal_type, kilted, problems)
+    fill = builder(fitting(operation, goal_type, kilted), goal_type, kilted, problems)
     assert problems == []
     assert fill is not None
     (goal,) = fill([poses((1, 2, 90))], 0.0)["poses"]["goals"]

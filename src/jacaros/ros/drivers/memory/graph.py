@@ -17,7 +17,7 @@ from jacaros.ros.parameter_store import DeclaredParameters
 from jacaros.ros.qos import QoS
 
 
-class Vanishing(Protocol):
+class GraphEntity(Protocol):
     """Something that can be gone without a word."""
 
     def vanish(self) -> None:
@@ -25,7 +25,7 @@ class Vanishing(Protocol):
         ...
 
 
-class GraphNode(Vanishing, Protocol):
+class GraphNode(GraphEntity, Protocol):
     """A node."""
 
     declared: DeclaredParameters
@@ -98,7 +98,7 @@ class GraphPublisher(TopicEnd, Protocol):
         ...
 
 
-class GraphService(Vanishing, Protocol):
+class GraphService(GraphEntity, Protocol):
     """A service."""
 
     name: str
@@ -129,7 +129,7 @@ class GoalLine(Protocol):
         ...
 
 
-class GraphActionServer(Vanishing, Protocol):
+class GraphActionServer(GraphEntity, Protocol):
     """An action server."""
 
     name: str
@@ -392,7 +392,7 @@ class MemoryGraph:
         Raises:
             RosError: there is nothing of that name.
         """
-        tables: tuple[Mapping[str, Vanishing], ...] = (self._nodes, self._services, self._actions)
+        tables: tuple[Mapping[str, GraphEntity], ...] = (self._nodes, self._services, self._actions)
         found = [table[name] for table in tables if name in table]
         if not found:
             raise RosError(f"there is no node, service or action {name}")

@@ -75,7 +75,7 @@ class MemorySubscription(TopicSubscription[MemoryNode]):
     def __init__(self, node: MemoryNode, wanted: Wanted) -> None:
         super().__init__(node, wanted)
         deadline = wanted.qos.deadline
-        self._deadline = None if deadline is None else _Deadline(node, deadline, self.tell_deadline)
+        self._deadline = None if deadline is None else _Deadline(node, deadline, self.report_deadline)
         self._shared = node.graph.topic(self.topic)
         self.arrive: Callable[[Any], None] = self.put
         """Takes a message from a publisher."""
@@ -95,9 +95,9 @@ class MemorySubscription(TopicSubscription[MemoryNode]):
         """Be connected to a publisher, or say why not."""
         if publisher.type_name != self.type_name:
             publisher.refused(self)
-            self.tell_other_type(publisher.node_name, publisher.type_name)
+            self.report_type_mismatch(publisher.node_name, publisher.type_name)
         elif (problem := incompatibility(publisher.qos, self.qos)) is not None:
-            self.tell_qos(problem)
+            self.report_qos(problem)
         elif self._node.graph.up:
             publisher.connect(self)
 

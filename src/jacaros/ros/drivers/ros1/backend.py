@@ -84,14 +84,14 @@ class Ros1Backend(Ros1Node):
     def types_changed(self, types: Mapping[str, str]) -> None:
         """Tell subscriptions whose topic has another type."""
         self.types = {topic: message_type(kind) for topic, kind in types.items() if kind != "*"}
-        for topic, feed in self.feeds.items():
-            feed.see_type(self.types.get(topic))
+        for topic, multiplexer in self.multiplexers.items():
+            multiplexer.see_type(self.types.get(topic))
 
     def definition_differs(self, topic: str, kind: str, theirs: str, ours: str) -> None:
         """Tell subscriptions whose publisher has another definition of the type: another md5 sum."""
-        if topic in self.feeds:
+        if topic in self.multiplexers:
             package, _, name = kind.partition("/")
-            self.feeds[topic].tell(
+            self.multiplexers[topic].report(
                 f"topic {topic}: a publisher has another definition of {package}/msg/{name} (md5 sum {theirs}, here "
                 f"{ours}): nothing will be received from it; install its version of {package} here"
             )

@@ -30,7 +30,7 @@ Take = Callable[[list[Any], "dict[str, str]"], None]
 """Takes messages that came together, on the loop, and what their publisher said of itself at first."""
 
 
-class Takers(dict[str, Take]):
+class MessageHandlers(dict[str, Take]):
     """Who takes the messages of which topic, on the loop of the node.
 
     Attributes:
@@ -51,19 +51,19 @@ class InletTransport(TCPROSTransport):  # type: ignore[misc]
     Other topics, such as those that rospy itself listens to, are read by rospy.
     """
 
-    takers: Takers
+    handlers: MessageHandlers
     _over: threading.Event | None = None
 
     def receive_once(self) -> Any:
         """Let the loop read until the connection ends; on the thread of rospy's that belongs to this connection."""
         connection = self.socket
         subscriber = registration.get_topic_manager().get_subscriber_impl(self.name)
-        taker = self.takers.get(self.name)  # the loop may take it away at any moment
-        if taker is None or connection is None or subscriber is None or self.read_buff.tell():
+        handler = self.handlers.get(self.name)  # the loop may take it away at any moment
+        if handler is None or connection is None or subscriber is None or self.read_buff.tell():
             return super().receive_once()
-        loop, over = self.takers.loop, threading.Event()
+        loop, over = self.handlers.loop, threading.Event()
         self._over = over
-        take = partial(self._take, subscriber, taker)
+        take = partial(self._take, subscriber, handler)
         with suppress(OSError):  # closed just now
             # A socket of our own: rospy closes its one in any thread, and its number may then be that of another.
             inlet = Inlet(loop, connection.dup(), take, over.set)
@@ -79,7 +79,7 @@ class InletTransport(TCPROSTransport):  # type: ignore[misc]
         if self.done or not (read := self._deserialized(subscriber, messages)):
             return
         alone = len(subscriber.callbacks) == 1 and subscriber.statistics_logger is None
-        if alone and self.takers.get(self.name) == take:
+        if alone and self.handlers.get(self.name) == take:
             take(read, self.header)
         else:  # somebody else in this process listens as well, by rospy, or we have just ceased to
             subscriber.receive_callback(read, self)
@@ -90,7 +90,7 @@ class InletTransport(TCPROSTransport):  # type: ignore[misc]
             try:
                 message = subscriber.data_class().deserialize(data)
             except DeserializationError as problem:
-                self.takers.log(
+                self.handlers.log(
                     f"topic {self.name}: a message of {self.endpoint_id} cannot be read: {problem}"
                 )
                 continue
@@ -147,14 +147,14 @@ class OutboxConnection:
         return True
 
 
-def connect_streams(takers: Takers) -> None:
+def connect_streams(handlers: MessageHandlers) -> None:
     """Have rospy use these connections; before ``init_node``."""
-    InletTransport.takers = takers
+    InletTransport.handlers = handlers
     rospy.impl.tcpros_pubsub.TCPROSTransport = InletTransport
     rospy.topics.QueuedConnection = OutboxConnection
 
 
-def let_subscribers_hear() -> None:
+def deliver_before_ready() -> None:
     """rospy calls what Python 3.10 deprecated; with warnings as errors its subscribers would stay dumb."""
     warnings.filterwarnings("ignore", "notifyAll", DeprecationWarning)
 
@@ -172,7 +172,7 @@ def log_to_standard_error() -> None:
             handler._stdout = sys.stderr  # pyright: ignore[reportAttributeAccessIssue]
 
 
-def let_parameters_tell(listener: Callable[[str, Any], None]) -> None:
+def report_parameter_changes(listener: Callable[[str, Any], None]) -> None:
     """Have *listener* called, on a thread of rospy's, with what the master says of a changed parameter.
 
     rospy itself keeps such news in a cache that nobody can watch, and refuses news of parameters that are not in it.
@@ -199,6 +199,6 @@ class EndingServer(rosgraph.xmlrpc.ThreadingXMLRPCServer):  # type: ignore[misc]
         threading.Thread(target=self.shutdown, name="XML-RPC server ends", daemon=True).start()
 
 
-def let_closed_nodes_rest() -> None:
+def silence_closed_nodes() -> None:
     """Use `EndingServer` for the node; before ``init_node``."""
     rosgraph.xmlrpc.ThreadingXMLRPCServer = EndingServer

@@ -256,16 +256,16 @@ class MismatchWatch(logging.Handler):
     """Reads rospy's own log for refusals by publishers.
 
     Args:
-        tell: takes topic, type as on ROS 1, the publisher's md5 sum and ours; called on a thread of rospy's.
+        report: takes topic, type as on ROS 1, the publisher's md5 sum and ours; called on a thread of rospy's.
     """
 
-    def __init__(self, tell: Callable[[str, str, str, str], None]) -> None:
+    def __init__(self, report: Callable[[str, str, str, str], None]) -> None:
         super().__init__(logging.ERROR)
-        self._tell = tell
+        self._report = report
 
     def emit(self, record: logging.LogRecord) -> None:
         """Read one line."""
         found = _TEXT.search(record.getMessage())
-        # Other types are told by the master, and earlier; see `TopicFeed.see_type`.
+        # Other types are told by the master, and earlier; see `TopicMultiplexer.see_type`.
         if found is not None and found["ours"] == found["theirs"]:
-            self._tell(found["topic"], found["ours"], found["their_md5"], found["our_md5"])
+            self._report(found["topic"], found["ours"], found["their_md5"], found["our_md5"])

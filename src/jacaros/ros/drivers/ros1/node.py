@@ -10,13 +10,13 @@ import rospy  # type: ignore[import-not-found]
 import rospy.impl.registration as registration  # type: ignore[import-not-found]
 
 from jacaros.ros.drivers.ros1.connections import (
-    Takers,
+    MessageHandlers,
     connect_streams,
-    let_closed_nodes_rest,
-    let_parameters_tell,
-    let_subscribers_hear,
+    deliver_before_ready,
     log_to_standard_error,
     print_to_standard_error,
+    report_parameter_changes,
+    silence_closed_nodes,
 )
 from jacaros.ros.drivers.ros1.master import Heard, MasterLink, MismatchWatch, NodeActions, Offers, stay_local
 from jacaros.ros.drivers.ros1.types import GenpySchema
@@ -24,7 +24,7 @@ from jacaros.ros.errors import RosError
 from jacaros.ros.handoff import post
 from jacaros.ros.lifetime import Lifetime
 from jacaros.ros.node import Node, NodeSettings
-from jacaros.ros.topics import TopicFeed
+from jacaros.ros.topics import TopicMultiplexer
 
 SENDING = 0.5
 """Seconds that closing waits for the messages published last to leave."""
@@ -56,8 +56,8 @@ class Ros1Node(Node):
             self._note_problem,
         )
         self.link = MasterLink(self.master_uri, self.node_name, actions)
-        self.takers = Takers(self.log)
-        self.feeds: dict[str, TopicFeed[Any]] = {}
+        self.handlers = MessageHandlers(self.log)
+        self.multiplexers: dict[str, TopicMultiplexer[Any]] = {}
         self.types: Mapping[str, str] = {}
         """The types of all topics, as the master has them."""
         self.unsent: dict[Callable[[], bool], None] = {}
@@ -75,12 +75,12 @@ class Ros1Node(Node):
         Ros1Node._started = True
         stay_local(self.master_uri)
         print_to_standard_error()
-        let_subscribers_hear()
-        let_closed_nodes_rest()
-        let_parameters_tell(self._note_parameter)
+        deliver_before_ready()
+        silence_closed_nodes()
+        report_parameter_changes(self._note_parameter)
         looked = self.join()
-        self.takers.loop = self.loop
-        connect_streams(self.takers)
+        self.handlers.loop = self.loop
+        connect_streams(self.handlers)
         self.link.start()
         await looked
 

@@ -13,7 +13,7 @@ from jacaros.ros.handoff import Handoff, post
 from jacaros.ros.names import message_type
 from jacaros.ros.node import Wanted
 from jacaros.ros.qos import QoS
-from jacaros.ros.topics import SharedSubscription, TopicFeed, TopicPublisher
+from jacaros.ros.topics import SharedSubscription, TopicMultiplexer, TopicPublisher
 
 
 class Ros1Publisher(TopicPublisher[Ros1Node]):
@@ -76,7 +76,7 @@ class Ros1Publisher(TopicPublisher[Ros1Node]):
             self._publisher.unregister()
 
 
-class Ros1Feed(TopicFeed["Ros1Subscription"]):
+class Ros1Multiplexer(TopicMultiplexer["Ros1Subscription"]):
     """The process's one rospy subscriber of a topic.
 
     rospy itself shows a latched message only to the first subscriber in a process.
@@ -89,7 +89,7 @@ class Ros1Feed(TopicFeed["Ros1Subscription"]):
         self.known_as = message_type(self._class._type)
         self._latched: dict[str, Any] = {}
         self._subscriber: Any = None
-        node.takers[topic] = self._take
+        node.handlers[topic] = self._take
         node.link.do(self._register)
 
     @property
@@ -107,8 +107,8 @@ class Ros1Feed(TopicFeed["Ros1Subscription"]):
         return self._latched.values()
 
     def _leave(self) -> None:
-        if self._node.takers.get(self.topic) == self._take:
-            del self._node.takers[self.topic]
+        if self._node.handlers.get(self.topic) == self._take:
+            del self._node.handlers[self.topic]
         self._node.link.do(self._unregister)
 
     def _register(self) -> None:
@@ -140,9 +140,9 @@ class Ros1Subscription(SharedSubscription[Ros1Node]):
 
     def __init__(self, node: Ros1Node, wanted: Wanted) -> None:
         self.queue: Handoff[Any] = Handoff(node.loop, wanted.qos.depth, self.deliver)
-        super().__init__(node, wanted, node.feeds, Ros1Feed)
-        if self._feed is not None:
-            self._feed.see_type(node.types.get(self.topic))
+        super().__init__(node, wanted, node.multiplexers, Ros1Multiplexer)
+        if self._multiplexer is not None:
+            self._multiplexer.see_type(node.types.get(self.topic))
 
     def put(self, message: Any) -> None:
         """Queue a message, from any thread of rospy's."""

@@ -116,7 +116,7 @@ class Ros2ActionServer:
         for service in self._services:
             service.close(late=True)
         for publisher in (self._feedback, self._status):
-            self._node.retire_later(self._node.rcl.destroy_publisher, publisher)
+            self._node.destroy_entity_later(self._node.rcl.destroy_publisher, publisher)
         self._node.forget(self)
 
     def _judge(self, request: Any, respond: Respond) -> None:

@@ -30,7 +30,7 @@ from jacaros.ros.graph import GraphContents
 from jacaros.ros.handoff import in_thread
 from jacaros.ros.node import NodeSettings, Parts
 from jacaros.ros.parameter import Parameters
-from jacaros.ros.parameter_news import ParameterNews
+from jacaros.ros.parameter_events import ParameterEvents
 from jacaros.ros.tf import MESSAGE as TRANSFORM_MESSAGE
 from jacaros.ros.waiting import within
 
@@ -84,7 +84,7 @@ class Ros2Backend(Ros2Node):
 
     def __init__(self, settings: NodeSettings, domain_id: int | None = None) -> None:
         super().__init__(settings, domain_id)
-        self._news = ParameterNews(self.subscription, read_value)
+        self._parameter_events = ParameterEvents(self.subscription, read_value)
         self._parameters: dict[str, Parameters] = {}
 
     @property
@@ -99,13 +99,13 @@ class Ros2Backend(Ros2Node):
     async def start(self) -> None:
         """Join the graph."""
         await super().start()
-        self._parameters[self.node_name] = OwnParameters(self, self._news)
+        self._parameters[self.node_name] = OwnParameters(self, self._parameter_events)
 
     def parameters(self, node: str | None = None) -> Parameters:
         """Give the parameters of our own node, or of another."""
         name = self.node_name if node is None else self.resolve(node)
         if name not in self._parameters:
-            self._parameters[name] = OtherParameters(self, name, self._news)
+            self._parameters[name] = OtherParameters(self, name, self._parameter_events)
         return self._parameters[name]
 
     async def contents(self, timeout: float = 5.0) -> GraphContents:

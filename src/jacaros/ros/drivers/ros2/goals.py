@@ -28,7 +28,7 @@ from jacaros.ros.protocols.ros2_actions import (
     STATUS,
     STATUS_QUALITY,
     UNDER_WAY,
-    SignsOfLife,
+    FailureDetector,
     new_goal_id,
 )
 
@@ -78,7 +78,7 @@ class Ros2GoalWire:
         self._mismatch: str | None = None
         self._compared = 0.0
         self._servers: frozenset[bytes] = frozenset()
-        self._signs = SignsOfLife(self._probe, self.sender.server_present, self._look_with_fresh_eyes)
+        self._detector = FailureDetector(self._probe, self.sender.server_present, self._check_liveness)
         self._looking: Any = None
         self._calls: dict[Any, Any] = {}
         self._unsent: list[str] = []
@@ -104,7 +104,7 @@ class Ros2GoalWire:
             ),
         ]
         self._forget_hook = node.add_exit_hook(self._cancel_all)
-        node.farewells[self._farewell] = None
+        node.shutdown_steps[self._before_shutdown] = None
 
     @classmethod
     def client(cls, node: Ros2Node, name: str, type_name: str) -> GoalSender:
@@ -152,7 +152,7 @@ class Ros2GoalWire:
         """Follow a goal of an earlier run."""
         goal = self._goals[identity] = _SentGoal(identity, None)
         goal.sent = goal.accepted = True
-        self._signs.goal_begins()
+        self._detector.goal_begins()
         self._ask_for_result(goal)
         self._keep_looking()
 
@@ -160,7 +160,7 @@ class Ros2GoalWire:
         """The goal is over."""
         self._goals.pop(identity, None)
         if not self._goals:
-            self._signs.rest()
+            self._detector.rest()
             self._forget_calls()
 
     def close(self) -> None:
@@ -169,19 +169,19 @@ class Ros2GoalWire:
             return
         self._closed = True
         self._forget_hook()
-        del self._node.farewells[self._farewell]
+        del self._node.shutdown_steps[self._before_shutdown]
         self._feedback.close()
         for timer in (self._looking, self._sending):
             if timer is not None:
                 timer.cancel()
         node = self._node
         for client in (self._goal_client, self._cancel_client, self._result_client):
-            node.retire_later(node.rcl.destroy_client, client)
+            node.destroy_entity_later(node.rcl.destroy_client, client)
         for subscription in self._subscriptions:
-            node.retire_later(node.rcl.destroy_subscription, subscription)
+            node.destroy_entity_later(node.rcl.destroy_subscription, subscription)
         node.forget(self)
 
-    def _farewell(self, seconds: float) -> None:
+    def _before_shutdown(self, seconds: float) -> None:
         """Give requests to cancel the time to arrive."""
         if self._goals:
             time.sleep(min(0.1, seconds))
@@ -214,7 +214,7 @@ class Ros2GoalWire:
             return
         if goal is not None:
             goal.accepted = True
-            self._signs.goal_begins()
+            self._detector.goal_begins()
         self.sender.accepted(identity)
         if goal is not None and identity in self._goals:
             self._ask_for_result(goal)
@@ -247,7 +247,7 @@ class Ros2GoalWire:
     def _take_feedback(self, message: Any) -> None:
         identity = goal_id(message.goal_id)
         if identity in self._goals:
-            self._signs.heard()
+            self._detector.heard()
             self._accept(identity)
             self.sender.feedback(identity, message.feedback)
 
@@ -259,7 +259,7 @@ class Ros2GoalWire:
             identity = goal_id(entry.goal_info.goal_id)
             goal = self._goals.get(identity)
             if goal is not None:
-                self._signs.heard()
+                self._detector.heard()
                 goal.over = entry.status in ENDS
                 self._accept(identity)
 
@@ -291,7 +291,7 @@ class Ros2GoalWire:
                 self.cancel_goal(goal.identity)
         if self._there:
             goals = self._goals.values()
-            self._signs.check(
+            self._detector.check(
                 now,
                 under_way=any(goal.accepted and not goal.over for goal in goals),
                 waiting=any(goal.sent and not goal.accepted for goal in goals),
@@ -321,7 +321,7 @@ class Ros2GoalWire:
             return False
         self._servers |= servers
         self._there_since = time.monotonic()
-        self._signs.stranger()
+        self._detector.reset()
         return True
 
     def _greet_newcomers(self) -> None:
@@ -376,18 +376,18 @@ class Ros2GoalWire:
     def _probe(self) -> None:
         """Ask for something that every server answers at once: the result of a goal that nobody knows."""
         request = self._impl.GetResultService.Request(goal_id=id_message(new_goal_id()))
-        self._call(self._result_client, request, lambda _: self._signs.probe_answered())
+        self._call(self._result_client, request, lambda _: self._detector.probe_answered())
 
-    def _look_with_fresh_eyes(self) -> None:
+    def _check_liveness(self) -> None:
         suspects = action_servers(self._node, self.name)
 
-        def tell(missing: frozenset[bytes]) -> None:
+        def report(missing: frozenset[bytes]) -> None:
             # With several servers it is not known whose goals ours are.
             if not self._closed and suspects == action_servers(self._node, self.name):
-                self._signs.looked(missing != suspects)
+                self._detector.looked(missing != suspects)
 
         if suspects:
-            self._node.look_again(lambda rcl: action_servers_in(rcl, self.name), suspects, tell)
+            self._node.check_liveness(lambda rcl: action_servers_in(rcl, self.name), suspects, report)
 
     # Between the threads:
 
@@ -409,7 +409,7 @@ class Ros2GoalWire:
                 client.remove_pending_request(call)
 
     def _take_answer(self, take: Callable[[Any], None], answer: Any) -> None:
-        self._signs.heard()
+        self._detector.heard()
         take(answer)
 
     def _post(self, action: Callable[..., None], *arguments: Any) -> None:

@@ -22,8 +22,8 @@ import rclpy.executors  # type: ignore[import-not-found]
 import rclpy.signals  # type: ignore[import-not-found]
 from rclpy.exceptions import ParameterException  # type: ignore[import-not-found]
 
+from jacaros.ros.drivers.ros2.liveness_check import Find, LivenessCheck
 from jacaros.ros.drivers.ros2.receiving import Receiver
-from jacaros.ros.drivers.ros2.second_look import Find, SecondLook
 from jacaros.ros.drivers.ros2.types import RosidlSchema, parameter
 from jacaros.ros.errors import ParameterRefused
 from jacaros.ros.handoff import in_thread, post
@@ -62,11 +62,11 @@ class Ros2Node(Node):
         self._thread: threading.Thread | None = None
         self._stopped = threading.Event()
         self._ended = False
-        self._told = ""
+        self._reported = ""
         self.rcl: Any = None
         self.receiver: Receiver
-        self._looks: list[SecondLook] = []
-        self.farewells: dict[Callable[[float], None], None] = {}
+        self._liveness_checks: list[LivenessCheck] = []
+        self.shutdown_steps: dict[Callable[[float], None], None] = {}
         """Wait, in any thread and for so many seconds at most, until what was sent has arrived."""
 
     @property
@@ -90,7 +90,7 @@ class Ros2Node(Node):
         await self.lifetime.leave()
         self.left()
 
-    def retire(self, destroy: Callable[[Any], Any], thing: Any) -> None:
+    def destroy_entity(self, destroy: Callable[[Any], Any], thing: Any) -> None:
         """Have *destroy* called with *thing*, on the executor's thread.
 
         Anywhere else the executor may be about to wait for the thing, or be in the middle of its lists.
@@ -105,24 +105,24 @@ class Ros2Node(Node):
         else:
             self._executor.create_task(now)
 
-    def retire_later(self, destroy: Callable[[Any], Any], thing: Any) -> None:
-        """`retire`, but only when what was sent just before has arrived."""
+    def destroy_entity_later(self, destroy: Callable[[Any], Any], thing: Any) -> None:
+        """`destroy_entity`, but only when what was sent just before has arrived."""
         if self._ended:
-            self.retire(destroy, thing)
+            self.destroy_entity(destroy, thing)
         else:
-            self.loop.call_later(LINGERING, self.retire, destroy, thing)
+            self.loop.call_later(LINGERING, self.destroy_entity, destroy, thing)
 
-    def look_again(
-        self, find: Find, suspects: frozenset[bytes], tell: Callable[[frozenset[bytes]], None]
+    def check_liveness(
+        self, find: Find, suspects: frozenset[bytes], report: Callable[[frozenset[bytes]], None]
     ) -> None:
-        """Find out who of the *suspects* is alive; see `SecondLook.ask`."""
+        """Find out who of the *suspects* is alive; see `LivenessCheck.ask`."""
         if self._ended:
             return
-        look = next((look for look in self._looks if look.fresh), None)
+        look = next((look for look in self._liveness_checks if look.fresh), None)
         if look is None:
-            look = SecondLook(self.loop, self._domain_id, self._looks.remove)
-            self._looks.append(look)
-        look.ask(find, suspects, tell)
+            look = LivenessCheck(self.loop, self._domain_id, self._liveness_checks.remove)
+            self._liveness_checks.append(look)
+        look.ask(find, suspects, report)
 
     def _join(self) -> None:
         leave_standard_output_alone()
@@ -174,8 +174,8 @@ class Ros2Node(Node):
 
     def _report(self, text: str) -> None:
         """Log a fault, in any thread; a fault that comes back again and again is told once."""
-        if text != self._told:
-            self._told = text
+        if text != self._reported:
+            self._reported = text
             post(self.loop, self.log, text)
 
     def _leave(self) -> None:
@@ -183,7 +183,7 @@ class Ros2Node(Node):
         if self.rcl is None:
             return
         self._send_rest()
-        for look in list(self._looks):
+        for look in list(self._liveness_checks):
             look.leave()
         self.receiver.stop(STOPPING)
         # The executor's thread stops itself: shutting an executor down under a spinning thread is a race.
@@ -200,9 +200,9 @@ class Ros2Node(Node):
         if self.rcl is None:
             return
         deadline = time.monotonic() + SENDING
-        for farewell in list(self.farewells):
+        for shutdown_step in list(self.shutdown_steps):
             with suppress(Exception):  # whatever is wrong with one, the others are to be heard
-                farewell(max(0.0, deadline - time.monotonic()))
+                shutdown_step(max(0.0, deadline - time.monotonic()))
         time.sleep(0.02)  # best-effort messages are acknowledged by nobody
 
 

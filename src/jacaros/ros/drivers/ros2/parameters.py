@@ -27,7 +27,7 @@ from jacaros.ros.drivers.ros2.types import parameter, plain_value
 from jacaros.ros.errors import CapabilityMissing, ParameterRefused, ParameterUnknown, ServerGone
 from jacaros.ros.handoff import LoopEnded, ask
 from jacaros.ros.parameter import Declaration, ParameterValue
-from jacaros.ros.parameter_news import ParameterNews
+from jacaros.ros.parameter_events import ParameterEvents
 from jacaros.ros.parameter_services import ParameterServices
 from jacaros.ros.parameter_store import checked_value, fault_of
 
@@ -46,10 +46,10 @@ class OwnParameters:
     rclpy keeps them and serves them to others on its thread; what is to be judged is judged on the loop.
     """
 
-    def __init__(self, node: Ros2Node, news: ParameterNews) -> None:
+    def __init__(self, node: Ros2Node, events: ParameterEvents) -> None:
         self.node = node.node_name
         self._node = node
-        self._news = news
+        self._parameter_events = events
         self._judges: dict[str, Callable[[ParameterValue], str | None]] = {}
         self._loops_thread = threading.get_ident()
         node.rcl.add_on_set_parameters_callback(self._judge)
@@ -128,7 +128,7 @@ class OwnParameters:
 
     def on_change(self, callback: Callable[[Mapping[str, ParameterValue]], None]) -> Callable[[], None]:
         """Have *callback* called with what changed."""
-        return self._news.listen(self.node, callback)
+        return self._parameter_events.listen(self.node, callback)
 
     def _value(self, told: Any) -> ParameterValue:
         value: ParameterValue = (
@@ -148,13 +148,13 @@ class OwnParameters:
         return SetParametersResult(successful=True)
 
     def _judged(self, accept: Callable[[ParameterValue], str | None], value: ParameterValue) -> str | None:
-        def judge(tell: Callable[[str | None, Exception | None], None]) -> None:
+        def judge(report: Callable[[str | None, Exception | None], None]) -> None:
             try:
-                tell(accept(value), None)
+                report(accept(value), None)
             except Exception as problem:  # the node lives on, and who asked learns of it
                 reason = f"{type(problem).__name__}: {problem}"
                 self._node.log(f"judging a parameter of {self.node} failed: {reason}")
-                tell(reason, None)
+                report(reason, None)
 
         if threading.get_ident() == self._loops_thread:
             told: list[str | None] = []
@@ -169,10 +169,10 @@ class OwnParameters:
 class OtherParameters:
     """The parameters of another node, through the services that every node has."""
 
-    def __init__(self, node: Ros2Node, name: str, news: ParameterNews) -> None:
+    def __init__(self, node: Ros2Node, name: str, events: ParameterEvents) -> None:
         self.node = name
         self._node = node
-        self._news = news
+        self._parameter_events = events
         self._services = ParameterServices(name, self._client)
 
     def declare(self, name: str, declaration: Declaration) -> ParameterValue:
@@ -216,7 +216,7 @@ class OtherParameters:
 
     def on_change(self, callback: Callable[[Mapping[str, ParameterValue]], None]) -> Callable[[], None]:
         """Have *callback* called with what changed."""
-        return self._news.listen(self.node, callback)
+        return self._parameter_events.listen(self.node, callback)
 
     def _not_ours(self) -> CapabilityMissing:
         return CapabilityMissing(

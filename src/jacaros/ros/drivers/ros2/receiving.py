@@ -98,7 +98,7 @@ class Receiver:
         self._changed = False
         self._stopped = False
         self._over = False
-        self._told: set[str] = set()
+        self._reported: set[str] = set()
         self._thread = threading.Thread(target=self._run, name="ros2 receiver", daemon=True)
         self._thread.start()
 
@@ -219,7 +219,7 @@ class Receiver:
             return take_message(handle, kind)
         except Exception as problem:  # one bad message must not make the node deaf
             text = f"a message of type {kind.__name__} cannot be read: {type(problem).__name__}: {problem}"
-            if text not in self._told:
-                self._told.add(text)
+            if text not in self._reported:
+                self._reported.add(text)
                 self._report(text)
             return None

@@ -49,11 +49,11 @@ class _AskedServers:
         self._timer.cancel()
 
     def _doubt(self) -> None:
-        def tell(missing: frozenset[bytes]) -> None:
+        def report(missing: frozenset[bytes]) -> None:
             self._dead = missing
 
         if self._servers:
-            self._node.look_again(lambda rcl: service_servers_in(rcl, self._name), self._servers, tell)
+            self._node.check_liveness(lambda rcl: service_servers_in(rcl, self._name), self._servers, report)
         self._timer = self._node.loop.call_later(DOUBTED_AGAIN, self._doubt)
 
 
@@ -96,8 +96,8 @@ class LateService:
         """Stop to offer the service; *late*: after the responses given just before have arrived."""
         if not self._closed:
             self._closed = True
-            retire = self._node.retire_later if late else self._node.retire
-            retire(self._node.rcl.destroy_service, self._service)
+            destroy_entity = self._node.destroy_entity_later if late else self._node.destroy_entity
+            destroy_entity(self._node.rcl.destroy_service, self._service)
 
     def _hand_over(self, call: _Call, header: Any) -> None:
         def respond(response: Any) -> None:
@@ -208,5 +208,5 @@ class Ros2Client(AttemptingClient):
         self._pending.close()
         if not self._closed:
             self._closed = True
-            self._node.retire(self._node.rcl.destroy_client, self._client)
+            self._node.destroy_entity(self._node.rcl.destroy_client, self._client)
             self._node.forget(self)

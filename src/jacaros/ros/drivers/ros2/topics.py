@@ -61,7 +61,7 @@ class Ros2Publisher(TopicPublisher[Ros2Node]):
             self._publisher: Any = node.rcl.create_publisher(
                 self._class, topic, profile(qos), event_callbacks=events
             )
-        node.farewells[self._farewell] = None
+        node.shutdown_steps[self._before_shutdown] = None
 
     @property
     def subscription_count(self) -> int:
@@ -71,13 +71,13 @@ class Ros2Publisher(TopicPublisher[Ros2Node]):
     def _send(self, message: Any) -> None:
         self._publisher.publish(message)
 
-    def _farewell(self, seconds: float) -> None:
+    def _before_shutdown(self, seconds: float) -> None:
         """Wait until the reliable subscriptions have what was published, but not longer than *seconds*."""
         self._publisher.wait_for_all_acked(rclpy.duration.Duration(seconds=seconds))
 
     def _leave(self) -> None:
-        del self._node.farewells[self._farewell]
-        self._node.retire(self._node.rcl.destroy_publisher, self._publisher)
+        del self._node.shutdown_steps[self._before_shutdown]
+        self._node.destroy_entity(self._node.rcl.destroy_publisher, self._publisher)
 
     def _compare_qos(self) -> None:
         """Tell the log which subscriptions ask for more than is offered."""
@@ -89,7 +89,7 @@ class Ros2Publisher(TopicPublisher[Ros2Node]):
             if reason is not None:
                 who = listener.node or "an unknown node"
                 text = f"topic {self.topic}: {who} does not get what we publish, because {reason}"
-                self.tell(text, bytes(info.endpoint_gid))
+                self.report(text, bytes(info.endpoint_gid))
 
 
 class Ros2Subscription(TopicSubscription[Ros2Node]):
@@ -139,7 +139,7 @@ class Ros2Subscription(TopicSubscription[Ros2Node]):
         self._node.receiver.remove(self._subscription, self._destroy)
 
     def _destroy(self) -> None:
-        self._node.retire(self._node.rcl.destroy_subscription, self._subscription)
+        self._node.destroy_entity(self._node.rcl.destroy_subscription, self._subscription)
 
     def _events(self) -> Any:
         def on_loop(action: Callable[[], None]) -> Callable[[Any], None]:
@@ -157,7 +157,7 @@ class Ros2Subscription(TopicSubscription[Ros2Node]):
     def _miss_deadline(self) -> None:
         # The middleware tells it again with every deadline that passes.
         first, self._deadline_missed = not self._deadline_missed, True
-        self.tell_deadline(first)
+        self.report_deadline(first)
 
     def _compare_qos(self) -> None:
         """Find out which publisher does not fit; the event itself names one of the reasons only."""
@@ -169,9 +169,11 @@ class Ros2Subscription(TopicSubscription[Ros2Node]):
             reason = None if publisher.qos is None else incompatibility(publisher.qos, self.qos)
             if reason is not None:
                 found = True
-                self.tell_qos(reason, f" to {publisher.node or 'an unknown node'}", bytes(info.endpoint_gid))
+                self.report_qos(
+                    reason, f" to {publisher.node or 'an unknown node'}", bytes(info.endpoint_gid)
+                )
         if not found:
-            self.tell_qos("what it offers and what is asked for do not fit", " to a publisher")
+            self.report_qos("what it offers and what is asked for do not fit", " to a publisher")
 
     def _look(self) -> None:
         """See whether a silent topic carries another type: then nothing ever comes, and nobody says why."""
@@ -179,7 +181,7 @@ class Ros2Subscription(TopicSubscription[Ros2Node]):
             return
         if self._silent and self.publisher_count:
             for other, who in foreign_types(self._node, self.topic, self.type_name).items():
-                self.tell_other_type(who, other)
+                self.report_type_mismatch(who, other)
         if self._silent and self._lively >= LIVELY and time.monotonic() > self._trusted_until:
             self._doubt()
         self._lively = 0 if self._silent else self._lively + 1
@@ -190,11 +192,11 @@ class Ros2Subscription(TopicSubscription[Ros2Node]):
         """Messages came all the time and come no more: find out whether their publishers are still alive."""
         suspects = publishers_in(self._node.rcl, self.topic)
 
-        def tell(missing: frozenset[bytes]) -> None:
+        def report(missing: frozenset[bytes]) -> None:
             if self._silent:
                 self._missing = missing
             if not missing:
                 self._trusted_until = time.monotonic() + TRUSTED
 
         if suspects:
-            self._node.look_again(lambda rcl: publishers_in(rcl, self.topic), suspects, tell)
+            self._node.check_liveness(lambda rcl: publishers_in(rcl, self.topic), suspects, report)

@@ -12,7 +12,7 @@ from typing import Any
 from jacaros.clock import Timer
 from jacaros.ros.action import ActionPolicy, Execute, GoalStatus, Outcome
 from jacaros.ros.action_calling import GoalSender, GoalWire
-from jacaros.ros.action_serving import TEXT_FIELDS, OneGoalOf, ServedGoals, text_of
+from jacaros.ros.action_serving import TEXT_FIELDS, ServedGoals, SingleGoalListener, text_of
 from jacaros.ros.actionlib_client import ActionlibWire
 from jacaros.ros.actionlib_server import ActionlibServer
 from jacaros.ros.backend import Sample
@@ -22,7 +22,7 @@ from jacaros.ros.errors import CallFailed, ServerLost, ServerUnavailable
 from jacaros.ros.names import feedback_type, goal_type, result_type
 from jacaros.ros.node import Wanted
 from jacaros.ros.protocols.ros2_actions import CANCELING, ENDS, NUMBERS, STATUS, UNDER_WAY
-from jacaros.ros.protocols.rosbridge_requests import LOOK_AGAIN, Sight
+from jacaros.ros.protocols.rosbridge_requests import LOOK_AGAIN, Polled
 from jacaros.ros.qos import QoS
 
 STATUS_TYPE = "action_msgs/msg/GoalStatusArray"
@@ -55,7 +55,7 @@ class PresenceWatch:
         self._node = node
         self._sender = sender
         # Who publishes the hidden topics of actions, and who serves their services, rosapi does not tell.
-        self._sight = Sight(
+        self._polled = Polled(
             node.requests,
             "/rosapi/action_servers",
             {},
@@ -82,12 +82,12 @@ class PresenceWatch:
 
     def _look(self) -> None:
         self._timer = None
-        seen = self._node.connected and self._sight.value
+        seen = self._node.connected and self._polled.value
         if seen != self._known:
             self._known = seen
             self._sender.server_present(seen)
-        if self._sender.busy or self._sight.asking:
-            pause = LOOK_AGAIN / 4 if self._sight.asking else LOOK_AGAIN
+        if self._sender.busy or self._polled.asking:
+            pause = LOOK_AGAIN / 4 if self._polled.asking else LOOK_AGAIN
             self._timer = self._node.clock.call_later(pause, self._look)
 
 
@@ -291,7 +291,7 @@ class Ros2GoalService:
         if reason is not None:
             self._end(goal_id, self._aborted(reason))
         else:
-            self._goals.begin(goal_id, request, OneGoalOf(self, goal_id))
+            self._goals.begin(goal_id, request, SingleGoalListener(self, goal_id))
 
     def cancel(self, goal_id: str) -> None:
         """Take a request for cancelling; the bridge has agreed to it already."""

@@ -28,7 +28,7 @@ from jacaros.ros.drivers.rosbridge.topics import BridgePublisher, BridgeSubscrip
 from jacaros.ros.errors import CapabilityMissing
 from jacaros.ros.graph import GraphContents
 from jacaros.ros.node import NodeSettings, Parts
-from jacaros.ros.parameter_news import ParameterNews
+from jacaros.ros.parameter_events import ParameterEvents
 
 DEFAULT_URL = "ws://127.0.0.1:9090"
 
@@ -58,18 +58,20 @@ class RosbridgeBackend(BridgeNode):
                 "and have no parameters"
             )
         super().__init__(settings, checked_url(url or os.environ.get("ROSBRIDGE_URI") or DEFAULT_URL))
-        self._news = ParameterNews(self.subscription, read)
+        self._parameter_events = ParameterEvents(self.subscription, read)
 
     @property
     def capabilities(self) -> frozenset[str]:  # type: ignore[override]
         """What can be done with the robot's ROS."""
         # Failed handlers are told of by those services of ROS 1 alone that are not served over a bridge.
-        news = {PARAMETER_EVENTS} if self.ros_version == 2 else set()
-        return frozenset({TOPICS, SERVICES, TRANSFORMS, ACTIONS, DISCOVERY, PARAMETERS, *news})
+        events = {PARAMETER_EVENTS} if self.ros_version == 2 else set()
+        return frozenset({TOPICS, SERVICES, TRANSFORMS, ACTIONS, DISCOVERY, PARAMETERS, *events})
 
     def parameters(self, node: str | None = None) -> BridgeParameters:
         """Give the parameters of a node; our own can be used on ROS 1 alone, where the master keeps them."""
-        return BridgeParameters(self, self.node_name if node is None else self.resolve(node), self._news)
+        return BridgeParameters(
+            self, self.node_name if node is None else self.resolve(node), self._parameter_events
+        )
 
     async def contents(self, timeout: float = 5.0) -> GraphContents:
         """Look at the graph."""
@@ -80,9 +82,9 @@ class RosbridgeBackend(BridgeNode):
     def _received(self, message: dict[str, Any]) -> None:
         operation = message["op"]
         if operation == "publish":
-            feed = self.feeds.get(str(message.get("topic")))
-            if feed is not None:
-                feed.put(message.get("msg"))
+            multiplexer = self.multiplexers.get(str(message.get("topic")))
+            if multiplexer is not None:
+                multiplexer.put(message.get("msg"))
         else:  # in its turn, after the messages of topics that came before
             self.loop.call_soon(self._dispatch, operation, message)
 
@@ -123,13 +125,13 @@ class RosbridgeBackend(BridgeNode):
         if message.get("level") not in ("error", "warning") or number.startswith("call_service:"):
             return  # a failed call is answered as well
         asked, _, topic = number.rpartition(":")[0].partition(":")
-        feed = self.feeds.get(topic)
-        if asked == "subscribe" and feed is not None:
-            feed.tell(f"topic {feed.topic}: the rosbridge server refuses it: {text}")
+        multiplexer = self.multiplexers.get(topic)
+        if asked == "subscribe" and multiplexer is not None:
+            multiplexer.report(f"topic {multiplexer.topic}: the rosbridge server refuses it: {text}")
         elif number in self.goals and "nknown operation" in text:
             self.goals[number].refused(number, text)
-        elif text not in self._told and not number.startswith("send_action_goal:"):
-            self._told.add(text)
+        elif text not in self._reported and not number.startswith("send_action_goal:"):
+            self._reported.add(text)
             self.log(f"the rosbridge server says: {text}")
 
 

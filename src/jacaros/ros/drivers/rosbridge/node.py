@@ -22,7 +22,7 @@ from jacaros.ros.node import Node, NodeSettings
 from jacaros.ros.protocols.rosbridge_messages import Translator
 from jacaros.ros.protocols.rosbridge_requests import PATIENCE, Requests, greet
 from jacaros.ros.protocols.rosbridge_types import BridgeSchema, written_on_ros1
-from jacaros.ros.topics import TopicFeed
+from jacaros.ros.topics import TopicMultiplexer
 from jacaros.ros.waiting import within
 
 FIRST_LOOK = 5.0
@@ -67,7 +67,7 @@ class CalledService(Protocol):
         """Take a call."""
 
 
-class AskedServer(Protocol):
+class GoalReceiver(Protocol):
     """An action server of ours."""
 
     def goal(self, message: dict[str, Any]) -> None:
@@ -98,11 +98,11 @@ class BridgeNode(Node):
         super().__init__(settings, self.schema, Lifetime(settings.log, self._leave, threaded=True))
         self.translator = Translator(self.schema)
         self.admission = Admission(self)
-        self.feeds: dict[str, TopicFeed[Any]] = {}
+        self.multiplexers: dict[str, TopicMultiplexer[Any]] = {}
         self.goals: dict[str, Any] = {}
         # Weakly: the node keeps them, until they are closed.
         self.services: WeakValueDictionary[str, CalledService] = WeakValueDictionary()
-        self.action_servers: WeakValueDictionary[str, AskedServer] = WeakValueDictionary()
+        self.action_servers: WeakValueDictionary[str, GoalReceiver] = WeakValueDictionary()
         self.attached = False
         self.packs = False
         self._numbers = itertools.count(1)
@@ -112,7 +112,7 @@ class BridgeNode(Node):
         """The type at which rosapi went away."""
         self._checks: set[asyncio.Task[None]] = set()
         self._lost_topics: set[str] = set()
-        self._told: set[str] = set()
+        self._reported: set[str] = set()
 
     @property
     def ros_version(self) -> int:  # type: ignore[override]
@@ -208,7 +208,7 @@ class BridgeNode(Node):
             self._greeting.cancel()
         self._ended_at = ""
         self._lost_topics.clear()
-        self._told.clear()
+        self._reported.clear()
         self._greeting = self.loop.create_task(self._greet())
 
     async def _greet(self) -> None:
@@ -229,8 +229,8 @@ class BridgeNode(Node):
 
     def _join(self) -> None:
         """Tell all that we have to a server that does not know us yet."""
-        for feed in list(self.feeds.values()):
-            feed.join()
+        for multiplexer in list(self.multiplexers.values()):
+            multiplexer.join()
         for member in list(self.members):
             join = getattr(member, "join", None)
             if join is not None:
@@ -241,8 +241,8 @@ class BridgeNode(Node):
         if self._greeting is not None:
             self._greeting.cancel()
         self.requests.fail_all()
-        for feed in list(self.feeds.values()):
-            feed.lost()
+        for multiplexer in list(self.multiplexers.values()):
+            multiplexer.lost()
         for member in list(self.members):
             lost = getattr(member, "lost", None)
             if lost is not None:

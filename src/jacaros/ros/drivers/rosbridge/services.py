@@ -20,10 +20,10 @@ from jacaros.ros.errors import (
 from jacaros.ros.graph import Endpoint, GraphContents, TopicInfo
 from jacaros.ros.names import action_type, message_type, request_type, response_type, service_type
 from jacaros.ros.parameter import Declaration, ParameterValue
-from jacaros.ros.parameter_news import ParameterNews
+from jacaros.ros.parameter_events import ParameterEvents
 from jacaros.ros.parameter_services import ParameterServices
 from jacaros.ros.parameter_store import checked_value
-from jacaros.ros.protocols.rosbridge_requests import Sight
+from jacaros.ros.protocols.rosbridge_requests import Polled
 from jacaros.ros.serving import Responder
 from jacaros.ros.waiting import within
 
@@ -42,7 +42,7 @@ class BridgeClient(AttemptingClient):
     def __init__(self, node: BridgeNode, name: str, type_name: str) -> None:
         node.schema.service(type_name)
         super().__init__(node, name, type_name)  # pyright: ignore[reportArgumentType]
-        self._offered = Sight(
+        self._offered = Polled(
             node.requests, "/rosapi/service_type", {"service": name}, lambda seen: bool(seen["type"]), False
         )
 
@@ -249,13 +249,13 @@ class BridgeParameters:
     Args:
         backend: asks.
         node: absolute name of the node.
-        news: tells of changes on ROS 2.
+        events: tells of changes on ROS 2.
     """
 
-    def __init__(self, backend: BridgeNode, node: str, news: ParameterNews) -> None:
+    def __init__(self, backend: BridgeNode, node: str, events: ParameterEvents) -> None:
         self.node = node
         self._backend = backend
-        self._news = news
+        self._parameter_events = events
         self._of_node = NodeParameters(backend, node)
         self._of_master = MasterParameters(backend, node)
 
@@ -284,7 +284,7 @@ class BridgeParameters:
         if self._backend.ros_version == 1:
             self._missing(f"news of changed parameters of {self.node}")
         self._require_other()
-        return self._news.listen(self.node, callback)
+        return self._parameter_events.listen(self.node, callback)
 
     @property
     def _parameters(self) -> "NodeParameters | MasterParameters":

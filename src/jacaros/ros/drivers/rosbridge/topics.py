@@ -8,9 +8,9 @@ from jacaros.ros.backend import Sample, TopicTrouble
 from jacaros.ros.drivers.rosbridge.node import BridgeNode
 from jacaros.ros.node import Wanted
 from jacaros.ros.orphans import Orphans
-from jacaros.ros.protocols.rosbridge_requests import Sight
+from jacaros.ros.protocols.rosbridge_requests import Polled
 from jacaros.ros.qos import DEFAULT_QOS, QoS
-from jacaros.ros.topics import SharedSubscription, TopicFeed, TopicPublisher
+from jacaros.ros.topics import SharedSubscription, TopicMultiplexer, TopicPublisher
 
 WAITING = 300
 """Messages of each of an action's topics that may wait for the loop: none is dropped, so their order stays."""
@@ -30,7 +30,7 @@ class BridgePublisher(TopicPublisher[BridgeNode]):
         super().__init__(node, topic, type_name, qos)
         self._droppable = droppable
         self._kept: deque[Any] = deque(maxlen=qos.depth if self.latched else 0)
-        self._subscribers = Sight(
+        self._subscribers = Polled(
             node.requests, "/rosapi/subscribers", {"topic": topic}, lambda seen: len(seen["subscribers"]), 0
         )
         self._number = node.number("advertise", topic)
@@ -65,7 +65,7 @@ class BridgePublisher(TopicPublisher[BridgeNode]):
 
     def refused(self, text: str) -> None:
         """The server does not publish for us."""
-        self.tell(f"what is published there goes nowhere: {text}")
+        self.report(f"what is published there goes nowhere: {text}")
 
     def _send(self, message: Any) -> None:
         self._kept.append(message)
@@ -84,7 +84,7 @@ class BridgePublisher(TopicPublisher[BridgeNode]):
         self._node.send({"op": "unadvertise", "id": self._number, "topic": self.topic})
 
 
-class BridgeFeed(TopicFeed["BridgeSubscription"]):
+class BridgeMultiplexer(TopicMultiplexer["BridgeSubscription"]):
     """The process's one subscription of a topic at the server.
 
     The server sends a topic's messages once to each client, however often it subscribes; so what a late subscription must
@@ -97,7 +97,7 @@ class BridgeFeed(TopicFeed["BridgeSubscription"]):
         self._node = node
         self._last: Any = None
         self._depth = 0
-        self._publishers = Sight(
+        self._publishers = Polled(
             node.requests, "/rosapi/publishers", {"topic": topic}, lambda seen: len(seen["publishers"]), 0
         )
 
@@ -152,7 +152,7 @@ class BridgeFeed(TopicFeed["BridgeSubscription"]):
 
     def refused(self, text: str) -> None:
         """The server does not give us the topic."""
-        self.tell(text)
+        self.report(text)
 
     def _leave(self) -> None:
         self._node.admission.forget(self)
@@ -169,7 +169,7 @@ class BridgeSubscription(SharedSubscription[BridgeNode]):
     """
 
     def __init__(self, node: BridgeNode, wanted: Wanted, waiting: int | None = None) -> None:
-        super().__init__(node, wanted, node.feeds, BridgeFeed)
+        super().__init__(node, wanted, node.multiplexers, BridgeMultiplexer)
         if waiting is not None:
             self._waiting = deque(self._waiting, waiting)
 
@@ -179,7 +179,7 @@ class BridgeSubscription(SharedSubscription[BridgeNode]):
             decoded = self._node.translator.decode(self.type_name, message)
         except ValueError as problem:
             text = f"topic {self.topic}: a message is no {self.type_name}: {problem}"
-            self.tell(TopicTrouble.OTHER_TYPE, text, text)
+            self.report(TopicTrouble.OTHER_TYPE, text, text)
         else:
             super().deliver(decoded)
             self._node.delivered()

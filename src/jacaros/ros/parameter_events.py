@@ -12,7 +12,7 @@ EVENTS, EVENT_TYPE, EVENT_QUALITY = "/parameter_events", "rcl_interfaces/msg/Par
 Listener = Callable[[Mapping[str, ParameterValue]], None]
 
 
-class ParameterNews:
+class ParameterEvents:
     """Tells of changed parameters of all nodes, from the one topic; joined at the first use.
 
     Args:

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from jacaros.ros.protocols.rosbridge_requests import Requests, Sight
+from jacaros.ros.protocols.rosbridge_requests import Polled, Requests
 
 
 class Server:
@@ -11,7 +11,9 @@ class Server:
     def __init__(self) -> None:
         self.asked: list[str] = []
         self.requests = Requests(self._take, lambda question, seconds: None)
-        self.sight = Sight(self.requests, "/rosapi/subscribers", {}, lambda seen: len(seen["subscribers"]), 0)
+        self.polled = Polled(
+            self.requests, "/rosapi/subscribers", {}, lambda seen: len(seen["subscribers"]), 0
+        )
 
     def _take(self, operation: dict[str, Any]) -> bool:
         self.asked.append(operation["id"])
@@ -23,21 +25,21 @@ class Server:
 
 def test_what_was_seen_before_a_connection_was_lost_is_forgotten_and_asked_for_at_once() -> None:
     server = Server()
-    assert server.sight.value == 0
+    assert server.polled.value == 0
     server.answer("/robot")
-    assert server.sight.value == 1
+    assert server.polled.value == 1
     server.requests.fail_all()
-    assert server.sight.value == 0
+    assert server.polled.value == 0
     assert len(server.asked) == 2
     server.answer("/robot", "/other")
-    assert server.sight.value == 2
+    assert server.polled.value == 2
 
 
 def test_an_answer_that_the_connection_took_with_it_is_asked_for_again_at_once() -> None:
     server = Server()
-    assert server.sight.value == 0
+    assert server.polled.value == 0
     server.requests.fail_all()
-    assert server.sight.value == 0
+    assert server.polled.value == 0
     assert len(server.asked) == 2
-    assert server.sight.value == 0
+    assert server.polled.value == 0
     assert len(server.asked) == 2

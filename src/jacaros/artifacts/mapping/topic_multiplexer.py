@@ -26,7 +26,7 @@ from jacaros.trace import Cause
 from jacaros.yaml_nodes import Problem
 
 
-class Topic:
+class TopicMultiplexer:
     """One topic, however many properties come from it.
 
     Args:
@@ -34,13 +34,18 @@ class Topic:
         written: the topic.
         type_name: of its messages; None: to be found.
         qos: what the mapping asks for.
-        feeds: those that take its messages.
+        updaters: those that take its messages.
     """
 
     def __init__(
-        self, host: Host, written: Written, type_name: Written | None, qos: QoS | None, feeds: "list[Feed]"
+        self,
+        host: Host,
+        written: Written,
+        type_name: Written | None,
+        qos: QoS | None,
+        updaters: "list[Updater]",
     ) -> None:
-        self.feeds = feeds
+        self.updaters = updaters
         self._host, self._written, self._type_name = host, written, type_name
         self._qos = qos if qos is not None else SENSOR_DATA
         self._stamps: Stamps | None = None
@@ -55,35 +60,39 @@ class Topic:
     def _listen(self, type_name: str) -> None:
         host, written = self._host, self._written
         problems: list[Problem] = []
-        for feed in self.feeds:
-            feed.prepare(type_name, problems)
+        for updater in self.updaters:
+            updater.prepare(type_name, problems)
         if problems:
-            host.tell(problems)
-        self.feeds = [feed for feed in self.feeds if feed.ready]
-        if not self.feeds:
+            host.report(problems)
+        self.updaters = [updater for updater in self.updaters if updater.ready]
+        if not self.updaters:
             return
         kept = self._qos.durability == "transient_local"  # such messages are old when they come, and right
-        if not kept and "header" in host.ros.fields(type_name) and any(feed.is_state for feed in self.feeds):
+        if (
+            not kept
+            and "header" in host.ros.fields(type_name)
+            and any(updater.is_state for updater in self.updaters)
+        ):
             topic = host.ros.resolve(host.robot_topic(written.text))
             self._stamps = Stamps(host.faults_at(topic), host.clock)
-        tell = host.on_topic_event(written.text, written.place)
+        report = host.on_topic_event(written.text, written.place)
         try:
-            host.subscription(written.text, type_name, self._take, self._qos, tell)
+            host.subscription(written.text, type_name, self._take, self._qos, report)
         except CapabilityMissing as error:
             host.fail(f"{host.mapping.where(written.place)}: {error}", "ros_error", host.name)
 
     def _take(self, sample: Sample) -> None:
         old = self._stamps is not None and not self._stamps.accept(_stamp_of(sample.message), sample.stamp)
-        for feed in self.feeds:
-            if not (old and feed.is_state):
-                feed.take(sample)
+        for updater in self.updaters:
+            if not (old and updater.is_state):
+                updater.take(sample)
 
 
 def _stamp_of(message: Any) -> float:
     return to_seconds(message.header.stamp)
 
 
-class Feed:
+class Updater:
     """A property or signal from messages.
 
     Args:
@@ -217,13 +226,15 @@ class Feed:
     def _refuse(self, error: Unshowable, topic: str) -> None:
         """Tell that a message was left out: people once, with the line; agents by a signal."""
         part, host = self.part, self._host
-        host.tell_once((part.name, error.path), part.place, f"{part.name} is not shown: {error}", error.help)
+        host.report_once(
+            (part.name, error.path), part.place, f"{part.name} is not shown: {error}", error.help
+        )
         if self._faults is None:
 
-            def tell(why: Structure, text: str) -> None:
-                host.start(host.tell_bad_message, topic, why)
+            def report(why: Structure, text: str) -> None:
+                host.start(host.report_bad_message, topic, why)
 
-            self._faults = Faults(topic, tell)
+            self._faults = Faults(topic, report)
         self._faults.add(Structure(error.functor, (error.path,)), str(error))
 
 
@@ -234,9 +245,9 @@ def _stand(view: RangeOfView, values: tuple[object, ...]) -> None:
         view.stand(float(x), float(y))
 
 
-def feedback_feed(host: Host, part: TopicPart) -> Feed:
+def feedback_updater(host: Host, part: TopicPart) -> Updater:
     """A property from the feedback of an action: no goal, no property."""
-    return Feed(host, dataclasses.replace(part, initial=None))
+    return Updater(host, dataclasses.replace(part, initial=None))
 
 
 class Elements:

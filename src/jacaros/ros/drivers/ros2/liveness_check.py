@@ -16,7 +16,7 @@ import rclpy.signals  # type: ignore[import-not-found]
 
 from jacaros.ros.handoff import in_thread
 
-NODE = "_jacaros_second_look"
+NODE = "_jacaros_liveness_check"
 """Tools do not show nodes that begin with an underscore."""
 MISSED_AFTER = 4.0
 """Seconds after which who was not found is called missing; the living announce themselves every 3 s, and when met."""
@@ -33,15 +33,15 @@ Find = Callable[[Any], frozenset[bytes]]
 
 class _Question:
     def __init__(
-        self, find: Find, suspects: frozenset[bytes], tell: Callable[[frozenset[bytes]], None]
+        self, find: Find, suspects: frozenset[bytes], report: Callable[[frozenset[bytes]], None]
     ) -> None:
         self.find = find
         self.suspects = suspects
-        self.tell = tell
+        self.report = report
         self.missing: frozenset[bytes] = frozenset()
 
 
-class SecondLook:
+class LivenessCheck:
     """One participant that has joined just now, and what is asked of it; on the loop.
 
     Args:
@@ -51,7 +51,7 @@ class SecondLook:
     """
 
     def __init__(
-        self, loop: asyncio.AbstractEventLoop, domain_id: int | None, over: Callable[["SecondLook"], None]
+        self, loop: asyncio.AbstractEventLoop, domain_id: int | None, over: Callable[["LivenessCheck"], None]
     ) -> None:
         self._loop = loop
         self._domain_id = domain_id
@@ -62,23 +62,23 @@ class SecondLook:
         self._left = False
         self._context: Any = None
         self._rcl: Any = None
-        in_thread(loop, self._join, "second look").add_done_callback(self._joined)
+        in_thread(loop, self._join, "liveness check").add_done_callback(self._joined)
 
     @property
     def fresh(self) -> bool:
         """Whether it began so lately that who is found was alive just now."""
         return time.monotonic() < self._began + FRESH
 
-    def ask(self, find: Find, suspects: frozenset[bytes], tell: Callable[[frozenset[bytes]], None]) -> None:
+    def ask(self, find: Find, suspects: frozenset[bytes], report: Callable[[frozenset[bytes]], None]) -> None:
         """Find out who of the *suspects* is alive.
 
         Args:
             find: see `Find`.
             suspects: whom to look for.
-            tell: called with those that are missing: none as soon as all were found, else after `MISSED_AFTER`, and
+            report: called with those that are missing: none as soon as all were found, else after `MISSED_AFTER`, and
                 again if some are found after that.
         """
-        self._questions.append(_Question(find, suspects, tell))
+        self._questions.append(_Question(find, suspects, report))
 
     def leave(self) -> None:
         """Leave the graph; on any thread."""
@@ -120,7 +120,7 @@ class SecondLook:
             missing = question.suspects - self._found(question)
             if not missing or (patience > MISSED_AFTER and missing != question.missing):
                 question.missing = missing
-                question.tell(missing)
+                question.report(missing)
             if not missing:
                 self._questions.remove(question)
         if patience > GIVEN_UP_AFTER or not self._questions:
@@ -134,4 +134,4 @@ class SecondLook:
 
     def _end(self) -> None:
         self._over(self)
-        in_thread(self._loop, self.leave, "second look")
+        in_thread(self._loop, self.leave, "liveness check")
