@@ -60,7 +60,7 @@ def test_a_node_reads_and_changes_its_own(graph: Any, pair: Pair, name: str) -> 
 
 
 @pytest.mark.needs("own parameters")
-def test_names_are_told(graph: Any, pair: Pair, name: str) -> None:
+def test_names_are_reported(graph: Any, pair: Pair, name: str) -> None:
     left, right = pair
     for ending in ("b", "a"):
         having(right, f"{name}_{ending}", 1)
@@ -70,7 +70,7 @@ def test_names_are_told(graph: Any, pair: Pair, name: str) -> None:
 
 
 @pytest.mark.needs("own parameters")
-def test_an_unknown_parameter_is_told(graph: Any, pair: Pair, name: str) -> None:
+def test_an_unknown_parameter_is_reported(graph: Any, pair: Pair, name: str) -> None:
     left, right = pair
     with pytest.raises(ParameterUnknown, match=f"{right.node_name()}.*{name}"):
         left.get_parameter(name, right.node_name(), timeout=60)
@@ -250,7 +250,7 @@ def test_given_values_take_the_place_of_defaults(graph: Any, pair: Pair, name: s
     assert tuned.declare(f"{name}_a", 0.5) == 0.25
 
 
-def test_changes_are_told(graph: Any, pair: Pair, name: str) -> None:
+def test_changes_are_reported(graph: Any, pair: Pair, name: str) -> None:
     left, right = pair
     if "parameter events" not in left.capabilities():
         with pytest.raises(CapabilityMissing, match="change"):
@@ -279,7 +279,7 @@ def test_changes_are_told(graph: Any, pair: Pair, name: str) -> None:
 
 
 @pytest.mark.needs("own parameters")
-def test_only_the_changes_of_the_node_are_told(graph: Any, pair: Pair, name: str) -> None:
+def test_only_the_changes_of_the_node_are_reported(graph: Any, pair: Pair, name: str) -> None:
     left, right = pair
     if "parameter events" not in left.capabilities():
         with pytest.raises(CapabilityMissing, match="change"):

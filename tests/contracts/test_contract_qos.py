@@ -18,7 +18,7 @@ def troubles(peer: Any, key: str) -> list[str]:
 
 @pytest.mark.needs("events")
 @pytest.mark.parametrize("first", ["publisher", "subscription"])
-def test_a_topic_of_another_type_is_told(graph: Any, pair: Pair, topic: str, first: str) -> None:
+def test_a_topic_of_another_type_is_reported(graph: Any, pair: Pair, topic: str, first: str) -> None:
     left, right = pair
     topic = f"{topic}/{first}"
     if first == "publisher":
@@ -39,7 +39,7 @@ def test_a_topic_of_another_type_is_told(graph: Any, pair: Pair, topic: str, fir
 
 
 @pytest.mark.needs("events")
-def test_trouble_that_nobody_wants_to_hear_goes_to_the_log(graph: Any, pair: Pair, topic: str) -> None:
+def test_problems_without_a_callback_are_logged(graph: Any, pair: Pair, topic: str) -> None:
     left, right = pair
     left.advertise(topic, INT)
     right.subscribe(topic, TEXT)
@@ -51,7 +51,9 @@ def test_trouble_that_nobody_wants_to_hear_goes_to_the_log(graph: Any, pair: Pai
 
 @pytest.mark.needs("events")
 @pytest.mark.parametrize("weak", [{"reliability": "best_effort"}, {"durability": "volatile"}])
-def test_an_offer_that_is_too_weak_is_told(graph: Any, pair: Pair, topic: str, weak: dict[str, str]) -> None:
+def test_an_offer_that_is_too_weak_is_reported(
+    graph: Any, pair: Pair, topic: str, weak: dict[str, str]
+) -> None:
     left, right = pair
     [word] = weak
     topic = f"{topic}/{word}"
@@ -71,7 +73,7 @@ def test_an_offer_that_is_too_weak_is_told(graph: Any, pair: Pair, topic: str, w
 
 
 @pytest.mark.needs("deadlines", "events")
-def test_a_missed_deadline_is_told(graph: Any, pair: Pair, topic: str) -> None:
+def test_a_missed_deadline_is_reported(graph: Any, pair: Pair, topic: str) -> None:
     left, right = pair
     if "deadlines" not in left.capabilities():
         with pytest.raises(CapabilityMissing, match="deadline"):
@@ -106,7 +108,7 @@ def test_a_promise_longer_than_the_wish_is_too_weak(graph: Any, pair: Pair, topi
 
 
 @pytest.mark.needs("events")
-def test_where_all_is_well_nothing_is_told(graph: Any, pair: Pair, topic: str) -> None:
+def test_nothing_is_logged_without_a_problem(graph: Any, pair: Pair, topic: str) -> None:
     left, right = pair
     left.advertise(topic, INT)
     right.subscribe(topic, INT, events=True)

@@ -85,7 +85,7 @@ def test_a_genuine_server_refuses_and_is_deaf_and_recalls(
 ) -> None:
     left, right = pair
     with running(graph, "crowd"):
-        with pytest.raises(GoalRejected, match="refused the goal: not two"):
+        with pytest.raises(GoalRejected, match="rejected the goal: not two"):
             left.send_goal("two", "/native/count", {"target": 2}, timeout=60)
         left.send_goal("three", "/native/count", {"target": 3}, timeout=60)
         # A server that has been asked is PREEMPTING at once, whatever its code does.
@@ -122,7 +122,7 @@ def test_a_genuine_server_that_freezes_or_dies_is_lost(graph: Any, pair: Pair) -
     left.close_action_client("/native/count")
 
 
-def test_a_genuine_server_started_again_at_once_does_not_know_our_goal(graph: Any, pair: Pair) -> None:
+def test_a_native_server_restarted_immediately_does_not_know_our_goal(graph: Any, pair: Pair) -> None:
     left, _ = pair
     with running(graph, "serve") as server:
         left.send_goal("old", "/native/count", {"target": 1000, "period": 0.02}, timeout=60)
@@ -198,7 +198,7 @@ def test_rosparam_and_we_see_the_same_parameters(graph: Any, pair: Pair, native:
     right.unwatch_parameters("left")
 
 
-def test_another_version_of_a_definition_is_told(graph: Any, pair: Pair, topic: str) -> None:
+def test_another_version_of_a_definition_is_reported(graph: Any, pair: Pair, topic: str) -> None:
     left, _ = pair
     left.subscribe(topic, "std_msgs/msg/Int32", events=True)
     with running(graph, "other_definition", topic):

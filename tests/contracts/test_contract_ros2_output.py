@@ -32,9 +32,7 @@ run(main, WallClock())
 """
 
 
-def test_complaints_of_the_middleware_go_to_standard_error(
-    tmp_path: Path, request: pytest.FixtureRequest
-) -> None:
+def test_logs_of_the_middleware_go_to_standard_error(tmp_path: Path, request: pytest.FixtureRequest) -> None:
     if not is_wanted("ros2", request.config):
         pytest.skip("no ROS 2 here; see test_contract_presence")
     done = subprocess.run(

@@ -101,7 +101,7 @@ def test_arrays_of_all_kinds_arrive_as_they_were_sent(graph: Any, pair: Pair, to
     assert right.received(f"{topic}/t5")[0]["values"] == [{"key": "k", "value": "v"}]
 
 
-def test_a_sample_tells_topic_time_and_cause(graph: Any, pair: Pair, topic: str) -> None:
+def test_a_sample_has_topic_time_and_cause(graph: Any, pair: Pair, topic: str) -> None:
     left, right = connected(graph, pair, topic, "std_msgs/msg/Bool")
     left.publish(topic, {"data": True})
     graph.wait_until(lambda: right.received(topic), "the message arrives")
@@ -194,7 +194,7 @@ def test_a_slow_receiver_keeps_the_newest_messages(graph: Any, pair: Pair, topic
         assert numbers == [195, 196, 197, 198, 199]
 
 
-def test_a_closed_subscription_receives_no_more(graph: Any, pair: Pair, topic: str) -> None:
+def test_a_closed_subscription_receives_nothing(graph: Any, pair: Pair, topic: str) -> None:
     left, right = connected(graph, pair, topic, "std_msgs/msg/Int32")
     right.subscribe(topic, "std_msgs/msg/Int32", key=topic + "#other")
     right.unsubscribe(topic)
@@ -224,7 +224,7 @@ def test_a_closed_publisher_is_gone(graph: Any, pair: Pair, topic: str) -> None:
     graph.wait_until(lambda: right.publisher_count(topic) == 0, "the subscription notices")
 
 
-def test_a_node_hears_itself(graph: Any, pair: Pair, topic: str) -> None:
+def test_a_node_receives_its_own_messages(graph: Any, pair: Pair, topic: str) -> None:
     left, _ = pair
     connected(graph, (left, left), topic, "std_msgs/msg/Int32")
     left.publish(topic, {"data": 3})

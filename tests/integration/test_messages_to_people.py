@@ -352,7 +352,7 @@ def test_a_mistake_in_a_world_file(project: Project) -> None:
     )
 
 
-def test_commands_that_nobody_hears_are_told_once(project: Project) -> None:
+def test_commands_without_a_subscriber_are_logged_once(project: Project) -> None:
     project.write(
         "robot.yaml",
         """\
@@ -371,7 +371,7 @@ def test_commands_that_nobody_hears_are_told_once(project: Project) -> None:
     )
     assert (code, output) == (0, "[hasty] done\n")
     assert errors == (
-        "[robot] robot.yaml:3:14: no subscriber on /cmd_velo; publishing anyway\n"
+        "[robot] robot.yaml:3:14: no subscriber on topic /cmd_velo; publishing anyway\n"
         "    3 |     publish: cmd_velo\n"
         "                     ^\n"
         "  = help: start the node that subscribes to it; `jacaros ros list` shows the topics of the graph\n"

@@ -48,7 +48,7 @@ def test_sigterm_stops_the_robot(
     assert stood_at <= STANDING
 
 
-def test_sigkill_stops_the_robot_and_a_new_process_goes_on_from_there(
+def test_sigkill_stops_the_robot_and_a_new_process_continues(
     world: WorldProcess, run_agents: Callable[..., Agents]
 ) -> None:
     agents = run_agents("far.asl")

@@ -8,7 +8,7 @@ from processes import WorldProcess, wait_until
 TYPE = "geometry_msgs/msg/PoseWithCovarianceStamped"
 
 
-def test_the_pose_is_latched_and_follows_what_the_robot_is_told(
+def test_the_pose_is_latched_and_follows_initial_poses(
     world: WorldProcess, peer: Callable[[str], ProcessPeer]
 ) -> None:
     first = peer("first")

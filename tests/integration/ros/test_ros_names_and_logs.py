@@ -59,9 +59,9 @@ def test_time_is_that_of_the_simulator(
     kind: str, run_agents: Callable[..., Agents], peer: Callable[[str], ProcessPeer]
 ) -> None:
     agents = run_agents("minute.asl", "--clock", "ros", "--node-name", "follower")
-    agents.until_error("[ros] waiting for the time on /clock")
+    agents.until_error("[ros] waiting for /clock")
     agents.until_line("[minute] waits")
-    agents.until_error("nobody publishes /clock")
+    agents.until_error("no publisher on /clock")
     simulator = peer("simulator")
     if kind == "ros2":
         assert simulator.get_parameter("use_sim_time", "/follower", timeout=20) is True
@@ -77,11 +77,11 @@ def test_time_is_that_of_the_simulator(
 
         wait_until(shown, f"{text!r} at {time:g} s")
 
-    show(100.0, "/clock is there: it is 100.000 s")
-    show(106.0, "/clock stands still at 106.000 s")
+    show(100.0, "/clock found: the time is 100.000 s")
+    show(106.0, "/clock stopped at 106.000 s")
     show(3.0, "jumped back by 103.000 s")
     agents.until_line("[minute] jumped 103")
-    show(6.0, "/clock stands still at 6.000 s")
+    show(6.0, "/clock stopped at 6.000 s")
     assert not any("has waited" in line for line in agents.lines), "9 of 10 seconds have passed"
     wait_until(lambda: simulator.publish("/clock", {"clock": 7.5}) or agents.over, "the tenth second")
     assert agents.end() == 0
@@ -89,7 +89,7 @@ def test_time_is_that_of_the_simulator(
 
 
 @pytest.mark.only("ros1", "ros2")
-def test_who_does_not_follow_a_simulator_is_told_once(
+def test_a_node_without_simulated_time_is_logged_once(
     run_agents: Callable[..., Agents], peer: Callable[[str], ProcessPeer]
 ) -> None:
     agents = run_agents("minute.asl")

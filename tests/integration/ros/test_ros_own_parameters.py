@@ -49,7 +49,7 @@ def test_what_is_given_at_the_start_is_followed(
     assert agents.end() == 0
 
 
-def test_a_value_that_does_not_fit_is_told(kind: str, run_agents: Callable[..., Agents]) -> None:
+def test_a_value_that_does_not_match_is_reported(kind: str, run_agents: Callable[..., Agents]) -> None:
     given = ["_speed:=fast"] if kind == "ros1" else ["--ros-args", "-p", "speed:=1"]
     agents = run_agents("tuned.asl", "--mapping", MAPPING, *given)
     if kind == "ros1":  # the master takes anything

@@ -159,11 +159,11 @@ def test_a_house_may_have_more_rooms() -> None:
 
 
 WRONG_ROOMS: list[tuple[object, str]] = [
-    (3, "option more_rooms(3) wants a list such as"),
-    ([Structure("room", ("study",))], "wants rooms such as"),
+    (3, "option more_rooms(3): expected a list such as"),
+    ([Structure("room", ("study",))], "expected rooms such as"),
     (
         [Structure("room", ("study", [Structure("sweep", ("Floor",))]))],
-        "of the kinds vacuum, mop, scrub, not sweep",
+        "of the kinds vacuum, mop, scrub, found sweep",
     ),
 ]
 

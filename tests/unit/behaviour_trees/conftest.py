@@ -116,7 +116,7 @@ def on_rails():
 
 @pytest.fixture
 def reactive():
-    """A selector or sequence that begins with its first child at every tick."""
+    """A selector or sequence with the prefix `its` first child at every tick."""
 
     def make(kind, *children):
         composite = {"selector": Selector, "sequence": Sequence}[kind]

@@ -57,7 +57,7 @@ def test_a_type_that_is_not_known_and_not_that_of_the_topic_is_told_once(
         ),
         (
             "properties:\n  pose: {topic: odom, qos: latched}\n",
-            "no messages of /odom would arrive from /world: the subscription asks for transient_local",
+            "no messages of /odom would arrive from /world: the subscription requests transient_local",
             "write qos: default",
         ),
         (

@@ -124,7 +124,7 @@ def test_a_service_a_node_and_a_type_are_shown(capsys: pytest.CaptureFixture[str
         (["show", "/odm"], 2, "unknown name /odm; did you mean /odom?"),
         (["show", "/robot_1/odom"], 2, "did you mean /odom?"),
         (["show", "/nonsense"], 2, "`jacaros ros list` shows all names"),
-        (["show", "/o dom"], 2, "'/o dom' is no ROS name"),
+        (["show", "/o dom"], 2, "'/o dom' is not a ROS name"),
         (["show", "nonsense_msgs/Thing"], 1, "nonsense_msgs"),
         (["list", "--domain-id", "3"], 2, "--domain-id goes with --ros ros2"),
         (["list", "--master", "http://robot.lab.example:11311"], 2, "--master goes with --ros ros1"),

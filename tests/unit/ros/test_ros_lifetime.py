@@ -134,7 +134,7 @@ def test_an_ignored_signal_stays_ignored() -> None:
     assert done.stdout.decode().splitlines()[0] == "True"
 
 
-def test_a_system_without_sighup_is_no_obstacle() -> None:
+def test_it_works_on_a_system_without_sighup() -> None:
     code = "import signal; del signal.SIGHUP; import jacaros.mas.launch, jacaros.ros.lifetime"
     subprocess.run([sys.executable, "-c", code], timeout=60, check=True)
 
@@ -247,7 +247,7 @@ def test_a_closed_node_leaves_no_thread_behind() -> None:
 
 
 @pytest.mark.usefixtures("process")
-def test_a_thread_stops_only_what_the_loop_was_told_to_stop() -> None:
+def test_a_thread_stops_only_what_the_loop_should_have_stopped() -> None:
     first, second = Lifetime(print, threaded=True), Lifetime(print, threaded=True)
     first._reported = True
     first.stop_if_late(0.0)

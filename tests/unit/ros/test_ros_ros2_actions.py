@@ -52,7 +52,7 @@ def test_a_silent_server_that_answers_is_not_suspected(watched: Watched) -> None
     assert 10 < watched.probes < 25
 
 
-def test_a_server_that_tells_is_hardly_asked(watched: Watched) -> None:
+def test_a_server_that_reports_is_rarely_polled(watched: Watched) -> None:
     watched.telling = True
     watched.live(20.0)
     assert (watched.told, watched.probes) == ([], 1)
@@ -92,7 +92,7 @@ def test_a_suspicion_that_was_wrong_is_taken_back_and_not_repeated(watched: Watc
     assert watched.told == [False, True]
 
 
-def test_another_server_is_judged_anew(watched: Watched) -> None:
+def test_another_server_starts_without_suspicion(watched: Watched) -> None:
     watched.live(3.0)
     watched.detector.reset()
     watched.answering = False
@@ -100,7 +100,7 @@ def test_another_server_is_judged_anew(watched: Watched) -> None:
     assert watched.told == []
 
 
-def test_a_silent_server_of_which_nothing_is_known_is_looked_for_with_fresh_eyes(watched: Watched) -> None:
+def test_a_silent_server_without_history_gets_a_liveness_check(watched: Watched) -> None:
     watched.answering = False
     watched.live(2.0)
     assert (watched.looks, watched.told) == (1, [])
@@ -120,7 +120,7 @@ def test_a_server_that_was_found_is_believed_for_a_while(watched: Watched) -> No
     assert watched.looks == 2
 
 
-def test_a_sign_that_comes_during_the_look_outweighs_it(watched: Watched) -> None:
+def test_a_message_during_the_liveness_check_overrides_it(watched: Watched) -> None:
     watched.answering = False
     watched.live(2.0)
     watched.detector.heard()
@@ -128,7 +128,7 @@ def test_a_sign_that_comes_during_the_look_outweighs_it(watched: Watched) -> Non
     assert watched.told == []
 
 
-def test_a_server_that_answers_is_not_looked_for_before_it_is_silent(watched: Watched) -> None:
+def test_an_answering_server_is_not_checked_before_it_is_silent(watched: Watched) -> None:
     watched.live(20.0)
     assert watched.looks == 0
     watched.answering = False
@@ -138,7 +138,7 @@ def test_a_server_that_answers_is_not_looked_for_before_it_is_silent(watched: Wa
     assert watched.told == [False, True]
 
 
-def test_a_server_that_does_not_say_whether_it_accepts_is_looked_for(watched: Watched) -> None:
+def test_a_server_that_neither_accepts_nor_rejects_is_checked(watched: Watched) -> None:
     watched.answering = False
     watched.live(0.9, under_way=False, waiting=True)
     assert watched.looks == 0

@@ -56,7 +56,7 @@ def test_the_manifest_names_what_the_definitions_need(tmp_path: Path) -> None:
     assert manifest.findtext("member_of_group") == "rosidl_interface_packages"
 
 
-def test_references_between_look_alikes_stay_inside(tmp_path: Path) -> None:
+def test_references_between_substitutes_stay_inside(tmp_path: Path) -> None:
     put(tmp_path / "in", "a_msgs/msg/Part.msg", "uint8 kind\n")
     put(
         tmp_path / "in",
@@ -68,7 +68,7 @@ def test_references_between_look_alikes_stay_inside(tmp_path: Path) -> None:
     assert "DEPENDENCIES std_msgs\n" in (package / "CMakeLists.txt").read_text()
 
 
-def test_constants_that_an_earlier_part_has_are_left_out(tmp_path: Path) -> None:
+def test_constants_of_an_earlier_part_are_omitted(tmp_path: Path) -> None:
     put(
         tmp_path / "in",
         "a_msgs/action/Do.action",
@@ -107,7 +107,7 @@ def test_what_is_written_replaces_what_was_there(tmp_path: Path) -> None:
     assert not (write_package(tmp_path) / "msg/Old.msg").exists()
 
 
-def test_look_alikes_know_what_they_look_like() -> None:
+def test_substitutes_know_their_originals() -> None:
     assert origin("action", "NavigateToPose") == "nav2_msgs"
     assert origin("srv", "AddTwoInts") == "example_interfaces"
     assert origin("action", "Count") is None

@@ -23,7 +23,7 @@ class Server:
         self.requests.answered({"id": self.asked[-1], "values": {"subscribers": list(subscribers)}})
 
 
-def test_what_was_seen_before_a_connection_was_lost_is_forgotten_and_asked_for_at_once() -> None:
+def test_values_of_a_lost_connection_are_forgotten_and_requested_immediately() -> None:
     server = Server()
     assert server.polled.value == 0
     server.answer("/robot")
@@ -35,7 +35,7 @@ def test_what_was_seen_before_a_connection_was_lost_is_forgotten_and_asked_for_a
     assert server.polled.value == 2
 
 
-def test_an_answer_that_the_connection_took_with_it_is_asked_for_again_at_once() -> None:
+def test_an_answer_lost_with_the_connection_is_requested_again_immediately() -> None:
     server = Server()
     assert server.polled.value == 0
     server.requests.fail_all()

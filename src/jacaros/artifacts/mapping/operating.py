@@ -35,23 +35,23 @@ from jacaros.yaml_nodes import Problem
 
 
 class Runner(Protocol):
-    """Carries out one operation."""
+    """Runs one operation."""
 
     async def run(self, inputs: Sequence[object], outs: Sequence[Out]) -> None:
-        """Do it, within an operation of the artifact."""
+        """Run it within an operation of the artifact."""
 
 
 class Switch(Protocol):
-    """Carries out an operation that pauses or resumes the server of a goal."""
+    """Runs an operation that pauses or resumes the server of a goal."""
 
     async def ready(self) -> None:
-        """Find out what is not known yet, within an operation of the artifact."""
+        """Look up missing types, within an operation of the artifact."""
 
     async def switch(self) -> None:
-        """Do it, outside of all operations.
+        """Run it, outside of all operations.
 
         Raises:
-            RosError, OperationFailed: it did not work.
+            RosError, OperationFailed: it failed.
         """
 
 
@@ -72,16 +72,16 @@ class Operations:
         }
         for part, runner in zip(parts, self._runners, strict=True):
             if isinstance(runner, _ActionOperation) and part.suspend == "pause":
-                # That these operations are of the right kind was seen when the file was read.
+                # The reader has checked that these operations are of the right kind.
                 runner.switches = (plain[part.pause.text], plain[part.resume.text])  # type: ignore[assignment]
 
     async def run(self, number: int, inputs: Sequence[object], outs: Sequence[Out]) -> None:
-        """Carry out the operation with this place in the file."""
+        """Run the operation with this index in the file."""
         await self._runners[number].run(inputs, outs)
 
 
 class _RemoteOperation:
-    """What services and actions share: a request that is filled, an answer that is taken apart."""
+    """Common code of services and actions: build a request, read the answer."""
 
     what = "service"
 
@@ -102,7 +102,7 @@ class _RemoteOperation:
         self._more(types, problems)
         if problems:
             host.report(problems)
-            host.fail(f"{part.name} does not fit the type {type_name}", "wrong_mapping", part.name)
+            host.fail(f"`{part.name}` does not match the type {type_name}", "wrong_mapping", part.name)
         answer = FieldType(types[1])
         self._takes = [reader(field, answer, None, host.ros) for field in part.outputs]
         if part.success is None and not part.any_success and "success" in host.ros.fields(types[1]):
@@ -111,7 +111,7 @@ class _RemoteOperation:
         self._fill = fill
 
     def _more(self, types: tuple[str, ...], problems: list[Problem]) -> None:
-        """Prepare what else is to fit."""
+        """Prepare further fields of a subclass."""
 
     def _connect(self, type_name: str) -> None:
         """Make the client."""
@@ -176,7 +176,7 @@ class _ServiceOperation(_RemoteOperation):
 
 
 NOT_SHOWN = Atom("unknown")
-"""A value of a failed goal's result that agents cannot have, such as NaN."""
+"""Replaces a value of a failed goal's result that agents cannot have, such as NaN."""
 
 
 class _ActionOperation(_RemoteOperation):
@@ -205,7 +205,7 @@ class _ActionOperation(_RemoteOperation):
         self._client = self._host.action_client(self._part.target.text, type_name)
 
     async def run(self, inputs: Sequence[object], outs: Sequence[Out]) -> None:
-        """Pursue a goal to its end."""
+        """Run a goal to its end."""
         await self._ready()
         for each in self.switches:
             await each.ready()
@@ -226,11 +226,11 @@ class _ActionOperation(_RemoteOperation):
             text = error_text(result)
             code, *more = self._explain(result)
             told = f": {text}" if text else ""
-            host.fail(f"action {self._client.name} had no success{told}", "aborted", code, text, *more)
+            host.fail(f"action {self._client.name} did not succeed{told}", "aborted", code, text, *more)
         self._give(result, outs)
 
     def _explain(self, result: Any) -> tuple[object, ...]:
-        """The code of a result that tells of a failure, and the other values that the mapping wants with it."""
+        """Return the error code of a result, and the further values that the mapping declares."""
         code = error_code(result) if self._code is None else self._shown(self._code, result)[0]
         return (code, *(value for take in self._aborted for value in self._shown(take, result)))
 
@@ -243,7 +243,7 @@ class _ActionOperation(_RemoteOperation):
     def _count(self, begins: bool) -> None:
         self._under_way += 1 if begins else -1
         if not self._under_way:
-            # Later: what a failing step starts does not begin.
+            # Later, because an operation started by a failing step is discarded.
             asyncio.get_running_loop().call_soon(self._withdraw)
 
     def _updater(self, message: Any) -> None:
@@ -257,7 +257,7 @@ class _ActionOperation(_RemoteOperation):
 
 
 class _ParameterOperation:
-    """What the operations on parameters of nodes share."""
+    """Common code of the operations on parameters of nodes."""
 
     def __init__(self, host: Host, part: OperationPart) -> None:
         self._host, self._part = host, part
@@ -293,20 +293,20 @@ class _SetParameter(_ParameterOperation):
             self._fail(error)
 
     async def ready(self) -> None:
-        """All is known."""
+        """Do nothing: everything is known."""
 
     async def switch(self) -> None:
         """Set the parameter."""
         await self._set(self._value(()))
 
     async def _set(self, value: Any) -> None:
-        # Agents do not tell 1 from 1.0, nodes do.
+        # Agents do not distinguish 1 from 1.0, but nodes do.
         if isinstance(value, int) and not isinstance(value, bool):
             try:
                 if isinstance(await self._parameters.get(self._name, self._part.timeout), float):
                     value = float(value)
             except ParameterUnknown:
-                pass  # setting it tells more
+                pass  # setting it gives a better error
         await self._parameters.set(self._name, value, self._part.timeout)
 
     def _value(self, inputs: Sequence[object]) -> Any:
@@ -320,7 +320,9 @@ class _SetParameter(_ParameterOperation):
         if (line := part.conversion.line) is not None:
             if isinstance(value, bool) or not isinstance(value, int | float):
                 self._host.fail(
-                    f"{self._name} wants a number, not {value!r}", "parameter_refused", Atom(self._name)
+                    f"parameter `{self._name}`: expected a number, found {value!r}",
+                    "parameter_refused",
+                    Atom(self._name),
                 )
             return line.back(value)
         return str(value) if isinstance(value, Atom) else value

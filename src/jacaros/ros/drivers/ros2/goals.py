@@ -1,4 +1,4 @@
-"""Action clients of ROS 2: goals on their way to a server, and whether the server is still alive."""
+"""Action clients of ROS 2: goals on their way to a server, and whether the server is alive."""
 
 import time
 from collections.abc import Callable
@@ -33,17 +33,17 @@ from jacaros.ros.protocols.ros2_actions import (
 )
 
 LOOKING = 0.1
-"""Seconds between two looks at the server, while a goal is under way or the server is waited for."""
+"""Seconds between two checks of the server, while a goal is active or a caller waits for the server."""
 COMPARING = 0.5
-"""Seconds between two looks at the types in the graph, while there is no server."""
+"""Seconds between two checks of the types in the graph, while there is no server."""
 REPEATING = 1.0
-"""Seconds after which a request is repeated that was not answered although it should have been."""
+"""Seconds after which an unanswered request is repeated."""
 FEEDBACK_WAITING = 100
-"""Feedback messages that wait for the loop; the oldest is dropped first."""
+"""Number of feedback messages that may wait for the loop; the oldest is dropped first."""
 
 
 class _SentGoal:
-    """What the wire knows of a goal."""
+    """The state of a goal in the wire."""
 
     def __init__(self, identity: str, request: Any) -> None:
         self.identity = identity
@@ -57,10 +57,10 @@ class _SentGoal:
 
 
 class Ros2GoalWire:
-    """Carries goals from a `GoalSender` to the servers of the graph.
+    """Transfers goals from a `GoalSender` to the servers of the graph.
 
-    An answer that is lost (a server answers before it has discovered who asks, a network drops out) does not leave
-    anybody waiting: acceptance and end are also told by the status topic, and then the request is repeated.
+    A lost answer (a server answers before it has discovered the client, or a network fails) leaves no caller waiting:
+    acceptance and end are also visible in the status topic, and then the request is repeated.
     """
 
     def __init__(self, node: Ros2Node, name: str, type_name: str) -> None:
@@ -108,10 +108,10 @@ class Ros2GoalWire:
 
     @classmethod
     def client(cls, node: Ros2Node, name: str, type_name: str) -> GoalSender:
-        """Make an action client, as the port has it, and keep its wire at the node."""
+        """Make an action client for the port, and register its wire at the node."""
         return node.keep(cls(node, name, type_name)).sender
 
-    # What the sender asks for:
+    # Requests of the sender:
 
     @property
     def offered(self) -> bool:
@@ -121,11 +121,11 @@ class Ros2GoalWire:
         self._note_presence()
         if not self._there:
             self._keep_looking()
-        # A server of another type is one too: `send_goal` says what is wrong with it.
+        # A server of another type counts, too: `send_goal` reports the mismatch.
         return self._there or self._mismatch is not None
 
     def new_id(self) -> str:
-        """Make up the id of a new goal."""
+        """Return the id of a new goal."""
         return self._node.orphans.hashed_id()
 
     def send_goal(self, goal_id: str, goal: Any) -> None:
@@ -157,14 +157,14 @@ class Ros2GoalWire:
         self._keep_looking()
 
     def forget_goal(self, identity: str) -> None:
-        """The goal is over."""
+        """Forget a goal that has ended."""
         self._goals.pop(identity, None)
         if not self._goals:
             self._detector.rest()
             self._forget_calls()
 
     def close(self) -> None:
-        """Leave, when what was sent last has arrived."""
+        """Leave when the last messages have arrived."""
         if self._closed:
             return
         self._closed = True
@@ -182,25 +182,25 @@ class Ros2GoalWire:
         node.forget(self)
 
     def _before_shutdown(self, seconds: float) -> None:
-        """Give requests to cancel the time to arrive."""
+        """Wait until requests to cancel have arrived."""
         if self._goals:
             time.sleep(min(0.1, seconds))
 
     def _cancel_all(self) -> None:
-        """Cancel what is under way, as an exit hook: when its client ends, nobody watches over the robot."""
+        """Exit hook: cancel the active goals, because after the client's end nothing watches the robot."""
         for goal in list(self._goals.values()):
             if not goal.over:
                 info = GoalInfo(goal_id=id_message(goal.identity))
                 self._cancel_client.call_async(CancelGoal.Request(goal_info=info))
 
-    # What comes back, on the loop:
+    # Answers, on the loop:
 
     def _answered(self, identity: str, answer: Any) -> None:
         goal = self._goals.get(identity)
         if answer.accepted:
             self._accept(identity)
         elif goal is not None and not goal.accepted:
-            # A server also refuses what it has accepted already; then its status is on the way and tells.
+            # The server also refuses what it has already accepted; then its status is about to arrive.
             self._node.loop.call_later(SETTLING if goal.repeated else 0.0, self._reject, identity)
 
     def _reject(self, identity: str) -> None:
@@ -232,7 +232,7 @@ class Ros2GoalWire:
         self._feedback.deliver_all()
         status = ENDS.get(answer.status)
         if status is None:
-            text = f"the server of action {self.name} does not know goal {identity} any more: it was started anew"
+            text = f"the server of action {self.name} does not know goal {identity}: it was restarted"
             self.sender.fail(identity, ServerLost(text))
         else:
             self.sender.ended(identity, Outcome(status, answer.result, text_of(answer.result)))
@@ -263,7 +263,7 @@ class Ros2GoalWire:
                 goal.over = entry.status in ENDS
                 self._accept(identity)
 
-    # Looking after the server:
+    # Checking the server:
 
     def _keep_looking(self) -> None:
         if self._looking is None and not self._closed:
@@ -315,7 +315,7 @@ class Ros2GoalWire:
                 self.sender.server_present(True)
 
     def _note_servers(self) -> bool:
-        """Note who offers the action; True when somebody is new among them."""
+        """Update the set of servers. Return whether there is a new one."""
         servers = action_servers(self._node, self.name)
         if servers <= self._servers:
             return False
@@ -325,9 +325,10 @@ class Ros2GoalWire:
         return True
 
     def _greet_newcomers(self) -> None:
-        """A server that came during a goal may have taken the place of one that died, unnoticed so far by the graph.
+        """Check goals after a new server appeared: it may have replaced a dead one that the graph still lists.
 
-        Then it does not know the goal, and says so; one that was not accepted yet is for it, unless it was given up.
+        If so, it does not know the goal and answers that; a goal that was not accepted is sent to it, unless it was
+        abandoned.
         """
         for goal in list(self._goals.values()):
             if goal.accepted:
@@ -337,9 +338,9 @@ class Ros2GoalWire:
                 self._send_when_settled(goal.identity)
 
     def _send_when_settled(self, identity: str) -> None:
-        """Send a goal, as soon as the server knows us: what it is sent earlier, or answers earlier, is lost.
+        """Send a goal as soon as the server knows the client: earlier messages or answers would be lost.
 
-        Goals are sent in their order: where a newer one takes over, it must be the newer one that does.
+        Goals are sent in order, because with pre-emption the newest one must win.
         """
         if identity not in self._unsent:
             self._unsent.append(identity)
@@ -374,7 +375,7 @@ class Ros2GoalWire:
             )
 
     def _probe(self) -> None:
-        """Ask for something that every server answers at once: the result of a goal that nobody knows."""
+        """Send a request that every server answers immediately: the result of an unknown goal."""
         request = self._impl.GetResultService.Request(goal_id=id_message(new_goal_id()))
         self._call(self._result_client, request, lambda _: self._detector.probe_answered())
 
@@ -382,7 +383,7 @@ class Ros2GoalWire:
         suspects = action_servers(self._node, self.name)
 
         def report(missing: frozenset[bytes]) -> None:
-            # With several servers it is not known whose goals ours are.
+            # With several servers it is unknown which one has our goals.
             if not self._closed and suspects == action_servers(self._node, self.name):
                 self._detector.looked(missing != suspects)
 
@@ -402,10 +403,10 @@ class Ros2GoalWire:
         call.add_done_callback(finished)
 
     def _forget_calls(self) -> None:
-        """Wait for answers no more: those of a server that has died would be waited for without end."""
+        """Drop pending calls: those of a dead server would wait forever."""
         for call in list(self._calls):
             client = self._calls.pop(call, None)
-            if client is not None:  # else it was answered just now, on the executor's thread
+            if client is not None:  # otherwise it was answered just now, on the executor's thread
                 client.remove_pending_request(call)
 
     def _take_answer(self, take: Callable[[Any], None], answer: Any) -> None:
