@@ -276,7 +276,7 @@ def test_giving_up_a_goal_that_was_just_sent_cancels_it(graph: Any, pair: Pair, 
             d[1] for d in deeds if d[0] == "end"
         ].count(500)
 
-    graph.wait_until(none_is_under_way, "the goal that nobody wants is not under way")
+    graph.wait_until(none_is_under_way, "the abandoned goal is not active")
 
 
 def test_closing_the_server_aborts_what_is_under_way(graph: Any, pair: Pair, topic: str) -> None:
@@ -319,7 +319,7 @@ def test_a_server_that_dies_is_lost(graph: Any, pair: Pair, topic: str) -> None:
         left.outcome(topic)
     with pytest.raises(ServerLost):
         left.cancel_goal(topic, timeout=5)
-    # With a new server the same client goes on.
+    # With a new server the same client continues.
     second = graph.peer("second_server")
     serving(graph, (left, second), topic)
     left.send_goal(topic + "again", topic, {"target": 1}, timeout=60)

@@ -1,4 +1,4 @@
-"""Contract: trouble at topics is told: other types, offers that are too weak, missed deadlines."""
+"""Contract: problems of topics are reported: other types, weak offers, missed deadlines."""
 
 from typing import Any
 
@@ -28,7 +28,7 @@ def test_a_topic_of_another_type_is_reported(graph: Any, pair: Pair, topic: str,
     if first == "subscription":
         graph.pass_time(0.2)
         left.advertise(topic, INT)
-    graph.wait_until(lambda: "other_type" in troubles(right, topic), "the trouble is told")
+    graph.wait_until(lambda: "other_type" in troubles(right, topic), "the problem is reported")
     [text] = {text for trouble, text in right.events(topic) if trouble == "other_type"}
     assert topic in text
     assert INT in text
@@ -61,7 +61,7 @@ def test_an_offer_that_is_too_weak_is_reported(
     left.advertise(topic, INT, **weak)
     right.subscribe(topic, INT, events=True, **strong)
     if "qos" in right.capabilities():
-        graph.wait_until(lambda: troubles(right, topic) == ["incompatible_qos"], "the trouble is told")
+        graph.wait_until(lambda: troubles(right, topic) == ["incompatible_qos"], "the problem is reported")
         assert topic in right.events(topic)[0][1]
         assert right.received(topic) == []
     else:  # there is no such thing as a weak offer: the message arrives
@@ -101,7 +101,7 @@ def test_a_promise_longer_than_the_wish_is_too_weak(graph: Any, pair: Pair, topi
         return
     left.advertise(topic, INT, deadline=2.0)
     right.subscribe(topic, INT, events=True, deadline=0.5)
-    graph.wait_until(lambda: "incompatible_qos" in troubles(right, topic), "the trouble is told")
+    graph.wait_until(lambda: "incompatible_qos" in troubles(right, topic), "the problem is reported")
     left.publish(topic, {"data": 1})
     graph.pass_time(0.2)
     assert right.received(topic) == []

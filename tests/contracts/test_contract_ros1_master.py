@@ -152,7 +152,7 @@ def test_actions_and_parameters_outlive_a_restarted_master(master: Master, ros1:
     newcomer.send_goal("after", "/count", {"target": 2}, timeout=60)
     assert newcomer.outcome("after", timeout=60)["status"] == "succeeded"
     assert newcomer.contents()["actions"] == {"/count": "jacaros_interfaces/action/Count"}
-    assert any("the parameters that it kept are lost" in line for line in right.log())
+    assert any("the parameters stored in it are lost" in line for line in right.log())
     with pytest.raises(ParameterUnknown):
         right.get_parameter("speed", timeout=60)
     ros1.wait_until(
@@ -164,7 +164,7 @@ def test_actions_and_parameters_outlive_a_restarted_master(master: Master, ros1:
         newcomer.set_parameter("speed", 2, "/right", timeout=60)
         return {"speed": 2} in left.parameter_changes("right")
 
-    ros1.wait_until(change_is_told, "changes are told again")
+    ros1.wait_until(change_is_told, "changes are reported again")
 
 
 def test_a_late_master_is_awaited_without_blocking_the_loop(master: Master, ros1: InProcesses) -> None:

@@ -22,7 +22,7 @@ PATIENCE = 60.0
 
 @contextmanager
 def running(graph: Any, *arguments: str) -> Iterator[subprocess.Popen[bytes]]:
-    """A native program that goes on until it is ended."""
+    """A native program that runs until it is stopped."""
     process = subprocess.Popen(
         [sys.executable, PROGRAM, *arguments],
         env=os.environ | graph.environment,
@@ -178,18 +178,16 @@ def test_rosparam_and_we_see_the_same_parameters(graph: Any, pair: Pair, native:
     assert native("rosparam", "get", "/left/rooms") == "- kitchen"
     right.watch_parameters("left", "/left")
     graph.wait_until(
-        lambda: (left.set_parameter("ping", 1), right.parameter_changes("left"))[1], "changes are told"
+        lambda: (left.set_parameter("ping", 1), right.parameter_changes("left"))[1], "changes are reported"
     )
     native("rosparam", "set", "/left/wheels", "{radius: 0.5, spokes: {count: 12}}")
     graph.wait_until(
         lambda: {"wheels/spokes/count": 12} in right.parameter_changes("left"),
-        "the change made by rosparam is told",
+        "the change made by rosparam is reported",
     )
     assert right.get_parameter("wheels/spokes/count", "/left") == 12
     assert {"ping", "rooms", "wheels/radius", "wheels/spokes/count"} <= set(left.parameter_names())
-    with pytest.raises(
-        ParameterUnknown, match="is a mapping; ask for its parts: wheels/radius, wheels/spokes"
-    ):
+    with pytest.raises(ParameterUnknown, match="is a mapping; read its parts: wheels/radius, wheels/spokes"):
         left.get_parameter("wheels")
     native("rosparam", "delete", "/left/wheels")
     assert not [name for name in left.parameter_names() if name.startswith("wheels")]
@@ -202,7 +200,7 @@ def test_another_version_of_a_definition_is_reported(graph: Any, pair: Pair, top
     left, _ = pair
     left.subscribe(topic, "std_msgs/msg/Int32", events=True)
     with running(graph, "other_definition", topic):
-        graph.wait_until(lambda: left.events(topic), "the other version is told")
+        graph.wait_until(lambda: left.events(topic), "the other version is reported")
     [[trouble, text]] = left.events(topic)
     assert trouble == "other_type"
     assert text.startswith(

@@ -16,7 +16,7 @@ import resource, signal
 from jacaros.clock import WallClock, run
 from jacaros.ros.open import open_backend
 
-# No room for shared memory: Fast DDS complains, and goes on with the network.
+# No room for shared memory: Fast DDS logs a warning, and uses the network.
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 resource.setrlimit(resource.RLIMIT_FSIZE, (1024, 1024))
 

@@ -108,7 +108,7 @@ async def test(backend, publisher, hear):
     ros2_receiving.wait_set = changed
     second = backend.subscription("/a", STRING, hear)
     await until(lambda: told)
-    assert told == ["waiting for messages the fast way failed, rclpy's executor does it now: "
+    assert told == ["the fast receiver failed; rclpy's executor takes over: "
                     "TypeError: incompatible function arguments"], told
     await talk(publisher, "b")
     second.close()
@@ -167,7 +167,7 @@ from jacaros.ros.errors import RosError
 async def test(backend, publisher, hear):
     backend.subscription("/a", STRING, hear)
     await talk(publisher, "a")
-    assert told == ["waiting for messages the fast way failed, rclpy's executor does it now: "
+    assert told == ["the fast receiver failed; rclpy's executor takes over: "
                     "NotImplementedError: rclpy has no wait sets"], told
     try:
         backend.subscription("/a", "std_msgs/msg/Int32", hear)

@@ -142,7 +142,7 @@ def test_parameters_of_a_plain_node(graph: Any, pair: Pair, topic: str, native: 
         left.set_parameter("speed", 0.25, node, timeout=60)
         return {"speed": 0.25} in right.parameter_changes(topic)
 
-    graph.wait_until(told, "the change is told")
+    graph.wait_until(told, "the change is reported")
     left.set_parameter("rooms", [], node, timeout=60)
     assert left.get_parameter("rooms", node, timeout=60) == []
     with pytest.raises(ParameterRefused, match="range"):

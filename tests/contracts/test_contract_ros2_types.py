@@ -1,4 +1,4 @@
-"""ROS 2 alone: names and parameters with types that do not fit are told in plain words."""
+"""ROS 2 alone: names and parameters with mismatched types have clear errors."""
 
 import os
 import subprocess

@@ -139,7 +139,7 @@ def test_a_volatile_topic_shows_nothing_of_the_past(graph: Any, pair: Pair, topi
     left.publish(topic, {"data": "past"})
     graph.wait_until(lambda: left.received(topic), "it is past: who listens has heard it")
     left.unsubscribe(topic)
-    graph.wait_until(lambda: left.subscription_count(topic) == 0, "nobody listens any more")
+    graph.wait_until(lambda: left.subscription_count(topic) == 0, "no subscription is left")
     right.subscribe(topic, "std_msgs/msg/String")
     graph.wait_until(lambda: left.subscription_count(topic) == 1, "they know each other")
     graph.wait_until(lambda: right.publisher_count(topic) == 1, "they know each other")
@@ -244,7 +244,7 @@ def test_fields_do_for_a_message(graph: Any, pair: Pair, topic: str) -> None:
 def test_a_message_of_another_type_is_refused(graph: Any, pair: Pair, topic: str) -> None:
     left, _ = pair
     left.advertise(topic, "std_msgs/msg/Int32")
-    with pytest.raises(MessageMismatch, match=rf"{topic} carries std_msgs/msg/Int32"):
+    with pytest.raises(MessageMismatch, match=rf"{topic} : expected a std_msgs/msg/Int32"):
         left.publish_wrong_message(topic)
 
 

@@ -1,4 +1,4 @@
-"""A plan that never ends holds nobody up: not the other agents, not the timers, not the world."""
+"""A plan that never ends does not block the other agents, the timers or the world."""
 
 import subprocess
 import sys

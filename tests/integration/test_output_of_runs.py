@@ -1,4 +1,4 @@
-"""What becomes of a run whose output nobody takes: the agents go on."""
+"""A run whose output is not read: the agents continue."""
 
 import os
 import signal

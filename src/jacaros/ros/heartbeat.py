@@ -60,7 +60,7 @@ def line(**fields: Any) -> bytes:
 class Heartbeat:
     """Sends the heartbeat of this process to its guard, until it is closed or the guard is gone.
 
-    It uses real time, not the run's clock: a paused simulator is no reason to stop the robot.
+    It uses real time, not the run's clock: a paused simulator must not stop the robot.
 
     Args:
         guarded: what the process drives.

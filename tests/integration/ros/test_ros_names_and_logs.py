@@ -66,7 +66,7 @@ def test_time_is_that_of_the_simulator(
     if kind == "ros2":
         assert simulator.get_parameter("use_sim_time", "/follower", timeout=20) is True
     simulator.advertise("/clock", "rosgraph_msgs/msg/Clock")
-    wait_until(lambda: simulator.subscription_count("/clock") > 0, "somebody who listens to the clock")
+    wait_until(lambda: simulator.subscription_count("/clock") > 0, "a subscriber of the clock")
 
     def show(time: float, text: str) -> None:
         """Publish a time until standard error shows what it brings about: the topic is not reliable."""
@@ -101,5 +101,5 @@ def test_a_node_without_simulated_time_is_logged_once(
         return any("to follow the simulator run with --clock ros" in line for line in agents.errors)
 
     wait_until(help, "the help at the simulator's clock")
-    wait_until(lambda: simulator.subscription_count("/clock") == 0, "nobody listens any more")
+    wait_until(lambda: simulator.subscription_count("/clock") == 0, "no subscription is left")
     assert sum("--clock ros" in line for line in agents.errors) == 1

@@ -78,7 +78,7 @@ def test_recharging_ends_at_exactly_one_hundred_whatever_it_begins_with(level: i
 
 
 def test_nothing_drains_while_the_battery_is_charged_and_other_operations_are_served() -> None:
-    """Defect 5: it went on draining, and nobody could ask."""
+    """Defect 5: it kept draining, and could not be queried."""
 
     async def body(lab: Lab) -> None:
         battery = await lab.make(ArtSimBattery, option("level", 10), option("drain", 5))

@@ -188,7 +188,7 @@ def test_other_operations_are_served_while_a_room_is_cleaned() -> None:
         assert watcher.holds("scrub") == [("Tub", "bathroom")]
         cleaning.execution.cancel()
         await lab.sleep(5)
-        assert watcher.holds("mop") == [("", "")], "a dropped cleaning goes on with nothing"
+        assert watcher.holds("mop") == [("", "")], "a dropped cleaning does nothing more"
 
     in_lab(body, None)
 

@@ -19,7 +19,7 @@ ODOMETRY = "nav_msgs/msg/Odometry"
 
 
 class Robot:
-    """A robot of which tests make odometry: it moves as it is told, with faults between."""
+    """A robot whose odometry is made by tests, with faults."""
 
     def __init__(self, lab: Lab) -> None:
         self._lab = lab
@@ -28,7 +28,7 @@ class Robot:
     async def say(
         self, x: float, stamp: float | None = 0.0, frame: str = "odom", **orientation: float
     ) -> None:
-        """Publish a position; a stamp is told in seconds from now, None is none."""
+        """Publish a position; the stamp is in seconds from now, None for none."""
         header = {
             "frame_id": frame,
             "stamp": 0 if stamp is None else self._lab.clock.now() + stamp,
@@ -123,7 +123,7 @@ def test_late_messages_between_good_ones_are_not_a_jump() -> None:
 
 
 def judged(*messages: tuple[float, float]) -> tuple[list[str], list[float]]:
-    """Judge the stamps of messages that arrive at some times; what was told, and how late each was."""
+    """Check the stamps of messages that arrive at some times; return the reports and the delays."""
     told: list[str] = []
     late: list[float] = []
     clock = VirtualClock()

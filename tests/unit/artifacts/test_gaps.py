@@ -1,4 +1,4 @@
-"""A robot that nobody watched for a while: it stands until fresh odometry comes, and its agent is told."""
+"""A robot that was not watched for a while: it stands until new odometry arrives, and its agent is notified."""
 
 from typing import Any
 

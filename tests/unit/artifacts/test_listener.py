@@ -1,4 +1,4 @@
-"""Code that hears a topic and fails: the fault is told, the artifact goes on hearing."""
+"""A topic callback that fails: the fault is logged, and the subscription stays."""
 
 from robot_lab import Lab, in_lab
 

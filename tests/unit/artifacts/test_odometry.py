@@ -100,7 +100,7 @@ def test_on_demand_odometry_changes_only_when_asked(arguments: tuple[Any, ...]) 
         await lab.do(odometry, "getCurrentOdom")
         assert watcher.values("odom")[1] == pytest.approx((0.5, 0, 0), abs=0.01)
         await lab.do(odometry, "getCurrentOdom")
-        assert len(watcher.values("odom")) == 3, "an answer is told though it is the same"
+        assert len(watcher.values("odom")) == 3, "an answer is shown although it is the same"
         assert watcher.signals == []
 
     in_lab(body)

@@ -170,7 +170,7 @@ class Odom:
 
 
 class SlowWatcher(Watcher):
-    """An observer that takes nothing up before it is told to."""
+    """An observer that processes nothing until it is released."""
 
     def __init__(self, clock: VirtualClock) -> None:
         super().__init__(clock)
@@ -227,7 +227,7 @@ class Holder(RosArtifact):
 
     @operation
     async def hold(self) -> None:
-        await self.clock.sleep(2)  # no step: nobody else has a turn
+        await self.clock.sleep(2)  # no step: no other operation runs
 
 
 def test_at_most_one_update_waits_while_an_operation_keeps_the_artifact() -> None:

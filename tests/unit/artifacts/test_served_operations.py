@@ -60,7 +60,7 @@ class Desk(RosArtifact):
 
     @operation
     def done(self, number: int) -> None:
-        """Let the order be carried out."""
+        """Execute the order."""
         self.carried_out = number
 
 

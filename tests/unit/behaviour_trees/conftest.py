@@ -84,7 +84,7 @@ class Rails:
         return runner
 
     async def make_cart(self, name):
-        """Another cart, that nobody focuses."""
+        """Another cart, which no agent focuses on."""
         return await self.other.make_artifact(name, Cart)
 
     async def at(self, moment, *call):

@@ -57,7 +57,7 @@ def test_a_goal_is_accepted_once_and_ends_with_its_result() -> None:
     assert client.hears(a=State.ACTIVE, times=3) == [("accepted", "a")]
     client.goals.take_result("a", State.SUCCEEDED, "result", "there")
     assert client.told[-1] == ("ended", "a", GoalStatus.SUCCEEDED, "result", "there")
-    assert client.hears(a=State.SUCCEEDED) == [], "nobody waits for it any more"
+    assert client.hears(a=State.SUCCEEDED) == [], "no caller waits for it"
 
 
 def test_a_result_that_was_lost_is_not_awaited_for_ever() -> None:

@@ -1,4 +1,4 @@
-"""Sending a goal to a server that was seen, and then is not there for whoever carries the goal to it."""
+"""Sending a goal to a server that was seen, but is gone when the goal is sent."""
 
 import asyncio
 from typing import Any
@@ -15,11 +15,11 @@ COUNT = "jacaros_interfaces/action/Count"
 
 
 class Carrier:
-    """A wire that finds nobody for the first goals.
+    """A wire that finds no server for the first goals.
 
     Args:
         clock: of the client.
-        absent: how many goals find nobody.
+        absent: number of goals without a server.
     """
 
     offered = True

@@ -107,7 +107,7 @@ def test_a_long_message_comes_whole(pair: tuple[socket.socket, socket.socket]) -
 def test_what_piled_up_while_the_loop_was_busy_comes_together(
     pair: tuple[socket.socket, socket.socket],
 ) -> None:
-    """Only so the newest of it can be told from the oldest."""
+    """Otherwise the newest cannot be distinguished from the oldest."""
     ours, theirs = pair
     piled_up = [b"%04d" % number * 256 for number in range(100)]
 

@@ -1,4 +1,4 @@
-"""What rosapi told of the graph holds for the connection over which it was told."""
+"""Values from rosapi are valid for one connection only."""
 
 from typing import Any
 
@@ -6,7 +6,7 @@ from jacaros.ros.protocols.rosbridge_requests import Polled, Requests
 
 
 class Server:
-    """Answers what it is asked, when it is told to."""
+    """Answers requests when a test wants."""
 
     def __init__(self) -> None:
         self.asked: list[str] = []

@@ -9,7 +9,7 @@ from jacaros.ros.waiting import Absence
 
 
 def end_of_call(takes: float, offered: bool) -> str:
-    """Call a service for a second; each attempt takes so long to find out that nobody is there."""
+    """Call a service for a second; each attempt takes some time to find no server."""
     clock = VirtualClock()
     attempts: list[float] = []
 

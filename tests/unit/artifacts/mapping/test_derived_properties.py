@@ -25,7 +25,7 @@ signals:
 
 
 class Sender:
-    """A mapped artifact that somebody watches, and publishers beside it."""
+    """An observed mapped artifact, and publishers."""
 
     def __init__(self, lab: Lab, watcher: Watcher) -> None:
         self.lab, self.watcher = lab, watcher

@@ -17,7 +17,7 @@ POINT = "geometry_msgs/msg/Point"
 
 
 class Talk:
-    """A mapped artifact that somebody watches, and a publisher beside it."""
+    """An observed mapped artifact, and a publisher."""
 
     def __init__(self, lab: Lab, artifact: ArtifactId, watcher: Watcher) -> None:
         self.lab, self.artifact, self.watcher = lab, artifact, watcher

@@ -1,4 +1,4 @@
-"""Mapping files: what is read, and what is told of mistakes that need no message type."""
+"""Mapping files: reading them, and mistakes that are found without message types."""
 
 from pathlib import Path
 
@@ -13,7 +13,7 @@ MESSAGE = "std_msgs/msg/Float64"
 
 
 def told(text: str) -> list[str]:
-    """What is told of a file: `line:column: message | help`."""
+    """The problems of a file: `line:column: message | help`."""
     with pytest.raises(MappingError) as caught:
         read_mapping(text, "m.yaml")
     return [f"{p.line}:{p.column}: {p.message} | {p.help}" for p in caught.value.problems]

@@ -1,4 +1,4 @@
-"""Mapping files compared with message types: what does not fit is told with place and help."""
+"""Mapping files compared with message types: mismatches are reported with location and help."""
 
 from pathlib import Path
 

@@ -25,7 +25,7 @@ operations:
 
 
 def held(lab: Lab, artifact: ArtifactId, name: str) -> list[tuple[object, ...]]:
-    """The values of a property for somebody who looks now."""
+    """The present values of a property."""
     return lab.watch(artifact).holds(name)
 
 
