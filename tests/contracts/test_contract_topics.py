@@ -244,7 +244,7 @@ def test_fields_do_for_a_message(graph: Any, pair: Pair, topic: str) -> None:
 def test_a_message_of_another_type_is_refused(graph: Any, pair: Pair, topic: str) -> None:
     left, _ = pair
     left.advertise(topic, "std_msgs/msg/Int32")
-    with pytest.raises(MessageMismatch, match=rf"{topic} : expected a std_msgs/msg/Int32"):
+    with pytest.raises(MessageMismatch, match=rf"{topic}: expected a std_msgs/msg/Int32"):
         left.publish_wrong_message(topic)
 
 

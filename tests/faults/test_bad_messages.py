@@ -112,7 +112,7 @@ def test_a_mapped_property_is_of_its_frame_alone() -> None:
     ]
     assert (lab.exit_code, lab.place, lab.safe) == (0, (1.8, 0), True)
     [told] = lab.errors
-    assert "`odom` is not shown: the frame is map, not odom" in told
+    assert "`odom` is not shown: expected frame odom, found map" in told
 
 
 def test_a_mapped_property_goes_and_comes_back_and_a_drive_by_time_ends() -> None:
@@ -133,4 +133,4 @@ def test_a_mapped_property_goes_and_comes_back_and_a_drive_by_time_ends() -> Non
     assert lab.stands(6.8, 8.0)
     assert (lab.exit_code, lab.place, lab.safe) == (0, (1.8, 0), True)
     [told] = lab.errors
-    assert "`odom` is not shown: pose.pose.position.x is nan" in told
+    assert "`odom` is not shown: `pose.pose.position.x` is nan" in told

@@ -179,7 +179,7 @@ def test_an_agent_makes_the_artifact_of_a_file(folder: Path, capsys: pytest.Capt
     assert (code, errors) == (0, "")
     assert lines == [
         "[maker] driven",
-        "[maker] fleet.yaml has 2 artifacts; write fleet.yaml#idle or fleet.yaml#base",
+        "[maker] `fleet.yaml` has 2 artifacts; write fleet.yaml#idle or fleet.yaml#base",
     ]
     assert output(capsys, "check", "maker.asl")[0] == 0
 
@@ -262,5 +262,5 @@ def test_a_type_that_only_the_robot_knows_is_a_warning(
     code, lines, _ = output(capsys, "check", "robot.yaml")
     assert code == 0
     assert lines[0].endswith(
-        "warning: the type acme_msgs/msg/Gripper is not known here [unknown-message-type]"
+        "warning: the type `acme_msgs/msg/Gripper` is not known here [unknown-message-type]"
     )
