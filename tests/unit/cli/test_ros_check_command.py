@@ -52,8 +52,8 @@ def test_a_type_that_is_not_known_and_not_that_of_the_topic_is_told_once(
         ),
         (
             "properties:\n  pose: {topic: odom, fields: [pose.pose.positon.x]}\n",
-            "geometry_msgs/msg/Pose has no field 'positon'",
-            "did you mean 'position'?",
+            "geometry_msgs/msg/Pose has no field `positon`",
+            "did you mean `position`?",
         ),
         (
             "properties:\n  pose: {topic: odom, qos: latched}\n",
