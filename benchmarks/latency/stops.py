@@ -16,12 +16,12 @@ from jacaros.cli.main import main
 from jacaros.mas.agent_host import AgentHost
 from jacaros.ros.drivers.ros1.connections import InletTransport
 from jacaros.ros.drivers.ros1.streams import Inlet, Outbox
-from jacaros.ros.drivers.ros1.topics import Ros1Publisher, TopicFeed
+from jacaros.ros.drivers.ros1.topics import Ros1Publisher, TopicMultiplexer
 
 STOPS: tuple[tuple[type, str, str], ...] = (
     (Inlet, "_read", ""),
     (InletTransport, "_take", "read the socket"),
-    (TopicFeed, "_take", "deserialize the message (genpy)"),
+    (TopicMultiplexer, "_take", "deserialize the message (genpy)"),
     (Odometer, "take", "deliver it to the artifact"),
     (Mind, "perceive", "artifact: read values, step, observation, percepts"),
     (Mind, "run", "give the agent its turn"),

@@ -327,7 +327,7 @@ ENDINGS = ("return", "exception", "exit", "busy")
 
 
 async def obey(peer: Peer, commands: "asyncio.Queue[dict[str, Any] | None]") -> None:
-    """Do commands until there are no more or one says how to end."""
+    """Execute commands until the input ends or one of them ends the process."""
     pending: set[asyncio.Task[None]] = set()
     while (command := await commands.get()) is not None:
         ending = command["do"]
@@ -372,7 +372,7 @@ def reply(answer: dict[str, Any]) -> None:
 
 
 async def main(kind: str, name: str, namespace: str = "") -> None:
-    """Run a peer that is told what to do through standard input."""
+    """Run a peer that is controlled through standard input."""
     loop = asyncio.get_running_loop()
     commands: asyncio.Queue[dict[str, Any] | None] = asyncio.Queue()
     peer = Peer(kind, WallClock(), name, namespace, **json.loads(os.environ.get("PEER_OPTIONS", "{}")))

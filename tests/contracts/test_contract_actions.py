@@ -75,7 +75,7 @@ def test_each_node_serves_the_other_and_itself(graph: Any, pair: Pair, topic: st
         assert client.outcome(key, timeout=60)["result"]["last"] == 1
 
 
-def test_several_goals_go_on_side_by_side(graph: Any, pair: Pair, topic: str) -> None:
+def test_several_goals_run_concurrently(graph: Any, pair: Pair, topic: str) -> None:
     left, right = serving(graph, pair, topic, "count_together")
     for target in (4, 3, 2):
         left.send_goal(f"{topic}{target}", topic, {"target": target, "period": 0.1}, timeout=60)
@@ -184,7 +184,7 @@ def test_a_goal_can_be_rejected(graph: Any, pair: Pair, topic: str) -> None:
     assert right.deeds(topic) == []
 
 
-def test_aborting_tells_a_text_and_a_result(graph: Any, pair: Pair, topic: str) -> None:
+def test_aborting_sends_a_text_and_a_result(graph: Any, pair: Pair, topic: str) -> None:
     left, _ = serving(graph, pair, topic, "give_up")
     left.send_goal(topic, topic, {"target": 3}, timeout=60)
     assert left.outcome(topic, timeout=60) == {
@@ -227,7 +227,7 @@ def test_code_that_fails_aborts_its_goal(
 def test_waiting_for_the_outcome_can_time_out_without_harm(graph: Any, pair: Pair, topic: str) -> None:
     left, _ = serving(graph, pair, topic)
     left.send_goal(topic, topic, SLOW, timeout=60)
-    with pytest.raises(CallTimedOut, match=r"still under way after 0\.3 s"):
+    with pytest.raises(CallTimedOut, match=r"still active after 0\.3 s"):
         left.outcome(topic, timeout=0.3)
     assert left.cancel_goal(topic, timeout=60) is True
     assert left.outcome(topic, timeout=60)["status"] == "canceled"
@@ -250,7 +250,7 @@ def test_a_server_that_comes_late_gets_the_goal(graph: Any, pair: Pair, topic: s
     assert left.outcome(topic, timeout=60)["result"]["last"] == 2
 
 
-def test_sending_can_be_given_up_while_waiting_for_the_server(graph: Any, pair: Pair, topic: str) -> None:
+def test_sending_can_be_cancelled_while_waiting_for_the_server(graph: Any, pair: Pair, topic: str) -> None:
     left, right = pair
     left.begin_send(topic, topic, SLOW)
     graph.pass_time(0.1)
@@ -276,7 +276,7 @@ def test_giving_up_a_goal_that_was_just_sent_cancels_it(graph: Any, pair: Pair, 
             d[1] for d in deeds if d[0] == "end"
         ].count(500)
 
-    graph.wait_until(none_is_under_way, "the goal that nobody wants is not under way")
+    graph.wait_until(none_is_under_way, "the abandoned goal is not active")
 
 
 def test_closing_the_server_aborts_what_is_under_way(graph: Any, pair: Pair, topic: str) -> None:
@@ -319,7 +319,7 @@ def test_a_server_that_dies_is_lost(graph: Any, pair: Pair, topic: str) -> None:
         left.outcome(topic)
     with pytest.raises(ServerLost):
         left.cancel_goal(topic, timeout=5)
-    # With a new server the same client goes on.
+    # With a new server the same client continues.
     second = graph.peer("second_server")
     serving(graph, (left, second), topic)
     left.send_goal(topic + "again", topic, {"target": 1}, timeout=60)

@@ -42,7 +42,7 @@ def test_topics_are_seen_with_their_types_and_ends(graph: Any, pair: Pair, topic
 
 
 @pytest.mark.needs("contents")
-def test_a_topic_that_everybody_left_is_gone(graph: Any, pair: Pair, topic: str) -> None:
+def test_a_topic_without_endpoints_is_gone(graph: Any, pair: Pair, topic: str) -> None:
     left, right = pair
     left.advertise(topic, "std_msgs/msg/Int32")
     graph.wait_until(lambda: right.contents()["topics"].get(topic, {}).get("publishers"), "the topic is seen")
@@ -84,7 +84,7 @@ def test_nodes_are_seen(graph: Any, pair: Pair) -> None:
 
 
 @pytest.mark.needs("contents", "rosout")
-def test_the_plumbing_is_left_out(graph: Any, pair: Pair) -> None:
+def test_internal_topics_are_omitted(graph: Any, pair: Pair) -> None:
     left, _ = pair
     left.rosout("info", "plumbing")
     seen = left.contents()

@@ -42,7 +42,7 @@ def test_nodes_wait_for_their_broker_and_find_it_again(nodes: Any, broker: Broke
     left.publish("/map", {"data": "flat"})
     nodes.wait_until(lambda: right.received("/map") == [{"data": "flat"}], "the message arrives")
     broker.kill()
-    nodes.wait_until(lambda: left.connection() == [True, False], "the loss is told")
+    nodes.wait_until(lambda: left.connection() == [True, False], "the loss is reported")
     broker.start()
     late = nodes.peer("late")
     late.subscribe("/map", TEXT, **LATCHED)

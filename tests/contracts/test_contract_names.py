@@ -33,7 +33,7 @@ def test_namespaces_reach_the_graph(graph: Any, pair: Pair, own_name: str) -> No
     assert right.call(f"/{own_name}/brain2/add", {"a": 1, "b": 2}, timeout=60) == {"sum": 3}
 
 
-def test_two_robots_do_not_hear_each_other(graph: Any, own_name: str) -> None:
+def test_two_robots_do_not_receive_each_others_messages(graph: Any, own_name: str) -> None:
     one = graph.peer("one", namespace=f"{own_name}/r1")
     two = graph.peer("two", namespace=f"{own_name}/r2")
     for robot in (one, two):
@@ -53,7 +53,7 @@ def test_a_started_node_is_connected(pair: Pair) -> None:
     assert left.connection() == [True]
 
 
-def test_fields_are_told_in_the_same_words_everywhere(pair: Pair) -> None:
+def test_fields_are_described_alike_everywhere(pair: Pair) -> None:
     left, _ = pair
     assert left.fields("geometry_msgs/Twist") == {
         "linear": "geometry_msgs/msg/Vector3",

@@ -60,7 +60,7 @@ def test_a_node_reads_and_changes_its_own(graph: Any, pair: Pair, name: str) -> 
 
 
 @pytest.mark.needs("own parameters")
-def test_names_are_told(graph: Any, pair: Pair, name: str) -> None:
+def test_names_are_reported(graph: Any, pair: Pair, name: str) -> None:
     left, right = pair
     for ending in ("b", "a"):
         having(right, f"{name}_{ending}", 1)
@@ -70,7 +70,7 @@ def test_names_are_told(graph: Any, pair: Pair, name: str) -> None:
 
 
 @pytest.mark.needs("own parameters")
-def test_an_unknown_parameter_is_told(graph: Any, pair: Pair, name: str) -> None:
+def test_an_unknown_parameter_is_reported(graph: Any, pair: Pair, name: str) -> None:
     left, right = pair
     with pytest.raises(ParameterUnknown, match=f"{right.node_name()}.*{name}"):
         left.get_parameter(name, right.node_name(), timeout=60)
@@ -229,7 +229,7 @@ def test_given_values_take_the_place_of_defaults(graph: Any, pair: Pair, name: s
     left, _ = pair
     node = graph.node_of(tuned)
     if "declared parameters" not in tuned.capabilities():
-        # The master is told in a thread.
+        # The master receives it in a thread.
         graph.wait_until(lambda: f"{name}_d" in left.parameter_names(node, timeout=20), "all are given")
         assert [left.get_parameter(each, node, timeout=20) for each in given] == [*given.values()]
         assert tuned.given_parameters_without_use() == []
@@ -250,7 +250,7 @@ def test_given_values_take_the_place_of_defaults(graph: Any, pair: Pair, name: s
     assert tuned.declare(f"{name}_a", 0.5) == 0.25
 
 
-def test_changes_are_told(graph: Any, pair: Pair, name: str) -> None:
+def test_changes_are_reported(graph: Any, pair: Pair, name: str) -> None:
     left, right = pair
     if "parameter events" not in left.capabilities():
         with pytest.raises(CapabilityMissing, match="change"):
@@ -266,11 +266,11 @@ def test_changes_are_told(graph: Any, pair: Pair, name: str) -> None:
         left.set_parameter(name, 2, right.node_name(), timeout=60)
         return told(2)
 
-    graph.wait_until(change_is_told, "a change by another node is told")
+    graph.wait_until(change_is_told, "a change by another node is reported")
     right.set_parameter(name, 3, timeout=60)
-    graph.wait_until(lambda: told(3), "a change by the node itself is told")
+    graph.wait_until(lambda: told(3), "a change by the node itself is reported")
     having(right, name + "_new", 7)
-    graph.wait_until(lambda: {name + "_new": 7} in left.parameter_changes(name), "a declaration is told")
+    graph.wait_until(lambda: {name + "_new": 7} in left.parameter_changes(name), "a declaration is reported")
     left.unwatch_parameters(name)
     before = len(left.parameter_changes(name))
     left.set_parameter(name, 4, right.node_name(), timeout=60)
@@ -279,7 +279,7 @@ def test_changes_are_told(graph: Any, pair: Pair, name: str) -> None:
 
 
 @pytest.mark.needs("own parameters")
-def test_only_the_changes_of_the_node_are_told(graph: Any, pair: Pair, name: str) -> None:
+def test_only_the_changes_of_the_node_are_reported(graph: Any, pair: Pair, name: str) -> None:
     left, right = pair
     if "parameter events" not in left.capabilities():
         with pytest.raises(CapabilityMissing, match="change"):
@@ -294,7 +294,7 @@ def test_only_the_changes_of_the_node_are_told(graph: Any, pair: Pair, name: str
         right.set_parameter(name, 5, timeout=60)
         return {name: 5} in right.parameter_changes(name)
 
-    graph.wait_until(own_change_is_told, "its own change is told")
+    graph.wait_until(own_change_is_told, "its own change is reported")
     assert {name: 2} not in right.parameter_changes(name)
 
 

@@ -1,4 +1,4 @@
-"""Contract: trouble at topics is told: other types, offers that are too weak, missed deadlines."""
+"""Contract: problems of topics are reported: other types, weak offers, missed deadlines."""
 
 from typing import Any
 
@@ -18,7 +18,7 @@ def troubles(peer: Any, key: str) -> list[str]:
 
 @pytest.mark.needs("events")
 @pytest.mark.parametrize("first", ["publisher", "subscription"])
-def test_a_topic_of_another_type_is_told(graph: Any, pair: Pair, topic: str, first: str) -> None:
+def test_a_topic_of_another_type_is_reported(graph: Any, pair: Pair, topic: str, first: str) -> None:
     left, right = pair
     topic = f"{topic}/{first}"
     if first == "publisher":
@@ -28,7 +28,7 @@ def test_a_topic_of_another_type_is_told(graph: Any, pair: Pair, topic: str, fir
     if first == "subscription":
         graph.pass_time(0.2)
         left.advertise(topic, INT)
-    graph.wait_until(lambda: "other_type" in troubles(right, topic), "the trouble is told")
+    graph.wait_until(lambda: "other_type" in troubles(right, topic), "the problem is reported")
     [text] = {text for trouble, text in right.events(topic) if trouble == "other_type"}
     assert topic in text
     assert INT in text
@@ -39,7 +39,7 @@ def test_a_topic_of_another_type_is_told(graph: Any, pair: Pair, topic: str, fir
 
 
 @pytest.mark.needs("events")
-def test_trouble_that_nobody_wants_to_hear_goes_to_the_log(graph: Any, pair: Pair, topic: str) -> None:
+def test_problems_without_a_callback_are_logged(graph: Any, pair: Pair, topic: str) -> None:
     left, right = pair
     left.advertise(topic, INT)
     right.subscribe(topic, TEXT)
@@ -51,7 +51,9 @@ def test_trouble_that_nobody_wants_to_hear_goes_to_the_log(graph: Any, pair: Pai
 
 @pytest.mark.needs("events")
 @pytest.mark.parametrize("weak", [{"reliability": "best_effort"}, {"durability": "volatile"}])
-def test_an_offer_that_is_too_weak_is_told(graph: Any, pair: Pair, topic: str, weak: dict[str, str]) -> None:
+def test_an_offer_that_is_too_weak_is_reported(
+    graph: Any, pair: Pair, topic: str, weak: dict[str, str]
+) -> None:
     left, right = pair
     [word] = weak
     topic = f"{topic}/{word}"
@@ -59,7 +61,7 @@ def test_an_offer_that_is_too_weak_is_told(graph: Any, pair: Pair, topic: str, w
     left.advertise(topic, INT, **weak)
     right.subscribe(topic, INT, events=True, **strong)
     if "qos" in right.capabilities():
-        graph.wait_until(lambda: troubles(right, topic) == ["incompatible_qos"], "the trouble is told")
+        graph.wait_until(lambda: troubles(right, topic) == ["incompatible_qos"], "the problem is reported")
         assert topic in right.events(topic)[0][1]
         assert right.received(topic) == []
     else:  # there is no such thing as a weak offer: the message arrives
@@ -71,7 +73,7 @@ def test_an_offer_that_is_too_weak_is_told(graph: Any, pair: Pair, topic: str, w
 
 
 @pytest.mark.needs("deadlines", "events")
-def test_a_missed_deadline_is_told(graph: Any, pair: Pair, topic: str) -> None:
+def test_a_missed_deadline_is_reported(graph: Any, pair: Pair, topic: str) -> None:
     left, right = pair
     if "deadlines" not in left.capabilities():
         with pytest.raises(CapabilityMissing, match="deadline"):
@@ -99,14 +101,14 @@ def test_a_promise_longer_than_the_wish_is_too_weak(graph: Any, pair: Pair, topi
         return
     left.advertise(topic, INT, deadline=2.0)
     right.subscribe(topic, INT, events=True, deadline=0.5)
-    graph.wait_until(lambda: "incompatible_qos" in troubles(right, topic), "the trouble is told")
+    graph.wait_until(lambda: "incompatible_qos" in troubles(right, topic), "the problem is reported")
     left.publish(topic, {"data": 1})
     graph.pass_time(0.2)
     assert right.received(topic) == []
 
 
 @pytest.mark.needs("events")
-def test_where_all_is_well_nothing_is_told(graph: Any, pair: Pair, topic: str) -> None:
+def test_nothing_is_logged_without_a_problem(graph: Any, pair: Pair, topic: str) -> None:
     left, right = pair
     left.advertise(topic, INT)
     right.subscribe(topic, INT, events=True)

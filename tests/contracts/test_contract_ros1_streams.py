@@ -113,7 +113,7 @@ def output_of(program: str, master: Master) -> str:
     return answer.stdout
 
 
-def test_who_listens_by_rospy_in_the_same_process_hears_all_too(master: Master) -> None:
+def test_a_rospy_subscriber_in_the_same_process_receives_every_message(master: Master) -> None:
     master.start()
     assert output_of(TOGETHER, master) == "both\n"
 

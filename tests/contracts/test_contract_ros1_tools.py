@@ -22,7 +22,7 @@ PATIENCE = 60.0
 
 @contextmanager
 def running(graph: Any, *arguments: str) -> Iterator[subprocess.Popen[bytes]]:
-    """A native program that goes on until it is ended."""
+    """A native program that runs until it is stopped."""
     process = subprocess.Popen(
         [sys.executable, PROGRAM, *arguments],
         env=os.environ | graph.environment,
@@ -85,7 +85,7 @@ def test_a_genuine_server_refuses_and_is_deaf_and_recalls(
 ) -> None:
     left, right = pair
     with running(graph, "crowd"):
-        with pytest.raises(GoalRejected, match="refused the goal: not two"):
+        with pytest.raises(GoalRejected, match="rejected the goal: not two"):
             left.send_goal("two", "/native/count", {"target": 2}, timeout=60)
         left.send_goal("three", "/native/count", {"target": 3}, timeout=60)
         # A server that has been asked is PREEMPTING at once, whatever its code does.
@@ -122,7 +122,7 @@ def test_a_genuine_server_that_freezes_or_dies_is_lost(graph: Any, pair: Pair) -
     left.close_action_client("/native/count")
 
 
-def test_a_genuine_server_started_again_at_once_does_not_know_our_goal(graph: Any, pair: Pair) -> None:
+def test_a_native_server_restarted_immediately_does_not_know_our_goal(graph: Any, pair: Pair) -> None:
     left, _ = pair
     with running(graph, "serve") as server:
         left.send_goal("old", "/native/count", {"target": 1000, "period": 0.02}, timeout=60)
@@ -178,18 +178,16 @@ def test_rosparam_and_we_see_the_same_parameters(graph: Any, pair: Pair, native:
     assert native("rosparam", "get", "/left/rooms") == "- kitchen"
     right.watch_parameters("left", "/left")
     graph.wait_until(
-        lambda: (left.set_parameter("ping", 1), right.parameter_changes("left"))[1], "changes are told"
+        lambda: (left.set_parameter("ping", 1), right.parameter_changes("left"))[1], "changes are reported"
     )
     native("rosparam", "set", "/left/wheels", "{radius: 0.5, spokes: {count: 12}}")
     graph.wait_until(
         lambda: {"wheels/spokes/count": 12} in right.parameter_changes("left"),
-        "the change made by rosparam is told",
+        "the change made by rosparam is reported",
     )
     assert right.get_parameter("wheels/spokes/count", "/left") == 12
     assert {"ping", "rooms", "wheels/radius", "wheels/spokes/count"} <= set(left.parameter_names())
-    with pytest.raises(
-        ParameterUnknown, match="is a mapping; ask for its parts: wheels/radius, wheels/spokes"
-    ):
+    with pytest.raises(ParameterUnknown, match="is a mapping; read its parts: wheels/radius, wheels/spokes"):
         left.get_parameter("wheels")
     native("rosparam", "delete", "/left/wheels")
     assert not [name for name in left.parameter_names() if name.startswith("wheels")]
@@ -198,11 +196,11 @@ def test_rosparam_and_we_see_the_same_parameters(graph: Any, pair: Pair, native:
     right.unwatch_parameters("left")
 
 
-def test_another_version_of_a_definition_is_told(graph: Any, pair: Pair, topic: str) -> None:
+def test_another_version_of_a_definition_is_reported(graph: Any, pair: Pair, topic: str) -> None:
     left, _ = pair
     left.subscribe(topic, "std_msgs/msg/Int32", events=True)
     with running(graph, "other_definition", topic):
-        graph.wait_until(lambda: left.events(topic), "the other version is told")
+        graph.wait_until(lambda: left.events(topic), "the other version is reported")
     [[trouble, text]] = left.events(topic)
     assert trouble == "other_type"
     assert text.startswith(

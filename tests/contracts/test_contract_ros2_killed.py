@@ -49,7 +49,7 @@ def test_a_call_of_a_service_that_is_killed_fails(graph: Any, pair: Pair, topic:
         left.end_call(topic)
 
 
-def test_a_publisher_that_is_killed_counts_no_more(graph: Any, pair: Pair, topic: str) -> None:
+def test_a_killed_publisher_no_longer_counts(graph: Any, pair: Pair, topic: str) -> None:
     left, _ = pair
     mortal = graph.peer("short_lived_publisher")
     left.subscribe(topic, STRING)

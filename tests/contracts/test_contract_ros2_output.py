@@ -16,7 +16,7 @@ import resource, signal
 from jacaros.clock import WallClock, run
 from jacaros.ros.open import open_backend
 
-# No room for shared memory: Fast DDS complains, and goes on with the network.
+# No room for shared memory: Fast DDS logs a warning, and uses the network.
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 resource.setrlimit(resource.RLIMIT_FSIZE, (1024, 1024))
 
@@ -32,9 +32,7 @@ run(main, WallClock())
 """
 
 
-def test_complaints_of_the_middleware_go_to_standard_error(
-    tmp_path: Path, request: pytest.FixtureRequest
-) -> None:
+def test_logs_of_the_middleware_go_to_standard_error(tmp_path: Path, request: pytest.FixtureRequest) -> None:
     if not is_wanted("ros2", request.config):
         pytest.skip("no ROS 2 here; see test_contract_presence")
     done = subprocess.run(

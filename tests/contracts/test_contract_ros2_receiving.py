@@ -70,7 +70,7 @@ def passes(folder: Path, test: str, before: str = "") -> None:
     assert (done.returncode, done.stdout) == (0, "done\n"), done.stderr
 
 
-def test_a_message_that_cannot_be_read_is_told_once_and_the_next_is_heard(tmp_path: Path) -> None:
+def test_an_unreadable_message_is_logged_once_and_the_next_is_received(tmp_path: Path) -> None:
     passes(
         tmp_path,
         """
@@ -108,7 +108,7 @@ async def test(backend, publisher, hear):
     ros2_receiving.wait_set = changed
     second = backend.subscription("/a", STRING, hear)
     await until(lambda: told)
-    assert told == ["waiting for messages the fast way failed, rclpy's executor does it now: "
+    assert told == ["the fast receiver failed; rclpy's executor takes over: "
                     "TypeError: incompatible function arguments"], told
     await talk(publisher, "b")
     second.close()
@@ -167,8 +167,8 @@ from jacaros.ros.errors import RosError
 async def test(backend, publisher, hear):
     backend.subscription("/a", STRING, hear)
     await talk(publisher, "a")
-    assert told == ["waiting for messages the fast way failed, rclpy's executor does it now: "
-                    "NotImplementedError: rclpy shows no wait sets"], told
+    assert told == ["the fast receiver failed; rclpy's executor takes over: "
+                    "NotImplementedError: rclpy has no wait sets"], told
     try:
         backend.subscription("/a", "std_msgs/msg/Int32", hear)
     except RosError as problem:
@@ -204,7 +204,7 @@ async def test(backend, publisher, hear):
     )
 
 
-def test_a_deadline_is_told_although_the_executor_does_not_take_the_messages(tmp_path: Path) -> None:
+def test_a_deadline_is_reported_although_the_executor_takes_no_messages(tmp_path: Path) -> None:
     passes(
         tmp_path,
         """

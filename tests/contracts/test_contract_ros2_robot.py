@@ -142,7 +142,7 @@ def test_parameters_of_a_plain_node(graph: Any, pair: Pair, topic: str, native: 
         left.set_parameter("speed", 0.25, node, timeout=60)
         return {"speed": 0.25} in right.parameter_changes(topic)
 
-    graph.wait_until(told, "the change is told")
+    graph.wait_until(told, "the change is reported")
     left.set_parameter("rooms", [], node, timeout=60)
     assert left.get_parameter("rooms", node, timeout=60) == []
     with pytest.raises(ParameterRefused, match="range"):
@@ -155,7 +155,7 @@ def test_parameters_of_a_plain_node(graph: Any, pair: Pair, topic: str, native: 
         left.get_parameter("colour", node, timeout=60)
 
 
-def test_parameters_are_read_of_a_node_that_was_killed_and_started_anew(graph: Any, pair: Pair) -> None:
+def test_parameters_of_a_killed_and_restarted_node_are_read(graph: Any, pair: Pair) -> None:
     """The one that was killed is still in the graph, and alone there for a moment: it is asked, and never answers."""
     left, _ = pair
     node = "/native_serve"

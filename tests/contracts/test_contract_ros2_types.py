@@ -1,4 +1,4 @@
-"""ROS 2 alone: names and parameters with types that do not fit are told in plain words."""
+"""ROS 2 alone: names and parameters with mismatched types have clear errors."""
 
 import os
 import subprocess
@@ -36,7 +36,7 @@ run(main, WallClock())
 """
 
 
-def test_a_name_that_is_used_with_another_type_already_is_told(
+def test_a_name_already_used_with_another_type_is_reported(
     tmp_path: Path, request: pytest.FixtureRequest
 ) -> None:
     if not is_wanted("ros2", request.config):
@@ -49,12 +49,12 @@ def test_a_name_that_is_used_with_another_type_already_is_told(
         timeout=120,
         check=False,
     )
-    end = "this node uses it with another type already"
+    end = "this node already uses it with another type"
     assert done.stdout.splitlines() == [
-        f"service /s cannot be joined with type std_srvs/srv/SetBool: {end}",
-        f"service /s cannot be joined with type std_srvs/srv/SetBool: {end}",
-        f"action /a cannot be joined with type nav2_msgs/action/NavigateToPose: {end}",
-        f"action /a cannot be joined with type nav2_msgs/action/NavigateToPose: {end}",
+        f"service /s cannot be used with type std_srvs/srv/SetBool: {end}",
+        f"service /s cannot be used with type std_srvs/srv/SetBool: {end}",
+        f"action /a cannot be used with type nav2_msgs/action/NavigateToPose: {end}",
+        f"action /a cannot be used with type nav2_msgs/action/NavigateToPose: {end}",
     ], done.stderr
 
 
@@ -74,7 +74,7 @@ run(main, WallClock())
 """
 
 
-def test_a_value_that_does_not_fit_a_parameter_of_rclpys_own_is_told(
+def test_a_mismatched_value_for_a_parameter_of_rclpys_own_is_reported(
     tmp_path: Path, request: pytest.FixtureRequest
 ) -> None:
     if not is_wanted("ros2", request.config):

@@ -34,7 +34,7 @@ def test_the_server_tells_which_ros_it_is(bridged: BehindBridge) -> None:
     assert client.ros_version() == int(bridged.kind[-1])
 
 
-def test_a_restarted_server_is_found_again_and_learns_everything_anew(bridged: BehindBridge) -> None:
+def test_a_restarted_server_is_found_again_and_gets_everything_again(bridged: BehindBridge) -> None:
     robot, client = talking(bridged)
     client.serve("/sum")
     client.advertise("/map", STRING, durability="transient_local", depth=1)
@@ -69,7 +69,8 @@ def test_a_server_that_starts_later_is_awaited(request: pytest.FixtureRequest) -
         client.subscribe("/a", STRING)
         client.advertise("/a", STRING)
         graph.wait_until(
-            lambda: any("rosbridge_websocket_launch.xml" in line for line in client.log()), "the help is told"
+            lambda: any("rosbridge_websocket_launch.xml" in line for line in client.log()),
+            "the help is logged",
         )
         graph.server = BridgeServer("ros2", port=first.port)
         graph.wait_until(client.connected, "the server is found")
@@ -92,7 +93,7 @@ def test_a_frozen_network_is_noticed_and_survived(bridged: BehindBridge) -> None
     bridged.wait_until(heard(client, "/to_client", "again"), "messages come again")
 
 
-def test_a_failing_service_is_told_by_ros1_alone(bridged: BehindBridge) -> None:
+def test_only_ros1_reports_a_failing_service(bridged: BehindBridge) -> None:
     robot, client = bridged.peer("robot"), bridged.peer("client")
     robot.serve("/fail", "fail")
     bridged.wait_until(lambda: client.ready("/fail"), "the service is there")
@@ -121,9 +122,9 @@ def test_a_lost_link_loses_the_goals_under_way(bridged: BehindBridge) -> None:
     bridged.wait_until(lambda: client.feedback("g"), "the goal is under way")
     client.begin_outcome("g")
     bridged.server.do("stop")
-    with pytest.raises(ServerLost, match="whether it goes on is not known"):
+    with pytest.raises(ServerLost, match="it is unknown whether the goal continues"):
         client.end_outcome("g")
-    # On the other side the clients are told that the goal is aborted, so what it does is stopped.
+    # On the other side the clients receive that the goal is aborted, so its code is stopped.
     bridged.wait_until(lambda: ["end", 1000, False] in server.deeds("/count"), "the code is stopped")
     bridged.server.do("start")
     bridged.wait_until(lambda: client.connected() and server.connected(), "both are there again")
@@ -142,7 +143,7 @@ def test_an_action_server_that_goes_is_noticed_between_two_goals(robot_of_ros2: 
     graph.wait_until(lambda: not client.action_ready("/count"), "the loss is noticed")
 
 
-def test_a_goal_of_which_nothing_is_heard_fails(request: pytest.FixtureRequest) -> None:
+def test_a_goal_without_any_sign_fails(request: pytest.FixtureRequest) -> None:
     """Servers older than actions say nothing at all of an operation that they do not know."""
     need("rosbridge", request.config)
     graph = BehindBridge("rosbridge-ros2", BridgeServer("ros2", "--without-actions"), native=("robot",))
@@ -150,7 +151,7 @@ def test_a_goal_of_which_nothing_is_heard_fails(request: pytest.FixtureRequest) 
         robot, client = graph.peer("robot"), graph.peer("client")
         robot.serve_action("/count")
         with pytest.raises(
-            CallFailed, match=r"nothing was heard of the goal .* does this rosbridge server know actions"
+            CallFailed, match=r"no answer about the goal .* does this rosbridge server support actions"
         ):
             client.send_goal("g", "/count", {"target": 2, "period": 0.01}, timeout=60)
         assert robot.deeds("/count") == []
@@ -167,7 +168,7 @@ def test_a_goal_is_cancelled_when_the_program_ends(bridged: BehindBridge) -> Non
     bridged.wait_until(lambda: ["end", 1000, True] in server.deeds("/count"), "the goal is cancelled")
 
 
-def test_a_topic_of_another_type_is_told(bridged: BehindBridge) -> None:
+def test_a_topic_of_another_type_is_reported(bridged: BehindBridge) -> None:
     robot, client = bridged.peer("robot"), bridged.peer("client")
     robot.advertise("/a", "geometry_msgs/msg/Twist")
     client.subscribe("/a", STRING)
@@ -177,9 +178,7 @@ def test_a_topic_of_another_type_is_told(bridged: BehindBridge) -> None:
     )
     client.advertise("/a", STRING)
     bridged.wait_until(
-        lambda: any(
-            line.startswith("what is published there goes nowhere: topic /a") for line in client.log()
-        ),
+        lambda: any(line.startswith("nothing is published: topic /a") for line in client.log()),
         "and that of the publisher",
     )
 
@@ -200,7 +199,7 @@ def test_a_topic_that_gets_the_right_type_is_joined_again(bridged: BehindBridge)
     bridged.wait_until(arrives, "it is taken now")
 
 
-def test_a_type_that_the_robot_does_not_have_is_told(robot_of_ros2: BehindBridge, tmp_path: Any) -> None:
+def test_a_type_that_the_robot_lacks_is_reported(robot_of_ros2: BehindBridge, tmp_path: Any) -> None:
     (tmp_path / "odd_msgs" / "msg").mkdir(parents=True)
     (tmp_path / "odd_msgs" / "msg" / "Thing.msg").write_text("int8 size\n")
     client = robot_of_ros2.peer("client", start=False, interface_paths=[str(tmp_path)])
@@ -212,7 +211,7 @@ def test_a_type_that_the_robot_does_not_have_is_told(robot_of_ros2: BehindBridge
     )
 
 
-def test_a_refused_message_is_told_once_where_the_server_talks(request: pytest.FixtureRequest) -> None:
+def test_a_refused_message_is_logged_once_if_the_server_reports_it(request: pytest.FixtureRequest) -> None:
     need("rosbridge", request.config)
     bridged = BehindBridge("rosbridge-ros2", BridgeServer("ros2", "--talkative"), native=("robot",))
     try:
@@ -227,15 +226,17 @@ def _a_refused_message_is_told_once(bridged: BehindBridge) -> None:
     client.advertise("/a", STRING)
     for _ in range(3):
         client.publish("/a", {"data": "x"})
-    bridged.wait_until(lambda: any("Cannot infer topic type" in line for line in client.log()), "it is told")
+    bridged.wait_until(
+        lambda: any("Cannot infer topic type" in line for line in client.log()), "it is logged"
+    )
     client.serve("/sum")
     bridged.wait_until(lambda: client.ready("/sum"), "the bridge has done all of that")
     assert sum("Cannot infer topic type" in line for line in client.log()) == 1
 
 
-def test_what_cannot_be_is_told_clearly(robot_of_ros2: BehindBridge) -> None:
+def test_unsupported_requests_have_clear_errors(robot_of_ros2: BehindBridge) -> None:
     client = robot_of_ros2.peer("client")
-    with pytest.raises(CapabilityMissing, match="over rosbridge we are no node of the graph"):
+    with pytest.raises(CapabilityMissing, match="over rosbridge"):
         client.get_parameter("a")
     with pytest.raises(CapabilityMissing, match="cannot be declared"):
         client.declare("a", 1, node="/robot")
@@ -290,9 +291,7 @@ def answered(graph: BehindBridge, ask: Callable[[], Any]) -> Any:
     return answers[0]
 
 
-def test_types_that_nobody_here_knows_come_from_the_server(
-    request: pytest.FixtureRequest, tmp_path: Any
-) -> None:
+def test_unknown_types_come_from_the_server(request: pytest.FixtureRequest, tmp_path: Any) -> None:
     need("rosbridge", request.config)
     package = tmp_path / "odd_msgs"
     for kind in ("msg", "srv"):
@@ -340,7 +339,7 @@ def test_a_robot_behind_a_lost_link_gets_zero_when_the_program_ends(bridged: Beh
     assert len(robot.received("/cmd_vel")) == count
 
 
-def test_two_nodes_one_after_the_other_in_one_process(robot_of_ros2: BehindBridge) -> None:
+def test_two_nodes_in_turn_in_one_process(robot_of_ros2: BehindBridge) -> None:
     async def meet(name: str) -> int:
         backend = open_backend("rosbridge", clock, name, url=robot_of_ros2.server.url)
         await backend.start()
@@ -435,12 +434,12 @@ def test_goals_between_us_and_roslibpys_actionlib(request: pytest.FixtureRequest
         graph.close()
 
 
-def test_a_server_without_rosapi_is_told_and_taken_for_ros2(robot_of_ros2: BehindBridge) -> None:
+def test_a_server_without_rosapi_is_logged_and_taken_for_ros2(robot_of_ros2: BehindBridge) -> None:
     robot_of_ros2.server.do("rosapi", False)
     client = robot_of_ros2.peer("client", start=False)
     client.start()
     assert client.ros_version() == 2
-    assert any("has no rosapi beside it" in line for line in client.log())
+    assert any("has no rosapi node" in line for line in client.log())
     client.advertise("/a", STRING)
     client.subscribe("/a", STRING)
     robot_of_ros2.wait_until(lambda: _arrives(client), "topics work all the same")
@@ -453,7 +452,7 @@ def test_rosapi_that_ends_at_a_type_is_reported_with_the_type(robot_of_ros2: Beh
         client.fields("odd_msgs/msg/Other")
     with pytest.raises(UnknownInterface):
         client.fields("odd_msgs/msg/Thing")
-    reason = "rosapi went away when it was asked for the type odd_msgs/msg/Thing"
+    reason = "rosapi crashed when it was asked for the type odd_msgs/msg/Thing"
     robot_of_ros2.wait_until(lambda: any(reason in line for line in client.log()), "it is reported")
     assert not any("odd_msgs/msg/Other" in line for line in client.log())
     with pytest.raises(ServiceUnavailable, match=reason):
@@ -499,5 +498,5 @@ def test_no_thread_of_ours_is_left_behind_and_no_signal_handler_taken(robot_of_r
 
 
 def test_parameters_of_our_own_cannot_be_given() -> None:
-    with pytest.raises(CapabilityMissing, match="speed cannot be given: over rosbridge we are no node"):
+    with pytest.raises(CapabilityMissing, match="speed cannot be set: over rosbridge there is no node"):
         open_backend("rosbridge", WallClock(), "node", url="ws://127.0.0.1:9090", parameters={"speed": 0.5})

@@ -45,7 +45,7 @@ def test_a_standard_service_needs_no_fields(graph: Any, pair: Pair, topic: str) 
     assert left.call(topic, {}, timeout=60, type_name=TRIGGER) == {"success": False, "message": ""}
 
 
-def test_calls_of_a_slow_service_go_on_side_by_side(graph: Any, pair: Pair, topic: str) -> None:
+def test_calls_of_a_slow_service_run_concurrently(graph: Any, pair: Pair, topic: str) -> None:
     left, right = pair
     right.serve(topic, "add_together")
     graph.wait_until(lambda: left.ready(topic), "the service is found")
@@ -64,7 +64,7 @@ def test_a_missing_service_is_unavailable_after_the_time_out(graph: Any, pair: P
 
 
 @pytest.mark.only("ros2")
-def test_a_service_of_another_type_is_told_for_what_it_is(graph: Any, pair: Pair, topic: str) -> None:
+def test_a_service_of_another_type_is_reported(graph: Any, pair: Pair, topic: str) -> None:
     left, right = pair
     right.serve(topic, "nothing", TRIGGER)
     right.serve_action(topic + "/act", "nothing", "nav2_msgs/action/NavigateToPose")
@@ -151,7 +151,7 @@ def test_a_closed_service_becomes_unavailable(graph: Any, pair: Pair, topic: str
         left.call(topic, {"a": 1, "b": 1}, timeout=1)
 
 
-def test_a_call_can_be_given_up(graph: Any, pair: Pair, topic: str) -> None:
+def test_a_call_can_be_cancelled(graph: Any, pair: Pair, topic: str) -> None:
     left, right = pair
     right.serve(topic, "never")
     graph.wait_until(lambda: left.ready(topic), "the service is found")

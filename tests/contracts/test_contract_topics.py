@@ -101,7 +101,7 @@ def test_arrays_of_all_kinds_arrive_as_they_were_sent(graph: Any, pair: Pair, to
     assert right.received(f"{topic}/t5")[0]["values"] == [{"key": "k", "value": "v"}]
 
 
-def test_a_sample_tells_topic_time_and_cause(graph: Any, pair: Pair, topic: str) -> None:
+def test_a_sample_has_topic_time_and_cause(graph: Any, pair: Pair, topic: str) -> None:
     left, right = connected(graph, pair, topic, "std_msgs/msg/Bool")
     left.publish(topic, {"data": True})
     graph.wait_until(lambda: right.received(topic), "the message arrives")
@@ -139,7 +139,7 @@ def test_a_volatile_topic_shows_nothing_of_the_past(graph: Any, pair: Pair, topi
     left.publish(topic, {"data": "past"})
     graph.wait_until(lambda: left.received(topic), "it is past: who listens has heard it")
     left.unsubscribe(topic)
-    graph.wait_until(lambda: left.subscription_count(topic) == 0, "nobody listens any more")
+    graph.wait_until(lambda: left.subscription_count(topic) == 0, "no subscription is left")
     right.subscribe(topic, "std_msgs/msg/String")
     graph.wait_until(lambda: left.subscription_count(topic) == 1, "they know each other")
     graph.wait_until(lambda: right.publisher_count(topic) == 1, "they know each other")
@@ -194,7 +194,7 @@ def test_a_slow_receiver_keeps_the_newest_messages(graph: Any, pair: Pair, topic
         assert numbers == [195, 196, 197, 198, 199]
 
 
-def test_a_closed_subscription_receives_no_more(graph: Any, pair: Pair, topic: str) -> None:
+def test_a_closed_subscription_receives_nothing(graph: Any, pair: Pair, topic: str) -> None:
     left, right = connected(graph, pair, topic, "std_msgs/msg/Int32")
     right.subscribe(topic, "std_msgs/msg/Int32", key=topic + "#other")
     right.unsubscribe(topic)
@@ -224,7 +224,7 @@ def test_a_closed_publisher_is_gone(graph: Any, pair: Pair, topic: str) -> None:
     graph.wait_until(lambda: right.publisher_count(topic) == 0, "the subscription notices")
 
 
-def test_a_node_hears_itself(graph: Any, pair: Pair, topic: str) -> None:
+def test_a_node_receives_its_own_messages(graph: Any, pair: Pair, topic: str) -> None:
     left, _ = pair
     connected(graph, (left, left), topic, "std_msgs/msg/Int32")
     left.publish(topic, {"data": 3})
@@ -244,7 +244,7 @@ def test_fields_do_for_a_message(graph: Any, pair: Pair, topic: str) -> None:
 def test_a_message_of_another_type_is_refused(graph: Any, pair: Pair, topic: str) -> None:
     left, _ = pair
     left.advertise(topic, "std_msgs/msg/Int32")
-    with pytest.raises(MessageMismatch, match=rf"{topic} carries std_msgs/msg/Int32"):
+    with pytest.raises(MessageMismatch, match=rf"{topic}: expected a std_msgs/msg/Int32"):
         left.publish_wrong_message(topic)
 
 

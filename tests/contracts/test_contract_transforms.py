@@ -91,7 +91,7 @@ def test_a_time_that_is_not_known_is_refused(
     assert caught.value.reason == reason
 
 
-def test_what_is_missing_is_told(graph: Any, pair: Pair, frame: str) -> None:
+def test_missing_things_are_reported(graph: Any, pair: Pair, frame: str) -> None:
     left, right = hearing(graph, pair, frame)
     with pytest.raises(TransformUnavailable, match=f"{frame}_nowhere") as caught:
         right.look_up(f"{frame}_root", f"{frame}_nowhere")

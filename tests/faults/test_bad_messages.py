@@ -70,7 +70,7 @@ def test_a_few_bad_numbers_are_logged_once_and_the_robot_arrives() -> None:
         "at 2 0",
         "at 0 0",
     ]
-    assert lab.errors == ["[wheels] /odom: pose.pose.position.x is nan; the message is dropped"]
+    assert lab.errors == ["[wheels] /odom: pose.pose.position.x is nan; message dropped"]
     assert (lab.exit_code, lab.place, lab.safe) == (0, (0, 0), True)
 
 
@@ -112,7 +112,7 @@ def test_a_mapped_property_ignores_other_frames() -> None:
     ]
     assert (lab.exit_code, lab.place, lab.safe) == (0, (1.8, 0), True)
     [told] = lab.errors
-    assert "odom is not shown: the frame is map, not odom" in told
+    assert "`odom` is not shown: expected frame odom, found map" in told
 
 
 def test_a_mapped_property_expires_and_returns_and_a_timed_motion_ends() -> None:
@@ -133,4 +133,4 @@ def test_a_mapped_property_expires_and_returns_and_a_timed_motion_ends() -> None
     assert lab.stands(6.8, 8.0)
     assert (lab.exit_code, lab.place, lab.safe) == (0, (1.8, 0), True)
     [told] = lab.errors
-    assert "odom is not shown: pose.pose.position.x is nan" in told
+    assert "`odom` is not shown: `pose.pose.position.x` is nan" in told

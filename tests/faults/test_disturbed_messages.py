@@ -54,7 +54,7 @@ def test_a_robot_stops_when_odometry_becomes_late() -> None:
         "at 0 0",
     ]
     assert lab.stands(2.6, 12.0)
-    assert "came 0.999 s later after its stamp than others before" in lab.errors[0]
+    assert "arrived 0.999 s later than earlier ones" in lab.errors[0]
     assert (lab.exit_code, lab.place, lab.safe) == (0, (0, 0), True)
 
 

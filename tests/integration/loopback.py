@@ -59,7 +59,7 @@ class Ids:
         self._numbers: dict[ArtifactId, tuple[str, int]] = {}
 
     def number(self, artifact: ArtifactId) -> tuple[str, int]:
-        """How the other side is told of an artifact."""
+        """How an artifact is described to the other side."""
         if artifact not in self._numbers:
             self.know((self.side, len(self._numbers)), artifact)
         return self._numbers[artifact]
@@ -122,7 +122,7 @@ class Ids:
 
 
 class _Reporting:
-    """Observes for somebody on the other side."""
+    """Observes on behalf of the other side."""
 
     def __init__(self, server: "WorkspaceServer", number: int, agent: str) -> None:
         self.agent = agent

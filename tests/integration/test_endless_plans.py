@@ -1,4 +1,4 @@
-"""A plan that never ends holds nobody up: not the other agents, not the timers, not the world."""
+"""A plan that never ends does not block the other agents, the timers or the world."""
 
 import subprocess
 import sys
@@ -44,7 +44,7 @@ DRIVER = """
     ("kind", "fast"),
     [*((kind, False) for kind in ENDLESS), *((kind, True) for kind in ("while", "tail_call", "events"))],
 )
-def test_a_plan_without_end_holds_nobody_up(tmp_path: Path, kind: str, fast: bool) -> None:
+def test_an_endless_plan_does_not_block_other_agents(tmp_path: Path, kind: str, fast: bool) -> None:
     for name, text in {"mad": ENDLESS[kind], "clerk": CLERK, "driver": DRIVER}.items():
         (tmp_path / f"{name}.asl").write_text(text, encoding="utf-8")
     (tmp_path / "shared.mas2j").write_text(PROJECT, encoding="utf-8")

@@ -128,7 +128,7 @@ def test_sigterm_does_so_too_and_on_the_virtual_clock(folder: Path) -> None:
 
 
 @pytest.mark.slow
-def test_people_are_told_what_was_interrupted(folder: Path) -> None:
+def test_the_interruption_is_logged(folder: Path) -> None:
     program = "!g.\n+!g\n  <- .print(begun);\n     tools.stay(1)."
     _, _, errors = interrupted(folder, program, in_the_step=True)
     place = f"bob.asl:4, in {folder / 'tools.py'}:"
@@ -158,7 +158,7 @@ def test_a_thread_that_does_not_return_does_not_hold_the_end_up(folder: Path, cl
 
 
 @pytest.mark.slow
-def test_nothing_is_said_to_be_left_behind_by_an_import(folder: Path) -> None:
+def test_an_import_leaves_nothing_behind(folder: Path) -> None:
     (folder / "artifacts.py").write_text("import time\nprint('[bob] begun', flush=True)\ntime.sleep(60)\n")
     code, _, errors = interrupted(folder, '!g. +!g <- makeArtifact("a", "artifacts.Slow", [], _).')
     assert code == 130
@@ -192,7 +192,7 @@ def test_a_recording_is_finished(folder: Path) -> None:
 
 
 @pytest.mark.slow
-def test_people_are_told_of_a_step_that_holds_everybody_up(folder: Path) -> None:
+def test_a_step_that_blocks_all_agents_is_logged(folder: Path) -> None:
     (folder / "bob.asl").write_text(ENDLESS["context"], encoding="utf-8")
     command = [sys.executable, "-m", "jacaros", "run", "bob.asl"]
     with subprocess.Popen(command, stderr=subprocess.PIPE, text=True, cwd=folder) as process:

@@ -152,7 +152,7 @@ def test_an_auction_in_jacamos_layout_runs(project: Path) -> None:
     assert sales["table"] >= 31
 
 
-def test_what_has_no_effect_is_told_once_for_each_kind(project: Path) -> None:
+def test_settings_without_effect_are_logged_once_per_kind(project: Path) -> None:
     result = run_project(project, seconds=60)
     roles = "the role `bidder` in `house.room`, the role `seller` of `auctioneer` in `room`"
     assert [text.splitlines()[0].partition("warning: ")[2] for text in result.errors] == [

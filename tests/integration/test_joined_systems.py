@@ -230,7 +230,7 @@ def test_making_linking_and_disposing_reach_the_other_system() -> None:
     ]
 
 
-def test_operations_of_the_other_system_are_given_up() -> None:
+def test_operations_of_the_other_system_are_cancelled() -> None:
     async def test(here: Mas, there: Mas, *sides: Side) -> None:
         await shared(here, there, *sides)
         bob = there.add_agent("bob", "+!go <- drive.", join=["/main/far"])

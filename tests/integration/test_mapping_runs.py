@@ -109,7 +109,7 @@ def test_a_check_of_a_project_covers_its_mapping_once(
     code, lines, _ = output(capsys, "check", "p.jcm")
     assert code == 1
     assert [line for line in lines if ": error:" in line] == [
-        "robot.yaml:2:61: error: 'pose.x': geometry_msgs/msg/PoseWithCovariance has no field 'x' [wrong-mapping]",
+        "robot.yaml:2:61: error: `pose.x`: geometry_msgs/msg/PoseWithCovariance has no field `x` [wrong-mapping]",
         "robot.yaml:3:30: error: 'mode' is 'sometimes' [wrong-mapping]",
     ]
 
@@ -120,7 +120,7 @@ def test_a_mapping_that_is_not_there(folder: Path, capsys: pytest.CaptureFixture
     assert errors == "error: mapping file not found: robto.yaml\n  = help: did you mean `robot.yaml`?\n"
 
 
-def test_a_wrong_mapping_is_told_before_anything_runs(
+def test_a_faulty_mapping_is_reported_before_anything_runs(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     write(
@@ -130,7 +130,7 @@ def test_a_wrong_mapping_is_told_before_anything_runs(
     )
     code, lines, errors = output(capsys, "run", "drive.asl", "--mapping", "robot.yaml", "--clock", "fast")
     assert (code, lines) == (1, [])
-    assert "robot.yaml:2:72: error: 'x': geometry_msgs/msg/Twist has no field 'x'" in errors
+    assert "robot.yaml:2:72: error: `x`: geometry_msgs/msg/Twist has no field `x`" in errors
     assert (
         "  = help: its fields: linear (geometry_msgs/msg/Vector3), angular (geometry_msgs/msg/Vector3)"
         in errors
@@ -179,7 +179,7 @@ def test_an_agent_makes_the_artifact_of_a_file(folder: Path, capsys: pytest.Capt
     assert (code, errors) == (0, "")
     assert lines == [
         "[maker] driven",
-        "[maker] fleet.yaml has 2 artifacts; write fleet.yaml#idle or fleet.yaml#base",
+        "[maker] `fleet.yaml` has 2 artifacts; write fleet.yaml#idle or fleet.yaml#base",
     ]
     assert output(capsys, "check", "maker.asl")[0] == 0
 
@@ -241,7 +241,7 @@ def test_dropping_the_intention_stops_the_robot(folder: Path, capsys: pytest.Cap
     assert output(capsys, *arguments) == (0, ["[drop] stands"], "")
 
 
-def test_describe_tells_what_is_mapped(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_describe_lists_the_mapping(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     code, lines, _ = output(capsys, "describe", "robot.yaml")
     assert code == 0
     for line in (
@@ -262,5 +262,5 @@ def test_a_type_that_only_the_robot_knows_is_a_warning(
     code, lines, _ = output(capsys, "check", "robot.yaml")
     assert code == 0
     assert lines[0].endswith(
-        "warning: the type acme_msgs/msg/Gripper is not known here [unknown-message-type]"
+        "warning: the type `acme_msgs/msg/Gripper` is not known here [unknown-message-type]"
     )

@@ -116,7 +116,7 @@ class CancelledElsewhere:
         return Outcome(GoalStatus.CANCELED, None)
 
 
-def test_a_goal_that_somebody_else_cancels_fails_as_canceled(
+def test_a_goal_cancelled_by_another_client_fails_as_canceled(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     async def send(*arguments: object) -> CancelledElsewhere:
@@ -149,7 +149,9 @@ def test_a_dropped_intention_cancels_its_goal(tmp_path: Path) -> None:
     assert server.deeds == ["begin 50 at 0", "cancelled 50 at 3.5"]
 
 
-def test_a_goal_goes_on_while_its_intention_is_suspended_and_the_end_waits(tmp_path: Path) -> None:
+def test_a_goal_continues_while_its_intention_is_suspended_and_its_result_is_held_back(
+    tmp_path: Path,
+) -> None:
     server = Server()
     result = run(
         tmp_path,
@@ -227,7 +229,7 @@ def test_a_goal_that_does_not_end_keeps_the_next_one_waiting_for_five_seconds_an
     assert server.deeds == ["begin 50 at 0", "begin 1 at 7.5", "done 1 at 7.6"]
     told = "\n".join(result.errors)
     assert (
-        "warning: action /count: a cancelled goal has not ended within 5 s; sending the next one all the same"
+        "warning: action /count: a cancelled goal has not ended within 5 s; sending the next goal anyway"
         in told
     )
     assert (

@@ -31,7 +31,7 @@ def test_a_robot_drives_a_square_and_comes_back(tmp_path: Path) -> None:
     assert pose.odometer == pytest.approx(4, abs=0.1)
 
 
-def test_a_dropped_motion_stops_the_robot_at_once(tmp_path: Path) -> None:
+def test_a_dropped_motion_stops_the_robot_immediately(tmp_path: Path) -> None:
     result = run(
         tmp_path,
         DRIVE
@@ -44,7 +44,7 @@ def test_a_dropped_motion_stops_the_robot_at_once(tmp_path: Path) -> None:
     assert 0.3 < result.ground_truth.latest().x < 1.3
 
 
-def test_a_suspended_motion_stops_and_goes_on_with_what_remains(tmp_path: Path) -> None:
+def test_a_suspended_motion_stops_and_continues_with_the_rest(tmp_path: Path) -> None:
     result = run(
         tmp_path,
         DRIVE

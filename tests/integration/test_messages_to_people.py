@@ -61,7 +61,7 @@ class Project:
         return done.returncode, done.stdout, done.stderr.replace(f"{self._folder}/", "")
 
     def run_file(self, name: str) -> tuple[int, str, str]:
-        """Run a project file until nobody has anything to do."""
+        """Run a project file until all agents are idle."""
         return self.run("run", name, "--clock", "fast", "--until-idle")
 
 
@@ -189,7 +189,7 @@ def test_an_unknown_operation(project: Project) -> None:
 def test_an_unknown_internal_action(project: Project) -> None:
     project.write("robot.asl", "!start.\n+!start\n  <- .nosuchaction(3).\n")
     assert project.run_file("robot.asl")[2].endswith(
-        "action_failed, no artifact of workspace /main has an operation .nosuchaction/1; there is no internal action "
+        "action_failed, no artifact of workspace /main has an operation .nosuchaction/1; unknown internal action "
         ".nosuchaction (robot.asl:3)\n"
         "  step: .nosuchaction(3)\n"
         '  reason: env_failure_detail(unknown_operation(".nosuchaction/1"))\n'
@@ -352,7 +352,7 @@ def test_a_mistake_in_a_world_file(project: Project) -> None:
     )
 
 
-def test_commands_that_nobody_hears_are_told_once(project: Project) -> None:
+def test_commands_without_a_subscriber_are_logged_once(project: Project) -> None:
     project.write(
         "robot.yaml",
         """\
@@ -371,7 +371,7 @@ def test_commands_that_nobody_hears_are_told_once(project: Project) -> None:
     )
     assert (code, output) == (0, "[hasty] done\n")
     assert errors == (
-        "[robot] robot.yaml:3:14: no subscriber on /cmd_velo; publishing anyway\n"
+        "[robot] robot.yaml:3:14: no subscriber on topic /cmd_velo; publishing anyway\n"
         "    3 |     publish: cmd_velo\n"
         "                     ^\n"
         "  = help: start the node that subscribes to it; `jacaros ros list` shows the topics of the graph\n"

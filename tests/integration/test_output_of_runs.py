@@ -1,4 +1,4 @@
-"""What becomes of a run whose output nobody takes: the agents go on."""
+"""A run whose output is not read: the agents continue."""
 
 import os
 import signal
@@ -34,7 +34,7 @@ def run(folder: Path, program: str, *arguments: str, **how: object) -> "subproce
     return subprocess.run(command, stderr=subprocess.PIPE, timeout=60, check=False, **how)  # type: ignore[call-overload, no-any-return]
 
 
-def test_agents_go_on_when_nobody_reads_their_output(tmp_path: Path) -> None:
+def test_agents_continue_when_their_output_is_not_read(tmp_path: Path) -> None:
     reader, writer = os.pipe()
     ended = run(tmp_path, FLOOD, stdout=writer)
     os.close(reader)
@@ -96,7 +96,7 @@ def test_what_artifacts_print_stands_between_the_lines_of_agents(tmp_path: Path)
     assert ended.stderr.endswith(b"a crack\nand rust\n")
 
 
-def test_an_artifact_may_print_although_nobody_reads(tmp_path: Path) -> None:
+def test_an_artifact_can_print_without_a_reader(tmp_path: Path) -> None:
     reader, writer = os.pipe()
     ended = ring(tmp_path, 90_000, stdout=writer)
     os.close(reader)

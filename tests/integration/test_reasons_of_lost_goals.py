@@ -76,20 +76,20 @@ def expected(message: str, step: str, reason: str) -> list[str]:
 @pytest.mark.parametrize(
     ("step", "message", "reason"),
     [
-        ("count(101)", "the server of action /count refused the goal: too many", "rejected"),
+        ("count(101)", "the server of action /count rejected the goal: too many", "rejected"),
         ("count(13)", "action /count was aborted: no path", 'aborted(0,"no path")'),
         ("count(5)", "action /count did not end within 8 s", "timeout(8)"),
-        ("count(9)", f"{GONE}; whether it goes on is not known", "server_lost"),
+        ("count(9)", f"{GONE}; it is unknown whether the goal continues", "server_lost"),
         ("hold", "service /hold refused: the brake is worn", 'service_refused(hold,"the brake is worn")'),
     ],
 )
-def test_a_failure_is_told_with_its_reason_step_and_goals(
+def test_a_failure_is_logged_with_its_reason_step_and_goals(
     tmp_path: Path, step: str, message: str, reason: str
 ) -> None:
     assert told(tmp_path, step) == expected(message, step, reason)
 
 
-def test_a_goal_that_somebody_else_cancels(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_goal_cancelled_by_another_client(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     class Cancelled:
         goal_id = "1"
 
@@ -100,16 +100,18 @@ def test_a_goal_that_somebody_else_cancels(tmp_path: Path, monkeypatch: pytest.M
         return Cancelled()
 
     monkeypatch.setattr("jacaros.ros.action_calling.GoalSender.send", send)
-    message = "the goal of /count was cancelled by somebody else"
+    message = "another client cancelled the goal of action /count"
     assert told(tmp_path, "count(5)") == expected(message, "count(5)", "canceled")
 
 
 def test_servers_that_are_not_there(tmp_path: Path) -> None:
     assert told(tmp_path, "count(5)", server=False) == expected(
-        f"nobody offered action /count ({COUNT}) within 5 s", "count(5)", "server_unavailable"
+        f"no server offered action /count ({COUNT}) within 5 s", "count(5)", "server_unavailable"
     )
     assert told(tmp_path, "hold", server=False) == expected(
-        "nobody offered service /hold (std_srvs/srv/SetBool) within 2 s", "hold", "service_unavailable(hold)"
+        "no node offered service /hold (std_srvs/srv/SetBool) within 2 s",
+        "hold",
+        "service_unavailable(hold)",
     )
 
 

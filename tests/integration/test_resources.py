@@ -163,7 +163,7 @@ def test_an_atomic_plan_has_the_wheels_that_another_plan_of_its_agent_holds(
     assert result.errors == []
 
 
-def test_policies_say_what_happens_when_a_resource_is_taken(tmp_path: Path) -> None:
+def test_policies_decide_what_happens_when_a_resource_is_taken(tmp_path: Path) -> None:
     result = run(
         tmp_path,
         """
@@ -178,7 +178,7 @@ def test_policies_say_what_happens_when_a_resource_is_taken(tmp_path: Path) -> N
     assert result.of("robot") == ["one", "resource_busy(arm)", "three", "three done", "one done"]
 
 
-def test_a_robot_without_a_namespace_is_meant_by_the_whole_name(tmp_path: Path) -> None:
+def test_the_full_name_refers_to_the_robot_without_a_namespace(tmp_path: Path) -> None:
     result = run(
         tmp_path,
         """

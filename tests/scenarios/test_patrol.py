@@ -72,7 +72,7 @@ def test_the_agent_gives_up_when_the_dock_gives_no_current(tmp_path: Path) -> No
     )
     result = run_project(EXAMPLES / PROJECT, world=world, seconds=300)
     assert result.exit_code == 1
-    assert result.lines[-1].startswith("[robot] I need help: the robot's battery gets no current")
+    assert result.lines[-1].startswith("[robot] I need help: the robot's battery is not charging")
 
 
 def test_the_agent_gives_up_when_something_stands_in_its_way(tmp_path: Path) -> None:
@@ -80,7 +80,7 @@ def test_the_agent_gives_up_when_something_stands_in_its_way(tmp_path: Path) -> 
     world = world_with(tmp_path, EXAMPLES / "04_patrol/patrol.yaml", "walls:\n", wall)
     result = run_project(EXAMPLES / PROJECT, world=world, seconds=60)
     assert result.exit_code == 1
-    assert result.lines == ["[robot] I need help: the robot does not get on"]
+    assert result.lines == ["[robot] I need help: the robot is stuck"]
 
 
 # The checker on runs that went otherwise.

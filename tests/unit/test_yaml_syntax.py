@@ -82,10 +82,10 @@ def test_reserved_words_are_not_names() -> None:
     told = str(caught.value)
     assert "m" in told
     assert [problem.line for problem in caught.value.problems] == [2, 3, 4, 5, 6]
-    assert "agents cannot write 'not' as a name" in told
+    assert "`not` is a reserved word in agent programs" in told
     assert "unnamed" not in told
 
 
 def test_a_slip_in_the_kind_of_an_operation() -> None:
-    with pytest.raises(MappingError, match="did you mean 'publish'"):
+    with pytest.raises(MappingError, match="did you mean `publish`"):
         read_mapping("operations:\n  go: {publsh: x}\n")

@@ -1,4 +1,4 @@
 """Ready-made artifacts, and the look-up of artifact types by name.
 
-They join `jacaros.env` and `jacaros.ros` and know nothing of agents: plain Python can use them as well.
+They depend on `jacaros.env` and `jacaros.ros` only, not on agents, so plain Python programs can use them too.
 """

@@ -30,11 +30,11 @@ LATE = {
     "ArtMap": "jacaros.artifacts.map.robot_map",
     "ArtSlamData": "jacaros.artifacts.map.slam_data",
 }
-"""Artifacts whose modules are imported when they are first asked for: a run without a map does not load it."""
+"""Artifacts whose modules are imported on first use: a run without a map does not load the map's code."""
 
 
 class _BuiltIn(Mapping[str, type[Artifact]]):
-    """The artifacts of jacaros by their bare names."""
+    """The built-in artifacts by their bare names."""
 
     def __init__(self, *classes: type[Artifact]) -> None:
         self._classes = {cls.__name__: cls for cls in classes}
@@ -77,16 +77,16 @@ BUILT_IN: Mapping[str, type[Artifact]] = _BuiltIn(
     Console,
     Latch,
 )
-"""The artifacts of jacaros by their bare names."""
+"""The built-in artifacts by their bare names."""
 
 ARTIFACTS = "artifacts"
-"""Name of the module of a project's own artifacts."""
+"""Name of the module with a project's own artifacts."""
 
 ALIASES = ("jason.architecture.", "jacaros.")
-"""Package names under which the thesis's programs ask for the built-in artifacts."""
+"""Package names by which programs of the thesis refer to the built-in artifacts."""
 
 MAPPING_ENDINGS = (".yaml", ".yml")
-"""What names of mapping files end with."""
+"""Suffixes of mapping files."""
 
 TOOLS: Mapping[str, type[Artifact]] = MappingProxyType(
     {
@@ -97,14 +97,14 @@ TOOLS: Mapping[str, type[Artifact]] = MappingProxyType(
         "cartago.tools.TupleSpace": Blackboard,
     }
 )
-"""The tool artifacts of CArtAgO by their names there."""
+"""The tool artifacts of CArtAgO, by their names there."""
 
 
 def type_finder(project: ProjectModules | Path | str | None) -> Callable[[str], type[Artifact]]:
-    """Make the look-up for a project (its modules, or its folder), with its own artifacts loaded once.
+    """Return the look-up for a project (its modules, or its folder), with its own artifacts loaded once.
 
-    The artifacts of a project are in ``artifacts.py``, or in a package ``artifacts/``, or in another module beside it that
-    the name leads to (``gripper.Gripper``); None stands for no project.
+    The artifacts of a project are in ``artifacts.py``, in a package ``artifacts/``, or in another module next to it
+    that the name refers to (``gripper.Gripper``); None: no project.
 
     Raises:
         ModuleUnreadable: the project's artifact file has a mistake.
@@ -143,14 +143,14 @@ def find_type(
 ) -> type[Artifact]:
     """Find the artifact type called *name*.
 
-    A mapping file's name (``turtlebot.yaml``, ``fleet.yaml#arm``) gives the type that it declares.  Any other is, in this
-    order: a dotted Python path (``my_robot.gripper.Gripper``); a class of the project's own
-    modules, where a package in front of the name (``tools.Counter``, as Java programs write) is ignored;
-    a built-in by its bare name; a built-in by the thesis's name (``jason.architecture.ArtOdometry``).
-    What begins with ``cartago.tools.`` is a tool of CArtAgO in any case.  Without *by_path* no dotted path is imported.
+    The name of a mapping file (``turtlebot.yaml``, ``fleet.yaml#arm``) refers to the type that it declares. Any other
+    name is, in this order: a dotted Python path (``my_robot.gripper.Gripper``); a class of the project's own modules,
+    ignoring a package in front of the name (``tools.Counter``, as Java programs write); a built-in artifact by its
+    bare name; a built-in artifact by its name in the thesis (``jason.architecture.ArtOdometry``). Names that begin
+    with ``cartago.tools.`` always refer to a tool of CArtAgO. Without *by_path* no dotted path is imported.
 
     Raises:
-        UnknownArtifactType: there is none.
+        UnknownArtifactType: no type has this name.
     """
     found = (
         _mapped(name, (Path(),))
@@ -167,26 +167,26 @@ def find_type(
 
 
 def _mapped(name: str, folders: Sequence[Path]) -> type[Artifact] | None:
-    """The type of a mapping file; None for any other name."""
+    """Return the type of a mapping file; None for any other name."""
     if not name.partition("#")[0].endswith(MAPPING_ENDINGS):
         return None
-    # Imported here: a project without mapping files need not know how to read them.
+    # Imported here, so that projects without mapping files do not load their reader.
     from jacaros.artifacts.mapping.artifact import find_mapped_type
 
     return find_mapped_type(name, folders)
 
 
 def _other_class(name: str, modules: Iterable[ModuleType]) -> str:
-    """What to say when there is a class of that name that is no artifact type; empty when there is none."""
+    """Return the message for a class of that name that is not an artifact type; empty if there is no such class."""
     for module in modules:
         if isinstance(vars(module).get(name), type):
             file = Path(module.__file__ or module.__name__).name
-            return f"{name} of {file} is no artifact type: derive it from jacaros.env.Artifact"
+            return f"`{name}` in {file} is not an artifact type; derive it from jacaros.env.Artifact"
     return ""
 
 
 def _of_project(name: str, project: ProjectModules) -> type[Artifact] | None:
-    """A class by its place beside the project: ``gripper.Gripper`` is in ``gripper.py``."""
+    """Find a class by its module in the project: ``gripper.Gripper`` is in ``gripper.py``."""
     path, _, last = name.rpartition(".")
     if not path or project.place(path) is None:
         return None
@@ -198,18 +198,18 @@ def _of_project(name: str, project: ProjectModules) -> type[Artifact] | None:
 
 
 def _beside(name: str, project: ProjectModules) -> Sequence[ModuleType]:
-    """The project's modules that a name leads to: what may have been meant by a misspelt one is there."""
+    """Return the project's modules that a name refers to; a misspelt name may mean a class in them."""
     path = name.rpartition(".")[0]
     return project.load(path) if path and project.place(path) is not None else ()
 
 
 def _is_installed(name: str) -> bool:
-    """Whether a dotted name begins with an installed package, which is not imported."""
+    """Return whether a dotted name begins with an installed package, which is not imported."""
     top, dot, _ = name.partition(".")
     if not dot or not top.isidentifier():
         return False
     found = importlib.util.find_spec(top)
-    return found is not None and found.origin is not None  # else any folder of that name
+    return found is not None and found.origin is not None  # otherwise any folder of that name
 
 
 def _by_path(name: str) -> type[Artifact] | None:
@@ -246,7 +246,7 @@ def _artifact_type(candidate: object) -> type[Artifact] | None:
 
 
 def _candidates(name: str, modules: Iterable[ModuleType], built_in: Mapping[str, object]) -> list[str]:
-    """Names that may have been meant, written as *name* is: with its package in front."""
+    """Return similar names, with the package of *name* in front."""
     own = {key for module in modules for key, value in vars(module).items() if _artifact_type(value)}
     known = sorted(own | set(built_in))
     package = name.rpartition(".")[0]

@@ -1,18 +1,18 @@
-"""CArtAgO's tools for agents that wait: a latch that is set once and for all, a barrier, a clock that ticks."""
+"""CArtAgO's synchronisation tools: a latch that is set once, a barrier, a clock."""
 
 from jacaros.env import Artifact, internal_operation, operation
 
 
 class Latch(Artifact):
-    """Holds back those who call ``waitForSet`` until somebody calls ``set``; from then on everybody passes."""
+    """Blocks callers of ``waitForSet`` until an agent calls ``set``; from then on no caller waits."""
 
     def init(self) -> None:
-        """Not be set."""
+        """Begin unset."""
         self._is_set = False
 
     @operation(name="set")
     def set_it(self) -> None:
-        """Let everybody pass."""
+        """Release all waiting agents."""
         self._is_set = True
 
     @operation(name="waitForSet", guard="is_set")
@@ -20,20 +20,20 @@ class Latch(Artifact):
         """Wait until it is set."""
 
     def is_set(self) -> bool:
-        """Whether everybody passes."""
+        """Return whether the latch is set."""
         return self._is_set
 
 
 class Barrier(Artifact):
-    """Lets those who wait pass when the given number of participants has arrived; then it begins anew.
+    """Blocks agents until the given number of participants has arrived; then a new round begins.
 
-    A participant calls ``hit`` when it has arrived, and ``waitForAll`` when it must not go on without the others.
+    A participant calls ``hit`` when it arrives, and ``waitForAll`` before it continues together with the others.
     """
 
     def init(self, participants: int) -> None:
-        """Be for so many participants, at least one."""
+        """Set the number of participants, at least one."""
         if participants < 1:
-            self.fail("a barrier needs a participant", "wrong_number", participants)
+            self.fail("a barrier needs at least one participant", "wrong_number", participants)
         self._participants = participants
         self._hits = 0
         # For each agent: the round of its last hit, and the last round that it has seen complete.
@@ -52,7 +52,8 @@ class Barrier(Artifact):
         self._passed[self.caller] = max(self._complete(), self._passed.get(self.caller, 0))
 
     def all_are_there(self) -> bool:
-        """Whether the round is complete that the caller waits for: of its last hit, or the first it has not seen."""
+        """Return whether the caller's round is complete: that of its last hit, or the first that it has not seen
+        complete."""
         passed, hit_in = self._passed.get(self.caller, 0), self._hit_in.get(self.caller, 0)
         return self._complete() >= (hit_in if hit_in > passed else passed + 1)
 
@@ -64,17 +65,17 @@ MILLISECONDS = 1000
 
 
 class Clock(Artifact):
-    """Ticks between ``start`` and ``stop``, a hundred times in a second unless ``setFrequency`` says otherwise.
+    """Ticks between ``start`` and ``stop``, a hundred times per second unless ``setFrequency`` changes it.
 
     Properties:
-        nticks(Milliseconds): the time for which it has ticked; every tick adds its length.
+        nticks(Milliseconds): the total time of ticking; every tick adds its period.
 
     Signals:
-        tick: it has ticked.
+        tick: the clock has ticked.
     """
 
     def init(self) -> None:
-        """Stand still at zero."""
+        """Begin stopped, at zero."""
         self._length = 10
         self._process = 0
         self._ticking = False
@@ -82,7 +83,7 @@ class Clock(Artifact):
 
     @operation(name="start")
     def start_ticking(self) -> None:
-        """Begin to tick, at once; without effect while it ticks."""
+        """Start ticking immediately; no effect while it ticks."""
         if not self._ticking:
             self._ticking = True
             self._process += 1
@@ -90,21 +91,19 @@ class Clock(Artifact):
 
     @operation
     def stop(self) -> None:
-        """Tick no more."""
+        """Stop ticking."""
         self._ticking = False
 
     @operation(name="setFrequency")
     def set_frequency(self, hertz: int) -> None:
-        """Tick so often in a second, from the next tick on; 1 to 1000."""
+        """Set the number of ticks per second, from the next tick on; 1 to 1000."""
         if not 1 <= hertz <= MILLISECONDS:
-            self.fail(
-                f"a clock cannot tick {hertz} times in a second, only 1 to 1000", "wrong_frequency", hertz
-            )
+            self.fail(f"expected a frequency of 1 to 1000 Hz, found {hertz}", "wrong_frequency", hertz)
         self._length = MILLISECONDS // hertz
 
     @internal_operation
     async def tick(self, process: int) -> None:
-        """Tick until it is stopped, or started again."""
+        """Tick until the clock is stopped, or started again."""
         while self._ticking and self._process == process:
             length = self._length
             self.update_property("nticks", self.value("nticks") + length)

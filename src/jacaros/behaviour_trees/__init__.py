@@ -1,7 +1,7 @@
-"""Artifacts for behaviour trees: behaviours of py_trees that use and observe artifacts, and what ticks them.
+"""Artifacts for behaviour trees: behaviours of py_trees that use and observe artifacts, and a runner that ticks them.
 
-Nothing here knows of agents: a tree is another user of an environment, beside agents or without any.  It needs
-py_trees, which the extra ``behaviour-trees`` of the package installs.
+Nothing here depends on agents: a tree is another user of an environment, with agents or without. It needs py_trees,
+which the extra ``behaviour-trees`` of the package installs.
 """
 
 try:

@@ -1,4 +1,4 @@
-"""``Act``: an operation of an artifact as a behaviour, with arguments from the blackboard and results that go there."""
+"""``Act``: an operation of an artifact as a behaviour, with arguments and results on the blackboard."""
 
 from dataclasses import dataclass
 
@@ -12,17 +12,17 @@ from jacaros.env.session.operation import SessionOperation
 from jacaros.env.values import Atom, Out, Structure, text
 
 MISTAKES = ("unknown_operation", "wrong_op_arguments")
-"""Functors of reasons that tell of a mistake in the tree and not of the world: people are told, too."""
+"""Functors of reasons that indicate a mistake in the tree, not in the world; these are logged, too."""
 
 
 @dataclass(frozen=True, slots=True)
 class Failure:
-    """What `Act` leaves on the blackboard when its operation fails.
+    """The value that `Act` writes to the blackboard when its operation fails.
 
     Attributes:
         behaviour: name of the behaviour.
-        message: text for people.
-        reason: term for programs, such as ``aborted(0.42)``; None when the operation gave none.
+        message: text of the failure.
+        reason: term for programs, such as ``aborted(0.42)``; None if the operation has none.
     """
 
     behaviour: str
@@ -31,22 +31,22 @@ class Failure:
 
 
 class Act(ArtifactBehaviour):
-    """Do an operation: RUNNING while it is under way, then SUCCESS or FAILURE.
+    """Run an operation: RUNNING while it runs, then SUCCESS or FAILURE.
 
-    Interrupted by the tree, the operation is cancelled: a motion stops the robot.  Ticked again, it begins anew.  When it
-    fails, ``feedback_message`` tells why, and a `Failure` goes to the blackboard.
+    If the tree interrupts it, the operation is cancelled: a motion stops the robot. Ticked again, it starts again. If
+    it fails, ``feedback_message`` gives the reason, and a `Failure` is written to the blackboard.
 
     Args:
-        operation: its name, as agents call it.
-        arguments: values; `FromBlackboard` for what is known only later, `ToBlackboard` for output parameters.
-        artifact: which one is to do it; without it the one that `Session.act` chooses.
-        timeout: seconds of the run's clock that it may take.
-        urgency: decides who gets the resources that it uses; the greater one first.
-        failure_key: where the `Failure` goes, None for nowhere.
-        name: of the behaviour; the call, such as ``moveForward(1)``, unless given.
+        operation: its name, as in agent programs.
+        arguments: values; `FromBlackboard` for values known at run time, `ToBlackboard` for output parameters.
+        artifact: the artifact that runs it; default: the one that `Session.act` chooses.
+        timeout: maximum time in seconds of the run's clock.
+        urgency: precedence for the resources that it uses; higher first.
+        failure_key: blackboard key for the `Failure`, None for none.
+        name: name of the behaviour; default: the call, such as ``moveForward(1)``.
 
     Attributes:
-        outcome: how the operation ended, None while it is under way.
+        outcome: outcome of the operation, None while it runs.
     """
 
     def __init__(
@@ -75,7 +75,7 @@ class Act(ArtifactBehaviour):
             self.may_write(failure_key)
 
     def initialise(self) -> None:
-        """Begin the operation."""
+        """Start the operation."""
         self._handle, self.outcome, self._results = None, None, {}
         try:
             arguments = [self._value(argument) for argument in self.arguments]
@@ -88,22 +88,22 @@ class Act(ArtifactBehaviour):
         self._handle.on_end(self._ended)
 
     def update(self) -> Status:
-        """Look whether the operation has ended."""
+        """Check whether the operation has ended."""
         if self._handle is not None:
             self.outcome = self._handle.outcome
         if self.outcome is None:
-            self.feedback_message = "under way"
+            self.feedback_message = "running"
             return Status.RUNNING
         return self._succeed() if self.outcome.ok else self._fail(self.outcome)
 
     def terminate(self, new_status: Status) -> None:
-        """Cancel the operation if it is still under way."""
+        """Cancel the operation if it is still running."""
         if self._handle is not None and not self._handle.done:
             self.feedback_message = "cancelled"
         self.let_go()
 
     def let_go(self) -> None:
-        """Cancel the operation if it is still under way."""
+        """Cancel the operation if it is still running."""
         handle, self._handle = self._handle, None
         if handle is not None:
             handle.cancel()
@@ -118,7 +118,7 @@ class Act(ArtifactBehaviour):
                 return self.board.get(argument.key)
             except KeyError:
                 raise OperationFailed(
-                    f"there is no {argument.key} on the blackboard",
+                    f"the blackboard has no key `{argument.key}`",
                     Structure("not_on_blackboard", (argument.key,)),
                 ) from None
         if isinstance(argument, ToBlackboard):
@@ -144,7 +144,7 @@ class Act(ArtifactBehaviour):
 
 
 def _written(operation: str, arguments: tuple[object, ...]) -> str:
-    """A call as people write it."""
+    """Format a call."""
     from_tree = FromBlackboard, ToBlackboard
     shown = [str(each) if isinstance(each, from_tree) else text(each, True) for each in arguments]
     return f"{operation}({', '.join(shown)})" if shown else operation
@@ -152,10 +152,10 @@ def _written(operation: str, arguments: tuple[object, ...]) -> str:
 
 @dataclass(frozen=True, slots=True)
 class FromBlackboard:
-    """An argument that is read from the blackboard whenever the operation begins.
+    """An argument that is read from the blackboard whenever the operation starts.
 
     Attributes:
-        key: of the blackboard, such as ``goal``, or an attribute of what is there, such as ``goal.x``.
+        key: blackboard key, such as ``goal``, or an attribute of its value, such as ``goal.x``.
     """
 
     key: str
@@ -166,10 +166,10 @@ class FromBlackboard:
 
 @dataclass(frozen=True, slots=True)
 class ToBlackboard:
-    """An output parameter: its value goes to the blackboard when the operation has succeeded.
+    """An output parameter: its value is written to the blackboard when the operation has succeeded.
 
     Attributes:
-        key: of the blackboard.
+        key: blackboard key.
     """
 
     key: str

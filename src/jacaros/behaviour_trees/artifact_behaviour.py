@@ -1,4 +1,4 @@
-"""What all behaviours that use artifacts have in common."""
+"""The common part of all behaviours that use artifacts."""
 
 from collections.abc import Callable
 from typing import Any
@@ -11,30 +11,30 @@ from jacaros.env import Session
 
 
 def nothing() -> None:
-    """Do nothing: nobody wants to be woken."""
+    """Do nothing: no runner waits for a tick."""
 
 
 def session_of(behaviour: Behaviour, given: dict[str, Any]) -> Session:
-    """The session that a behaviour is set up with.
+    """Return the session that a behaviour is set up with.
 
     Raises:
-        TypeError: there is none.
+        TypeError: none exists.
     """
     session = given.get("session")
     if not isinstance(session, Session):
         raise TypeError(
-            f"behaviour '{behaviour.name}' has no session: let a TreeRunner tick its tree, or set the tree up "
+            f"behaviour `{behaviour.name}` has no session; tick its tree with a TreeRunner, or set the tree up "
             "with tree.setup(session=Session(environment, name))"
         )
     return session
 
 
 class ArtifactBehaviour(Behaviour):
-    """A behaviour that uses artifacts; behaviours of a project may derive from it too.
+    """A behaviour that uses artifacts; behaviours of a project may derive from it, too.
 
     Attributes:
-        session: how the tree takes part in the environment; there from `setup` on.
-        wake: asks for a tick soon, because something has happened that the behaviour waits for.
+        session: access to the environment; set by `setup`.
+        wake: requests a tick soon, because an awaited event has happened.
     """
 
     session: Session
@@ -43,49 +43,50 @@ class ArtifactBehaviour(Behaviour):
         super().__init__(name)
         self.wake: Callable[[], None] = nothing
         self.board = self.attach_blackboard_client()
-        self._told: str | None = None
+        self._reported: str | None = None
 
     def setup(self, **given: Any) -> None:
-        """Be joined with the environment; `TreeRunner` does it, or ``tree.setup(session=...)``.
+        """Connect to the environment; called by `TreeRunner`, or with ``tree.setup(session=...)``.
 
         Args:
-            given: ``session``, a `Session`; ``wake``, what `wake` is to be, may be left out.
+            given: ``session``, a `Session`; ``wake``, the function for `wake`, optional.
 
         Raises:
             TypeError: no session is given.
         """
         self.session = session_of(self, given)
         self.wake = given.get("wake", nothing)
-        self._told = None
+        self._reported = None
 
     def let_go(self) -> None:
-        """Give up at once what is under way: the tree ends, perhaps in disorder."""
+        """Cancel everything immediately: the tree ends, possibly after an exception."""
 
     @property
     def clock(self) -> Clock:
-        """Where the behaviour takes time from."""
+        """The clock of the behaviour."""
         return self.session.clock
 
     def may_read(self, key: str) -> None:
-        """Announce to the blackboard that this behaviour reads *key*, or an attribute of it."""
+        """Register with the blackboard that this behaviour reads *key*, or an attribute of it."""
         self.board.register_key(key.partition(".")[0], Access.READ)
 
     def may_write(self, key: str) -> None:
-        """Announce to the blackboard that this behaviour writes *key*."""
+        """Register with the blackboard that this behaviour writes *key*."""
         self.board.register_key(key, Access.WRITE)
 
     def complain(self, what: str, error: Exception) -> None:
-        """Show in ``feedback_message`` that the author's own code raised, and log it; not at every tick."""
+        """Show in ``feedback_message`` that the author's own code raised an exception, and log it, but not at every
+        tick."""
         self.feedback_message = f"{what} raised {type(error).__name__}: {error}"
         if self._is_news(self.feedback_message):
             where = f"behaviour '{self.name}': {what} failed:"
             self.session.environment.log_error(self.session.name, where, error)
 
     def warn(self, text: str) -> None:
-        """Log that the tree itself seems wrong; not at every tick."""
+        """Log a mistake in the tree, but not at every tick."""
         if self._is_news(text):
             self.session.environment.log(f"[{self.session.name}] behaviour '{self.name}': {text}")
 
     def _is_news(self, text: str) -> bool:
-        told, self._told = self._told, text
+        told, self._reported = self._reported, text
         return told != text

@@ -1,4 +1,4 @@
-"""Behaviours that look at the observable properties of focused artifacts."""
+"""Behaviours that check the observable properties of focused artifacts."""
 
 from collections.abc import Callable, Mapping, Sequence
 
@@ -12,14 +12,14 @@ from jacaros.env.values import equal, plain, text
 
 
 class PropertyCheck(ArtifactBehaviour):
-    """SUCCESS when a property has values that fit, otherwise FAILURE; of several with one name, one is enough.
+    """SUCCESS if a property has matching values, otherwise FAILURE; of several with one name, one is enough.
 
     Args:
         property_name: its name.
-        predicate: called with the values of the property, such as ``lambda level: level > 20``; without it any values
-            fit.  When it raises, the behaviour fails.
-        artifact: which one has it; without it any that is focused.
-        name: of the behaviour; the property's name with a question mark unless given.
+        predicate: called with the values of the property, such as ``lambda level: level > 20``; default: any values
+            match. If it raises an exception, the behaviour fails.
+        artifact: the artifact with the property; default: any focused one.
+        name: name of the behaviour; default: the property's name with a question mark.
     """
 
     otherwise = Status.FAILURE
@@ -36,7 +36,7 @@ class PropertyCheck(ArtifactBehaviour):
         self.property_name, self.predicate, self.artifact = property_name, predicate, artifact
 
     def update(self) -> Status:
-        """Look at the property."""
+        """Check the property."""
         try:
             seen = self.session.properties(self.property_name, artifact=self.artifact)
             if not seen:
@@ -48,7 +48,7 @@ class PropertyCheck(ArtifactBehaviour):
         try:
             return Status.SUCCESS if any(map(self._fits, seen)) else self.otherwise
         except Exception as error:
-            self.complain("its predicate", error)
+            self.complain("the predicate", error)
             return Status.FAILURE
 
     def _fits(self, seen: ObservedProperty) -> bool:
@@ -56,19 +56,19 @@ class PropertyCheck(ArtifactBehaviour):
 
 
 class WaitForProperty(PropertyCheck):
-    """Like `PropertyCheck`, but RUNNING until it fits."""
+    """As `PropertyCheck`, but RUNNING until the values match."""
 
     otherwise = Status.RUNNING
 
 
 class HasProperty(PropertyCheck):
-    """SUCCESS when a property has these values, otherwise FAILURE.
+    """SUCCESS if a property has these values, otherwise FAILURE.
 
     Args:
         property_name: its name.
-        values: all its values; none of them fits any.
-        artifact: which one has it; without it any that is focused.
-        name: of the behaviour; such as ``holder(driver)?`` unless given.
+        values: all its values; default: any.
+        artifact: the artifact with the property; default: any focused one.
+        name: name of the behaviour; default: such as ``holder(driver)?``.
     """
 
     def __init__(
@@ -91,13 +91,13 @@ class HasProperty(PropertyCheck):
 class PropertiesToBlackboard(ArtifactBehaviour):
     """Copy properties to the blackboard at every tick; always SUCCESS.
 
-    A property with one value gives that value, any other a tuple; of several with one name it is the first.  The key of
-    a property that is not there is removed.  As with topics, its place is the first one below a ``Parallel``.
+    A property with one value yields that value, any other a tuple; of several with one name, the first counts. The
+    key of a missing property is removed. As with topics, place it first below a ``Parallel``.
 
     Args:
-        properties: names of properties, each its own key; or a dictionary from names to keys.
-        artifact: which one has them; without it any that is focused.
-        name: of the behaviour.
+        properties: names of properties, which are also the keys; or a dictionary from names to keys.
+        artifact: the artifact with the properties; default: any focused one.
+        name: name of the behaviour.
     """
 
     def __init__(
@@ -118,9 +118,9 @@ class PropertiesToBlackboard(ArtifactBehaviour):
             self.may_write(key)
 
     def update(self) -> Status:
-        """Copy."""
+        """Copy the properties."""
         missing = [name for name, key in self.keys.items() if not self._copy(name, key)]
-        self.feedback_message = f"no focused artifact shows {', '.join(missing)}" if missing else ""
+        self.feedback_message = f"no focused artifact has {', '.join(missing)}" if missing else ""
         return Status.SUCCESS
 
     def _copy(self, name: str, key: str) -> bool:

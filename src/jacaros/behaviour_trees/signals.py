@@ -1,4 +1,4 @@
-"""Behaviours that hear the signals of focused artifacts."""
+"""Behaviours that receive the signals of focused artifacts."""
 
 from collections.abc import Callable
 from typing import Any
@@ -11,18 +11,18 @@ from jacaros.env.values import text
 
 
 class OnSignal(ArtifactBehaviour):
-    """SUCCESS when the signal came since this was ticked last, otherwise FAILURE.
+    """SUCCESS if the signal arrived since the last tick, otherwise FAILURE.
 
-    It hears from `setup` on, ticked or not: a signal between two ticks is not missed.  Several signals between two
-    ticks are one SUCCESS, with the arguments of the latest.
+    It receives signals from `setup` on, ticked or not, so a signal between two ticks is not missed. Several signals
+    between two ticks are one SUCCESS, with the arguments of the latest.
 
     Args:
         signal: name of the signal.
-        predicate: called with its arguments; signals that do not fit are passed over.  When it raises, the
-            behaviour fails.
-        artifact: name of the artifact; without it any that is focused.
-        to: key of the blackboard for the arguments, a tuple.
-        name: of the behaviour; the signal's name with an exclamation mark unless given.
+        predicate: called with its arguments; other signals are skipped. If it raises an exception, the behaviour
+            fails.
+        artifact: name of the artifact; default: any focused one.
+        to: blackboard key for the arguments, a tuple.
+        name: name of the behaviour; default: the signal's name with an exclamation mark.
     """
 
     otherwise = Status.FAILURE
@@ -45,23 +45,23 @@ class OnSignal(ArtifactBehaviour):
             self.may_write(to)
 
     def setup(self, **given: Any) -> None:
-        """Begin to hear; see `ArtifactBehaviour.setup`."""
+        """Start receiving; see `ArtifactBehaviour.setup`."""
         super().setup(**given)
         self.shutdown()
         self._heard = self._wrong = None
         self._stop_hearing = self.session.on_signal(self._hear)
 
     def shutdown(self) -> None:
-        """Hear nothing more."""
+        """Stop receiving."""
         self._stop_hearing()
         self._stop_hearing = nothing
 
     def update(self) -> Status:
-        """Tell whether it came."""
+        """Return whether the signal arrived."""
         heard, wrong = self._heard, self._wrong
         self._heard = self._wrong = None
         if wrong is not None:
-            self.complain("its predicate", wrong)
+            self.complain("the predicate", wrong)
             return Status.FAILURE
         if heard is None:
             self.feedback_message = f"no {self.signal}"
@@ -87,7 +87,7 @@ class OnSignal(ArtifactBehaviour):
 
 
 class WaitForSignal(OnSignal):
-    """RUNNING until the signal comes, then SUCCESS; signals from before it was first ticked do not count.
+    """RUNNING until the signal arrives, then SUCCESS; signals from before the first tick do not count.
 
     The arguments are those of `OnSignal`.
     """
@@ -95,5 +95,5 @@ class WaitForSignal(OnSignal):
     otherwise = Status.RUNNING
 
     def initialise(self) -> None:
-        """Forget what came before."""
+        """Forget earlier signals."""
         self._heard = self._wrong = None

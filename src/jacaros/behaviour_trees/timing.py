@@ -1,4 +1,4 @@
-"""Waiting, and time-outs, on the run's clock: those of py_trees go by the time of day."""
+"""Waiting and time-outs on the run's clock: those of py_trees use the time of day."""
 
 from collections.abc import Callable
 from typing import Any
@@ -17,7 +17,7 @@ class Timer(ArtifactBehaviour):
 
     Args:
         duration: seconds of the run's clock.
-        name: of the behaviour.
+        name: name of the behaviour.
     """
 
     def __init__(self, duration: float, name: str | None = None) -> None:
@@ -27,21 +27,21 @@ class Timer(ArtifactBehaviour):
         self._timer: ClockTimer | None = None
 
     def initialise(self) -> None:
-        """Begin to wait."""
+        """Start waiting."""
         self._over = False
         self._timer = self.clock.call_later(self.duration, self._ring)
 
     def update(self) -> Status:
-        """Look whether the time is over."""
+        """Check whether the time is over."""
         self.feedback_message = "over" if self._over else f"waiting {self.duration:g} s"
         return Status.SUCCESS if self._over else Status.RUNNING
 
     def terminate(self, new_status: Status) -> None:
-        """Wait no more."""
+        """Stop waiting."""
         self.let_go()
 
     def let_go(self) -> None:
-        """Wait no more."""
+        """Stop waiting."""
         if self._timer is not None:
             self._timer.cancel()
 
@@ -51,12 +51,12 @@ class Timer(ArtifactBehaviour):
 
 
 class Timeout(Decorator):
-    """Interrupt what is below when it takes too long, and fail.
+    """Interrupt the child if it takes too long, and fail.
 
     Args:
-        child: what is below.
-        duration: seconds of the run's clock that it may take.
-        name: of the behaviour.
+        child: the child.
+        duration: maximum time in seconds of the run's clock.
+        name: name of the behaviour.
     """
 
     def __init__(self, child: Behaviour, duration: float, name: str | None = None) -> None:
@@ -68,23 +68,23 @@ class Timeout(Decorator):
         self._timer: ClockTimer | None = None
 
     def setup(self, **given: Any) -> None:
-        """Be given the clock; see `ArtifactBehaviour.setup`."""
+        """Store the clock; see `ArtifactBehaviour.setup`."""
         self._clock = session_of(self, given).clock
         self.wake = given.get("wake", nothing)
 
     def initialise(self) -> None:
-        """Begin to count the time."""
+        """Start the time-out."""
         self._over = False
         self._timer = self._clock.call_later(self.duration, self._ring)
 
     def update(self) -> Status:
-        """Go by what is below while there is time."""
+        """Return the child's status while there is time."""
         late = self._over and self.decorated.status is Status.RUNNING
         self.feedback_message = f"took longer than {self.duration:g} s" if late else ""
         return Status.FAILURE if late else self.decorated.status
 
     def terminate(self, new_status: Status) -> None:
-        """Count no more."""
+        """Stop the time-out."""
         if self._timer is not None:
             self._timer.cancel()
 

@@ -1,4 +1,4 @@
-"""What ticks a tree: on the run's clock, and as soon as something has happened."""
+"""Ticks a tree: on the run's clock, and as soon as something has happened."""
 
 import asyncio
 from collections.abc import Iterator, Mapping
@@ -16,27 +16,29 @@ from jacaros.env.session.account import Observer
 
 _ENDS = {Status.SUCCESS: "achieved", Status.FAILURE: "failed"}
 CLOSEST = 0.01
-"""Seconds between two ticks at least: a tree whose own operations wake it must not hold time up."""
+"""Minimum number of seconds between two ticks: a tree whose own operations wake it must not block virtual time."""
 
 
 class TreeRunner:
-    """Ticks a tree: every `period`, and at once when a focused artifact has changed, a signal has come or an operation of
-    the tree has ended.
+    """Ticks a tree: every `period`, and immediately when a focused artifact changes, a signal arrives or an operation
+    of the tree ends.
 
-    However it ends (the root is done, the task is cancelled, a behaviour raises), operations under way are cancelled, so
-    that no robot drives on.
+    However it ends (the root is done, the task is cancelled, a behaviour raises an exception), running operations are
+    cancelled, so that no robot keeps driving.
 
     Args:
         root: the root of a tree, or a ``BehaviourTree`` with its visitors and handlers.
-        session: how the tree takes part in the environment; it focuses what the tree is to see.
-        period: seconds of the run's clock between two ticks at most; None: only when something has happened.
-        setup: what the ``setup`` of the behaviours gets besides ``session``, such as a ``node`` for those of py_trees_ros.
+        session: access to the environment; it focuses on the artifacts that the tree observes.
+        period: maximum number of seconds of the run's clock between two ticks; None: tick only when something has
+            happened.
+        setup: further arguments of the behaviours' ``setup`` besides ``session``, such as a ``node`` for those of
+            py_trees_ros.
 
     Attributes:
         tree: the ``BehaviourTree``.
 
     Raises:
-        TypeError: *root* is neither a behaviour nor a tree, or *session* is no session.
+        TypeError: *root* is neither a behaviour nor a tree, or *session* is not a session.
         ValueError: *period* is not positive.
     """
 
@@ -49,37 +51,35 @@ class TreeRunner:
         setup: Mapping[str, Any] | None = None,
     ) -> None:
         if not isinstance(root, (Behaviour, BehaviourTree)):
-            raise TypeError(f"a tree needs a root behaviour of py_trees, not {root!r}")
+            raise TypeError(f"expected a root behaviour of py_trees, found {root!r}")
         if not isinstance(session, Session):
-            raise TypeError(
-                f"a tree takes part by a Session, not by {session!r}; a PythonAgent has one: self.session"
-            )
+            raise TypeError(f"expected a Session, found {session!r}; a PythonAgent has one: self.session")
         if period is not None and not period > 0:
-            raise ValueError(f"the period of a tree is a positive number of seconds, not {period!r}")
+            raise ValueError(f"period: expected a positive number of seconds, found {period!r}")
         self.tree = root if isinstance(root, BehaviourTree) else BehaviourTree(root)
         self.session = session
         self.period = period
         self._setup: dict[str, Any] = {**(setup or {}), "session": session, "wake": self.wake}
         self._running = self._due = self._ends = False
         self._waiting: asyncio.Future[None] | None = None
-        self._told: dict[Behaviour, None] = {}
+        self._reported: dict[Behaviour, None] = {}
 
     async def run(self, forever: bool = False) -> Status:
         """Set the tree up and tick it until its root is done.
 
         Args:
-            forever: tick on when the root has succeeded or failed, as ``tick_tock`` does; then only `stop`, or
+            forever: continue after the root has succeeded or failed, as ``tick_tock`` does; then only `stop`, or
                 cancelling the task, ends it.
 
         Returns:
-            The status of the root: SUCCESS or FAILURE, or what it was when `stop` was called.
+            The status of the root: SUCCESS or FAILURE, or its status when `stop` was called.
 
         Raises:
-            RuntimeError: it is running already.
-            Exception: what the author's own behaviours raise.
+            RuntimeError: it is already running.
+            Exception: an exception of the author's own behaviours.
         """
         if self._running:
-            raise RuntimeError(f"the tree '{self.tree.root.name}' is running already")
+            raise RuntimeError(f"the tree `{self.tree.root.name}` is already running")
         self._running, self._ends, self._due = True, False, False
         off = (self.session.on_change(lambda _: self.wake()), self.session.on_signal(lambda _: self.wake()))
         try:
@@ -93,12 +93,12 @@ class TreeRunner:
             self._release()
 
     def stop(self) -> None:
-        """End `run` before the next tick; from within a tick, after it."""
+        """End `run` before the next tick; if called during a tick, after it."""
         self._ends = True
         self._interrupt()
 
     def wake(self) -> None:
-        """Ask for a tick soon."""
+        """Request a tick soon."""
         self._due = True
         self._interrupt()
 
@@ -110,12 +110,12 @@ class TreeRunner:
             if self.tree.root.status is not Status.RUNNING and not forever:
                 return
             if self.period is not None:
-                self._due = False  # what the tree itself has just changed waits for its next turn
+                self._due = False  # changes made by the tree itself wait for its next turn
             await self._wait(CLOSEST, for_news=False)
             await self._wait(None if self.period is None else self.period - CLOSEST, for_news=True)
 
     async def _wait(self, seconds: float | None, for_news: bool) -> None:
-        """Wait until the time is over, or there are news if they count, or the run is to end."""
+        """Wait until the time is over, news arrive (if they count), or the run must end."""
         over = seconds is not None and seconds <= 0
 
         def ring() -> None:
@@ -138,26 +138,26 @@ class TreeRunner:
             self._waiting.set_result(None)
 
     def _release(self) -> None:
-        """Cancel what is under way, whatever the author's behaviours do at their end."""
+        """Cancel all running operations, whatever the author's behaviours do at their end."""
         behaviours = list(self.tree.root.iterate())
         for behaviour in behaviours:
             if isinstance(behaviour, ArtifactBehaviour):
                 behaviour.let_go()
         try:
             for behaviour in behaviours:
-                # Not the root alone: when a tick is broken off, those above do not know yet what runs.
+                # Not only the root: if a tick is interrupted, the parents do not know yet which children run.
                 if behaviour.status is Status.RUNNING:
                     behaviour.stop(Status.INVALID)
         finally:
             if self.session.observer is not None:
-                self._tell(self.session.observer)
+                self._report(self.session.observer)
             self.tree.shutdown()
 
     @contextmanager
     def _observed(self) -> Iterator[None]:
-        """Around a tick: who observes the session hears of the behaviours before the operations that they begin."""
-        tell = self.session.observer
-        if tell is None:
+        """Around a tick: report the behaviours to the session's observer before the operations that they start."""
+        report = self.session.observer
+        if report is None:
             yield
             return
         told: list[tuple[str, str, object, str]] = []
@@ -165,24 +165,24 @@ class TreeRunner:
         try:
             yield
         finally:
-            self.session.observer = tell
-            self._tell(tell)
+            self.session.observer = report
+            self._report(report)
             for news in told:
-                tell(*news)
+                report(*news)
 
-    def _tell(self, tell: Observer) -> None:
-        """Tell which behaviours run now, and how those ended that ran before."""
-        before, self._told = self._told, {}
+    def _report(self, report: Observer) -> None:
+        """Report which behaviours run now, and how those ended that ran before."""
+        before, self._reported = self._reported, {}
         for behaviour in reversed(list(self.tree.root.iterate())):  # parents come before their children
-            # Operations are told by the session, with their arguments and reasons.
+            # The session reports operations, with their arguments and reasons.
             if behaviour.status is Status.RUNNING and not isinstance(behaviour, Act):
-                self._told[behaviour] = None
+                self._reported[behaviour] = None
         for behaviour in reversed(before):
-            if behaviour not in self._told:
+            if behaviour not in self._reported:
                 state = _ENDS.get(behaviour.status, "dropped")
-                tell(
+                report(
                     state, behaviour.name, behaviour, behaviour.feedback_message if state == "failed" else ""
                 )
-        for behaviour in self._told:
+        for behaviour in self._reported:
             if behaviour not in before:
-                tell("executing", behaviour.name, behaviour, "")
+                report("executing", behaviour.name, behaviour, "")

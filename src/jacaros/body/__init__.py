@@ -1,1 +1,1 @@
-"""The body of an agent: it joins a mind (`jacaros.bdi`) to its workspaces (`jacaros.env`)."""
+"""The body of an agent, which connects its mind (`jacaros.bdi`) to its workspaces (`jacaros.env`)."""

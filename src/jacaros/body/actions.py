@@ -1,7 +1,7 @@
-"""What an agent does by its own body: make artifacts, focus, join and quit workspaces.
+"""Actions of an agent's own body: make artifacts, focus, join and quit workspaces.
 
-In CArtAgO these are operations of the artifacts ``workspace``, ``body_bob`` and ``session_bob``; the actions, arguments
-and reasons of failure are the same here.  What else can be done with workspaces is up to the artifact ``workspace``
+In CArtAgO these are operations of the artifacts ``workspace``, ``body_bob`` and ``session_bob``; the actions,
+arguments and failure reasons are the same here. All other actions on workspaces belong to the artifact ``workspace``
 (`jacaros.env.workspace_artifact`).
 """
 
@@ -28,25 +28,25 @@ from jacaros.terms.text import text
 from jacaros.terms.values import NIL, Reference, Term, Var, bare, is_list
 
 Outputs = tuple[tuple[Term, Term], ...]
-"""Values for variables of an action."""
+"""Values for output variables of an action."""
 
 Finish = Callable[[Completion], None]
-"""To be told how an action ended, once."""
+"""Called once with the outcome of an action."""
 
 
 @dataclass(frozen=True, slots=True)
 class Situation:
-    """An agent amid its environment.
+    """An agent and its environment.
 
     Attributes:
-        agent: its name.
-        environment: all there is.
-        workspaces: its workspaces.
+        agent: name of the agent.
+        environment: the environment.
+        workspaces: the workspaces that it has joined.
         focused: its focused artifacts.
-        selection: how it finds artifacts.
+        selection: its artifact resolution.
         references: opaque references of the run.
-        joined: told of every workspace that it joins (True) or quits (False).
-        session: gives the artifact that stands for its session.
+        joined: called with every workspace that it joins (True) or quits (False).
+        session: returns the artifact that stands for its session.
     """
 
     agent: str
@@ -60,9 +60,10 @@ class Situation:
 
 
 Action = Callable[[Situation, Call, Finish], UnderWay | None]
-"""Carries out a call; gives a handle on what is still under way.
+"""Runs a call; returns a handle if it is still running afterwards.
 
-Raises OperationFailed when it cannot be done."""
+Raises OperationFailed if that is impossible.
+"""
 
 _declared: dict[tuple[str, int], Action] = {}
 ACTIONS: Final[Mapping[tuple[str, int], Action]] = MappingProxyType(_declared)
@@ -79,37 +80,37 @@ def _action(name: str, *arities: int) -> Callable[[Action], Action]:
 
 @cache
 def keys() -> tuple[str, ...]:
-    """Names with numbers of arguments, such as ``focus/1``; one tuple for all agents."""
+    """Return names with numbers of arguments, such as ``focus/1``; one tuple for all agents."""
     return tuple(f"{name}/{arity}" for name, arity in ACTIONS)
 
 
 def _give(situation: Situation, call: Call, holder: ArtifactId, index: int, value: object) -> Outputs:
-    """The output *value* for an argument of a call, if the call has so many.
+    """Return the output *value* for an argument of a call, if the call has that argument.
 
     Raises:
-        OperationFailed: the argument is no variable.
+        OperationFailed: the argument is not a variable.
     """
     if index >= len(call.arguments):
         return ()
     argument = call.arguments[index]
     if argument.__class__ is not Var:
-        raise _wrong(call, holder, f"argument {index + 1} is an output and wants an unbound variable", index)
+        raise _wrong(call, holder, f"argument {index + 1} is an output: expected an unbound variable", index)
     return ((argument, situation.references.of(value)),)
 
 
 def _wrong(call: Call, holder: ArtifactId, what: str, index: int) -> OperationFailed:
-    """The failure of an action of which an argument is not of the kind that is wanted."""
+    """Return the failure of an action with an argument of the wrong kind."""
     return OperationFailed(
-        f"{call.key}: {what}, not {text(call.arguments[index])}",
+        f"{call.key}: {what}, found {text(call.arguments[index])}",
         Structure("wrong_op_arguments", (holder, call.key)),
     )
 
 
 def _base(situation: Situation, call: Call) -> Workspace:
-    """The workspace that a call is directed to, or the current one.
+    """Return the workspace that a call is directed to, or the current one.
 
     Raises:
-        OperationFailed: it has not been joined.
+        OperationFailed: the agent has not joined it.
     """
     workspaces, intention = situation.workspaces, call.act.intention
     wanted = call.direction.workspace
@@ -126,7 +127,7 @@ def _base(situation: Situation, call: Call) -> Workspace:
 
 
 def _place(situation: Situation, here: Workspace, path: str) -> tuple[Workspace, str]:
-    """The workspace and the plain name meant by the name or path of an artifact."""
+    """Return the workspace and the plain name of an artifact, given its name or path."""
     if "/" not in path:
         return here, path
     above, _, name = resolve_path(here.path, path).rpartition("/")
@@ -134,24 +135,24 @@ def _place(situation: Situation, here: Workspace, path: str) -> tuple[Workspace,
 
 
 def _name(call: Call, index: int, holder: ArtifactId, what: str = "a name (a string or an atom)") -> str:
-    """The name that an argument stands for."""
+    """Return the name in an argument."""
     name = name_of(bare(call.arguments[index]))
     if name is None:
-        raise _wrong(call, holder, f"argument {index + 1} wants {what}", index)
+        raise _wrong(call, holder, f"argument {index + 1}: expected {what}", index)
     return name
 
 
 def _artifact(situation: Situation, call: Call) -> ArtifactId:
-    """The artifact whose id is the first argument.
+    """Return the artifact whose id is the first argument.
 
     Raises:
-        OperationFailed: it is no id, or of an artifact in a workspace that has not been joined.
+        OperationFailed: it is not an id, or the agent has not joined the artifact's workspace.
     """
     term = bare(call.arguments[0])
     artifact = term.value if term.__class__ is Reference else None
     if not isinstance(artifact, ArtifactId):
         help = " (lookupArtifact gives the id for a name)" if name_of(term) is not None else ""
-        what = f"argument 1 wants the id of an artifact{help}"
+        what = f"argument 1: expected the id of an artifact{help}"
         raise _wrong(call, situation.focused.body_in(_base(situation, call)), what, 0)
     if not situation.workspaces.has_joined(artifact.workspace):
         raise not_joined(artifact.workspace)
@@ -162,8 +163,8 @@ def _workspace_of(situation: Situation, artifact: ArtifactId) -> Workspace:
     return situation.environment.workspace(artifact.workspace)
 
 
-def _told(situation: Situation, finish: Finish) -> OnOutcome:
-    """Let an action end as what was asked of a workspace ended."""
+def _reported(situation: Situation, finish: Finish) -> OnOutcome:
+    """Convert the outcome of a request to a workspace to that of an action."""
     return lambda outcome: finish(of_operation(outcome, [], situation.references))
 
 
@@ -171,7 +172,8 @@ def _told(situation: Situation, finish: Finish) -> OnOutcome:
 def make_artifact(situation: Situation, call: Call, finish: Finish) -> UnderWay | None:
     """``makeArtifact(Name, Type [, Parameters [, -Id]])``: make an artifact.
 
-    In the current workspace, in the one that the action is directed to, or in the one in front of the name.
+    It is made in the current workspace, in the one that the action is directed to, or in the one that precedes the
+    name.
     """
     here = _base(situation, call)
     holder = here.lookup("workspace")
@@ -179,7 +181,7 @@ def make_artifact(situation: Situation, call: Call, finish: Finish) -> UnderWay 
     parameters = bare(call.arguments[2]) if len(call.arguments) > 2 else NIL
     if not is_list(parameters):
         help = "; the id is the fourth argument" if parameters.__class__ is Var else ""
-        raise _wrong(call, holder, f"argument 3 wants a list of parameters{help}", 2)
+        raise _wrong(call, holder, f"argument 3: expected a list of parameters{help}", 2)
     _give(situation, call, holder, 3, holder)
     workspace, plain_name = _place(situation, here, name)
 
@@ -194,32 +196,32 @@ def make_artifact(situation: Situation, call: Call, finish: Finish) -> UnderWay 
 
 @_action("focus", 1, 2)
 def focus(situation: Situation, call: Call, finish: Finish) -> None:
-    """``focus(Id [, Filter])``: perceive an artifact from now on, perhaps only what a filter lets pass."""
+    """``focus(Id [, Filter])``: perceive an artifact from now on, optionally only what a filter lets pass."""
     artifact, only = _artifact(situation, call), _filter(situation, call)
     if situation.focused.is_body(artifact) or artifact is situation.session():
-        # Of its own body and session an agent perceives everything anyway.
+        # An agent always perceives everything of its own body and session.
         finish(succeeded())
         return
-    workspace, told = _workspace_of(situation, artifact), _told(situation, finish)
+    workspace, told = _workspace_of(situation, artifact), _reported(situation, finish)
     situation.focused.begin(workspace, artifact, call.namespace, told, only)
 
 
 def _filter(situation: Situation, call: Call) -> Filter | None:
-    """What the second argument lets pass; None when there is no second argument."""
+    """Return the filter in the second argument; None without a second argument."""
     if len(call.arguments) == 1:
         return None
     complain = partial(
-        situation.environment.log_error, situation.agent, "a filter failed, everything passes:"
+        situation.environment.log_error, situation.agent, "a filter failed; everything passes:"
     )
     found = filter_of(to_value(call.arguments[1]), complain)
     if found is None:
-        what = "argument 2 wants a filter: patterns such as count(_), or a Python object with a method select"
+        what = "argument 2: expected a filter: patterns such as count(_), or a Python object with a method select"
         raise _wrong(call, situation.focused.body_in(_base(situation, call)), what, 1)
     return found
 
 
 class _Waiting:
-    """Waits for an artifact that is not there yet."""
+    """Waits for an artifact that does not exist yet."""
 
     def __init__(self, stop: Callable[[], None]) -> None:
         self._stop = stop
@@ -228,15 +230,15 @@ class _Waiting:
         self._stop()
 
     def pause(self) -> None:
-        """Nothing: waiting does no harm."""
+        """Do nothing: waiting needs no pause."""
 
     def resume(self) -> None:
-        """Nothing."""
+        """Do nothing."""
 
 
 @_action("focusWhenAvailable", 1, 2)
 def focus_when_available(situation: Situation, call: Call, finish: Finish) -> UnderWay | None:
-    """``focusWhenAvailable(Name [, Filter])``: wait until there is an artifact of that name, and focus it."""
+    """``focusWhenAvailable(Name [, Filter])``: wait until an artifact of that name exists, and focus on it."""
     here = _base(situation, call)
     name = _name(call, 0, situation.focused.body_in(here))
     only = _filter(situation, call)
@@ -245,7 +247,7 @@ def focus_when_available(situation: Situation, call: Call, finish: Finish) -> Un
         raise not_joined(workspace.path)
     present = next((a for a in workspace.artifacts() if a.name == wanted), None)
     if present is not None:
-        situation.focused.begin(workspace, present, call.namespace, _told(situation, finish), only)
+        situation.focused.begin(workspace, present, call.namespace, _reported(situation, finish), only)
         return None
 
     def look(artifact: ArtifactId, is_there: bool) -> None:
@@ -255,8 +257,8 @@ def focus_when_available(situation: Situation, call: Call, finish: Finish) -> Un
             stop()
             finish(refused(not_joined(workspace.path), situation.references))
             return
-        with suppress(UnknownArtifact):  # somebody has disposed it at once: the next one is waited for
-            situation.focused.begin(workspace, artifact, call.namespace, _told(situation, finish), only)
+        with suppress(UnknownArtifact):  # it was disposed immediately: wait for the next one
+            situation.focused.begin(workspace, artifact, call.namespace, _reported(situation, finish), only)
             stop()
 
     stop = workspace.watch(look)
@@ -265,9 +267,9 @@ def focus_when_available(situation: Situation, call: Call, finish: Finish) -> Un
 
 @_action("stopFocus", 1)
 def stop_focus(situation: Situation, call: Call, finish: Finish) -> None:
-    """``stopFocus(Id)``: perceive an artifact no more; without effect when it is not focused."""
+    """``stopFocus(Id)``: stop perceiving an artifact; no effect if it is not focused."""
     artifact = _artifact(situation, call)
-    # An artifact that is gone cannot be meant any more; what was perceived of it is forgotten already.
+    # A disposed artifact cannot be referred to; its percepts are already gone.
     _workspace_of(situation, artifact).offers(artifact)
     situation.focused.end(artifact, call.namespace)
     finish(succeeded())
@@ -287,20 +289,20 @@ def join_workspace(situation: Situation, call: Call, finish: Finish) -> None:
 
 
 def _workspace(call: Call, session: ArtifactId) -> Workspace | None:
-    """The workspace whose id is the first argument; None when that is a name."""
+    """Return the workspace whose id is the first argument; None if that is a name."""
     term = bare(call.arguments[0])
     if term.__class__ is Reference and isinstance(term.value, Workspace):
         return term.value
     if name_of(term) is None:
         raise _wrong(
-            call, session, "argument 1 wants a workspace (its path, or the id that joinWorkspace gives)", 0
+            call, session, "argument 1: expected a workspace (its path, or the id from joinWorkspace)", 0
         )
     return None
 
 
 @_action("quitWorkspace", 0, 1)
 def quit_workspace(situation: Situation, call: Call, finish: Finish) -> None:
-    """``quitWorkspace([Id])``: leave a workspace (without argument the current one) and all focused there."""
+    """``quitWorkspace([Id])``: leave a workspace (default: the current one) and stop focusing everything in it."""
     intention = call.act.intention
     if not call.arguments:
         workspace = _base(situation, call)
@@ -317,7 +319,7 @@ def quit_workspace(situation: Situation, call: Call, finish: Finish) -> None:
 
 @_action("quitFromEnvironment", 0)
 def quit_from_environment(situation: Situation, call: Call, finish: Finish) -> None:
-    """``quitFromEnvironment``: leave all workspaces; ``joinWorkspace`` leads back."""
+    """``quitFromEnvironment``: leave all workspaces; ``joinWorkspace`` returns."""
     for workspace in reversed(situation.workspaces.joined()):
         _quit(situation, workspace)
     finish(succeeded())

@@ -1,4 +1,4 @@
-"""The body of one agent: carries out its actions, and perceives what it focuses."""
+"""The body of one agent: runs its actions, and perceives what it focuses on."""
 
 from collections.abc import Callable, Mapping
 from functools import partial
@@ -27,52 +27,52 @@ _CONSOLE = "console"
 
 
 class ServedMind(Protocol):
-    """What a body serves (`jacaros.bdi.mind.Mind`)."""
+    """The interface of a mind for its body (`jacaros.bdi.mind.Mind`)."""
 
     def perceive(self, percepts: list[Percept]) -> None:
-        """Take percepts in."""
+        """Take percepts."""
 
     def has_untaken(self, name: str) -> bool:
-        """Whether percepts about properties called *name* have still to be taken up."""
+        """Return whether percepts about properties called *name* are still unprocessed."""
 
     def keep_histories(self, namespace: str | None, histories: Mapping[str, float]) -> None:
-        """Keep what properties in a namespace were: seconds by name."""
+        """Keep past values of properties in a namespace: seconds by name."""
 
     def complete(self, act_id: int, completion: Completion) -> None:
-        """Be told the end of an act."""
+        """Handle the outcome of an act."""
 
     def preempted(self, act_id: int, resource: str) -> None:
-        """Be told that an act has lost a resource."""
+        """Handle that an act has lost a resource."""
 
     def regained(self, act_id: int) -> None:
-        """Be told that an act has its resource again, or no longer waits for it."""
+        """Handle that an act has its resource again, or no longer waits for it."""
 
 
 class Activity(Protocol):
-    """Counts actions under way."""
+    """Counts running actions."""
 
     def begin(self) -> None:
-        """An action has begun."""
+        """Note that an action has begun."""
 
     def end(self) -> None:
-        """An action has ended or was given up."""
+        """Note that an action has ended or was cancelled."""
 
 
 class AgentBody:
-    """Carries out the actions of one agent and perceives for it.
+    """Runs the actions of one agent and perceives for it.
 
-    Percepts of an operation reach the mind before the end of the action does: when the plan goes on, the
-    belief base shows the result.
+    The percepts of an operation reach the mind before the end of its action: when the plan continues, the belief base
+    contains the result.
 
     Args:
         agent: name of the agent.
-        mind: whom it serves.
-        environment: where it acts.
+        mind: its mind.
+        environment: its environment.
         references: opaque references, shared by all agents of a run.
-        writer: writes percepts, shared likewise.
-        show: shows a line of the agent's output.
-        activity: told of actions under way.
-        home: full path of the workspace where the agent begins.
+        writer: writes percepts, also shared.
+        show: prints a line of the agent's output.
+        activity: counts running actions.
+        home: full path of the agent's home workspace.
     """
 
     def __init__(
@@ -93,7 +93,7 @@ class AgentBody:
         self._writer = writer
         self._show = show
         self._activity = activity
-        # Acts under way; without a handle while the call that begins them has not returned.
+        # Running acts; without a handle until the call that begins them returns.
         self._pending: dict[int, UnderWay | None] = {}
         self._needs = Needs(agent, environment, self)
         self._entered = False
@@ -116,26 +116,26 @@ class AgentBody:
 
     @property
     def situation(self) -> Situation:
-        """Workspaces and focused artifacts of the agent."""
+        """The agent's workspaces and focused artifacts."""
         return self._situation
 
     @property
     def pending(self) -> tuple[int, ...]:
-        """The acts under way."""
+        """The running acts."""
         return tuple(self._pending)
 
     def enter(self) -> None:
-        """Believe in the workspace where the agent begins; done by its first action at the latest."""
+        """Add the belief about the home workspace; at the latest done by the agent's first action."""
         if not self._entered:
             self._entered = True
             for workspace in self._workspaces.joined():
                 self._joined(workspace, True)
 
     def join(self, path: str) -> None:
-        """Join a workspace on behalf of the project, before the agent acts.
+        """Join a workspace for the project, before the agent acts.
 
         Raises:
-            OperationFailed: there is none at that full path.
+            OperationFailed: no workspace has this full path.
         """
         self.enter()
         workspace = self._environment.workspace(path)
@@ -143,10 +143,10 @@ class AgentBody:
             self._joined(workspace, True)
 
     def focus(self, artifact: ArtifactId, namespace: str | None = None) -> None:
-        """Focus an artifact on behalf of the project; its workspace is joined as well.
+        """Focus on an artifact for the project, and join its workspace.
 
         Raises:
-            OperationFailed: the artifact is gone.
+            OperationFailed: the artifact does not exist.
         """
         self.enter()
         workspace = self._environment.workspace(artifact.workspace)
@@ -155,7 +155,7 @@ class AgentBody:
         self._situation.focused.begin(workspace, artifact, namespace)
 
     def act(self, act: Act) -> None:
-        """Begin an action; the mind is told its end, which may be before this returns."""
+        """Begin an action; the mind receives its outcome, possibly before this returns."""
         if not self._entered:
             self.enter()
         self._pending[act.id] = None
@@ -172,7 +172,7 @@ class AgentBody:
             self._pending[act.id] = handle
 
     def cancel_act(self, act_id: int) -> None:
-        """Give an action up: its operation is cancelled, its end is not told; or give back what a plan needs."""
+        """Cancel the operation of an action without reporting its end; or release the resources of a plan."""
         self._needs.forget(act_id)
         if act_id not in self._pending:
             return
@@ -182,7 +182,7 @@ class AgentBody:
             handle.cancel()
 
     def suspend_act(self, act_id: int) -> None:
-        """Pause the operation of an action, if it can be paused; or let others have what a plan needs."""
+        """Pause the operation of an action if it is pausable; or lend the resources of a plan to others."""
         if act_id in self._needs:
             self._needs[act_id].pause()
         handle = self._pending.get(act_id)
@@ -190,7 +190,7 @@ class AgentBody:
             handle.pause()
 
     def resume_act(self, act_id: int) -> None:
-        """Let the operation of an action go on; or ask again for what a plan needs."""
+        """Resume the operation of an action; or claim the resources of a plan again."""
         if act_id in self._needs:
             self._needs[act_id].resume()
         handle = self._pending.get(act_id)
@@ -198,7 +198,7 @@ class AgentBody:
             handle.resume()
 
     def close(self) -> None:
-        """Give all actions and focused artifacts up; the mind is told nothing more."""
+        """Cancel all actions and stop focusing everything; the mind receives nothing more."""
         self._situation.focused.fall_silent()
         for act_id in self.pending:
             self.cancel_act(act_id)
@@ -211,7 +211,7 @@ class AgentBody:
             self._withdraw(workspace, focused.body_in(workspace))
         self._withdraw(self._workspaces.home, self._session)
 
-    # ---- what plans need
+    # ---- resources of plans
 
     def _need(self, act: Act) -> None:
         focused = self._situation.focused.in_order()
@@ -222,20 +222,20 @@ class AgentBody:
             self._finish(act.id, refused(failure, self._references))
 
     def acquired(self, number: int) -> None:
-        """A plan has what it needs."""
+        """Report that a plan has its resources."""
         self._finish(number, SUCCEEDED)
 
     def unavailable(self, number: int, failure: OperationFailed) -> None:
-        """A plan does not get what it needs; one that has begun fails when it asks for it the next time."""
+        """Report that a plan does not get its resources; one that has begun fails at its next claim."""
         self._needs.forget(number)
         self._finish(number, refused(failure, self._references))
 
     def preempted(self, number: int, resource: str) -> None:
-        """A plan has lost what it needs."""
+        """Report that a plan has lost a resource."""
         self._mind.preempted(number, resource)
 
     def regained(self, number: int) -> None:
-        """A plan has it again, or no longer waits for it."""
+        """Report that a plan has its resource again, or no longer waits for it."""
         self._mind.regained(number)
 
     def _on_preempted(self, number: int, resource: str | None) -> None:
@@ -254,7 +254,7 @@ class AgentBody:
             call.direction = Direction(None, here, call.direction.timeout)
             return self._by_itself(action, call)
         if artifact.creator is None and artifact.name == _CONSOLE and _prints(call):
-            # Printed here and not by the console artifact: it would see values where people want terms.
+            # Printed here and not by the console artifact, which would receive values, while users want terms.
             self._show("".join(map(display, call.arguments)))
             self._finish(call.act.id, succeeded())
             return None
@@ -272,7 +272,7 @@ class AgentBody:
             raise
 
     def _is_own(self, artifact: ArtifactId, call: Call) -> bool:
-        """Whether an artifact stands for the agent itself, and has that operation."""
+        """Return whether an artifact stands for the agent itself, and has that operation."""
         if artifact is not self._session and not self._situation.focused.is_body(artifact):
             return False
         return call.key in self._environment.workspace(artifact.workspace).offers(artifact)
@@ -340,15 +340,15 @@ class AgentBody:
         return workspace.offer(f"{kind}_{self._agent}", artifact_type, arguments, personal=True)
 
     def _withdraw(self, workspace: Workspace, personal: ArtifactId) -> None:
-        """Take an artifact away that stands for the agent, if nobody else has done so."""
+        """Dispose an artifact that stands for the agent, if it still exists."""
         workspace.take_back(personal)
         self._references.forget(personal)
         self._writer.forget(personal)
 
 
 def _too_deep(artifact: ArtifactId, key: str) -> OperationFailed:
-    """The failure of an action with an argument that Python cannot hold."""
-    message = f"an argument of {key} is nested too deeply to become a Python value"
+    """Return the failure of an action with an argument that exceeds Python's nesting limit."""
+    message = f"an argument of {key} is nested too deeply for a Python value"
     return OperationFailed(message, Structure("wrong_op_arguments", (artifact, key)))
 
 

@@ -1,6 +1,6 @@
-"""An external action as the body reads it: what to do, with what, and where.
+"""An external action as the body reads it: its name, arguments and direction.
 
-Actions that reach no artifact fail as CArtAgO's bridge to Jason tells of them (`Undelivered`).
+Actions that reach no artifact fail as in CArtAgO's bridge to Jason (`Undelivered`).
 """
 
 from dataclasses import dataclass
@@ -23,12 +23,12 @@ _DIRECTING = ", ".join(_DIRECTIONS)
 
 @dataclass(slots=True)
 class Direction:
-    """Where an action is directed by its annotations, and how long it may take.
+    """The direction of an action by its annotations, and its time limit.
 
     Attributes:
-        artifact: an artifact, or the name of one; None when the action does not say.
-        workspace: a workspace, or its name or path; None when the action does not say.
-        timeout: seconds; None for no limit.
+        artifact: an artifact, or its name; None if not given.
+        workspace: a workspace, or its name or path; None if not given.
+        timeout: seconds; None: no limit.
     """
 
     artifact: ArtifactId | str | None = None
@@ -37,7 +37,7 @@ class Direction:
 
 
 ANYWHERE = Direction()
-"""The direction of actions whose annotations say nothing; not to be changed."""
+"""The direction of actions without annotations; immutable by convention."""
 
 
 @dataclass(slots=True)
@@ -45,11 +45,11 @@ class Call:
     """One external action.
 
     Attributes:
-        act: what the mind asked for.
-        name: of the action, without quotes.
-        namespace: in front of the name, None without.
+        act: the request of the mind.
+        name: name of the action, without quotes.
+        namespace: namespace of the name, None without.
         arguments: dereferenced terms.
-        direction: what the annotations say.
+        direction: content of the annotations.
     """
 
     act: Act
@@ -68,7 +68,7 @@ def read(act: Act) -> Call:
     """Read an act.
 
     Raises:
-        Undelivered: an annotation cannot be obeyed.
+        Undelivered: an annotation is invalid.
     """
     symbol, arguments = act.functor, act.arguments
     name = unquoted(symbol.name) if symbol.name[0] == "'" else symbol.name
@@ -81,7 +81,7 @@ def read(act: Act) -> Call:
 
 def _direction(act: Act) -> Direction:
     direction = Direction()
-    # An id says more than a name, whatever the order in which they are written.
+    # An id takes precedence over a name, in whatever order they are written.
     for annotation in sorted(act.annotations, key=lambda a: _name(a) in ("artifact_id", "aid", "wid")):
         name = _name(annotation)
         if annotation.__class__ is not tuple or name == "source":
@@ -90,10 +90,10 @@ def _direction(act: Act) -> Direction:
             direction.timeout = _seconds(act, annotation)
             continue
         if len(annotation) != 2 or (name not in _BY_ARTIFACT and name not in _BY_WORKSPACE):
-            message = f"the annotation {text(annotation)} of {act.functor!r} says nothing to the environment"
+            message = f"unknown annotation `{text(annotation)}` of action `{act.functor}`"
             help = suggestion(name, _DIRECTIONS)
             raise unknown_annotation(
-                act, annotation, f"{message}{help or f'; an action can be directed by {_DIRECTING}'}"
+                act, annotation, f"{message}{help or f'; the annotations of actions are {_DIRECTING}'}"
             )
         try:
             if name in _BY_ARTIFACT:
@@ -106,10 +106,10 @@ def _direction(act: Act) -> Direction:
 
 
 def _seconds(act: Act, annotation: Term) -> float:
-    """The time in ``timeout(Milliseconds)``."""
+    """Return the time in ``timeout(Milliseconds)``."""
     milliseconds = deref(annotation[1])
     if milliseconds.__class__ is not float or not 0 <= milliseconds < float("inf"):
-        wanted = f"timeout wants a number of milliseconds, not {text(milliseconds)}"
+        wanted = f"timeout: expected a number of milliseconds, found {text(milliseconds)}"
         raise unknown_annotation(act, annotation, f"{act.functor!r}: {wanted}")
     return float(milliseconds) / 1000
 
@@ -119,37 +119,37 @@ def _name(annotation: Term) -> str:
 
 
 def artifact_argument(term: Term, where: str) -> ArtifactId | str:
-    """The artifact, or the name of one, that a term stands for.
+    """Return the artifact, or its name, in a term.
 
     Raises:
-        OperationFailed: it stands for neither.
+        OperationFailed: it is neither.
     """
     term = bare(term)
     if term.__class__ is Reference and isinstance(term.value, ArtifactId):
         return term.value
     name = name_of(term)
     if name is None:
-        raise _not_a("n artifact (as makeArtifact and lookupArtifact give it)", term, where)
+        raise _not_a("n artifact (from makeArtifact or lookupArtifact)", term, where)
     return name
 
 
 def workspace_argument(term: Term, where: str) -> Workspace | str:
-    """The workspace, or the name or path of one, that a term stands for.
+    """Return the workspace, or its name or path, in a term.
 
     Raises:
-        OperationFailed: it stands for neither.
+        OperationFailed: it is neither.
     """
     term = bare(term)
     if term.__class__ is Reference and isinstance(term.value, Workspace):
         return term.value
     name = name_of(term)
     if name is None:
-        raise _not_a(" workspace (as joinWorkspace gives it)", term, where)
+        raise _not_a(" workspace (from joinWorkspace)", term, where)
     return name
 
 
 def name_of(term: Term) -> str | None:
-    """The text of a string or atom, without quotes; None for other terms."""
+    """Return the text of a string or atom, without quotes; None for other terms."""
     if term.__class__ is String:
         return str(term)
     return symbol_name(term) if term.__class__ is Functor else None
@@ -157,7 +157,8 @@ def name_of(term: Term) -> str | None:
 
 def _not_a(what: str, term: Term, where: str) -> OperationFailed:
     return OperationFailed(
-        f"{where} wants a{what} or its name, not {text(term)}", Structure("wrong_op_arguments", (where,))
+        f"{where}: expected a{what} or its name, found {text(term)}",
+        Structure("wrong_op_arguments", (where,)),
     )
 
 
@@ -168,11 +169,11 @@ _GENERIC_ERROR, _UNKNOWN_ANNOTATION = atom("generic_error"), atom("unknown_annot
 
 
 class Undelivered(OperationFailed):
-    """An action that reached no artifact.
+    """Raised for an action that reaches no artifact.
 
     Attributes:
-        term: what ``env_failure_reason`` holds.
-        reason: what ``env_failure_detail`` holds.
+        term: the content of ``env_failure_reason``.
+        reason: the content of ``env_failure_detail``.
     """
 
     def __init__(self, message: str, term: Term, reason: Structure | Atom | None) -> None:
@@ -181,7 +182,7 @@ class Undelivered(OperationFailed):
 
 
 def nobody_offers(act: Act, message: str) -> Undelivered:
-    """No artifact that could be meant has the operation."""
+    """Return the failure of an action that no artifact offers."""
     symbol = act.functor
     name = unquoted(symbol.name)
     namespace = atom(symbol.namespace or "default")
@@ -196,12 +197,12 @@ def _words(term: Term) -> str:
 
 
 def unreachable(act: Act, failure: OperationFailed) -> Undelivered:
-    """An annotation directs the action to where the agent cannot act."""
+    """Return the failure of an action directed to where the agent cannot act."""
     return Undelivered(failure.message, _action_failed(act.functor, _GENERIC_ERROR), failure.reason)
 
 
 def unknown_annotation(act: Act, annotation: Term, message: str) -> Undelivered:
-    """An annotation says nothing to the environment."""
+    """Return the failure of an action with an unknown annotation."""
     symbol = act.functor
     action = Annotated((symbol, *act.arguments) if act.arguments else symbol, act.annotations)
     reason = Structure("unknown_annotation", (text(annotation),))

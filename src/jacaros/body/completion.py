@@ -1,6 +1,6 @@
-"""How actions end, as the mind is told.
+"""Outcomes of actions, as reported to the mind.
 
-That may be by the time that the agent gives an action of its body: ``focusWhenAvailable(door)[timeout(500)]``.
+One of them is the time-out of an action: ``focusWhenAvailable(door)[timeout(500)]``.
 """
 
 from collections.abc import Callable, Iterable
@@ -23,12 +23,12 @@ _ENV_FAILURE_DETAIL = functor("env_failure_detail", 1)
 
 
 def succeeded(*outputs: tuple[Term, Term]) -> Completion:
-    """An action that succeeded and gives these values to these variables."""
+    """Return the outcome of an action that succeeded, with values for its output variables."""
     return Completion(True, outputs) if outputs else SUCCEEDED
 
 
 def failed(message: str, reason: Structure | Atom | None, references: References) -> Completion:
-    """An action that failed: ``error_msg`` for people, and ``env_failure_reason`` if there is a reason."""
+    """Return the outcome of a failed action: ``error_msg``, and ``env_failure_reason`` if there is a reason."""
     annotations: tuple[Term, ...] = ((_ERROR_MSG, String(message)),)
     if reason is not None:
         annotations += ((_ENV_FAILURE_REASON, to_term(reason, references)),)
@@ -36,7 +36,7 @@ def failed(message: str, reason: Structure | Atom | None, references: References
 
 
 def refused(failure: OperationFailed, references: References) -> Completion:
-    """An action that failed before or outside of an operation."""
+    """Return the outcome of an action that failed before or outside of an operation."""
     if not isinstance(failure, Undelivered):
         return failed(failure.message, failure.reason, references)
     annotations: tuple[Term, ...] = (
@@ -49,7 +49,7 @@ def refused(failure: OperationFailed, references: References) -> Completion:
 
 
 def of_operation(outcome: OperationOutcome, outputs: Outputs, references: References) -> Completion:
-    """The end of an operation, with the values that it left in its output parameters."""
+    """Return the outcome of an operation, with the values of its output parameters."""
     if not outcome.ok:
         return failed(outcome.message or "", outcome.reason, references)
     if not outputs:
@@ -67,13 +67,13 @@ Finish = Callable[[Completion], None]
 
 
 class Deadline:
-    """Gives an action up when its time is over.
+    """Cancels an action when its time is over.
 
     Args:
-        call: the action, with its time.
-        clock: of the run.
-        finish: told how it ended.
-        references: for the reason of the failure.
+        call: the action, with its time limit.
+        clock: clock of the run.
+        finish: called with the outcome.
+        references: for the failure reason.
     """
 
     def __init__(self, call: Call, clock: Clock, finish: Finish, references: References) -> None:
@@ -82,12 +82,12 @@ class Deadline:
         self._timer = clock.call_later(call.direction.timeout or 0.0, self._late)
 
     def ended(self, completion: Completion) -> None:
-        """Be told that the action has ended in time."""
+        """Note that the action has ended in time."""
         self._timer.cancel()
         self._finish(completion)
 
     def watch(self, under_way: UnderWay | None) -> UnderWay:
-        """Know what is to be given up; what this gives takes its place."""
+        """Set the handle to cancel; the returned one replaces it."""
         self._under_way = under_way
         return self
 
@@ -100,17 +100,17 @@ class Deadline:
         self._finish(failed(message, reason, self._references))
 
     def cancel(self) -> None:
-        """Give the action up; its end is not told."""
+        """Cancel the action without reporting its end."""
         self._timer.cancel()
         if self._under_way is not None:
             self._under_way.cancel()
 
     def pause(self) -> None:
-        """Let the action rest, if it can; its time goes on."""
+        """Pause the action, if possible; its time continues."""
         if self._under_way is not None:
             self._under_way.pause()
 
     def resume(self) -> None:
-        """Let it go on."""
+        """Resume the action."""
         if self._under_way is not None:
             self._under_way.resume()

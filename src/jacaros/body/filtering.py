@@ -1,18 +1,18 @@
-"""What an agent wants to perceive of an artifact: the second argument of ``focus`` and ``focusWhenAvailable``.
+"""Filters of focused artifacts: the second argument of ``focus`` and ``focusWhenAvailable``.
 
 ============================  ==============================================================================
 filter                        what passes
 ============================  ==============================================================================
 a pattern, ``count(_)``       properties and signals of that name and number of arguments; arguments that are
-                              no variables must be equal
+                              not variables must be equal
 an atom, ``tick``             all properties and signals of that name, whatever their arguments
 a list of these               what one of them lets pass
-a Python object               what its method ``select`` (or the object itself, called) says true to; it is
-                              given ``kind`` ("property" or "signal"), ``name`` and ``values``
+a Python object               what its method ``select`` (or the object itself, called) returns true for; it
+                              takes ``kind`` ("property" or "signal"), ``name`` and ``values``
 ============================  ==============================================================================
 
-A Python object is asked about changes and signals only, as in CArtAgO: what there is in the beginning is perceived.
-A pattern is for the beginning too.
+A Python object filters changes and signals only, as in CArtAgO: all initial properties are perceived.
+A pattern filters initial properties, too.
 """
 
 from collections.abc import Callable
@@ -26,11 +26,11 @@ PROPERTY, SIGNAL = "property", "signal"
 
 
 class Perception(NamedTuple):
-    """What a filter is asked about.
+    """The argument of a filter.
 
     Attributes:
         kind: ``property`` or ``signal``.
-        name: of the property or signal.
+        name: name of the property or signal.
         values: plain values.
     """
 
@@ -40,17 +40,17 @@ class Perception(NamedTuple):
 
 
 class Filter(Protocol):
-    """Lets things pass or not."""
+    """Decides what passes."""
 
     from_the_beginning: bool
-    """Whether it is asked about what there is when the focus begins."""
+    """Whether it also filters the properties that exist when the focus begins."""
 
     def passes(self, perception: Perception) -> bool:
-        """Whether the agent is to perceive it."""
+        """Return whether the agent perceives it."""
 
 
 class Patterns:
-    """Lets pass what fits a pattern.
+    """Lets pass what matches a pattern.
 
     Args:
         patterns: atoms for any arguments, structures with `Out` objects for any value.
@@ -62,7 +62,7 @@ class Patterns:
         self._patterns = patterns
 
     def passes(self, perception: Perception) -> bool:
-        """Whether one of the patterns fits."""
+        """Return whether one of the patterns matches."""
         return any(_fits(pattern, perception) for pattern in self._patterns)
 
 
@@ -76,11 +76,11 @@ def _fits(pattern: Atom | Structure, perception: Perception) -> bool:
 
 
 class Selecting:
-    """Lets pass what a function of the user says true to; when it raises, everything passes.
+    """Lets pass what a function of the user returns true for; if it raises an exception, everything passes.
 
     Args:
         select: the function.
-        complain: told of what it raises.
+        complain: called with its exceptions.
     """
 
     from_the_beginning = False
@@ -89,7 +89,7 @@ class Selecting:
         self._select, self._complain = select, complain
 
     def passes(self, perception: Perception) -> bool:
-        """Whether the function says so."""
+        """Return the result of the function."""
         try:
             return bool(self._select(perception))
         except Exception as error:
@@ -98,7 +98,7 @@ class Selecting:
 
 
 def filter_of(value: Any, complain: Callable[[Exception], None]) -> Filter | None:
-    """The filter that a plain value stands for; None when it stands for none."""
+    """Convert a plain value to a filter; None if it is not one."""
     patterns = value if isinstance(value, list) else [value]
     if patterns and all(isinstance(pattern, (Atom, Structure)) for pattern in patterns):
         return Patterns(patterns)
@@ -107,9 +107,9 @@ def filter_of(value: Any, complain: Callable[[Exception], None]) -> Filter | Non
 
 
 class FilteredObserver:
-    """Hands on to another observer what a filter lets pass.
+    """Forwards to another observer what a filter lets pass.
 
-    What was handed on of a property is remembered: that is what ends when it changes or goes.
+    Forwarded values of a property are stored, because they are what ends when it changes or disappears.
     """
 
     def __init__(self, observer: Observer, wanted: Filter) -> None:
@@ -120,15 +120,15 @@ class FilteredObserver:
 
     @property
     def agent(self) -> str:
-        """Name of the agent that observes."""
+        """Name of the observing agent."""
         return self._observer.agent
 
     def has_untaken(self, name: str) -> bool:
-        """Whether the other observer has still to take something up."""
+        """Return whether the other observer lags behind."""
         return self._slow is not None and self._slow.has_untaken(name)
 
     def observe(self, observation: Observation) -> None:
-        """Hand on what passes."""
+        """Forward what passes."""
         signals = tuple(each for each in observation.signals if self._passes_signal(each))
         changed: list[Change] = []
         added: list[ObservableProperty] = []

@@ -1,4 +1,4 @@
-"""What an agent focuses: the artifacts whose properties and signals it perceives."""
+"""The focused artifacts of an agent, whose properties and signals it perceives."""
 
 from collections.abc import Callable, Mapping
 
@@ -13,19 +13,19 @@ from jacaros.env.ports import OnOutcome, Workspace
 from jacaros.terms.values import String, Term
 
 Watcher = Callable[[ArtifactId, bool], None]
-"""Told of an artifact that is focused (True) or no more."""
+"""Called with an artifact that is focused (True) or no longer focused (False)."""
 
 _PERSONAL = ("body_", "session_")
-"""With what the names of artifacts begin that stand for agents."""
+"""Prefixes of the names of artifacts that stand for agents."""
 
 Notice = Callable[[list[Percept]], None]
-"""Where percepts go."""
+"""Receives percepts."""
 
 Keep = Callable[[str | None, Mapping[str, float]], None]
 """Keeps past values of properties in a namespace: seconds by name."""
 
 Untaken = Callable[[str], bool]
-"""Whether percepts about properties of a name have still to be taken up."""
+"""Returns whether percepts about properties of a name are still unprocessed."""
 
 
 class FocusObserver:
@@ -33,8 +33,8 @@ class FocusObserver:
 
     Attributes:
         agent: name of the agent.
-        notice: where its percepts go.
-        has_untaken: whether the mind has still to take up percepts about properties of a name.
+        notice: receives its percepts.
+        has_untaken: returns whether the mind still has unprocessed percepts about properties of a name.
     """
 
     __slots__ = ("_namespace", "_writer", "agent", "has_untaken", "notice")
@@ -49,9 +49,9 @@ class FocusObserver:
         self._writer = writer
 
     def observe(self, observation: Observation) -> None:
-        """Bring an observation to the mind."""
+        """Pass an observation to the mind."""
         writer, namespace = self._writer, self._namespace
-        # What another observer has just had written is the same for this one.
+        # The percepts just written for another observer are the same.
         if observation is writer.newest and namespace is writer.namespace:
             self.notice(writer.written)
         else:
@@ -59,10 +59,10 @@ class FocusObserver:
 
 
 class FocusedArtifacts:
-    """The artifacts that one agent focuses, in the order of focusing.
+    """The artifacts that one agent focuses on, in the order of focusing.
 
-    For each there is a belief ``focusing(Id,Name,Type,WspId,WspName,WspPath)``.  An artifact may be focused
-    in several namespaces, with beliefs in each.
+    For each there is a belief ``focusing(Id,Name,Type,WspId,WspName,WspPath)``. An artifact can be focused in several
+    namespaces, with beliefs in each.
     """
 
     def __init__(
@@ -88,19 +88,20 @@ class FocusedArtifacts:
         self._watchers: dict[str, Watcher] = {}
 
     def inhabit(self, workspace: Workspace, body: ArtifactId) -> None:
-        """Know the artifact that stands for the agent in a workspace: what is focused there is a property of it."""
+        """Register the artifact that stands for the agent in a workspace: focused artifacts are a property of it."""
         self._bodies[workspace.path] = body
 
     def body_in(self, workspace: Workspace) -> ArtifactId:
-        """The artifact that stands for the agent in a workspace that it has joined."""
+        """Return the artifact that stands for the agent in a joined workspace."""
         return self._bodies[workspace.path]
 
     def is_body(self, artifact: ArtifactId) -> bool:
-        """Whether an artifact stands for the agent itself."""
+        """Return whether an artifact stands for the agent itself."""
         return self._bodies.get(artifact.workspace) is artifact
 
     def watch(self, workspace: Workspace, watcher: Watcher) -> Callable[[], None]:
-        """Tell *watcher* of every artifact of a workspace that is focused (True) or no more; gives what ends that."""
+        """Call *watcher* with every artifact of a workspace that is focused (True) or no longer focused (False).
+        Return a function that removes it."""
         self._watchers[workspace.path] = watcher
         return lambda: self._watchers.pop(workspace.path, None) and None
 
@@ -108,11 +109,11 @@ class FocusedArtifacts:
         return artifact in self._focused
 
     def in_order(self) -> tuple[ArtifactId, ...]:
-        """The focused artifacts, in the order of focusing."""
+        """Return the focused artifacts, in the order of focusing."""
         return tuple(self._focused)
 
     def in_namespace(self, namespace: str) -> list[tuple[Workspace, ArtifactId]]:
-        """The artifacts focused in a namespace with their workspaces, in the order of focusing."""
+        """Return the artifacts focused in a namespace with their workspaces, in the order of focusing."""
         return [
             (namespaces[namespace], artifact)
             for artifact, namespaces in self._focused.items()
@@ -120,7 +121,7 @@ class FocusedArtifacts:
         ]
 
     def in_workspace(self, workspace: Workspace) -> tuple[ArtifactId, ...]:
-        """The focused artifacts of a workspace."""
+        """Return the focused artifacts of a workspace."""
         return tuple(a for a in self._focused if a.workspace == workspace.path)
 
     def begin(
@@ -131,17 +132,17 @@ class FocusedArtifacts:
         on_done: OnOutcome = ignore_outcome,
         only: Filter | None = None,
     ) -> None:
-        """Focus an artifact, and tell *on_done*; without effect when it is focused in that namespace already.
+        """Focus on an artifact, and call *on_done*; no effect if it is already focused in that namespace.
 
         Args:
-            workspace: where the artifact is.
-            artifact: what is to be perceived.
-            namespace: of the agent's program, in which beliefs and events will be.
-            on_done: told the end.
-            only: what is to be perceived of it; None for everything.
+            workspace: workspace of the artifact.
+            artifact: the artifact.
+            namespace: namespace of the agent's program for beliefs and events.
+            on_done: called with the outcome.
+            only: filter of what is perceived; None: everything.
 
         Raises:
-            OperationFailed: the artifact is known to be gone.
+            OperationFailed: the artifact is known to be disposed.
         """
         if namespace in self._focused.get(artifact, ()):
             on_done(SUCCEEDED)
@@ -167,10 +168,10 @@ class FocusedArtifacts:
         self._focused.setdefault(artifact, {})[namespace] = workspace
         self._watch(workspace, artifact.name.startswith(_PERSONAL))
         if is_first:
-            self._tell(ADD, workspace, artifact)
+            self._report(ADD, workspace, artifact)
 
     def end(self, artifact: ArtifactId, namespace: str | None) -> None:
-        """Stop to focus an artifact in a namespace; without effect when it is not focused there."""
+        """Stop focusing on an artifact in a namespace; no effect if it is not focused there."""
         namespaces = self._focused.get(artifact, {})
         workspace = namespaces.pop(namespace, None)
         if workspace is None:
@@ -181,7 +182,7 @@ class FocusedArtifacts:
             self._lose(workspace, artifact)
 
     def end_all(self, workspace: Workspace) -> None:
-        """Stop to focus everything in a workspace."""
+        """Stop focusing on everything in a workspace."""
         for artifact in self.in_workspace(workspace):
             for namespace in tuple(self._focused[artifact]):
                 self.end(artifact, namespace)
@@ -191,7 +192,7 @@ class FocusedArtifacts:
                 stop_watching()
 
     def fall_silent(self) -> None:
-        """Let the mind notice nothing more."""
+        """Send no more percepts to the mind."""
         self._notice = _ignore
         for observer in self._observers.values():
             observer.notice = _ignore
@@ -204,9 +205,9 @@ class FocusedArtifacts:
         return observer
 
     def _watch(self, workspace: Workspace, personal: bool) -> None:
-        """Hear of disposed artifacts: their properties go by themselves, ``focusing`` must be seen to.
+        """Watch for disposed artifacts: their properties end automatically, but ``focusing`` must be removed.
 
-        Of those that stand for agents too, if need be: there are as many as agents.
+        Watch those that stand for agents only if necessary: there are as many as agents.
         """
         if (workspace, personal) in self._watched:
             return
@@ -220,9 +221,9 @@ class FocusedArtifacts:
     def _lose(self, workspace: Workspace, artifact: ArtifactId) -> None:
         for namespace in self._focused.pop(artifact):
             self._filtered.pop((artifact, namespace), None)
-        self._tell(REMOVE, workspace, artifact)
+        self._report(REMOVE, workspace, artifact)
 
-    def _tell(self, kind: str, workspace: Workspace, artifact: ArtifactId) -> None:
+    def _report(self, kind: str, workspace: Workspace, artifact: ArtifactId) -> None:
         self._notice([self._focusing(kind, workspace, artifact)])
         watcher = self._watchers.get(workspace.path)
         if watcher is not None:
@@ -241,4 +242,4 @@ class FocusedArtifacts:
 
 
 def _ignore(percepts: list[Percept]) -> None:
-    """Nobody is there to notice anything."""
+    """Discard percepts after the agent's end."""

@@ -1,4 +1,4 @@
-"""Resources that plans of an agent need: asked for, lost, had again, and given back."""
+"""Resources that plans of an agent need: claimed, lost, regained and released."""
 
 from collections.abc import Iterable
 from dataclasses import replace
@@ -15,96 +15,96 @@ from jacaros.env.values import Atom, Structure
 from jacaros.terms.values import functor_of, list_items
 
 
-class Teller(Protocol):
-    """Who is told what becomes of what a plan needs."""
+class NeedListener(Protocol):
+    """Receives the events of needed resources."""
 
     def acquired(self, number: int) -> None:
-        """The plan has what it needs, for the first time."""
+        """The plan has all its resources for the first time."""
 
     def unavailable(self, number: int, failure: OperationFailed) -> None:
-        """It does not get that."""
+        """The plan cannot have its resources."""
 
     def preempted(self, number: int, resource: str) -> None:
-        """It has lost it."""
+        """The plan has lost a resource."""
 
     def regained(self, number: int) -> None:
-        """It has it again, or no longer waits for it."""
+        """The plan has its resource again, or no longer waits for it."""
 
 
 class HeldNeed:
-    """What one plan or goal needs; a claimant of the arbiter.
+    """The resources of one plan or goal; a claimant of the arbiter.
 
     Args:
-        number: of the act that asks for it.
-        arbiter: of the environment.
-        teller: is told what becomes of it.
-        yields: it may be taken away.
+        number: number of the requesting act.
+        arbiter: arbiter of the environment.
+        listener: receives the events.
+        yields: whether they may be pre-empted.
     """
 
-    def __init__(self, number: int, arbiter: Arbiter, teller: Teller, yields: bool) -> None:
-        self._number, self._arbiter, self._teller = number, arbiter, teller
+    def __init__(self, number: int, arbiter: Arbiter, listener: NeedListener, yields: bool) -> None:
+        self._number, self._arbiter, self._listener = number, arbiter, listener
         self.can_yield = yields
         self._begun = self._lost = False
         self.claim: Claim
 
     def ask(self, claim: Claim) -> None:
-        """Ask for it."""
+        """Enter the claim."""
         self.claim = claim
         self._arbiter.enter(claim)
 
     def granted(self, claim: Claim) -> None:
-        """The plan begins, or continues."""
+        """Begin or continue the plan."""
         if not self._begun:
             self._begun = True
-            self._teller.acquired(self._number)
+            self._listener.acquired(self._number)
         self._found()
 
     def preempted(self, claim: Claim, resource: str) -> None:
-        """The intention is suspended; its operations give way by themselves."""
+        """Suspend the intention; its operations give way on their own."""
         self._lose(resource)
         self._arbiter.gave_way(claim)
 
     def refused(self, claim: Claim, reason: Structure | Atom) -> None:
-        """The plan fails, or what it had lost is lost for good."""
+        """Fail the plan, also if its claim was granted before."""
         name = reason.arguments[0] if isinstance(reason, Structure) else ""
-        self._teller.unavailable(self._number, OperationFailed(f"{claim.who} cannot have {name}", reason))
+        self._listener.unavailable(self._number, OperationFailed(f"{claim.who} cannot have {name}", reason))
 
     def pause(self) -> None:
-        """The program has suspended the intention: others may have it."""
+        """Release the resources while the program suspends the intention."""
         self._arbiter.leave(self.claim)
         self._found()
 
     def resume(self) -> None:
-        """The program has resumed the intention: it continues when it has it again."""
+        """Claim the resources again; the intention continues when they are granted."""
         if not self._arbiter.enter(self.claim) and self._begun:
             self._lose(self.claim.uses[0].name)
 
     def end(self) -> None:
-        """Give it back."""
+        """Release the resources."""
         self._arbiter.leave(self.claim)
 
     def _lose(self, resource: str) -> None:
         if not self._lost:
             self._lost = True
-            self._teller.preempted(self._number, local_name(resource))
+            self._listener.preempted(self._number, local_name(resource))
 
     def _found(self) -> None:
         if self._lost:
             self._lost = False
-            self._teller.regained(self._number)
+            self._listener.regained(self._number)
 
 
 class Needs:
-    """All that the plans of one agent need.
+    """All resources that the plans of one agent need.
 
     Args:
         agent: name of the agent.
-        environment: where the resources are.
-        teller: is told what becomes of them.
+        environment: environment with the resources.
+        listener: receives the events.
     """
 
-    def __init__(self, agent: str, environment: Environment, teller: Teller) -> None:
-        self._agent, self._environment, self._teller = agent, environment, teller
+    def __init__(self, agent: str, environment: Environment, listener: NeedListener) -> None:
+        self._agent, self._environment, self._listener = agent, environment, listener
         self._held: dict[int, HeldNeed] = {}
 
     def __contains__(self, number: object) -> bool:
@@ -114,15 +114,15 @@ class Needs:
         return self._held[number]
 
     def claims(self, numbers: Iterable[int]) -> tuple[Claim, ...]:
-        """The claims of what acts are within."""
+        """Return the claims of the enclosing acts."""
         return tuple(self._held[number].claim for number in numbers if number in self._held)
 
     def ask(self, act: Act, focused: Iterable[ArtifactId], near: Iterable[ArtifactId]) -> None:
-        """Ask for what an act names.
+        """Claim the resources of an act.
 
         Args:
             act: names resources, a policy and a goal.
-            focused: artifacts whose resources are meant before others.
+            focused: artifacts whose resources take precedence.
             near: artifacts in the workspaces that the agent has joined.
 
         Raises:
@@ -132,7 +132,7 @@ class Needs:
         uses = together(
             self._resolved(use, focused, near) for use in _read(str(each) for each in list_items(names))
         )
-        need = HeldNeed(act.id, self._environment.arbiter, self._teller, act.yields)
+        need = HeldNeed(act.id, self._environment.arbiter, self._listener, act.yields)
         self._held[act.id] = need
         who = f"[{self._agent}] {goal}"
         blocks = "" if act.yields else self._agent
@@ -140,20 +140,20 @@ class Needs:
         need.ask(Claim(uses, who, need, act.urgency, _policy(policy), within, self._agent, blocks))
 
     def forget(self, number: int) -> None:
-        """Give back what an act has asked for."""
+        """Release the resources of an act."""
         need = self._held.pop(number, None)
         if need is not None:
             need.end()
 
     def close(self) -> None:
-        """Give everything back."""
+        """Release everything."""
         for number in reversed(tuple(self._held)):
             self.forget(number)
 
     def _resolved(self, use: Use, focused: Iterable[ArtifactId], near: Iterable[ArtifactId]) -> Use:
-        """The resource of the robot that is meant: of a focused artifact, else of a near one, else of the run.
+        """Resolve a resource: of a focused artifact, else of a near one, else of the run.
 
-        A robot without a namespace has ``wheels`` by its whole name, whatever other robots are there.
+        For a robot without a namespace, ``wheels`` is the full name, whatever other robots there are.
         """
         if "/" in use.name:
             return use
@@ -168,7 +168,7 @@ class Needs:
             if len(meant) > 1:
                 listed = ", ".join(meant)
                 raise OperationFailed(
-                    f"{use.name} may be one of {listed}: write the whole name as a string",
+                    f"{use.name} is ambiguous: {listed}; write the full name as a string",
                     Structure("ambiguous_resource", (Atom(use.name),)),
                 )
             for name, found in meant.items():
@@ -189,6 +189,7 @@ def _policy(term: object) -> Policy:
     name = symbol.name if symbol is not None else ""
     if name not in POLICIES:
         raise OperationFailed(
-            f"{name} is not a policy: write {', '.join(POLICIES)}", Structure("wrong_policy", (Atom(name),))
+            f"unknown policy `{name}`: expected one of {', '.join(POLICIES)}",
+            Structure("wrong_policy", (Atom(name),)),
         )
     return name

@@ -1,4 +1,4 @@
-"""What a mind notices of the artifacts that its agent focuses: observations → percepts."""
+"""From observations of focused artifacts to percepts of the mind."""
 
 from collections.abc import Callable
 
@@ -25,20 +25,19 @@ Annotations = tuple[Term, ...]
 
 
 class PerceptWriter:
-    """Writes observations as percepts, with the annotations that tell where they come from.
+    """Writes observations as percepts, with the annotations of their origin.
 
-    ``count(1)[artifact_id(cobj_1), artifact_name(c), percept_type(obs_prop), source(percept),
-    workspace("/main", cobj_2)]``: as the bridge between CArtAgO and Jason does, but the name of the artifact
-    is always an atom.
+    ``count(1)[artifact_id(cobj_1), artifact_name(c), percept_type(obs_prop), source(percept), workspace("/main",
+    cobj_2)]``, as in the bridge between CArtAgO and Jason, but the name of the artifact is always an atom.
 
     Args:
         references: shared by all agents of a run.
-        workspace: from a full path to the object that stands for the workspace.
-        cartago_2: whether percepts have the annotations of CArtAgO 2.0 as well.
+        workspace: returns the object of a workspace, given its full path.
+        cartago_2: whether percepts also have the annotations of CArtAgO 2.0.
 
     Attributes:
-        newest, namespace, written: the observation written last, for which namespace, and the percepts: the next who
-            observes is mostly another observer of the same.
+        newest, namespace, written: the last observation, its namespace and its percepts; the next request usually
+            comes from another observer of the same observation.
     """
 
     def __init__(
@@ -53,15 +52,15 @@ class PerceptWriter:
         self._annotations: dict[ArtifactId, tuple[tuple[Term, ...], tuple[Term, ...]]] = {}
 
     def percepts(self, observation: Observation, namespace: str | None = None) -> list[Percept]:
-        """The percepts of one observation, in the order in which the mind is to notice them.
+        """Return the percepts of one observation, in the order for the mind.
 
-        Signals first, then for each changed property the end of the old and the beginning of the new value,
-        then what is new, then what is gone.
+        Signals come first, then for each changed property the end of the old and the beginning of the new value, then
+        new properties, then removed ones.
 
-        The list is for all who ask: nobody changes it.
+        The list is shared: it must not be changed.
 
         Args:
-            namespace: of the agent's program, where the artifact was focused with ``ns::focus``.
+            namespace: namespace of the agent's program in which the artifact was focused (``ns::focus``).
         """
         if observation is self.newest and namespace == self.namespace:
             return self.written
@@ -72,7 +71,7 @@ class PerceptWriter:
             literal = self._literal(signal.name, signal.arguments, namespace)
             found.append(Percept(SIGNAL, literal, about_signal, cause))
         for old, new in changed:
-            # What is written of a property is kept with it: for its end, and for all others who observe it.
+            # Percepts of a property are stored with it, for its end and for all other observers.
             written = old.written
             literal, about = (
                 written if written and not namespace else self._write(old, about_property, namespace)
@@ -97,28 +96,28 @@ class PerceptWriter:
             written = each.written = self._literal(each.name, each.values, None), about
         if not namespace:
             return written
-        # The very same arguments: by them the mind finds what it is to give up.
+        # The identical arguments: the mind uses them to find the belief to remove.
         literal, about = written  # pyright: ignore[reportGeneralTypeIssues]
         symbol = symbol_of(f"{namespace}::{each.name}", len(each.values))
         return (symbol, *literal[1:]) if each.values else symbol, about
 
     def own(self, kind: str, about: ArtifactId, name: str, *arguments: Term) -> Percept:
-        """A percept about the agent itself, such as ``joinedWsp(Id,lab,"/main/lab")``.
+        """Return a percept about the agent itself, such as ``joinedWsp(Id,lab,"/main/lab")``.
 
         Args:
             kind: `ADD` or `REMOVE`.
-            about: the artifact of which it is a property, the agent's body or session.
+            about: the artifact whose property it is, the agent's body or session.
             name: its functor.
             arguments: ground terms.
         """
         return Percept(kind, (functor(name, len(arguments)), *arguments), self._origin(about)[0])
 
     def forget(self, artifact: ArtifactId) -> None:
-        """Let go of what is kept about an artifact that will not be observed again soon."""
+        """Forget an artifact that will not be observed again soon."""
         self._annotations.pop(artifact, None)
 
     def _origin(self, artifact: ArtifactId) -> tuple[tuple[Term, ...], tuple[Term, ...]]:
-        """The annotations of properties and of signals of an artifact."""
+        """Return the annotations of properties and of signals of an artifact."""
         known = self._annotations.get(artifact)
         if known is None:
             workspace = self._references.of(self._workspace(artifact.workspace))
@@ -128,7 +127,7 @@ class PerceptWriter:
             if self._cartago_2:
                 self._annotations[artifact] = self._with_older(artifact, (identity, name, SOURCE_PERCEPT))
                 return self._annotations[artifact]
-            # Written in the order in which annotations are kept: every agent of a run comes by here.
+            # In the canonical order of annotations: this code runs for every agent.
             known = self._annotations[artifact] = (
                 (identity, name, _OBSERVABLE_PROPERTY, SOURCE_PERCEPT, place),
                 (identity, name, _OBSERVABLE_EVENT, SOURCE_PERCEPT, place),
@@ -136,7 +135,7 @@ class PerceptWriter:
         return known
 
     def _with_older(self, artifact: ArtifactId, shared: Annotations) -> tuple[Annotations, Annotations]:
-        """The annotations, and those that CArtAgO 2.0 gave in their place; of ``workspace/2`` only the older."""
+        """Return the annotations together with those of CArtAgO 2.0, whose ``workspace/2`` replaces ours."""
         identity, workspace = self._references.of(artifact), self._workspace(artifact.workspace)
         older = (
             (functor("artifact_name", 2), identity, String(artifact.name)),
@@ -167,7 +166,7 @@ class PerceptWriter:
 
 
 def _complete(value: object) -> object:
-    """Percepts are ground: None and outputs that nobody set become the atom ``null``."""
+    """Make a percept ground: None and unset outputs become the atom ``null``."""
     kind = type(value)
     if kind is list:
         return [each if type(each) is float else _complete(each) for each in value]  # type: ignore[attr-defined]

@@ -1,7 +1,7 @@
 """The artifacts that stand for an agent in its workspaces: ``body_bob`` in each, ``session_bob`` in its home.
 
-They show to others what the agent focuses and where it is.  Nobody has to ask for them: they are made when somebody
-looks them up.  What the agent itself does with them its `AgentBody` does.
+They show to others what the agent focuses on and where it is. They are made on the first look-up. The agent's own
+operations on them are run by its `AgentBody`.
 """
 
 from typing import NoReturn
@@ -18,11 +18,12 @@ class AgentBodyArtifact(Artifact):
     """The body of an agent in one workspace.
 
     Properties:
-        focusing(Id, Name, Type, WspId, WspName, WspPath): one for each artifact of the workspace that the agent focuses.
+        focusing(Id, Name, Type, WspId, WspName, WspPath): one for each artifact of the workspace that the agent
+            focuses on.
     """
 
     def init(self, agent: str, focused: FocusedArtifacts, workspace: Workspace) -> None:
-        """Show what is focused, and what comes and goes."""
+        """Show the focused artifacts, and follow changes."""
         self._agent, self._here = agent, workspace
         for artifact in focused.in_workspace(workspace):
             self._show(artifact, True)
@@ -39,17 +40,17 @@ class AgentBodyArtifact(Artifact):
 
     @operation
     def focus(self, artifact: ArtifactId, only: object = None) -> None:
-        """Perceive an artifact from now on, perhaps only what a filter lets pass."""
+        """Perceive an artifact from now on, optionally only what a filter lets pass."""
         _refuse(self, self._agent)
 
     @operation(name="focusWhenAvailable")
     def focus_when_available(self, name: str, only: object = None) -> None:
-        """Wait until there is an artifact of that name, and perceive it from then on."""
+        """Wait until an artifact of that name exists, and perceive it from then on."""
         _refuse(self, self._agent)
 
     @operation(name="stopFocus")
     def stop_focus(self, artifact: ArtifactId) -> None:
-        """Perceive an artifact no more."""
+        """Stop perceiving an artifact."""
         _refuse(self, self._agent)
 
 
@@ -61,7 +62,7 @@ class AgentSessionArtifact(Artifact):
     """
 
     def init(self, agent: str, workspaces: JoinedWorkspaces) -> None:
-        """Show where the agent is, and what it joins and quits."""
+        """Show the joined workspaces, and follow changes."""
         self._agent = agent
         for workspace in workspaces.joined():
             self._show(workspace, True)
@@ -96,6 +97,6 @@ class AgentSessionArtifact(Artifact):
 
 
 def _refuse(artifact: Artifact, owner: str) -> NoReturn:
-    """Fail: the owner's own actions do not come here."""
+    """Fail: the owner's own actions are handled by its body."""
     caller = str(artifact.caller or "nobody")
-    artifact.fail(f"{artifact.name} obeys {owner} only", "security_exception", caller, artifact.name)
+    artifact.fail(f"{artifact.name} can only be used by {owner}", "security_exception", caller, artifact.name)

@@ -1,9 +1,9 @@
-"""Which artifact carries out an action: the rules of CArtAgO's bridge to Jason.
+"""Which artifact runs an action: the rules of CArtAgO's bridge to Jason.
 
-An annotation of the action directs it: ``artifact_id`` (``aid``) before ``artifact_name`` (``art``), inside
-the workspace given by ``wid`` or ``wsp``.  A namespace in front of the action means the artifacts focused in
-that namespace first.  Otherwise the workspaces are gone through: the current one of the intention, the
-agent's home, then the others that it has joined (see `jacaros.env.lookup` for several candidates in one).
+An annotation of the action directs it: ``artifact_id`` (``aid``) before ``artifact_name`` (``art``), inside the
+workspace given by ``wid`` or ``wsp``. With a namespace in front of the action, the artifacts focused in that
+namespace come first. Otherwise the workspaces are searched: the current one of the intention, the agent's home, then
+the others that it has joined (see `jacaros.env.lookup` for several candidates in one).
 """
 
 import difflib
@@ -26,21 +26,21 @@ from jacaros.env.values import Structure
 
 
 class JoinedWorkspaces:
-    """The workspaces of one agent.
+    """The joined workspaces of one agent.
 
     An intention that has joined a workspace stays there; others use the workspace that the agent joined last.
 
     Args:
-        environment: holds the workspaces.
-        home: full path of the workspace that the agent begins in.
+        environment: contains the workspaces.
+        home: full path of the agent's home workspace.
 
     Attributes:
-        home: the workspace that the agent begins in.
-        watcher: told of each workspace that is joined (True) or quit (False).
+        home: the agent's home workspace.
+        watcher: called with each workspace that is joined (True) or quit (False).
     """
 
     REMEMBERED_INTENTIONS = 1000
-    """Intentions are not heard to end, so only the last ones that joined a workspace are remembered."""
+    """The end of intentions is not reported, so only the last ones that joined a workspace are remembered."""
 
     def __init__(self, environment: Environment, home: str = "/main") -> None:
         self._environment = environment
@@ -55,21 +55,21 @@ class JoinedWorkspaces:
         return tuple(self._joined.values())
 
     def has_joined(self, path: str) -> bool:
-        """Whether the agent is in the workspace with that full path."""
+        """Return whether the agent has joined the workspace with that full path."""
         return path in self._joined
 
     def at(self, path: str) -> Workspace:
-        """The joined workspace with that full path.
+        """Return the joined workspace with that full path.
 
         Raises:
-            OperationFailed: it was not joined.
+            OperationFailed: the agent has not joined it.
         """
         if path not in self._joined:
             raise not_joined(path)
         return self._joined[path]
 
     def current(self, intention: int) -> Workspace:
-        """The workspace where an intention acts.
+        """Return the workspace of an intention.
 
         Raises:
             OperationFailed: the agent has quit all workspaces.
@@ -82,23 +82,23 @@ class JoinedWorkspaces:
         return self._last
 
     def in_order(self, intention: int) -> Iterator[Workspace]:
-        """The workspaces where an intention looks for things: the current one, home, then the others."""
+        """Yield the workspaces in an intention's search order: the current one, home, then the others."""
         return in_order(self._joined, self.current(intention), self.home)
 
     def find(self, path: str, intention: int) -> Workspace:
-        """The workspace at *path*, which starts from the intention's current workspace, or from home without one.
+        """Return the workspace at *path*, relative to the intention's current workspace, or to home.
 
         Raises:
-            OperationFailed: there is none.
+            OperationFailed: it does not exist.
         """
         base = self.current(intention) if self._joined else self.home
         return self._environment.workspace(resolve_path(base.path, path))
 
     def named(self, name: str, intention: int) -> Workspace:
-        """The joined workspace with that path or plain name.
+        """Return the joined workspace with that path or plain name.
 
         Raises:
-            OperationFailed: no such workspace was joined.
+            OperationFailed: the agent has not joined such a workspace.
         """
         current = self.current(intention)
         found = joined_workspace(self._environment, self._joined, current, self.home, name)
@@ -107,7 +107,7 @@ class JoinedWorkspaces:
         return found
 
     def join(self, workspace: Workspace, intention: int | None = None) -> bool:
-        """Make a workspace the current one; True when it was not joined before."""
+        """Make a workspace the current one. Return True if it was not joined before."""
         is_new = workspace.path not in self._joined
         self._joined[workspace.path] = workspace
         self._last = workspace
@@ -121,7 +121,7 @@ class JoinedWorkspaces:
         return is_new
 
     def quit(self, workspace: Workspace) -> bool:
-        """Leave a workspace; False when it was not joined.
+        """Leave a workspace. Return False if it was not joined.
 
         When none is left, the agent can only join one again.
         """
@@ -135,21 +135,21 @@ class JoinedWorkspaces:
 
 
 def not_joined(path: str) -> OperationFailed:
-    """The failure of an action in a workspace where the agent is not."""
+    """Return the failure of an action in a workspace that the agent has not joined."""
     return OperationFailed(
-        f'workspace {path} has not been joined; joinWorkspace("{path}") comes first',
+        f'workspace {path} has not been joined; write joinWorkspace("{path}") first',
         Structure("workspace_not_joined", (path,)),
     )
 
 
 class Selection:
-    """Selects artifacts for one agent.
+    """Artifact resolution for one agent.
 
     Args:
         agent: name of the agent.
         workspaces: its workspaces.
         focused: its focused artifacts.
-        own_actions: names with numbers of arguments of what its body does without any artifact, for hints.
+        own_actions: names with numbers of arguments of the body's own actions, for suggestions.
     """
 
     def __init__(
@@ -165,10 +165,10 @@ class Selection:
         self._own_actions = own_actions
 
     def artifact_for(self, call: Call) -> ArtifactId:
-        """The artifact that is to carry out *call*.
+        """Return the artifact that runs *call*.
 
         Raises:
-            Undelivered: there is none; the message tells similar operations and where they are.
+            Undelivered: none exists; the message names similar operations and their places.
             UnknownArtifact: the workspace that the action is directed to has no artifact of that name.
         """
         intention = call.act.intention
@@ -193,7 +193,7 @@ class Selection:
         raise nobody_offers(call.act, self._nobody(call, places))
 
     def _directed(self, wanted: ArtifactId | str, call: Call) -> ArtifactId:
-        # An id says all: no annotation beside it counts.
+        # An id is complete: other annotations are ignored.
         places = () if isinstance(wanted, ArtifactId) else self._places(call)
         try:
             return self.artifact(wanted, places)
@@ -203,10 +203,11 @@ class Selection:
             raise unreachable(call.act, failure) from None
 
     def artifact(self, wanted: ArtifactId | str, places: Sequence[Workspace]) -> ArtifactId:
-        """The artifact *wanted*: an id, a name in one of the *places*, or a path that begins in the first of them.
+        """Return the artifact *wanted*: an id, a name in one of the *places*, or a path relative to the first of
+        them.
 
         Raises:
-            OperationFailed: there is no such artifact, or its workspace has not been joined.
+            OperationFailed: the artifact does not exist, or the agent has not joined its workspace.
         """
         if isinstance(wanted, ArtifactId):
             if not self._workspaces.has_joined(wanted.workspace):
@@ -218,7 +219,7 @@ class Selection:
         return artifact_named(places, wanted)
 
     def _places(self, call: Call) -> tuple[Workspace, ...]:
-        """The workspaces where the artifact may be."""
+        """Return the workspaces that may contain the artifact."""
         wanted, intention = call.direction.workspace, call.act.intention
         if wanted is None:
             return tuple(self._workspaces.in_order(intention))
@@ -232,10 +233,10 @@ class Selection:
         return (wanted,)
 
     def _in_namespace(self, namespace: str, call: Call) -> ArtifactId | None:
-        """The first artifact focused in a namespace that offers the operation.
+        """Return the first artifact focused in a namespace that offers the operation.
 
-        When there are only operations of that name with other numbers of arguments, the first of those is meant, and
-        will say so: an action for one robot does not go to another one because of a slip.
+        If there are only operations of that name with other numbers of arguments, return the first of these, which
+        reports the mismatch: after a slip, an action for one robot must not reach another one.
         """
         namesake: ArtifactId | None = None
         for workspace, artifact in self._focused.in_namespace(namespace):
@@ -252,7 +253,7 @@ class Selection:
         return f"no artifact of {where} {names} has an operation {call.key}{self._hint(call, places)}"
 
     def _hint(self, call: Call, places: Sequence[Workspace]) -> str:
-        """What may have been meant: another number of arguments, another spelling, an internal action."""
+        """Return a suggestion: another number of arguments, another spelling, an internal action."""
         offers: dict[str, str] = dict.fromkeys(self._own_actions, "")
         for workspace in places:
             for artifact in workspace.artifacts():
@@ -263,22 +264,20 @@ class Selection:
         near = [key for key in offers if key.rpartition("/")[0] == call.name]
         if not near:
             if f".{call.name}" in STANDARD:
-                return f"; the internal action is written with a dot: .{call.name}"
+                return f"; write the internal action with a dot: .{call.name}"
             near = difflib.get_close_matches(call.key, offers, n=3, cutoff=0.7)
         if not near:
             if (forgotten := _without_mark(call.name, places)) is not None:
                 return (
-                    f"; the method {call.name} of '{forgotten.name}' is no operation for agents (@operation)"
+                    f"; the method `{call.name}` of `{forgotten.name}` is not an operation (add @operation)"
                 )
             nothing = all(a.type_name in DEFAULT_TYPES for w in places for a in w.artifacts())
-            return (
-                "; no artifact has been made there yet (makeArtifact, or --mapping FILE)" if nothing else ""
-            )
+            return "; the workspace has no artifacts yet (makeArtifact, or --mapping FILE)" if nothing else ""
         return f"; did you mean {' or '.join(key + offers[key] for key in near[:3])}?"
 
 
 def _without_mark(name: str, places: Sequence[Workspace]) -> ArtifactId | None:
-    """An artifact that has a method of this name which agents cannot call."""
+    """Return an artifact with a method of this name that is not an operation."""
     for workspace in places:
         for artifact in workspace.artifacts():
             if artifact.type_name not in DEFAULT_TYPES and workspace.has_method(artifact, name):
@@ -288,4 +287,4 @@ def _without_mark(name: str, places: Sequence[Workspace]) -> ArtifactId | None:
 
 def _internal_action_hint(name: str) -> str:
     near = difflib.get_close_matches(name, STANDARD, n=1, cutoff=0.75)
-    return f"; there is no internal action {name}" + (f", did you mean {near[0]}?" if near else "")
+    return f"; unknown internal action {name}" + (f", did you mean {near[0]}?" if near else "")

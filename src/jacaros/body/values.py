@@ -51,16 +51,16 @@ from jacaros.terms.values import (
 )
 
 Outputs = list[tuple[Var, Out]]
-"""Where unbound variables stand in an action, and the places where an operation leaves their values."""
+"""Unbound variables of an action, with the places for the values of an operation."""
 
 _CARRIED_AS_STRUCTURES = (PLAIN, ARITHMETIC, FUNCTION)
 
 
 def to_value(term: Term, outputs: Outputs | None = None) -> Any:
-    """Turn a term, with its bindings applied, into a plain value.
+    """Convert a term, with its bindings applied, to a plain value.
 
     Args:
-        outputs: takes the unbound variables met on the way, each occurrence with its `Out`.
+        outputs: receives the unbound variables of the term, each occurrence with its `Out`.
     """
     kind = term.__class__
     if kind is float:
@@ -126,7 +126,7 @@ def _object_to_value(term: Term, outputs: Outputs | None) -> object:
 
 
 def _key(value: object) -> object:
-    """What may be the key of a dictionary: lists become tuples, maps tuples of pairs."""
+    """Return a hashable key: lists become tuples, maps tuples of pairs."""
     if isinstance(value, list):
         return tuple(map(_key, value))
     if isinstance(value, dict):
@@ -137,7 +137,7 @@ def _key(value: object) -> object:
 
 
 def symbol_name(symbol: Functor) -> str:
-    """The name of a functor as the environment writes it: no quotes; ``~`` and the namespace in front."""
+    """Return the name of a functor in the environment's form: no quotes; ``~`` and the namespace in front."""
     name = unquoted(symbol.name)
     if symbol.negated:
         name = f"~{name}"
@@ -145,16 +145,16 @@ def symbol_name(symbol: Functor) -> str:
 
 
 def unquoted(name: str) -> str:
-    """The name of a functor without the quotes of a quoted one."""
+    """Return the name of a functor without quotes."""
     return name[1:-1] if name[:1] == "'" and name[-1:] == "'" and len(name) > 1 else name
 
 
 _references: WeakValueDictionary[int, Reference] = WeakValueDictionary()
-"""The references that somebody has, by the identity of their objects, which live as long as they do."""
+"""The references in use, by the identity of their objects, which live as long as they do."""
 
 
 def reference_to(value: object) -> Reference:
-    """The reference to *value*: as long as anybody has one it is the same one, and prints the same (``cobj_N``)."""
+    """Return the reference to *value*: the same one while it is in use, and with the same text (``cobj_N``)."""
     known = _references.get(id(value))
     if known is None:
         known = _references[id(value)] = Reference(value)
@@ -162,7 +162,7 @@ def reference_to(value: object) -> Reference:
 
 
 class References:
-    """Keeps the references to artifacts and workspaces, so that they print the same in the whole run.
+    """Keeps the references to artifacts and workspaces, so that they have the same text in the whole run.
 
     Other objects are not kept: that would keep every image of a camera alive.
     """
@@ -171,14 +171,14 @@ class References:
         self._kept: dict[int, Reference] = {}
 
     def of(self, value: object) -> Reference:
-        """The one reference to *value*, which is kept alive from now on."""
+        """Return the only reference to *value*, which is kept alive from now on."""
         known = self._kept.get(id(value))
         if known is None:
             known = self._kept[id(value)] = reference_to(value)
         return known
 
     def forget(self, value: object) -> None:
-        """Let go of *value*: nobody will name it again, such as the id of a disposed artifact."""
+        """Release *value*, which will not be named again, such as the id of a disposed artifact."""
         self._kept.pop(id(value), None)
 
 
@@ -188,11 +188,11 @@ class _Unkept(References):
 
 
 UNKEPT: Final = _Unkept()
-"""For values of Python code: nothing is kept alive, and what a run keeps prints as it does there."""
+"""For values of Python code: nothing is kept alive, and kept objects have the same text as in the run."""
 
 
 def to_term(value: Any, references: References) -> Term:
-    """Turn a plain value, or what `jacaros.env.values.plain` can make one of, into a term."""
+    """Convert a plain value, or a value that `jacaros.env.values.plain` accepts, to a term."""
     convert = _BY_CLASS.get(value.__class__)
     if convert is not None:
         return convert(value, references)
@@ -200,7 +200,7 @@ def to_term(value: Any, references: References) -> Term:
 
 
 def number_to_term(value: Any) -> float:
-    """The number for an `int` or `float` of any size."""
+    """Convert an `int` or `float` of any size to a number."""
     try:
         return float(value)
     except OverflowError:
@@ -209,7 +209,7 @@ def number_to_term(value: Any) -> float:
 
 @lru_cache(4096)
 def symbol_of(name: str, arity: int) -> Functor:
-    """The functor for a name that the environment gives: quoted when it is no plain lower-case word."""
+    """Return the functor for a name from the environment, quoted unless it is a plain lower-case word."""
     namespace, separator, rest = name.rpartition("::")
     if separator and _is_word(namespace) and rest:
         name = rest
@@ -217,12 +217,12 @@ def symbol_of(name: str, arity: int) -> Functor:
         namespace = ""
     negated = name[:1] == "~" and len(name) > 1
     name = name[1:] if negated else name
-    # The name of a functor is a plain text, whoever was the first to name it.
+    # The name of a functor is a plain str, whatever class of text named it first.
     return functor(str(name) if _is_word(name) else f"'{name}'", arity, negated, namespace or None)
 
 
 def atom_of(name: str) -> Functor:
-    """The atom for the name of an artifact or workspace: always an atom, quoted if need be."""
+    """Return the atom for the name of an artifact or workspace: always an atom, quoted if necessary."""
     return atom(str(name) if _is_word(name) else f"'{name}'")
 
 

@@ -1,1 +1,1 @@
-"""The middleware port: one way to topics, services and transforms, with several backends behind it."""
+"""The middleware port: one interface to topics, services and transforms, with several backends."""

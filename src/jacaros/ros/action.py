@@ -1,7 +1,7 @@
-"""Actions of the middleware, both ways: goals that take their time, tell how far they are, and can be cancelled.
+"""Actions of the middleware, as client and server: long-running goals with feedback that can be cancelled.
 
-Modelled on ROS 2's actions (design article "Actions") and on ROS 1's actionlib, whose states are mapped to the same three
-outcomes.  Everything here happens on the loop of the backend's clock.
+Modelled on ROS 2's actions (design article "Actions") and on ROS 1's actionlib, whose states are mapped to the same
+three outcomes. Everything here happens on the loop of the backend's clock.
 """
 
 from collections.abc import Awaitable, Callable, Mapping
@@ -11,10 +11,10 @@ from typing import Any, Protocol
 
 
 class GoalStatus(StrEnum):
-    """What became of a goal.
+    """How a goal ended.
 
     ROS 2's numbers are 4, 5 and 6; on ROS 1 ``canceled`` stands for PREEMPTED and RECALLED, ``aborted`` for ABORTED.
-    A goal that was refused (ROS 2: not accepted; ROS 1: REJECTED) has no status: `ActionClient.send` raises `GoalRejected`.
+    A rejected goal (ROS 2: not accepted; ROS 1: REJECTED) has no status: `ActionClient.send` raises `GoalRejected`.
     """
 
     SUCCEEDED = "succeeded"
@@ -24,12 +24,12 @@ class GoalStatus(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """The end of a goal.
+    """The outcome of a goal.
 
     Attributes:
         status: how it ended.
-        result: the result message; with its defaults when the server gave none.
-        text: what the server said about it in words (ROS 1's status text, a field ``error_msg`` or ``message``), or "".
+        result: the result message; one with default values if the server sent none.
+        text: the server's text (ROS 1's status text, a field ``error_msg`` or ``message``), or "".
     """
 
     status: GoalStatus
@@ -38,34 +38,34 @@ class Outcome:
 
 
 class GoalHandle(Protocol):
-    """A goal that its server has accepted, on the client's side."""
+    """A goal that its server has accepted, seen by the client."""
 
     @property
     def goal_id(self) -> str:
-        """Name of the goal in the graph."""
+        """Id of the goal in the graph."""
 
     async def outcome(self, timeout: float | None = None) -> Outcome:
-        """Wait for the goal's end; any number of callers may wait, also after the end.
+        """Wait for the goal to end; any number of callers may wait, also after the end.
 
         Raises:
-            CallTimedOut: the goal is still under way after *timeout* seconds of the clock; it is not cancelled by that.
-            ServerLost: the server went away, so that the end will never be told (`SERVER_LOST_AFTER`).
+            CallTimedOut: the goal is still active after *timeout* seconds of the clock; it is not cancelled.
+            ServerLost: the server disappeared, so the outcome will never be known (`SERVER_LOST_AFTER`).
         """
 
     async def cancel(self, timeout: float | None = None) -> bool:
-        """Ask the server to cancel the goal; True when it agreed, False when it refused or the goal was over.
+        """Ask the server to cancel the goal. Return True if it agreed, False if it refused or the goal had ended.
 
-        The goal is over only when `outcome` says so.
+        The goal has ended only when `outcome` returns.
 
         Raises:
             CallTimedOut: the server did not answer in time.
-            ServerLost: there is no server any more.
+            ServerLost: the server disappeared.
         """
 
     def abandon(self, afterwards: Callable[[], Awaitable[object]] | None = None) -> None:
         """Cancel the goal and return immediately.
 
-        Its client owns the goal until it has ended, and logs a warning when that takes more than 5 s.
+        Its client owns the goal until it has ended, and logs a warning if that takes more than 5 s.
 
         Args:
             afterwards: awaited when the goal has ended.
@@ -91,33 +91,34 @@ class ActionClient(Protocol):
     ) -> GoalHandle:
         """Send a goal and wait until the server has accepted it.
 
-        Goals of this node that were asked to be cancelled go first: the goal is sent when they have ended, at the latest
-        5 s after each was asked.  That time does not count for *timeout*.
+        Goals of this node that are being cancelled come first: the goal is sent when they have ended, at most 5 s
+        after each request. That time does not count towards *timeout*.
 
         Args:
-            goal: a goal message, or a mapping of its fields, or None for the defaults.
+            goal: a goal message, a mapping of its fields, or None for the defaults.
             on_feedback: called on the loop with each feedback message of this goal, until its end.
-            timeout: seconds for waiting for the server and for its acceptance together; None waits for ever.
+            timeout: seconds to wait for the server and for its acceptance, in total; None: no limit.
 
         Raises:
-            MessageMismatch: the goal does not fit the definition.
-            GoalRejected: the server refused it.
-            ServerUnavailable: nobody offered the action in time.
-            CallTimedOut: the server did not say in time whether it accepts; the goal is cancelled as soon as it does.
+            MessageMismatch: the goal does not match the type definition.
+            GoalRejected: the server rejected it.
+            ServerUnavailable: no server offered the action in time.
+            CallTimedOut: the server neither accepted nor rejected the goal in time; if it accepts later, the goal is
+                cancelled.
 
-        Cancelling this coroutine cancels the goal, should the server accept it.
+        Cancelling this coroutine cancels the goal if the server accepts it.
         """
 
     def close(self) -> None:
-        """Give the client up: its goals are cancelled as far as the server can be reached, waiting callers fail."""
+        """Close the client: its goals are cancelled if the server can be reached, and waiting callers fail."""
 
 
 class ServerGoal(Protocol):
-    """A goal that a server carries out, on the server's side."""
+    """A goal that a server runs, seen by the server."""
 
     @property
     def goal_id(self) -> str:
-        """Name of the goal in the graph."""
+        """Id of the goal in the graph."""
 
     @property
     def request(self) -> Any:
@@ -125,21 +126,21 @@ class ServerGoal(Protocol):
 
     @property
     def cancel_requested(self) -> bool:
-        """Whether the client asked for cancelling and was not refused."""
+        """Whether the client requested cancelling and was not refused."""
 
     def feedback(self, message: Any = None, /, **fields: Any) -> None:
-        """Tell the client how far the goal is: a feedback message, or a mapping, or keywords.
+        """Send feedback to the client: a feedback message, a mapping, or keywords.
 
         Raises:
-            MessageMismatch: it does not fit the definition.
+            MessageMismatch: it does not match the type definition.
         """
 
 
 class Abort(Exception):
-    """Raised by the code that carries out a goal: it ends as aborted.
+    """Raise it in the code of a goal to end the goal as aborted.
 
     Args:
-        text: why, in words; it goes into the result's ``error_msg`` where there is such a field and none was given.
+        text: the reason; it is copied to the result's ``error_msg`` if that field exists and is empty.
         result: result message or mapping of its fields; None for the defaults.
     """
 
@@ -150,16 +151,16 @@ class Abort(Exception):
 
 
 Execute = Callable[[ServerGoal], Awaitable[Any]]
-"""Carries out one goal, as a task of its own.
+"""Runs one goal, as a task of its own.
 
-What it gives (result message, mapping of its fields, None for the defaults) is the result of a goal that succeeded;
-`Abort` ends it as aborted, any other exception as well and is logged.  When cancelling was requested and accepted, or a
-newer goal took over, ``CancelledError`` is thrown into it, and what it raises or gives then is the end: cancelled for a
-request, `ActionPolicy.overtaken` for a newer goal.  Its ``finally`` is where motion is stopped.
+It returns the result of a goal that succeeded (result message, mapping of its fields, None for the defaults). `Abort`
+ends the goal as aborted, and so does any other exception, which is also logged. When a request to cancel was
+accepted, or a newer goal pre-empts this one, ``CancelledError`` is raised in it; what it then raises or returns is
+the outcome: canceled after a request, `ActionPolicy.overtaken` after pre-emption. Stop motion in its ``finally``.
 """
 
 Accept = Callable[[Any], str | None]
-"""Takes a goal message; gives None to accept it, or the reason for refusing it."""
+"""Takes a goal message; returns None to accept it, or the reason for rejecting it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,12 +168,12 @@ class ActionPolicy:
     """How a server treats goals.
 
     Attributes:
-        accept: judges goals; None accepts all.
-        may_cancel: judges a request for cancelling; None agrees always.
-        preempt: a new goal takes over from the one under way (whose text is ``preempted by a newer goal``), as under
-            Nav2's ``SimpleActionServer``; False carries out any number of goals side by side.
-        overtaken: how a goal ends from which a new one has taken over: aborted as under Nav2, or cancelled as under
-            actionlib's ``SimpleActionServer``.
+        accept: decides whether to accept a goal; None accepts all.
+        may_cancel: decides whether to accept a request to cancel; None always does.
+        preempt: a new goal pre-empts the active one (whose text is ``preempted by a newer goal``), as in Nav2's
+            ``SimpleActionServer``; False runs any number of goals in parallel.
+        overtaken: status of a pre-empted goal: aborted as in Nav2, or cancelled as in actionlib's
+            ``SimpleActionServer``.
     """
 
     accept: Accept | None = None
@@ -189,10 +190,10 @@ class ActionServer(Protocol):
         """Absolute name of the action."""
 
     def close(self) -> None:
-        """Stop to offer the action; goals under way are aborted with the text ``the server was closed``."""
+        """Stop offering the action; active goals are aborted with the text ``the server was closed``."""
 
 
 SERVER_LOST_AFTER = 3.0
-"""Seconds without any sign of the server after which a goal under way is given up with `ServerLost`."""
+"""Seconds without any sign of the server after which an active goal fails with `ServerLost`."""
 
 GoalFields = Mapping[str, Any]

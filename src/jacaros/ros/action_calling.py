@@ -1,6 +1,6 @@
-"""Action clients apart from the middleware: goals under way, who waits for them, and servers that go away.
+"""Action clients independent of the middleware: active goals, their waiting callers, and servers that disappear.
 
-`GoalSender` is a whole action client; a backend gives it a `GoalWire` that sends, and tells it what has come in.
+`GoalSender` is a complete action client; a backend provides a `GoalWire` that sends, and passes on what it receives.
 Everything here happens on the loop.
 """
 
@@ -30,9 +30,9 @@ from jacaros.ros.waiting import Absence, Waiting, within
 
 
 class GoalWire(Protocol):
-    """What a middleware does for one action client.
+    """The part of an action client that depends on the middleware.
 
-    Nothing here waits.  What comes back is told to the `GoalSender`: `accepted` or `rejected` for each goal sent, then
+    No method waits. Answers are passed to the `GoalSender`: `accepted` or `rejected` for each goal sent, then
     `feedback` and `ended`; `cancel_answered` for each `cancel_goal`; `server_present` whenever that changes.
     """
 
@@ -41,26 +41,26 @@ class GoalWire(Protocol):
         """Whether a server offers the action, as far as is known."""
 
     def new_id(self) -> str:
-        """Make up the id of a new goal."""
+        """Return the id of a new goal."""
 
     def send_goal(self, goal_id: str, goal: Any) -> None:
         """Send a goal message.
 
         Raises:
-            CallFailed: the server there cannot take it; the text says why.
+            CallFailed: the server cannot accept it; the text says why.
         """
 
     def cancel_goal(self, goal_id: str) -> None:
-        """Ask the server to cancel a goal, accepted or not yet."""
+        """Ask the server to cancel a goal, whether accepted or not."""
 
     def adopt_goal(self, goal_id: str) -> None:
-        """Follow a goal that was accepted from an earlier run of this node, as if it had been sent here."""
+        """Follow an accepted goal of an earlier run of this node as if it had been sent here."""
 
     def forget_goal(self, goal_id: str) -> None:
-        """The goal is over for this client: nothing more about it needs to be told."""
+        """Stop reporting a goal: it has ended for this client."""
 
     def close(self) -> None:
-        """Leave; what was sent just before is still to reach the server."""
+        """Leave; messages sent just before must still reach the server."""
 
 
 class GoalSender:
@@ -68,17 +68,16 @@ class GoalSender:
 
     Args:
         clock: measures the time-outs.
-        log: takes one line about waiting, and about callbacks that failed.
+        log: called with one line about waiting, or about a failed callback.
         factory: makes the goal messages.
         name: absolute name of the action.
         type_name: action type in full form.
-        leaving: by action, the goals of all clients of the node that were asked to be cancelled and have not ended;
-            None: of this client alone.
+        leaving: by action, the goals of all clients of the node that are being cancelled; None: of this client only.
         orphans: decides about goals of earlier runs; None: they are left alone.
     """
 
     wire: GoalWire
-    """To be set by whoever makes this, before the first goal."""
+    """Set by the creator, before the first goal."""
 
     def __init__(
         self,
@@ -113,11 +112,11 @@ class GoalSender:
 
     @property
     def busy(self) -> bool:
-        """Whether a goal is under way or somebody waits for the server: a wire that has to ask, asks while this is so."""
+        """Whether a goal is active or a caller waits for the server; a wire that polls does so while this is True."""
         return bool(self._goals or self._arrivals)
 
     def wants(self, goal_id: str) -> bool:
-        """Whether somebody still waits for a goal; one that was given up must not be sent again."""
+        """Whether a caller still waits for a goal; an abandoned goal must not be sent again."""
         pending = self._goals.get(goal_id)
         return pending is not None and not pending.abandoned
 
@@ -140,19 +139,19 @@ class GoalSender:
                 return await self._attempt(message, on_feedback, deadline, timeout)
             except (
                 ServerUnavailable
-            ):  # it was seen a moment ago, but has gone, or is not known everywhere yet
+            ):  # it was seen a moment ago, but has gone, or has not been discovered everywhere
                 if deadline is not None and self.clock.elapsed + RETRY > deadline:
                     raise self._nobody(timeout) from None
             await self.clock.sleep(RETRY)
 
     def close(self) -> None:
-        """Give the client up: its goals are cancelled, waiting callers fail."""
+        """Close the client: its goals are cancelled, waiting callers fail."""
         if self._closed:
             return
         self._closed = True
         for goal_id in list(self._goals):
-            # Also where the server seems to have gone: it may be quiet, and the robot drive on.
-            with suppress(ServiceError):  # there is no way to anybody
+            # Even if the server seems to be gone: it may only be silent, and the robot still moving.
+            with suppress(ServiceError):  # no server can be reached
                 self.wire.cancel_goal(goal_id)
         problem = CallFailed(f"the client of action {self.name} was closed")
         for goal_id in list(self._goals):
@@ -162,7 +161,7 @@ class GoalSender:
         self.wire.close()
 
     def ask_to_cancel(self, pending: PendingGoal) -> None:
-        """Send a request for cancelling; `cancel_answered` brings the answer.
+        """Send a request to cancel; the answer arrives with `cancel_answered`.
 
         Raises:
             ServiceError: the server cannot be reached.
@@ -173,9 +172,9 @@ class GoalSender:
     def abandon(
         self, pending: PendingGoal, afterwards: Callable[[], Awaitable[object]] | None = None
     ) -> None:
-        """Cancel a goal that nobody wants any more: now if it was accepted, else when it is.
+        """Cancel a goal that is no longer needed: now if it was accepted, else as soon as it is.
 
-        It stays a goal of this client until it has ended: newer goals of the action wait for that.
+        It remains a goal of this client until it has ended: newer goals of the action wait for that.
 
         Args:
             pending: the goal.
@@ -186,7 +185,7 @@ class GoalSender:
         pending.abandoned = True
         self._leaves(pending)
         if pending.accepted:
-            with suppress(ServiceError):  # the server cannot be reached, so that the goal is lost soon
+            with suppress(ServiceError):  # the server cannot be reached, so the goal will soon be lost
                 self.wire.cancel_goal(pending.goal_id)
         self._keep(self._see_off(pending, afterwards))
 
@@ -196,7 +195,7 @@ class GoalSender:
         task.add_done_callback(self._abandoning.discard)
 
     def goals_under_way(self, goal_ids: Iterable[str]) -> None:
-        """Look for orphans among the goals that the server pursues: only once, among those from before we joined."""
+        """Look for orphans among the active goals of the server: only once, and only goals from before we joined."""
         if self._heard_of_goals or self._orphans is None or self._closed:
             return
         self._heard_of_goals = True
@@ -219,14 +218,14 @@ class GoalSender:
             self.abandon(pending)
 
     def has_left(self, pending: PendingGoal) -> None:
-        """A goal has ended, or its server refuses to cancel it: newer goals wait for it no longer."""
+        """Let newer goals continue: a goal has ended, or its server refuses to cancel it."""
         self._leaving.get(self.name, {}).pop(pending, None)
         pending.no_longer_leaves()
 
-    # What the wire tells:
+    # Events from the wire:
 
     def accepted(self, goal_id: str) -> None:
-        """The server has accepted a goal."""
+        """Note that the server has accepted a goal."""
         self._sign()
         pending = self._goals.get(goal_id)
         if pending is None or pending.accepted:
@@ -238,31 +237,31 @@ class GoalSender:
             settle(pending.acceptance, None, None)
 
     def rejected(self, goal_id: str, text: str = "") -> None:
-        """The server has refused a goal."""
+        """Note that the server has rejected a goal."""
         self._sign()
         because = f": {text}" if text else ""
-        self._finish(goal_id, GoalRejected(f"the server of action {self.name} refused the goal{because}"))
+        self._finish(goal_id, GoalRejected(f"the server of action {self.name} rejected the goal{because}"))
 
     def feedback(self, goal_id: str, message: Any) -> None:
-        """Feedback of a goal has come."""
+        """Pass on feedback of a goal."""
         self._sign()
         pending = self._goals.get(goal_id)
         if pending is None or pending.abandoned or pending.on_feedback is None:
             return
         try:
             pending.on_feedback(message)
-        except Exception as problem:  # one bad callback must not stop the news of the others
+        except Exception as problem:  # one failing callback must not block the events of other goals
             self._log(
                 f"the feedback callback of action {self.name} failed: {type(problem).__name__}: {problem}"
             )
 
     def ended(self, goal_id: str, outcome: Outcome) -> None:
-        """A goal is over."""
+        """Note the outcome of a goal."""
         self._sign()
         self._finish(goal_id, outcome)
 
     def cancel_answered(self, goal_id: str, agreed: bool) -> None:
-        """The server has answered a request for cancelling."""
+        """Pass on the answer to a request to cancel."""
         self._sign()
         pending = self._goals.get(goal_id)
         if pending is not None:
@@ -271,15 +270,15 @@ class GoalSender:
             pending.cancel_answered(agreed)
 
     def fail(self, goal_id: str, problem: ServiceError) -> None:
-        """Something between us and the server broke for good: the end of a goal will not be told."""
+        """End a goal whose outcome can no longer arrive, because the connection to the server broke."""
         self._finish(goal_id, problem)
 
     def server_present(self, present: bool, same: bool = True) -> None:
-        """A server has come or gone.
+        """Note that a server has come or gone.
 
         Args:
-            present: whether one is there now.
-            same: the one that is there now may know the goals; False: it is another, which does not.
+            present: whether there is a server now.
+            same: the present server may know the goals; False: it is another one, which does not.
         """
         if present:
             if not same:
@@ -290,7 +289,7 @@ class GoalSender:
         elif self._losing is None and self._goals:
             self._losing = self._expect_loss()
 
-    # Within:
+    # Internal:
 
     async def _attempt(
         self,
@@ -299,7 +298,7 @@ class GoalSender:
         deadline: float | None,
         timeout: float | None,
     ) -> PendingGoal:
-        """Send a goal once; raises `ServerUnavailable` when it turns out that nobody is there."""
+        """Send a goal once; raise `ServerUnavailable` if there turns out to be no server."""
         pending = PendingGoal(self, self.wire.new_id(), on_feedback)
         self._goals[pending.goal_id] = pending
         try:
@@ -310,7 +309,7 @@ class GoalSender:
         except TimeoutError:
             self.abandon(pending)
             raise CallTimedOut(
-                f"the server of action {self.name} did not say within {timeout:g} s whether it accepts the goal"
+                f"the server of action {self.name} neither accepted nor rejected the goal within {timeout:g} s"
             ) from None
         except asyncio.CancelledError:
             self.abandon(pending)
@@ -321,7 +320,7 @@ class GoalSender:
         return pending
 
     def _nobody(self, timeout: float | None) -> ServerUnavailable:
-        return ServerUnavailable(f"nobody offered {self._described} within {timeout:g} s")
+        return ServerUnavailable(f"no server offered {self._described} within {timeout:g} s")
 
     @property
     def _described(self) -> str:
@@ -334,7 +333,7 @@ class GoalSender:
         if self.wire.offered:
             self._absence.end(self._log, self._described)
             return
-        help = "Is the node that offers it running?"
+        help = "is the node that offers it running?"
         with Waiting(self.clock, self._log, self._described, help, absence=self._absence):
             while not self.wire.offered:
                 arrival: asyncio.Future[None] = asyncio.get_running_loop().create_future()
@@ -354,10 +353,11 @@ class GoalSender:
             self._leaving.setdefault(self.name, {})[pending] = None
 
     async def _predecessors(self) -> float:
-        """Wait for the ends of cancelled goals of the action, each at most `ENDING` seconds; return the seconds waited.
+        """Wait until cancelled goals of the action have ended, each at most `ENDING` seconds; return the seconds
+        waited.
 
-        A server that takes a newer goal before it has dealt with the request ends the older one as it likes, and one
-        that takes no second goal refuses the newer one.
+        A server that accepts a newer goal before it handles the request may end the older one in any way, and one
+        that runs a single goal rejects the newer one.
         """
         began = self.clock.elapsed
         for pending in list(self._leaving.get(self.name, ())):
@@ -365,7 +365,7 @@ class GoalSender:
                 self.has_left(pending)
                 self._log(
                     f"warning: action {self.name}: a cancelled goal has not ended within {ENDING:g} s; "
-                    "sending the next one all the same"
+                    "sending the next goal anyway"
                 )
         return self.clock.elapsed - began
 
@@ -381,9 +381,7 @@ class GoalSender:
                     "the robot may still be moving"
                 )
             return
-        except (
-            ServiceError
-        ):  # lost with its server, refused, or its client was closed: nobody is left to tell
+        except ServiceError:  # lost with its server, rejected, or its client was closed: no caller is waiting
             return
         if afterwards is not None:
             await afterwards()
@@ -401,7 +399,8 @@ class GoalSender:
             self._sign()
 
     def _sign(self) -> None:
-        """Something was heard of the server: it is not lost, or not yet if it may have been said before the server went."""
+        """Note a sign of life. If the server was already seen to go, the message may be older, and the time-out
+        starts again."""
         if self._losing is not None:
             self._losing.cancel()
             self._losing = self._expect_loss() if self._goals and not self.wire.offered else None
@@ -414,5 +413,5 @@ class GoalSender:
             self._losing.cancel()
             self._losing = None
         for goal_id in list(self._goals):
-            text = f"the server of action {self.name} {how} during goal {goal_id}; whether it goes on is not known"
+            text = f"the server of action {self.name} {how} during goal {goal_id}; it is unknown whether the goal continues"
             self._finish(goal_id, ServerLost(text))

@@ -1,7 +1,7 @@
-"""Action servers apart from the middleware: judging goals, carrying them out, and what their ends become.
+"""Action servers independent of the middleware: accepting goals, running them, and their outcomes.
 
-A backend hands over what came from clients (`ServedGoals.judge`, `begin`, `cancel`) and is told what to send them: feedback
-and the end.  Everything here happens on the loop.
+A backend passes on what clients send (`ServedGoals.judge`, `begin`, `cancel`) and receives what to send them:
+feedback and the outcome. Everything here happens on the loop.
 """
 
 import asyncio
@@ -18,55 +18,55 @@ from jacaros.ros.serving import checked_message
 PREEMPTED = "preempted by a newer goal"
 CLOSED = "the server was closed"
 LOOKING = 0.01
-"""Seconds within which a server whose goals preempt looks at new goals and requests for cancelling, as Nav2's does."""
+"""Seconds within which a server with pre-emption handles new goals and requests to cancel, as in Nav2."""
 TEXT_FIELDS = ("error_msg", "message")
-"""Where results of actions say in words how it went."""
+"""Fields of action results that hold a text."""
 
 
 class GoalListener(Protocol):
-    """Who brings the news of one goal to its client."""
+    """Sends the events of one goal to its client."""
 
     def feedback(self, message: Any) -> None:
-        """The goal has got so far: a feedback message."""
+        """Send a feedback message."""
 
     def ended(self, outcome: Outcome) -> None:
-        """The goal is over; called once."""
+        """Send the outcome; called once."""
 
 
-class GoalTelling(Protocol):
-    """Who brings the news of all goals of an action to their clients."""
+class GoalReporter(Protocol):
+    """Sends the events of all goals of an action to their clients."""
 
     def feedback(self, goal_id: str, message: Any) -> None:
-        """A goal has got so far."""
+        """Send a feedback message of a goal."""
 
     def ended(self, goal_id: str, outcome: Outcome) -> None:
-        """A goal is over; called once for each."""
+        """Send the outcome of a goal; called once for each."""
 
 
-class OneGoalOf:
-    """The `GoalListener` of one goal of somebody who brings the news of all."""
+class SingleGoalListener:
+    """The `GoalListener` of one goal, for a `GoalReporter`."""
 
-    def __init__(self, telling: GoalTelling, goal_id: str) -> None:
-        self._telling, self._goal_id = telling, goal_id
+    def __init__(self, reporter: GoalReporter, goal_id: str) -> None:
+        self._reporter, self._goal_id = reporter, goal_id
 
     def feedback(self, message: Any) -> None:
         """Pass feedback on."""
-        self._telling.feedback(self._goal_id, message)
+        self._reporter.feedback(self._goal_id, message)
 
     def ended(self, outcome: Outcome) -> None:
         """Pass the end on."""
-        self._telling.ended(self._goal_id, outcome)
+        self._reporter.ended(self._goal_id, outcome)
 
 
 class GoalUnderWay:
-    """A goal that is carried out: what its code sees of it, a `ServerGoal`."""
+    """A running goal; for its code, a `ServerGoal`."""
 
     def __init__(
         self,
         goal_id: str,
         request: Any,
         send: Callable[[Any], Any],
-        tell: Callable[["GoalUnderWay", Outcome], None],
+        report: Callable[["GoalUnderWay", Outcome], None],
     ) -> None:
         self.goal_id = goal_id
         self.request = request
@@ -74,23 +74,23 @@ class GoalUnderWay:
         self.task: asyncio.Task[Any] | None = None
         self.overtaken = self.stopped = self.over = False
         self._send = send
-        self._tell = tell
+        self._report = report
 
     def feedback(self, message: Any = None, /, **fields: Any) -> None:
-        """Tell the client how far the goal is; after the goal's end nothing."""
+        """Send feedback to the client; ignored after the goal's end."""
         if message is not None and fields:
-            raise TypeError("give a feedback message or its fields, not both")
+            raise TypeError("expected a feedback message or its fields, found both")
         if not self.over:
             self._send(message if message is not None else fields)
 
     def end(self, outcome: Outcome) -> None:
-        """Tell the end, unless it was told."""
+        """Send the outcome, unless it was sent."""
         if not self.over:
             self.over = True
-            self._tell(self, outcome)
+            self._report(self, outcome)
 
     def stop(self) -> None:
-        """Throw ``CancelledError`` into the code that carries the goal out."""
+        """Raise ``CancelledError`` in the code of the goal."""
         self.stopped = True
         if self.task is not None:
             self.task.cancel()
@@ -99,9 +99,9 @@ class GoalUnderWay:
 class ServedGoals:
     """The goals of one action server.
 
-    Where goals preempt, they do as under Nav2's ``SimpleActionServer``: a new goal waits until the server looks, at most
-    `LOOKING` seconds.  Then the one under way ends as aborted, even when it was asked to be cancelled in that time;
-    without a new goal it ends as cancelled.  A goal that waits gives way to a newer one.
+    With pre-emption they behave as in Nav2's ``SimpleActionServer``: a new goal waits until the server checks, at
+    most `LOOKING` seconds. Then the active goal ends as aborted, even if cancelling was requested in that time;
+    without a new goal it ends as cancelled. A waiting goal is replaced by a newer one.
 
     Args:
         clock: measures `LOOKING`.
@@ -110,7 +110,7 @@ class ServedGoals:
         type_name: action type in full form.
         execute: the user's coroutine function.
         policy: how to treat goals.
-        log: takes one line about code that failed.
+        log: called with one line about failed code.
     """
 
     def __init__(
@@ -138,22 +138,22 @@ class ServedGoals:
         self._closed = False
 
     def judge(self, request: Any) -> str | None:
-        """Tell whether a goal message is accepted: None, or the reason for refusing it."""
+        """Return None if a goal message is accepted, or the reason for rejecting it."""
         if self._closed:
             return CLOSED
         if self._policy.accept is None:
             return None
         try:
             return self._policy.accept(request)
-        except Exception as problem:  # the server lives on, and the client learns of it
+        except Exception as problem:  # the server keeps running, and the client receives the reason
             reason = f"{type(problem).__name__}: {problem}"
             self._log(f"judging a goal of action {self._name} failed: {reason}")
             return reason
 
     def begin(self, goal_id: str, request: Any, listener: GoalListener) -> ServerGoal:
-        """Carry an accepted goal out as a task of its own; *listener* is told of feedback and the end.
+        """Run an accepted goal as a task of its own; *listener* receives feedback and the outcome.
 
-        Where goals take over from each other, the code of the newer one begins when that of the older has ended.
+        With pre-emption, the code of the newer goal begins when that of the older one has ended.
         """
 
         def send(given: Any) -> None:
@@ -168,7 +168,7 @@ class ServedGoals:
         return goal
 
     def cancel(self, goal_id: str) -> bool:
-        """Handle a client's request for cancelling; True when it is agreed to."""
+        """Handle a client's request to cancel; return whether it is accepted."""
         goal = self._goals.get(goal_id)
         if goal is None or goal.overtaken:
             return False
@@ -184,18 +184,18 @@ class ServedGoals:
         return True
 
     def under_way(self) -> list[str]:
-        """Ids of the goals that are not over."""
+        """Ids of the active goals."""
         return list(self._goals)
 
     def close(self) -> None:
-        """Abort what is under way: its clients are told at once, its code is cancelled."""
+        """Abort the active goals: send the outcome to their clients immediately, and cancel their code."""
         self._shut()
         for goal in list(self._goals.values()):
             goal.end(self._ended(GoalStatus.ABORTED, None, CLOSED))
             goal.stop()
 
     def abandon(self) -> None:
-        """Stop what is under way and tell nobody: what a killed process does."""
+        """Stop the active goals without informing clients, as when a process is killed."""
         self._shut()
         for goal in list(self._goals.values()):
             goal.over = True
@@ -222,7 +222,7 @@ class ServedGoals:
             if waiting is not None and not self._closed:
                 self._queue(waiting)
 
-    # Goals that preempt: one is under way, and at most one waits for it to end.
+    # Pre-emption: one goal is active, and at most one waits for it to end.
 
     def _queue(self, goal: GoalUnderWay) -> None:
         if self._current is not None:
@@ -236,7 +236,7 @@ class ServedGoals:
             self._look_soon()
 
     def _drop_waiting(self) -> None:
-        """End the goal that waits, without having begun."""
+        """End the waiting goal before it has begun."""
         waiting, self._waiting = self._waiting, None
         if waiting is not None:
             waiting.overtaken = not waiting.cancel_requested
@@ -252,7 +252,7 @@ class ServedGoals:
         if current is None or current.stopped or self._closed:
             return
         if waiting is not None and waiting.cancel_requested:
-            # As Nav2 does: cancelling the goal that waits ends both.
+            # As in Nav2, cancelling the waiting goal ends both.
             self._drop_waiting()
             current.overtaken = not current.cancel_requested
         else:
@@ -276,7 +276,7 @@ class ServedGoals:
         listener.ended(outcome)
 
     def _outcome(self, goal: GoalUnderWay, task: asyncio.Task[Any]) -> Outcome:
-        """What the end of a goal's code means."""
+        """Return the outcome that corresponds to the end of a goal's code."""
         if task.cancelled():
             return self._cancelled(goal, None)
         problem = task.exception()
@@ -319,7 +319,7 @@ class ServedGoals:
         return Outcome(status, message, text or text_of(message))
 
     def _fill_in(self, result: Any, text: str) -> None:
-        """Write *text* into the result where it has a place for it and none was given."""
+        """Write *text* to the result if it has an empty field for it."""
         fields = self._factory.fields(self._result_type)
         for name in TEXT_FIELDS:
             field = fields.get(name)
@@ -328,7 +328,7 @@ class ServedGoals:
 
 
 def text_of(result: Any) -> str:
-    """What a result message says in words, or ""."""
+    """Return the text of a result message, or ""."""
     for name in TEXT_FIELDS:
         if name in (field_names(result) or ()):
             text = getattr(result, name)

@@ -29,15 +29,16 @@ from jacaros.ros.protocols.actionlib import (
 from jacaros.ros.qos import QoS
 
 LOOKING = 0.02
-"""Seconds between two looks for a server that is awaited."""
+"""Seconds between two checks for a server that a caller waits for."""
 QUIET = 4
-"""So many `STATUS_PERIOD` without a word of the server, and it is called away; `SERVER_LOST_AFTER` begins then."""
+"""Number of `STATUS_PERIOD` without a message after which the server counts as gone; then `SERVER_LOST_AFTER`
+begins."""
 
 _numbers = itertools.count(1)
 
 
 class ActionTopicsNode(Protocol):
-    """What actions need of a backend."""
+    """The interface of a backend for actions."""
 
     clock: Clock
     log: Callable[[str], None]
@@ -49,7 +50,7 @@ class ActionTopicsNode(Protocol):
 
     @property
     def orphans(self) -> Orphans:
-        """What recognises goals of earlier runs."""
+        """Recognises goals of earlier runs."""
 
     def publisher(self, topic: str, type_name: str, qos: QoS = ...) -> Publisher:
         """Make a publisher."""
@@ -57,14 +58,14 @@ class ActionTopicsNode(Protocol):
     def subscription(
         self, topic: str, type_name: str, callback: Callable[[Sample], None], qos: QoS = ...
     ) -> Subscription:
-        """Have *callback* called for every message."""
+        """Call *callback* with every message."""
 
     def add_exit_hook(self, hook: Callable[[], None]) -> Callable[[], None]:
-        """Have *hook* called when the process stops."""
+        """Call *hook* when the process ends."""
 
 
 class ActionlibWire:
-    """The five topics of one action, as its client uses them.
+    """The five topics of one action, on the client's side.
 
     Args:
         node: the backend.
@@ -93,12 +94,12 @@ class ActionlibWire:
 
     @property
     def offered(self) -> bool:
-        """Whether a server is there, with all five topics connected.  Asking for it makes the wire look out."""
+        """Whether there is a server with all five topics connected. Reading it starts the checks."""
         self._look()
         return self._present
 
     def new_id(self) -> str:
-        """Make up the id of a new goal."""
+        """Return the id of a new goal."""
         return self._node.orphans.named_id(next(_numbers), self._node.clock.now())
 
     def send_goal(self, goal_id: str, goal: Any) -> None:
@@ -118,7 +119,7 @@ class ActionlibWire:
         self._goals[goal_id] = SentGoal(None, self._node.clock.elapsed, heard_of=True, accepted=True)
 
     def forget_goal(self, goal_id: str) -> None:
-        """The goal is over for this client."""
+        """Stop reporting a goal: it has ended for this client."""
         self._goals.pop(goal_id, None)
 
     def close(self) -> None:
@@ -131,11 +132,11 @@ class ActionlibWire:
             end.close()
 
     def _cancel_all(self) -> None:
-        """An exit hook: a process that ends leaves no robot driving to its goal."""
+        """Exit hook: leave no robot driving towards its goal when the process ends."""
         for goal_id in list(self._goals):
             self.send_cancel(goal_id)
 
-    # Whether the server is there: connections tell no changes, so they are looked at while somebody cares.
+    # The server's presence: connections report no changes, so they are polled while a caller needs to know.
 
     def _look(self) -> None:
         if self._closed:
@@ -150,7 +151,7 @@ class ActionlibWire:
         )
         if complete and not self._complete:
             self._goals.lose_unanswered()
-            # A publisher is seen a moment before it knows us, and what it says meanwhile is lost, be it a result.
+            # A publisher is visible a moment before it knows us, and messages sent meanwhile are lost, even a result.
             self._heard = False
         if publishers == 0:
             self._heard = False
@@ -169,7 +170,7 @@ class ActionlibWire:
             self._look()
 
     def _note_server(self) -> None:
-        """A message of the server has come."""
+        """Note that a message of the server has arrived."""
         self._quiet = 0
         self._heard = True
         if not self._present:
@@ -181,11 +182,11 @@ class ActionlibWire:
             self._quiet = 0
             self._sender.server_present(present)
 
-    # What the server says:
+    # Messages of the server:
 
     def _take_status(self, sample: Sample) -> None:
         self._note_server()
-        if self._present:  # else a request for cancelling would be lost
+        if self._present:  # otherwise a request to cancel would be lost
             listed = sample.message.status_list
             self._sender.goals_under_way(
                 each.goal_id.id for each in listed if State(each.status) in UNDER_WAY
@@ -208,33 +209,33 @@ class ActionlibWire:
             goal_id, state, message.result, message.status.text or text_of(message.result)
         )
 
-    # What has become of goals:
+    # Events of goals:
 
     def accepted(self, goal_id: str) -> None:
-        """The server has accepted a goal."""
+        """Note that the server has accepted a goal."""
         self._sender.accepted(goal_id)
 
     def rejected(self, goal_id: str, reason: str) -> None:
-        """The server has refused a goal."""
+        """Note that the server has rejected a goal."""
         self._sender.rejected(goal_id, reason)
 
     def ended(self, goal_id: str, status: GoalStatus, result: Any, text: str) -> None:
-        """A goal is over."""
+        """Note the outcome of a goal."""
         given = result if result is not None else self._node.factory.make(self._result_type)
         self._sender.ended(goal_id, Outcome(status, given, text))
 
     def lost(self, goal_id: str, how: str) -> None:
-        """The server does not know a goal."""
+        """Note that the server does not know a goal."""
         self._sender.fail(
             goal_id, ServerLost(f"the server of action {self._sender.name} {how} goal {goal_id}")
         )
 
     def cancel_answered(self, goal_id: str, agreed: bool) -> None:
-        """A request for cancelling was agreed to, or not."""
+        """Pass on the answer to a request to cancel."""
         self._sender.cancel_answered(goal_id, agreed)
 
     def wants(self, goal_id: str) -> bool:
-        """Whether anybody still wants a goal to begin."""
+        """Return whether a caller still needs a goal to begin."""
         return self._sender.wants(goal_id)
 
     def send_again(self, message: Any) -> None:
@@ -242,5 +243,5 @@ class ActionlibWire:
         self._goal.publish(message)
 
     def send_cancel(self, goal_id: str) -> None:
-        """Send a request for cancelling."""
+        """Send a request to cancel."""
         self._cancel.publish(self._cancel.message(id=goal_id))

@@ -27,22 +27,22 @@ from jacaros.ros.protocols.actionlib import (
 
 NO_TIME = (0, 0)
 AFTER_FEEDBACK = 0.01
-"""Seconds between the last feedback and the result: on their ways, which are two, the result must not be the faster one."""
-OUTDATED = "cancelled together with all goals of its time and before"
+"""Seconds between the last feedback and the result: they use two topics, and the result must not arrive first."""
+OUTDATED = "cancelled by a request for all goals up to its time"
 
 
 @dataclass(slots=True)
 class _Goal:
-    """A goal that clients are told of.
+    """A goal that is published to clients.
 
     Attributes:
-        goal_id: its name.
-        stamp: when it was sent, as the client said.
-        state: where it is.
-        text: what is said about that.
-        told_until: when it is dropped from the list; None while it is not over.
-        status: ``actionlib_msgs/GoalStatus`` message that says this, once it was made.
-        feedback_at: when feedback was sent last, on `Clock.elapsed`.
+        goal_id: its id.
+        stamp: when it was sent, according to the client.
+        state: its state.
+        text: text of the state.
+        told_until: when it is removed from the list; None while it is active.
+        status: the ``actionlib_msgs/GoalStatus`` message of this state, once it was made.
+        feedback_at: time of the last feedback, on `Clock.elapsed`.
     """
 
     goal_id: str
@@ -54,7 +54,7 @@ class _Goal:
     feedback_at: float = -math.inf
 
     def change(self, state: State, text: str = "") -> None:
-        """Go to another state."""
+        """Change the state."""
         self.state, self.text, self.status = state, text, None
 
 
@@ -65,7 +65,7 @@ class ActionlibServer:
         node: the backend.
         name: absolute name of the action.
         type_name: action type in full form.
-        execute: carries out one goal.
+        execute: runs one goal.
         policy: how to treat goals.
     """
 
@@ -78,7 +78,7 @@ class ActionlibServer:
         self._served = ServedGoals(node.clock, node.factory, name, type_name, execute, policy, node.log)
         self._goals: dict[str, _Goal] = {}
         self._ending: dict[str, Callable[[], None]] = {}
-        """Goals whose results wait for their feedback to be on its way."""
+        """Goals whose results wait until their feedback is on its way."""
         self._cancelled_until = NO_TIME
         self._count = 0
         self._closed = False
@@ -93,7 +93,7 @@ class ActionlibServer:
         self._tell_regularly()
 
     def close(self) -> None:
-        """Stop to offer the action; goals under way are aborted."""
+        """Stop offering the action; active goals are aborted."""
         if self._closed:
             return
         self._served.close()
@@ -102,7 +102,7 @@ class ActionlibServer:
         self._leave()
 
     def abandon(self) -> None:
-        """Stop what is under way and leave, without a word to clients: there is no way to them."""
+        """Stop the active goals and leave without informing clients, which cannot be reached."""
         if not self._closed:
             self._served.abandon()
             self._ending.clear()
@@ -115,14 +115,14 @@ class ActionlibServer:
         for end in (self._goal, self._cancel, self._status, self._feedback, self._result):
             end.close()
 
-    # What clients want:
+    # Requests of clients:
 
     def _take_goal(self, sample: Sample) -> None:
         message = sample.message
         goal_id = message.goal_id.id or self._new_id()
         known = self._goals.get(goal_id)
         if known is not None:
-            if known.state is State.RECALLING:  # the request for cancelling has overtaken the goal
+            if known.state is State.RECALLING:  # the request to cancel has overtaken the goal
                 self._finish(known, State.RECALLED, "cancelled before it began")
             return
         goal = self._goals[goal_id] = _Goal(goal_id, message.goal_id.stamp, State.PENDING)
@@ -135,15 +135,15 @@ class ActionlibServer:
             return
         goal.change(State.ACTIVE)
         self._served.begin(goal_id, message.goal, _Listener(self, goal))
-        self._tell()
+        self._report()
 
     def _new_id(self) -> str:
-        """The id of a goal that came without one."""
+        """Return an id for a goal that came without one."""
         self._count += 1
         return f"{self.name}-{self._count}-{self._node.clock.now():.9f}"
 
     def _take_cancel(self, sample: Sample) -> None:
-        """One goal, all up to a time, or, with neither given, all."""
+        """Handle a request to cancel one goal, all goals up to a time, or, with neither given, all goals."""
         wanted, until = sample.message.id, time_of(sample.message.stamp)
         everything = not wanted and until == NO_TIME
         for goal_id, goal in list(self._goals.items()):
@@ -155,12 +155,12 @@ class ActionlibServer:
                 wanted, sample.message.stamp, State.RECALLING, told_until=self._later()
             )
         self._cancelled_until = max(self._cancelled_until, until)
-        self._tell()
+        self._report()
 
-    # What they are told:
+    # Messages to clients:
 
     def send_feedback(self, goal: _Goal, feedback: Any) -> None:
-        """Tell how far a goal is."""
+        """Send feedback of a goal."""
         goal.feedback_at = self._node.clock.elapsed
         self._feedback.publish(
             self._feedback.message(
@@ -169,7 +169,7 @@ class ActionlibServer:
         )
 
     def end(self, goal: _Goal, outcome: Outcome) -> None:
-        """Tell how an accepted goal ended."""
+        """Send the outcome of an accepted goal."""
         states = {
             GoalStatus.SUCCEEDED: State.SUCCEEDED,
             GoalStatus.CANCELED: State.PREEMPTED,
@@ -198,17 +198,17 @@ class ActionlibServer:
                 header={"stamp": self._node.clock.now()}, status=self._status_of(goal), result=given
             )
         )
-        self._tell()
+        self._report()
 
     def _tell_regularly(self) -> None:
         now = self._node.clock.elapsed
         over = [goal_id for goal_id, goal in self._goals.items() if (goal.told_until or now) < now]
         for goal_id in over:
             del self._goals[goal_id]
-        self._tell()
+        self._report()
         self._timer = self._node.clock.call_later(STATUS_PERIOD, self._tell_regularly)
 
-    def _tell(self) -> None:
+    def _report(self) -> None:
         if not self._closed:
             self._status.publish(
                 self._status.message(
@@ -234,7 +234,7 @@ class ActionlibServer:
 
 
 class _Listener:
-    """Brings the news of one goal to its client."""
+    """Sends the events of one goal to its client."""
 
     def __init__(self, server: ActionlibServer, goal: _Goal) -> None:
         self._server = server

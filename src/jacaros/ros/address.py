@@ -1,4 +1,4 @@
-"""Which ROS graph, and under which names to join it: what a person says at the command line."""
+"""Which ROS graph to join, and under which names: the options of the command line."""
 
 import os
 from collections.abc import Callable, Mapping
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from jacaros.errors import UsageError
 from jacaros.ros.middleware import MIDDLEWARES, Middleware, middleware
 
-# What only a program with robots needs is imported in functions: the options of every run are an address, too.
+# Code that only programs with robots need is imported in functions: every run has an address among its options.
 if TYPE_CHECKING:
     from jacaros.clock import Clock
     from jacaros.ros.backend import Backend
@@ -21,19 +21,19 @@ LAST_DOMAIN = 232
 
 @dataclass(frozen=True, slots=True)
 class GraphAddress:
-    """A graph and the names of our node in it; what is None comes from the environment, as in other ROS nodes.
+    """A graph and the names of our node in it. None: use the environment, as other ROS nodes do.
 
     Attributes:
-        ros: kind of the ROS graph: ``memory`` (inside the process), ``ros1``, ``ros2``, ``rosbridge``, or a class of the
-            user's, see `jacaros.ros.middleware`.
-        domain_id: of ROS 2; else ``ROS_DOMAIN_ID``.
-        master: address of the ROS 1 master, such as ``http://robot.lab.example:11311``; else ``ROS_MASTER_URI``.
+        ros: kind of the ROS graph: ``memory`` (in-process), ``ros1``, ``ros2``, ``rosbridge``, or a class of your
+            own, see `jacaros.ros.middleware`.
+        domain_id: domain of ROS 2; default: ``ROS_DOMAIN_ID``.
+        master: address of the ROS 1 master, such as ``http://robot.lab.example:11311``; default: ``ROS_MASTER_URI``.
         bridge: address of a rosbridge server, such as ``ws://robot.lab.example:9090``.
-        namespace: put before relative names; on ROS 1 ``ROS_NAMESPACE`` when it is empty.
-        node_name: of our node, in place of the name that the program would give it.
-        remap: ROS names to use in place of others, ``{"/cmd_vel": "/robot_1/cmd_vel"}``.
+        namespace: prefix of relative names; on ROS 1 the default is ``ROS_NAMESPACE``.
+        node_name: name of our node, in place of the program's default.
+        remap: remapping rules, ``{"/cmd_vel": "/robot_1/cmd_vel"}``.
         parameters: values of declared parameters of our node, in place of the defaults, ``{"speed": 0.3}``.
-        orphans: what becomes of action goals that an earlier run of this node left behind on a real graph: ``"cancel"``,
+        orphans: what to do with action goals that an earlier run of this node left on a real graph: ``"cancel"``,
             ``"keep"``, or a coroutine function that takes a question and returns True to cancel.
     """
 
@@ -49,24 +49,24 @@ class GraphAddress:
 
     @property
     def identity(self) -> str:
-        """The domain or address of the graph, wherever it is given."""
+        """The domain or address of the graph, whichever is given."""
         kind = middleware(self.ros)
         given = self._given(kind)
         return str(given if given is not None else os.environ.get(kind.variable) or kind.default)
 
     @property
     def arguments(self) -> list[str]:
-        """The graph and the namespace, as options of a command line."""
+        """Return the graph and the namespace as command-line options."""
         kind = middleware(self.ros)
         options = {"--ros": self.ros, kind.flag: self._given(kind), "--namespace": self.namespace or None}
         return [part for name, value in options.items() if value is not None for part in (name, str(value))]
 
     def _given(self, kind: Middleware) -> Any:
-        """What names a graph of the kind, if it was given."""
+        """Return the option that selects a graph of this kind, if given."""
         return getattr(self, kind.option) if kind.option else None
 
     def check(self) -> None:
-        """Refuse what cannot be, or cannot go together.
+        """Check values and combinations.
 
         Raises:
             UsageError: with what to write instead.
@@ -78,11 +78,13 @@ class GraphAddress:
         for name, kind in MIDDLEWARES.items():
             given = self._given(kind)
             if given is not None and self.ros != name:
-                raise UsageError(f"{kind.flag} goes with --ros {name}, not with --ros {self.ros}")
+                raise UsageError(f"{kind.flag} needs --ros {name}, found --ros {self.ros}")
             if given is not None and kind.schemes:
                 _check_address(kind, str(given))
         if self.domain_id is not None and not 0 <= self.domain_id <= LAST_DOMAIN:
-            raise UsageError(f"--domain-id is a whole number from 0 to {LAST_DOMAIN}, not {self.domain_id}")
+            raise UsageError(
+                f"--domain-id: expected an integer from 0 to {LAST_DOMAIN}, found {self.domain_id}"
+            )
         self._check_parameters()
         try:
             NodeNames(self.node_name or "node", self.namespace, self.remap)
@@ -92,7 +94,7 @@ class GraphAddress:
     def _check_parameters(self) -> None:
         if self.parameters and self.ros == "rosbridge":
             raise UsageError(
-                f"--param {next(iter(self.parameters))}: over rosbridge we are no node of the graph and have no "
+                f"--param {next(iter(self.parameters))}: over rosbridge there is no node of our own, and so no "
                 "parameters; run on the robot itself, with --ros ros2 or --ros ros1"
             )
         from jacaros.ros.errors import ParameterRefused
@@ -108,10 +110,10 @@ class GraphAddress:
         """Make our node; see `jacaros.ros.open.open_backend` for the errors.
 
         Args:
-            clock: of the run.
-            node_name: unless the address has one.
-            log: takes a line about the connection.
-            options: further ones of the backend.
+            clock: clock of the run.
+            node_name: default of the node's name.
+            log: called with lines about the connection.
+            options: further options of the backend.
         """
         from jacaros.ros import open as opening
 
@@ -119,7 +121,7 @@ class GraphAddress:
         if kind.keyword:
             options[kind.keyword] = self._given(kind)
         if self.ros == "ros1" and self.master is not None:
-            # rospy reads it there and nowhere else, and has one node in a process anyway.
+            # rospy reads only this variable, and has one node per process anyway.
             os.environ["ROS_MASTER_URI"] = self.master
         namespace = self.namespace
         if not namespace and self.ros == "ros1":
@@ -146,4 +148,6 @@ def _check_address(kind: Middleware, written: str) -> None:
     except ValueError:
         complete = None
     if not complete:
-        raise UsageError(f"{kind.flag} is an address with its port, such as {kind.example}, not {written!r}")
+        raise UsageError(
+            f"{kind.flag}: expected an address with a port, such as {kind.example}, found {written!r}"
+        )

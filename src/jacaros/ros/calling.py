@@ -1,4 +1,4 @@
-"""Calls of services apart from the middleware: how long they are tried, and what ends them."""
+"""Service calls independent of the middleware: how long they are tried, and how they end."""
 
 import asyncio
 import sys
@@ -14,14 +14,14 @@ from jacaros.ros.serving import checked_message
 from jacaros.ros.waiting import Absence, Waiting
 
 LOOK = 1.0
-"""Seconds between two looks whether the server of a call is still there."""
+"""Seconds between two checks whether the server of a call is still there."""
 
 RETRY = 0.1
-"""Seconds between two attempts to call a service that is not there."""
+"""Seconds between two attempts to call a missing service."""
 
 
 class CallingNode(Protocol):
-    """What a client needs of its node."""
+    """The interface of a node for its clients."""
 
     @property
     def clock(self) -> Clock:
@@ -29,7 +29,7 @@ class CallingNode(Protocol):
 
     @property
     def log(self) -> Callable[[str], None]:
-        """Takes one line about waiting."""
+        """Called with one line about waiting."""
 
     @property
     def factory(self) -> MessageFactory:
@@ -37,10 +37,11 @@ class CallingNode(Protocol):
 
 
 class AttemptingClient:
-    """Client of a service on a graph that does not tell when a service comes: a call is attempted until it is offered.
+    """Client of a service on a graph that does not report new services: a call is attempted until the service is
+    offered.
 
     Args:
-        node: calls.
+        node: the node.
         name: absolute name of the service.
         type_name: service type in full form.
     """
@@ -59,7 +60,7 @@ class AttemptingClient:
         return self._node.factory.make(request_type(self._type_name), fields)
 
     async def call(self, request: Any = None, timeout: float | None = None) -> Any:
-        """Call the service and give its response."""
+        """Call the service and return its response."""
         node = self._node
         message = checked_message(node.factory, request_type(self._type_name), request)
         what = f"service {self.name} ({self._type_name})"
@@ -72,7 +73,7 @@ class AttemptingClient:
         )
 
     def _may_be_called(self) -> bool:
-        """Whether an attempt without an answer may have reached a server, see `call_when_offered`."""
+        """Whether an unanswered attempt may have reached a server, see `call_when_offered`."""
         return True
 
     async def _attempt(self, message: Any, rest: float | None) -> Any:
@@ -89,28 +90,28 @@ async def call_when_offered(
     may_be_called: Callable[[], bool] = lambda: True,
     absence: Absence | None = None,
 ) -> Any:
-    """Call a service whose arrival cannot be awaited: try, and try again while nobody offers it.
+    """Call a service whose appearance is not reported: retry until it is offered.
 
     Args:
         clock: measures the time-out.
-        log: is told of waiting.
+        log: called when it waits.
         what: the service with its type.
-        attempt: calls the service once; takes the seconds that are left, raises `ServiceUnavailable` when
-            nobody offers it and `TimeoutError` when there is no answer.
-        timeout: seconds for everything; None tries for ever.
-        may_be_called: whether an attempt without an answer may have reached a server.  Where others have to be asked for
-            the server, the last of several attempts can run out of time before they have said again that there is none.
-        absence: in how many calls before nobody offered it, see `Waiting`.
+        attempt: calls the service once; takes the remaining seconds, raises `ServiceUnavailable` if no node offers it
+            and `TimeoutError` if there is no answer.
+        timeout: seconds in total; None: no limit.
+        may_be_called: whether an unanswered attempt may have reached a server. If another process has to be asked for
+            the server, the last attempt may time out before it reports that none exists.
+        absence: number of earlier calls without a server, see `Waiting`.
 
     Raises:
-        ServiceUnavailable: nobody offered the service in time.
+        ServiceUnavailable: no node offered the service in time.
         CallTimedOut: it was called but did not answer in time.
     """
     deadline = None if timeout is None else clock.elapsed + timeout
     waiting: Waiting | None = None
 
     def nobody() -> ServiceUnavailable:
-        return ServiceUnavailable(f"nobody offered {what} within {timeout:g} s")
+        return ServiceUnavailable(f"no node offered {what} within {timeout:g} s")
 
     try:
         while True:
@@ -128,7 +129,7 @@ async def call_when_offered(
                     absence.end(log, what)
                 return response
             if waiting is None:
-                help = "Is the node that offers it running?"
+                help = "is the node that offers it running?"
                 waiting = Waiting(clock, log, what, help, absence=absence).__enter__()
             await clock.sleep(RETRY)
     finally:
@@ -137,7 +138,7 @@ async def call_when_offered(
 
 
 class PendingCalls:
-    """The futures of a client's calls under way, so that closing the client ends them.
+    """The futures of a client's pending calls, so that closing the client ends them.
 
     Args:
         name: absolute name of the service.
@@ -148,28 +149,29 @@ class PendingCalls:
         self._futures: set[asyncio.Future[Any]] = set()
 
     def new(self) -> asyncio.Future[Any]:
-        """Make the future of one call."""
+        """Return the future of a new call."""
         future: asyncio.Future[Any] = asyncio.get_running_loop().create_future()
         self._futures.add(future)
         future.add_done_callback(self._futures.discard)
         return future
 
     def close(self) -> None:
-        """Fail what is under way."""
+        """Fail the pending calls."""
         for future in list(self._futures):
             settle(future, None, CallFailed(f"the client of service {self._name} was closed during the call"))
 
 
 class ServerWatch:
-    """Fails a call whose server has gone, where the middleware does not tell; a context manager around the wait.
+    """Fail a call whose server has disappeared, if the middleware does not report that; a context manager around the
+    wait.
 
-    A server is gone when it has been seen and then not been there for `SERVER_LOST_AFTER`.
+    A server has disappeared if it was seen and then missing for `SERVER_LOST_AFTER`.
 
     Args:
-        clock: measures the patience.
+        clock: measures the time.
         name: absolute name of the service.
         answer: the future of the call.
-        is_there: whether the server that was asked is still in the graph, as far as is known.
+        is_there: whether the called server is still in the graph, as far as is known.
     """
 
     def __init__(
@@ -204,14 +206,14 @@ class ServerWatch:
 
 
 def server_gone(name: str) -> ServerGone:
-    """What a call fails with whose server has gone."""
+    """Return the failure of a call whose server has disappeared."""
     return ServerGone(
-        f"the server of service {name} went away during the call; whether it was done is not known"
+        f"the server of service {name} went away during the call; it is unknown whether it was executed"
     )
 
 
 def settle(future: asyncio.Future[Any], response: Any, problem: Exception | None) -> None:
-    """Give a call its response or failure, unless it is over: timed out or given up."""
+    """Set the response or failure of a call, unless it has ended: timed out or cancelled."""
     if future.done():
         return
     if problem is not None:

@@ -1,31 +1,31 @@
-"""Errors of the middleware port, the same on every backend."""
+"""Errors of the middleware port, the same for every backend."""
 
 from jacaros.errors import JacarosError
 
 
 class RosError(JacarosError):
-    """Something is wrong between the agent system and the robot's middleware."""
+    """Parent of all errors at the border between the agent system and the robot's middleware."""
 
 
 class BackendUnavailable(RosError):
-    """The library of a backend is not installed; the text names it and the command that cures it."""
+    """Raised when the library of a backend is not installed; the text names it and the command that installs it."""
 
 
 class NameInvalid(RosError):
-    """A node, topic, service or type name breaks the naming rules of ROS."""
+    """Raised when a node, topic, service or type name breaks the naming rules of ROS."""
 
 
 class UnknownInterface(RosError):
-    """A message or service type is not known to the backend."""
+    """Raised when a message or service type is unknown to the backend."""
 
 
 class MessageMismatch(RosError):
-    """A message does not fit its definition.
+    """Raised when a message does not match its type definition.
 
     Attributes:
-        type_name: the type whose definition was broken, such as ``geometry_msgs/msg/Twist``.
+        type_name: the type, such as ``geometry_msgs/msg/Twist``.
         field: path of the field from the message's root, such as ``linear.x``; empty for the whole message.
-        known: the fields that the type has.
+        known: the fields of the type.
     """
 
     def __init__(self, text: str, type_name: str = "", field: str = "", known: tuple[str, ...] = ()) -> None:
@@ -36,51 +36,51 @@ class MessageMismatch(RosError):
 
 
 class ServiceError(RosError):
-    """A service call had no result; the parent of the three reasons below."""
+    """Raised when a service call has no result; parent of the three reasons below."""
 
 
 class ServiceUnavailable(ServiceError):
-    """Nobody offered the service until the time-out."""
+    """Raised when no node offered the service before the time-out."""
 
 
 class CallTimedOut(ServiceError):
-    """The service is there but did not answer in time."""
+    """Raised when the service exists but did not answer in time."""
 
 
 class CallFailed(ServiceError):
-    """The server reported a failure, or the connection to it broke during the call."""
+    """Raised when the server reports a failure, or the connection to it breaks during the call."""
 
 
 class ServerGone(CallFailed):
-    """The server of a service went away during the call; whether it was done is not known."""
+    """Raised when the server of a service disappears during the call; it is unknown whether the call was executed."""
 
 
 class ServerUnavailable(ServiceUnavailable):
-    """Nobody offered the action until the time-out."""
+    """Raised when no server offered the action before the time-out."""
 
 
 class ServerLost(ServiceError):
-    """The action server went away while a goal was under way; whether the robot went on is not known."""
+    """Raised when the action server disappears during a goal; it is unknown whether the robot continues."""
 
 
 class GoalRejected(ServiceError):
-    """The action server refused the goal; the text says why where the server did."""
+    """Raised when the action server rejects the goal; the text gives the reason if the server does."""
 
 
 class ParameterError(RosError):
-    """Something is wrong with a parameter; the parent of the reasons below."""
+    """Parent of the errors about parameters."""
 
 
 class ParameterUnknown(ParameterError):
-    """The node has no such parameter."""
+    """Raised when the node has no such parameter."""
 
 
 class ParameterRefused(ParameterError):
-    """The node, or the declaration of the parameter, refuses the value."""
+    """Raised when the node, or the declaration of the parameter, refuses the value."""
 
 
 class TransformUnavailable(RosError):
-    """No transform between two frames is known for that time; the text says what is known.
+    """Raised when no transform between two frames is known for a time; the text says what is known.
 
     Attributes:
         reason: ``unknown_frame``, ``not_connected``, ``too_old`` or ``too_new``.
@@ -92,4 +92,4 @@ class TransformUnavailable(RosError):
 
 
 class CapabilityMissing(RosError):
-    """The backend cannot do this, on principle or not yet; the text says which backends can."""
+    """Raised when the backend cannot do something; the text says which backends can."""

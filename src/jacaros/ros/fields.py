@@ -1,4 +1,4 @@
-"""The types of message fields, read from the notations of ROS 1's and ROS 2's client libraries."""
+"""The types of message fields, read from the notations of the client libraries of ROS 1 and ROS 2."""
 
 import re
 from dataclasses import dataclass, replace
@@ -19,13 +19,13 @@ class FieldType:
     """The type of one field.
 
     Attributes:
-        base: ``bool``, ``byte``, ``char``, ``int8`` … ``uint64``, ``float32``, ``float64``, ``string``, or
-            the full name of a message type.  ROS 1's time and duration are ``builtin_interfaces/msg/Time``
-            and ``…/Duration``, as on ROS 2.
-        array: it is an array or sequence of *base*.
-        length: exact length of an array, greatest length of a bounded sequence, 0 without a limit.
-        fixed: *length* is exact.
-        bound: greatest number of characters of a string, or of each in an array; 0 without a limit.
+        base: ``bool``, ``byte``, ``char``, ``int8`` … ``uint64``, ``float32``, ``float64``, ``string``, or the full
+            name of a message type. ROS 1's time and duration are ``builtin_interfaces/msg/Time`` and ``…/Duration``,
+            as on ROS 2.
+        array: whether it is an array or sequence of *base*.
+        length: exact length of an array, maximum length of a bounded sequence, 0: no limit.
+        fixed: whether *length* is exact.
+        bound: maximum number of characters of a string, or of each in an array; 0: no limit.
     """
 
     base: str
@@ -41,12 +41,12 @@ class FieldType:
 
     @property
     def is_message(self) -> bool:
-        """The elements are messages themselves."""
+        """Whether the elements are messages."""
         return "/" in self.base
 
     @property
     def is_numeric(self) -> bool:
-        """The elements are numbers or booleans."""
+        """Whether the elements are numbers or booleans."""
         return self.base in INTEGER_RANGES or self.base in FLOATS or self.base == "bool"
 
     def __str__(self) -> str:

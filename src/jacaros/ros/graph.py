@@ -1,4 +1,4 @@
-"""What is there in the graph: topics, services, actions and nodes, with their types."""
+"""The contents of the graph: topics, services, actions and nodes, with their types."""
 
 from dataclasses import dataclass, field
 
@@ -7,11 +7,11 @@ from jacaros.ros.qos import QoS
 
 @dataclass(frozen=True, slots=True)
 class Endpoint:
-    """A publisher or subscription of somebody.
+    """A publisher or subscription of any node.
 
     Attributes:
-        node: absolute name of its node; empty where the middleware does not tell.
-        qos: what it offers or asks for; None where the middleware does not tell.
+        node: absolute name of its node; empty if the middleware does not report it.
+        qos: its offer or request; None if the middleware does not report it.
     """
 
     node: str = ""
@@ -23,9 +23,9 @@ class TopicInfo:
     """A topic.
 
     Attributes:
-        name: absolute.
-        types: types of its messages in full form, sorted; more than one is somebody's mistake.
-        publishers, subscriptions: who is at it.
+        name: absolute name.
+        types: types of its messages in full form, sorted; more than one is a mistake of some node.
+        publishers, subscriptions: its endpoints.
     """
 
     name: str
@@ -36,14 +36,14 @@ class TopicInfo:
 
 @dataclass(frozen=True, slots=True)
 class GraphContents:
-    """All that is in the graph at a moment.
+    """A snapshot of the graph.
 
-    The topics and services that actions, parameters and logging are made of are left out of `topics` and `services`:
-    those below ``…/_action/``, actionlib's five, parameter services, ``/rosout``, ``/parameter_events``.
+    The topics and services behind actions, parameters and logging are not included in `topics` and `services`: those
+    below ``…/_action/``, actionlib's five, parameter services, ``/rosout``, ``/parameter_events``.
 
     Attributes:
         topics: by absolute name.
-        services: absolute name → type in full form ("" where it cannot be known).
+        services: absolute name → type in full form ("" if unknown).
         actions: absolute name → type in full form, such as ``nav2_msgs/action/NavigateToPose``.
         nodes: absolute names, sorted.
     """

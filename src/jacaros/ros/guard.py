@@ -1,8 +1,8 @@
-"""The process that stops the robot when its agents no longer can.
+"""The guard process, which stops the robot when its agents no longer can.
 
-It listens for the heartbeat of one process of agents (`jacaros.ros.heartbeat`), joins the same ROS graph under a name
-of its own, and opens publishers and clients for all that the agents drive before they are needed: to find the other
-side takes a graph longer than a robot may drive on.
+It receives the heartbeat of one process of agents (`jacaros.ros.heartbeat`) and joins the same ROS graph under a name
+of its own. It opens publishers and clients for everything the agents drive before they are needed, because discovery
+takes longer than a robot may keep driving.
 """
 
 import asyncio
@@ -27,24 +27,24 @@ from jacaros.ros.heartbeat import NO_GUARD, line
 PERIOD = 0.05
 """Seconds between two zero velocities while the robot is being stopped."""
 CANCELLING = 0.25
-"""Seconds between two requests to cancel all goals, and the longest wait for an answer."""
+"""Seconds between two requests to cancel all goals, and the maximum wait for an answer."""
 CANCELLED = 2.0
-"""Seconds for which goals are cancelled: one may be on its way.  Later ones are not the agents'."""
+"""Seconds during which goals are cancelled: one may be on its way. Later ones are not the agents'."""
 CONNECTING = 15.0
 """Seconds that a guard for one run waits for its agents."""
 GOODBYE = 5.0
-"""Seconds that the agents have to end when guard and agents are asked to."""
+"""Seconds that the agents have to end after guard and agents received a signal."""
 ENDING = 1.0
-"""Seconds for which a guard stops the robot, even if it is itself asked to end."""
+"""Seconds for which a guard stops the robot even after a signal to end."""
 STAMPED = "geometry_msgs/msg/TwistStamped"
 
 
 class Brakes:
-    """Publishers and clients that stop what agents drive.
+    """Publishers and clients that stop everything the agents drive.
 
     Args:
         backend: the guard's node.
-        log: takes a line for people.
+        log: called with one line.
     """
 
     def __init__(self, backend: Backend, log: Callable[[str], None]) -> None:
@@ -54,12 +54,12 @@ class Brakes:
         self._clients: dict[Named, Client] = {}
         """Of ROS 2's services that cancel goals."""
         self._cancels: dict[Named, Publisher] = {}
-        """Of actionlib's topics for that."""
+        """Of actionlib's topics that cancel goals."""
         self._asking: set[asyncio.Future[Any]] = set()
 
     @property
     def described(self) -> str:
-        """What is stopped, for people."""
+        """Text that lists what is stopped."""
         goals = [f"cancels all goals of {name}" for name, _ in (*self._clients, *self._cancels)]
         return ", ".join([*goals, *(f"sends zero velocity to {name}" for name, _ in self._topics)])
 
@@ -76,12 +76,12 @@ class Brakes:
         for (_, kind), publisher in self._topics.items():
             message = publisher.message()
             if kind == STAMPED and not self.simulated_time:
-                # A stamp of zero means "now"; some bases know only real ones.
+                # A zero stamp means "now"; some bases require a real one.
                 message = publisher.message(header={"stamp": self._backend.clock.now()})
             publisher.publish(message)
 
     def cancel(self) -> None:
-        """Ask every action server to cancel all its goals; nobody waits for the answers."""
+        """Ask every action server to cancel all its goals, without waiting for the answers."""
         # In both protocols an empty id and no stamp mean all goals.
         for publisher in self._cancels.values():
             publisher.publish(publisher.message())
@@ -100,7 +100,7 @@ class Brakes:
         return client
 
     async def _get_acquainted(self, client: Client) -> None:
-        """Cancel a goal that does not exist: the first call to a server is slower than the others."""
+        """Cancel a goal that does not exist: the first call to a server is slower than later ones."""
         nothing = {"goal_info": {"goal_id": {"uuid": list(uuid.uuid4().bytes)}}}
         with suppress(RosError):
             await client.call(nothing, None)
@@ -130,14 +130,14 @@ def _keep(
 
 
 class Guard:
-    """Serves the heartbeat of one process of agents after the other.
+    """Receives the heartbeat of one process of agents after another.
 
     Args:
         backend: the guard's node.
-        path: where it listens.
+        path: path of the socket.
         timeout: seconds without a heartbeat after which it stops the robot.
-        once: end when the agents have ended in good order, or when none come.
-        log: takes a line for people.
+        once: end when the agents have ended normally, or if none connect.
+        log: called with one line.
         orphaned: called when agents have died, after that was logged.
     """
 
@@ -162,10 +162,10 @@ class Guard:
         self._wanted: tuple[list[Named], list[Named]] = ([], [])
 
     async def run(self) -> None:
-        """Guard until SIGINT or SIGTERM, or with *once* until the agents have ended.
+        """Run until SIGINT or SIGTERM, or with *once* until the agents have ended.
 
         Raises:
-            UsageError: another guard listens at the same place, or the system has no Unix sockets.
+            UsageError: another guard uses the same path, or the system has no Unix sockets.
         """
         if sys.platform == "win32":
             raise UsageError(NO_GUARD)
@@ -173,7 +173,7 @@ class Guard:
         listening = _listening(self._path)
         try:
             await self._backend.start()
-            # Afterwards: the backend's own handling would refuse the messages that still stop the robot.
+            # Set afterwards: the backend's own handlers would refuse the messages that still stop the robot.
             for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
                 loop.add_signal_handler(number, self._end)
             server = await asyncio.start_unix_server(self._serve, sock=listening)
@@ -216,7 +216,7 @@ class Guard:
             self._brakes.cancel()
 
     def _end(self) -> None:
-        """A signal: end, but not before the agents, which most likely have got one too."""
+        """Handle a signal: end, but not before the agents, which have probably received it, too."""
         self._ending = True
         asyncio.get_running_loop().call_later(GOODBYE, self._watch.leave)
         self._wake.set()
@@ -225,7 +225,7 @@ class Guard:
         now = asyncio.get_running_loop().time()
         self._tripped_at, self._cancelled_at = now, -math.inf
         self._brake(now)
-        self._tell(tripped=why)
+        self._report(tripped=why)
         self._log(f"warning: {self._node}: {why}; the guard {self._brakes.described} until they return")
 
     def _release(self) -> None:
@@ -236,10 +236,10 @@ class Guard:
 
     async def _serve(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         if self._watch.agents and not self._watch.tripped:
-            writer.close()  # two processes of one name: the first keeps its guard
+            writer.close()  # two processes with one name: the first keeps its guard
             return
         if self._writer is not None:
-            self._writer.close()  # of a process that is frozen
+            self._writer.close()  # that of a frozen process
         self._writer = writer
         self._watch.connect(asyncio.get_running_loop().time())
         with suppress(OSError, ValueError):
@@ -261,10 +261,10 @@ class Guard:
             self._brakes.simulated_time = message["simulated_time"]
             self._wanted = (_pairs(message["topics"]), _pairs(message["actions"]))
             if self._watch.tripped:
-                self._tell(tripped=self._watch.tripped)
+                self._report(tripped=self._watch.tripped)
             else:
                 self._cover()
-            self._tell(ready=True)
+            self._report(ready=True)
         if message.get("leaving"):
             self._watch.expect_end()
         if message.get("permit"):
@@ -279,7 +279,7 @@ class Guard:
         self._watch.armed = any(self._wanted)
         self._brakes.cover(*self._wanted)
 
-    def _tell(self, **fields: Any) -> None:
+    def _report(self, **fields: Any) -> None:
         if self._writer is not None:
             self._writer.write(line(**fields))
 
@@ -289,7 +289,7 @@ def _pairs(written: list[list[str]]) -> list[Named]:
 
 
 def _listening(path: Path) -> socket.socket:
-    """Listen at *path*, in place of a guard that has died."""
+    """Listen at *path*, in place of a dead guard."""
     if sys.platform == "win32":
         raise UsageError(NO_GUARD)
     made = socket.socket(socket.AF_UNIX)
@@ -299,7 +299,7 @@ def _listening(path: Path) -> socket.socket:
         path.unlink(missing_ok=True)
     else:
         made.close()
-        raise UsageError("another guard of these agents is running")
+        raise UsageError("another guard of these agents is already running")
     made.close()
     made = socket.socket(socket.AF_UNIX)
     made.bind(str(path))

@@ -14,10 +14,10 @@ Named = tuple[str, str]
 
 
 class Guarded:
-    """The velocity topics and actions of one node, which a guard stops when the node can no longer do so.
+    """The velocity topics and actions of one node, which a guard stops if the node no longer can.
 
     Attributes:
-        on_change: called after something was added or removed.
+        on_change: called after an addition or removal.
     """
 
     def __init__(self) -> None:
@@ -29,20 +29,20 @@ class Guarded:
 
     @property
     def topics(self) -> list[Named]:
-        """The velocity topics that are open now, sorted."""
+        """The open velocity topics, sorted."""
         return sorted(self._topics)
 
     @property
     def actions(self) -> list[Named]:
-        """The actions that have a client now, sorted."""
+        """The actions with a client, sorted."""
         return sorted(self._actions)
 
     def add_topic(self, name: str, type_name: str) -> Callable[[], None]:
-        """Add a velocity topic; the result removes it."""
+        """Add a velocity topic. Return a function that removes it."""
         return self._add(self._topics, (name, type_name))
 
     def add_action(self, name: str, type_name: str) -> Callable[[], None]:
-        """Add an action; the result removes it."""
+        """Add an action. Return a function that removes it."""
         return self._add(self._actions, (name, type_name))
 
     def _add(self, group: Counter[Named], item: Named) -> Callable[[], None]:
@@ -58,17 +58,17 @@ class Guarded:
         return remove
 
     def on_standstill(self, command: Callable[[], None]) -> Callable[[], None]:
-        """Call *command*, which commands zero velocity, when the run is paused; the result ends that."""
+        """Call *command*, which commands zero velocity, when the run is paused. Return a function that removes it."""
         self._drives.append(command)
         return lambda: self._drives.remove(command)
 
     def stand_still(self) -> None:
-        """Command zero velocity to all that the node drives; motions continue with their next command."""
+        """Command zero velocity to everything the node drives; motions continue with their next command."""
         for command in list(self._drives):
             command()
 
     def on_interruption(self, callback: Callable[[], None]) -> Callable[[], None]:
-        """Call *callback*, on the loop, when a guard has stopped the robot; the result ends that."""
+        """Call *callback*, on the loop, when a guard has stopped the robot. Return a function that removes it."""
         self._motions.append(callback)
         return lambda: self._motions.remove(callback)
 
@@ -82,5 +82,5 @@ _guarded: WeakKeyDictionary[Backend, Guarded] = WeakKeyDictionary()
 
 
 def guarded_by(backend: Backend) -> Guarded:
-    """Return what the node of *backend* drives: always the same object for the same backend."""
+    """Return what the node of *backend* drives: the same object for the same backend."""
     return _guarded.setdefault(backend, Guarded())

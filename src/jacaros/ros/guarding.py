@@ -2,7 +2,7 @@
 
 idle      no agents, nothing to stop
 watching  heartbeats arrive
-tripped   they ceased: the robot is stopped until agents return and give permission
+tripped   they ceased: the robot is stopped until the agents return and release it
 """
 
 from collections.abc import Callable
@@ -12,7 +12,7 @@ LEAVING = 5.0
 
 
 class Watch:
-    """Decides from heartbeats whether the robot must be stopped.  Times are seconds of one clock that never goes back.
+    """Decides from heartbeats whether the robot must be stopped. Times are seconds of one monotonic clock.
 
     Args:
         timeout: seconds without a heartbeat after which the guard trips.
@@ -22,7 +22,7 @@ class Watch:
     Attributes:
         agents: whether agents are connected.
         armed: whether they drive anything; otherwise there is nothing to stop.
-        tripped: why the robot is being stopped; empty while it is not.
+        tripped: why the robot is being stopped; empty if it is not.
     """
 
     def __init__(
@@ -36,13 +36,13 @@ class Watch:
         self._heard = 0.0
 
     def connect(self, now: float) -> None:
-        """Agents have connected.  A tripped guard stays so until they give permission."""
+        """Note that agents have connected. A tripped guard stays tripped until they release it."""
         self.agents = True
         self._patience = self._timeout
         self._heard = now
 
     def beat(self, now: float) -> None:
-        """Take a heartbeat, or any other message of the agents."""
+        """Note a heartbeat, or any other message of the agents."""
         self._heard = now
 
     def permit(self) -> None:
@@ -52,27 +52,27 @@ class Watch:
             self._on_release()
 
     def expect_end(self) -> None:
-        """The agents have begun to end, and stop their robot themselves: they need not be in time with heartbeats."""
+        """Note that the agents are shutting down and stop their robot themselves: heartbeats may be late."""
         self._patience = LEAVING
 
     def leave(self) -> None:
-        """The agents have ended in good order and stopped their robot themselves."""
+        """Note that the agents have ended normally and stopped their robot themselves."""
         self.agents = False
         self.permit()
 
     def lose(self) -> None:
-        """The connection broke without a goodbye: the agents' process has died."""
+        """Note that the connection broke without a goodbye: the agents' process has died."""
         self.agents = False
         self._trip("the agents' process died")
 
     def look(self, now: float) -> float:
-        """Trip if heartbeats ceased; the seconds until it must be looked again, at most the timeout."""
+        """Trip if heartbeats ceased. Return the seconds until the next check, at most the time-out."""
         if not (self.agents and self.armed) or self.tripped:
             return self._timeout
         silence = now - self._heard
         if silence < self._patience:
             return self._patience - silence
-        self._trip(f"no heartbeat of the agents for {silence:.2f} s")
+        self._trip(f"no heartbeat from the agents for {silence:.2f} s")
         return self._timeout
 
     def _trip(self, why: str) -> None:

@@ -1,4 +1,4 @@
-"""The one place where another thread hands work to the loop, and the loop hands work to another thread."""
+"""The only place where another thread passes work to the loop, and the loop passes work to another thread."""
 
 import asyncio
 import concurrent.futures
@@ -13,13 +13,13 @@ T = TypeVar("T")
 class Handoff(Generic[T]):
     """A bounded queue from a client library's threads to the loop.
 
-    However fast the other side is, at most *depth* items wait and one wake-up of the loop is under way, so a
-    burst can neither fill the memory nor starve the agents.  The oldest item is dropped first.
+    However fast the sender is, at most *depth* items wait and one wake-up of the loop is pending, so a burst can
+    neither fill the memory nor starve the agents. The oldest item is dropped first.
 
     Args:
-        loop: where *deliver* is called.
-        depth: how many items may wait.
-        deliver: takes one item, on the loop.
+        loop: the loop on which *deliver* is called.
+        depth: maximum number of waiting items.
+        deliver: called with one item, on the loop.
     """
 
     def __init__(self, loop: asyncio.AbstractEventLoop, depth: int, deliver: Callable[[T], None]) -> None:
@@ -46,7 +46,8 @@ class Handoff(Generic[T]):
             self.close()
 
     def put_here(self, *items: T) -> None:
-        """Deliver *items*, which came to the loop together, the oldest first: one now if nothing waits, others in turn."""
+        """Deliver *items*, which reached the loop together, the oldest first: one now if none is waiting, the others
+        in turn."""
         with self._lock:
             if self._closed or not items:
                 return
@@ -54,20 +55,20 @@ class Handoff(Generic[T]):
             self._waiting.extend(items)
             if self._woken:
                 return
-            # The turn is taken: what comes before the next one waits.
+            # This turn is used: later items wait for the next one.
             self._woken = True
             item = self._waiting.popleft()
         self._loop.call_soon(self._deliver_next)
         self._deliver(item)
 
     def close(self) -> None:
-        """Forget what waits and take nothing more."""
+        """Discard waiting items and accept no others."""
         with self._lock:
             self._closed = True
             self._waiting.clear()
 
     def deliver_all(self) -> None:
-        """Deliver what waits now, on the loop: something comes next that must not overtake it."""
+        """Deliver all waiting items now, on the loop: the caller has something that must not overtake them."""
         with self._lock:
             waiting = list(self._waiting)
             self._waiting.clear()
@@ -75,7 +76,7 @@ class Handoff(Generic[T]):
             self._deliver(item)
 
     def _deliver_next(self) -> None:
-        # One item a turn of the loop: others get their turn between two messages of a burst.
+        # One item per turn of the loop: other callbacks run between two messages of a burst.
         with self._lock:
             if not self._waiting:
                 self._woken = False
@@ -89,16 +90,16 @@ class Handoff(Generic[T]):
 
 
 def post(loop: asyncio.AbstractEventLoop, callback: Callable[..., None], *arguments: Any) -> bool:
-    """Have *callback* called on *loop*, from any thread; False when the loop has ended."""
+    """Call *callback* on *loop*, from any thread. Return False if the loop has ended."""
     try:
         loop.call_soon_threadsafe(callback, *arguments)
-    except RuntimeError:  # the loop is closed: the process is on its way out
+    except RuntimeError:  # the loop is closed: the process is ending
         return False
     return True
 
 
 class LoopEnded(Exception):
-    """The loop was asked for something and ended before it answered."""
+    """Raised when the loop ended before it answered."""
 
 
 def ask(
@@ -106,28 +107,28 @@ def ask(
     question: Callable[[Callable[[T | None, Exception | None], None]], None],
     ending: Callable[[], bool],
 ) -> T:
-    """Have *question* called on *loop* and wait in this other thread for what it gives to its argument.
+    """Call *question* on *loop*, and wait in this other thread for what it passes to its argument.
 
     Args:
-        loop: whom to ask.
-        question: takes the function that it will tell the answer, or the problem.
-        ending: tells whether to give up waiting.
+        loop: the loop.
+        question: takes a function to call with the answer, or with the exception.
+        ending: returns whether to stop waiting.
 
     Raises:
-        LoopEnded: there will be no answer any more.
-        Exception: the problem that was told.
+        LoopEnded: no answer can arrive.
+        Exception: the exception that was passed.
     """
     answer: concurrent.futures.Future[Any] = concurrent.futures.Future()
 
-    def tell(result: T | None, problem: Exception | None) -> None:
+    def report(result: T | None, problem: Exception | None) -> None:
         if problem is not None:
             answer.set_exception(problem)
         else:
             answer.set_result(result)
 
-    alive = post(loop, question, tell)
+    alive = post(loop, question, report)
     while alive:
-        # Not `result(timeout)`: the problem that was told may be a TimeoutError itself.
+        # Not `result(timeout)`, because the passed exception may be a TimeoutError itself.
         if concurrent.futures.wait([answer], timeout=0.2).done:
             result: T = answer.result()
             return result
@@ -138,8 +139,8 @@ def ask(
 def in_thread(loop: asyncio.AbstractEventLoop, work: Callable[[], T], name: str) -> asyncio.Future[T]:
     """Run blocking *work* in a daemon thread of its own; the future gets its result or exception.
 
-    A pool would do for work that ends.  Calls into a middleware may block for ever, and then they must
-    neither use up a pool nor keep the process from ending.
+    A thread pool would do for work that ends. But calls into a middleware may block forever, and must neither exhaust
+    a pool nor keep the process from ending.
     """
     future: asyncio.Future[T] = loop.create_future()
 

@@ -1,15 +1,15 @@
-"""The heartbeat of the agents' process: where it goes, what it says, and who sends it.
+"""The heartbeat of the agents' process: its path, its messages, and its sender.
 
-A Unix socket joins one process of agents to its guard.  Each line is a JSON object.  The agents send
+A Unix socket connects one process of agents to its guard.  Each line is a JSON object.  The agents send
 
     {"node": N, "simulated_time": B, "topics": [[NAME, TYPE], ...], "actions": [[NAME, TYPE], ...]}
                       first, and whenever what they drive has changed
     {}                every `PERIOD` seconds, from their event loop: a loop that is stuck sends nothing
     {"permit": true}  after `tripped`: their motions are interrupted, and the robot may be released
-    {"leaving": true} when their process begins to end: it stops the robot itself, and may be late with a heartbeat
-    {"goodbye": true} before they close in good order
+    {"leaving": true} when their process begins to end: it stops the robot itself, and heartbeats may be late
+    {"goodbye": true} before they close normally
 
-and the guard answers ``{"ready": true}`` when it can stop all that was named, and ``{"tripped": WHY}`` when it has
+and the guard answers ``{"ready": true}`` when it can stop everything that was named, and ``{"tripped": WHY}`` when it has
 stopped the robot.
 """
 
@@ -35,18 +35,18 @@ NO_GUARD = (
     "  = help: run the agents in WSL 2, on Linux or on macOS, or start them without --guard"
 )
 UNREAD = 65536
-"""Bytes that a guard may leave unread before it counts as gone."""
+"""Number of unread bytes after which a guard counts as gone."""
 
 
 def socket_path(kind: str, graph: str, node: str) -> Path:
-    """Return where the guard of *node* listens, in a folder that is the user's alone.
+    """Return the path of the socket of *node*'s guard, in a folder that only the user can access.
 
     Args:
         kind, graph: the ROS graph: its kind, and domain or address.
         node: absolute name of the agents' node.
 
     Raises:
-        UsageError: the folder belongs to another user, others may write to it, or the system has no Unix sockets.
+        UsageError: the folder belongs to another user, others can write to it, or the system has no Unix sockets.
     """
     if sys.platform == "win32":
         raise UsageError(NO_GUARD)
@@ -54,25 +54,25 @@ def socket_path(kind: str, graph: str, node: str) -> Path:
     folder.mkdir(mode=0o700, exist_ok=True)
     found = folder.lstat()
     if not stat.S_ISDIR(found.st_mode) or found.st_uid != os.getuid() or found.st_mode & 0o077:
-        raise UsageError(f"{folder} must be a folder of yours with mode 700; heartbeats go through it")
+        raise UsageError(f"{folder}: expected a folder of yours with mode 700; heartbeats go through it")
     mark = hashlib.sha256(f"{kind} {graph} {node}".encode()).hexdigest()[:12]
     return folder / f"guard-{mark}.sock"
 
 
 def line(**fields: Any) -> bytes:
-    """Return one message as it is sent."""
+    """Return one message in the form in which it is sent."""
     return json.dumps(fields).encode() + b"\n"
 
 
 class Heartbeat:
     """Sends the heartbeat of this process to its guard, until it is closed or the guard is gone.
 
-    Real time counts, not the run's clock: a simulator that stands still is no reason to stop the robot.
+    It uses real time, not the run's clock: a paused simulator must not stop the robot.
 
     Args:
         guarded: what the process drives.
         node: absolute name of its node.
-        simulated_time: whether messages carry the time of a simulator.
+        simulated_time: whether messages use the time of a simulator.
         on_lost: called once when a guard that was ready is gone.
     """
 
@@ -88,7 +88,7 @@ class Heartbeat:
         self._timer: asyncio.TimerHandle | None = None
 
     async def connect(self, path: Path) -> None:
-        """Connect to the guard and begin to beat.
+        """Connect to the guard and start the heartbeat.
 
         Raises:
             OSError: no guard listens there.
@@ -104,16 +104,16 @@ class Heartbeat:
         self._reading = asyncio.ensure_future(self._read(reader))
 
     async def wait_until_ready(self) -> None:
-        """Wait until the guard can stop all that was named to it.
+        """Wait until the guard can stop everything that was named.
 
         Raises:
-            OSError: it is gone before.
+            OSError: the guard is gone before that.
         """
         assert self._ready is not None
         await self._ready
 
     async def close(self) -> None:
-        """Say goodbye: the robot has been stopped, and the guard need not do it."""
+        """Say goodbye: the robot has been stopped, so the guard need not stop it."""
         writer = self._writer
         self._end()
         if writer is not None:
@@ -123,14 +123,15 @@ class Heartbeat:
                 await writer.wait_closed()
 
     def leaving(self) -> None:
-        """Say that the process ends and stops its robot itself, which takes longer than a heartbeat; on any thread."""
+        """Announce that the process is ending and stops its robot itself, which takes longer than a heartbeat; on any
+        thread."""
         writer = self._writer
         if writer is not None:
             with suppress(OSError):
                 os.write(writer.get_extra_info("socket").fileno(), line(leaving=True))
 
     def _note_change(self) -> None:
-        # Told with the next heartbeat: making an artifact may take long, and moves nothing yet.
+        # Sent with the next heartbeat: making an artifact may take long, and moves nothing yet.
         self._changed = True
 
     def _describe(self) -> None:

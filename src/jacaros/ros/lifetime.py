@@ -1,13 +1,13 @@
-"""The one owner of how a node joins its graph and how the process leaves it: zero velocity is the last message.
+"""The only owner of how a node joins its graph and how the process leaves it: zero velocity is the last message.
 
-The exit hooks of a node stop its robots: each publishes zero or sends requests to cancel, nothing else.  They run when the
-backend is closed, at one of `SIGNALS`, and when the loop's thread or the interpreter ends (which an uncaught exception
-leads to).  No hook runs in a process that is killed (SIGKILL, power): a robot's base must stop by itself when commands
-cease.
+The exit hooks of a node stop its robots: each publishes zero or sends requests to cancel, nothing else. They run when
+the backend is closed, at one of `SIGNALS`, and when the loop's thread or the interpreter ends (for instance
+after an uncaught exception). No hook runs in a process that is killed (SIGKILL, power failure): a robot's base must
+stop on its own when commands cease.
 
-Hooks run on the loop, between two callbacks.  Only when the loop does not get there within `PATIENCE` do they run in a
-thread.  From the first hook on, only hooks may publish; a message that was already on its way to the client library is
-followed by another run of the hooks (`Lifetime.send`).
+Hooks run on the loop, between two callbacks. Only if the loop does not run them within `PATIENCE` do they run in a
+thread. From the first hook on, only hooks may publish; if a message was already on its way to the client library, the
+hooks run again after it (`Lifetime.send`).
 """
 
 import asyncio
@@ -34,21 +34,21 @@ PATIENCE = 0.2
 LOOKING = 0.2
 """Seconds between two checks whether the loop's thread is alive."""
 LONGEST_WAIT = 3.0
-"""Seconds that the end of the process may be held up by sending the last messages."""
+"""Maximum number of seconds by which sending the last messages may delay the end of the process."""
 
 M = TypeVar("M")
 Serve = Callable[[int, FrameType | None], None]
 
 
 class State(StrEnum):
-    """Where a node is on its way through the graph.
+    """The state of a node in the graph.
 
     Attributes:
         JOINING: not connected yet.
         JOINED: connected.
         LOST: the connection is gone, and is being made again.
-        LEAVING: the robots were told to stop; only exit hooks may publish.
-        LEFT: the node is not in the graph any more.
+        LEAVING: the robots are being stopped; only exit hooks may publish.
+        LEFT: the node is no longer in the graph.
     """
 
     JOINING = "joining"
@@ -62,14 +62,14 @@ class Lifetime:
     """The life of one node.
 
     Args:
-        log: takes one line about a hook that failed.
-        finish: blocks until the messages published so far are sent, and lets go of whatever else would keep the
-            process from ending.  It runs on any thread, and must not touch the loop.
-        threaded: run the hooks in a thread when the loop is stuck or its thread has ended.  On the graph inside the process
-            robots and agents share the loop, so a thread could stop nobody.
+        log: called with one line about a failed hook.
+        finish: blocks until the messages published so far are sent, and releases everything that would keep the
+            process from ending. It runs on any thread, and must not touch the loop.
+        threaded: run the hooks in a thread if the loop is stuck or its thread has ended. In the in-process graph
+            robots and agents share the loop, so a thread could stop no robot.
 
     Attributes:
-        state: changed on the loop, but for `State.LEAVING`.
+        state: changed on the loop, except to `State.LEAVING`.
     """
 
     def __init__(
@@ -83,8 +83,8 @@ class Lifetime:
         self._open = True
         self._hooking: set[int] = set()
         """Threads that are running the hooks."""
-        self._told = False
-        # No lock of Python's: a second signal may raise an exception while one is held, which then stays locked.
+        self._reported = False
+        # Not a lock of Python's: a second signal may raise an exception while it is held, and it would stay locked.
         self._stopped: queue.SimpleQueue[None] = queue.SimpleQueue()
         self._finishing = threading.Lock()
         self._finished = False
@@ -92,7 +92,7 @@ class Lifetime:
         self._thread: threading.Thread | None = None
 
     def join(self) -> None:
-        """Note the running loop and its thread; from now on signals and the end of the thread stop the robots."""
+        """Store the running loop and its thread; from now on signals and the end of the thread stop the robots."""
         self._loop = asyncio.get_running_loop()
         self._thread = threading.current_thread()
         if self.threaded:
@@ -109,10 +109,10 @@ class Lifetime:
         return self.state in (State.LEAVING, State.LEFT)
 
     def add(self, hook: Callable[[], None]) -> Callable[[], None]:
-        """Have *hook* called when the process stops, perhaps several times; return what takes it back.
+        """Call *hook* when the process ends, possibly several times. Return a function that removes it.
 
         Args:
-            hook: publishes, or sends requests to cancel.  It may run in any thread, so it must not touch the loop.
+            hook: publishes, or sends requests to cancel. It may run in any thread, so it must not touch the loop.
         """
         self._hooks.append(hook)
         _process.watch(self)
@@ -120,24 +120,25 @@ class Lifetime:
         def remove() -> None:
             if hook in self._hooks:
                 if self.state is State.LEAVING:
-                    # The zero of its owner was perhaps refused, and the thread that stops the robots may come too late.
+                    # The owner's own zero may have been refused, and the thread that stops the robots may be too
+                    # late.
                     self._run([hook])
                 self._hooks.remove(hook)
 
         return remove
 
     def admits(self) -> bool:
-        """Return whether a message may be published: when the robots are being stopped, only by hooks.
+        """Return whether a message may be published: while the robots are being stopped, only by hooks.
 
-        Otherwise a motion that has not noticed the end yet could send the robot off again.
+        Otherwise a motion that has not noticed the end yet could move the robot again.
         """
         return self._open or threading.get_ident() in self._hooking
 
     def send(self, send: Callable[[M], object], message: M) -> None:
-        """Call *send* with *message* if that is admitted, and stop the robots again if they were stopped meanwhile.
+        """Call *send* with *message* if that is allowed, and stop the robots again if they were stopped meanwhile.
 
-        A signal may interrupt, or another thread overtake, what is between the check and the client library's own
-        publishing.  Without the second look the old velocity would follow the zero.
+        A signal or another thread may come between the check and the client library's own publishing. Without the
+        second check the old velocity would follow the zero.
         """
         if not self._open and not self.admits():
             return
@@ -148,7 +149,7 @@ class Lifetime:
                 self._run_hooks()
 
     def stop(self) -> None:
-        """Stop the robots: close the node for all but the hooks, and run them on this thread."""
+        """Stop the robots: refuse all publishing except by the hooks, and run them on this thread."""
         if self.state is State.LEFT:
             return
         self.state = State.LEAVING
@@ -157,8 +158,8 @@ class Lifetime:
         self._stopped.put(None)
 
     def stop_soon(self) -> None:
-        """Stop the robots as soon as the loop has a turn; callable in a signal handler."""
-        self._told = True
+        """Stop the robots in the next turn of the loop; callable in a signal handler."""
+        self._reported = True
         if self._loop is None or not post(self._loop, self.stop):
             self.stop()
 
@@ -175,8 +176,8 @@ class Lifetime:
         _process.unwatch(self)
 
     def stop_if_late(self, deadline: float) -> None:
-        """Stop the robots here, in a thread, if the loop was told to and has not done so by *deadline* (monotonic)."""
-        if self._told:
+        """Stop the robots here, in a thread, if the loop has not done so by *deadline* (monotonic)."""
+        if self._reported:
             try:
                 self._stopped.get(timeout=max(0.0, deadline - time.monotonic()))
             except queue.Empty:
@@ -185,12 +186,12 @@ class Lifetime:
                 self._stopped.put(None)  # for the next signal
 
     def leave_if_orphaned(self) -> None:
-        """Leave, in a thread, when the loop's thread has ended without closing the node."""
+        """Leave, in a thread, if the loop's thread has ended without closing the node."""
         if self._thread is not None and not self._thread.is_alive():
             self.leave_now()
 
     def leave_now(self) -> None:
-        """Stop the robots and leave without the loop, which runs no more."""
+        """Stop the robots and leave without the loop, which no longer runs."""
         self.stop()
         self._finish_once()
         self.left()
@@ -224,10 +225,10 @@ class Lifetime:
 
 
 class _Process:
-    """What the process learns about its own end: the only place that handles signals.
+    """The process's end: the only place that handles signals.
 
-    A run of agents says by `serving` what a signal means to it.  Otherwise the handler that was there before decides: that
-    of a program in which JaCaROS is a guest, or of Python.
+    A run of agents sets with `serving` what a signal does. Otherwise the previous handler decides: that of a program
+    which embeds JaCaROS, or of Python.
     """
 
     def __init__(self) -> None:
@@ -240,7 +241,7 @@ class _Process:
         self._lock = threading.Lock()
 
     def watch(self, lifetime: Lifetime) -> None:
-        """Stop the robots of *lifetime* at signals and at the process's end; again is harmless."""
+        """Stop the robots of *lifetime* at signals and at the end of the process; calling it again has no effect."""
         with self._lock:
             if lifetime not in self._watched:
                 self._watched.append(lifetime)
@@ -253,7 +254,7 @@ class _Process:
         self._take_signals()
 
     def unwatch(self, lifetime: Lifetime) -> None:
-        """Do so no more."""
+        """Stop watching *lifetime*."""
         with self._lock:
             if lifetime in self._watched:
                 self._watched.remove(lifetime)
@@ -261,7 +262,7 @@ class _Process:
 
     @contextmanager
     def serving(self, serve: Serve) -> Iterator[None]:
-        """Have *serve* called with each signal, after the robots were told to stop; on the main thread only."""
+        """Call *serve* with each signal, after the robots were stopped; on the main thread only."""
         outer, self._serve = self._serve, serve
         self._take_signals()
         try:
@@ -275,7 +276,7 @@ class _Process:
             return
         for number in SIGNALS:
             before = signal.getsignal(number)
-            # An ignored signal (nohup) stays ignored; a handler from outside Python (None) stays in charge.
+            # An ignored signal (nohup) stays ignored; a handler from outside Python (None) stays installed.
             if before not in (signal.SIG_IGN, None):
                 self._previous[number] = before
                 signal.signal(number, self._at_signal)
@@ -299,14 +300,14 @@ class _Process:
         elif callable(before):
             before(number, frame)
         else:
-            # As KeyboardInterrupt does for SIGINT: unwind, let `finally` run, then the interpreter's end.
+            # As KeyboardInterrupt does for SIGINT: unwind, let `finally` run, then end the interpreter.
             sys.exit(128 + number)
 
     def _watch(self) -> None:
-        """See to it, in a thread, that robots stop when the loop is stuck, or its thread has ended.
+        """Make sure, in a thread, that robots stop if the loop is stuck or its thread has ended.
 
-        The interpreter calls what is registered with `atexit` only after all threads but daemons have ended; a library
-        with such a thread would keep a robot driving after an uncaught exception.
+        The interpreter calls `atexit` functions only when all non-daemon threads have ended; a library with such a
+        thread would keep a robot driving after an uncaught exception.
         """
         while True:
             try:
@@ -336,9 +337,9 @@ _process = _Process()
 
 
 def serving(serve: Serve) -> AbstractContextManager[None]:
-    """Have *serve* called with each signal that ends a process, and the frame that it interrupted.
+    """Call *serve* with each signal that ends a process, and the interrupted frame, after the robots were stopped.
 
-    The robots were told to stop before that.  The result is a context manager for the main thread: entered before asyncio's
-    runner begins, it keeps that from taking SIGINT itself.
+    The result is a context manager for the main thread: entered before asyncio's runner begins, it keeps the runner
+    from handling SIGINT itself.
     """
     return _process.serving(serve)

@@ -1,8 +1,8 @@
-"""Messages made from keywords and dictionaries, and the few things that differ between client libraries.
+"""Messages made from keywords and dictionaries, and the few differences between client libraries.
 
-An artifact author sees one kind of message object everywhere: attributes for fields, numbers, texts, nested
-messages, and something indexable and iterable for arrays (`array.array`, numpy arrays, tuples, lists or ``bytes``, as the
-client library likes it).  What differs is done here: stamps, defaults and the checking of values.
+An artifact author sees the same kind of message object everywhere: attributes for fields, numbers, texts, nested
+messages, and an indexable, iterable object for arrays (`array.array`, a numpy array, tuple, list or ``bytes``, depending
+on the client library). The differences are handled here: stamps, defaults and checks of values.
 """
 
 import dataclasses
@@ -29,27 +29,27 @@ DEFAULTS: Mapping[str, Mapping[str, object]] = {
     "nav2_msgs/action/UndockRobot_Goal": {"max_undocking_time": 30.0},
     "nav2_msgs/action/UndockRobot_Result": {"success": True},
 }
-"""Default values of ROS 2's definitions; ROS 1 and the memory graph know none, so they are set there too: no zero
-rotations."""
+"""Default values of ROS 2's definitions; ROS 1 and the memory graph have none, so they are set there, too, to avoid
+zero rotations."""
 
 
 class Schema(Protocol):
-    """What a family of message classes (of rospy, rclpy or our own) tells about itself."""
+    """The interface of a family of message classes (of rospy, rclpy or our own)."""
 
     def fields(self, type_name: str) -> Mapping[str, FieldType]:
-        """Fields of a message type in full form, in order; raises `UnknownInterface`."""
+        """Return the fields of a message type in full form, in order. Raises `UnknownInterface`."""
 
     def look_in(self, folder: Path) -> None:
-        """Look for definitions in *folder* too, where definitions are looked for in folders."""
+        """Search *folder* for definitions, too, if the family uses definition files."""
 
     def new(self, type_name: str) -> Any:
-        """Make a message with the library's own defaults; raises `UnknownInterface`."""
+        """Make a message with the library's own defaults. Raises `UnknownInterface`."""
 
     def numbers(self, field: FieldType, values: Any) -> Any:
-        """Turn what `array_of_numbers` gives into what the library keeps in *field*."""
+        """Convert the result of `array_of_numbers` to the form that the library stores in *field*."""
 
     def single(self, field: FieldType, value: Any) -> Any:
-        """Turn a checked number, bool or text into what the library keeps in *field*."""
+        """Convert a checked number, bool or text to the form that the library stores in *field*."""
 
 
 class MessageFactory:
@@ -65,31 +65,31 @@ class MessageFactory:
         self._classes: dict[str, type] = {}
 
     def fields(self, type_name: str) -> Mapping[str, FieldType]:
-        """Fields of a type in full form, in the order of its definition.
+        """Return the fields of a type in full form, in the order of its definition.
 
         Raises:
-            UnknownInterface: the type is not known.
+            UnknownInterface: the type is unknown.
         """
         return self.schema.fields(type_name)
 
     def message_class(self, type_name: str) -> type:
-        """The class that the client library made for a type in full form; raises `UnknownInterface`."""
+        """Return the client library's class of a type in full form. Raises `UnknownInterface`."""
         kind = self._classes.get(type_name)
         if kind is None:
             kind = self._classes[type_name] = type(self.schema.new(type_name))
         return kind
 
     def make(self, type_name: str, values: Mapping[str, Any] | None = None) -> Any:
-        """Make a message; fields not given have their defaults.
+        """Make a message; missing fields get their defaults.
 
         Args:
             type_name: full form.
-            values: field → number, text, bool, list, message, or a mapping for a nested message.  Stamps and
-                durations may be given in seconds.
+            values: field → number, text, bool, list, message, or a mapping for a nested message. Stamps and durations
+                may be given in seconds.
 
         Raises:
-            UnknownInterface: the type is not known.
-            MessageMismatch: a field is unknown or its value has the wrong type or is out of range.
+            UnknownInterface: the type is unknown.
+            MessageMismatch: a field is unknown, or its value has the wrong type or is out of range.
         """
         if type_name in TIMES:
             return self._time(type_name, values or {})
@@ -150,14 +150,14 @@ class MessageFactory:
         elif isinstance(value, Mapping):
             unknown = set(value) - {"sec", "nanosec", "secs", "nsecs"}
             if unknown:
-                raise ValueError(f"{unknown.pop()!r} is no part of a time (sec, nanosec)")
+                raise ValueError(f"{unknown.pop()!r} is not a part of a time (sec, nanosec)")
             _set_time(
                 made, value.get("sec", value.get("secs", 0)), value.get("nanosec", value.get("nsecs", 0))
             )
         elif isinstance(value, type(made)):
             return value
         else:
-            raise TypeError(f"{written(value)} is given; give seconds or a time")
+            raise TypeError(f"{written(value)} is given; write seconds or a time")
         return made
 
     def _default_setters(self, type_name: str) -> tuple[Callable[[Any], None], ...]:
@@ -199,7 +199,7 @@ def stamp(time: Any, seconds: float) -> None:
         time: the time object inside the message.
         seconds: since the Unix epoch for a time.
 
-    Works on the time objects of every backend.
+    Works with the time objects of every backend.
     """
     whole = int(seconds // 1)
     nanoseconds = round((seconds - whole) * 1e9)
@@ -209,7 +209,7 @@ def stamp(time: Any, seconds: float) -> None:
 
 
 def to_seconds(time: Any) -> float:
-    """Read a message's time or duration, such as ``m.header.stamp``, in seconds; on every backend."""
+    """Return a message's time or duration, such as ``m.header.stamp``, in seconds; for every backend."""
     if hasattr(time, "nanosec"):
         return float(time.sec + time.nanosec * 1e-9)
     return float(time.secs + time.nsecs * 1e-9)
@@ -223,7 +223,8 @@ def _set_time(time: Any, seconds: int, nanoseconds: int) -> None:
 
 
 def constant(message: Any, name: str) -> Any:
-    """Value of a constant of the message's type, such as ``POWER_SUPPLY_STATUS_CHARGING``; on every backend.
+    """Return the value of a constant of the message's type, such as ``POWER_SUPPLY_STATUS_CHARGING``; for every
+    backend.
 
     Raises:
         NameInvalid: the type has no such constant.
@@ -249,7 +250,7 @@ def type_of(message: Any) -> str:
 
 
 def plain(value: Any) -> Any:
-    """Turn a message of any backend into dictionaries, lists, numbers and texts, for records and people.
+    """Convert a message of any backend to dictionaries, lists, numbers and texts, for records and output.
 
     Times become ``{"sec": …, "nanosec": …}`` everywhere; octets become integers.
     """
@@ -265,12 +266,12 @@ def plain(value: Any) -> Any:
 
 
 def _plain_field(value: Any, octets: bool) -> Any:
-    # rclpy shows one octet as bytes of length 1; rospy shows uint8[] as bytes.
+    # rclpy returns one octet as bytes of length 1; rospy returns uint8[] as bytes.
     return value[0] if octets and isinstance(value, bytes) else plain(value)
 
 
 def field_names(message: Any) -> list[str] | None:
-    """Names of a message's fields in order, on every backend; None when *message* is no message."""
+    """Return the names of a message's fields in order, for every backend; None if *message* is not a message."""
     kind = type(message)
     if hasattr(kind, "get_fields_and_field_types"):  # rclpy
         return list(kind.get_fields_and_field_types())

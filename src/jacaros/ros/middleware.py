@@ -1,4 +1,4 @@
-"""The middlewares that can carry the messages: all that one needs to be chosen with ``--ros`` is said here, once."""
+"""The middlewares: everything that the choice with ``--ros`` needs is defined here, once."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -13,15 +13,15 @@ class Middleware:
     Attributes:
         backend: the class of its nodes, as ``MODULE:NAME``.
         library: Python library that it needs; it is imported only when the kind is chosen.
-        install: what to do when the library is missing.
-        option: the attribute of `jacaros.ros.address.GraphAddress` that names one of its graphs.
-        keyword: the parameter of the class that takes it.
-        variable: environment variable that names the graph where no option does.
+        install: what to do if the library is missing.
+        option: the attribute of `jacaros.ros.address.GraphAddress` that selects one of its graphs.
+        keyword: the parameter of the class for this option.
+        variable: environment variable that selects the graph if no option does.
         default: the graph without both.
-        schemes: of the address, when the option is one.
-        example: of the address.
-        unreachable: what to do when the graph cannot be reached.
-        deserted: what to do when nobody else is in it; as for one that cannot be reached by default.
+        schemes: schemes of the address, if the option is one.
+        example: example of an address.
+        unreachable: what to do if the graph cannot be reached.
+        deserted: what to do if no other node is in it; default: as `unreachable`.
     """
 
     backend: str
@@ -38,7 +38,7 @@ class Middleware:
 
     @property
     def flag(self) -> str:
-        """The option as it is written on a command line."""
+        """The option as written on a command line."""
         return f"--{self.option.replace('_', '-')}"
 
 
@@ -102,10 +102,10 @@ ROS_KINDS = tuple(MIDDLEWARES)
 
 
 def middleware(kind: str) -> Middleware:
-    """Give what is known of a kind of graph.
+    """Return the description of a kind of graph.
 
     Args:
-        kind: one of `ROS_KINDS`, or a class of the user's as ``MODULE:NAME``, such as ``our_bus:Bus``.
+        kind: one of `ROS_KINDS`, or a class of your own as ``MODULE:NAME``, such as ``our_bus:Bus``.
 
     Raises:
         UsageError: it is neither.
@@ -114,6 +114,6 @@ def middleware(kind: str) -> Middleware:
         return MIDDLEWARES[kind]
     if ":" not in kind:
         raise UsageError(
-            f"there is no ROS backend {kind!r}; there are {', '.join(ROS_KINDS)}, and MODULE:NAME for a class of yours"
+            f"unknown ROS backend {kind!r}: expected {', '.join(ROS_KINDS)}, or MODULE:NAME for a class of your own"
         )
     return Middleware(kind)

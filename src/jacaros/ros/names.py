@@ -1,6 +1,6 @@
-"""Names of nodes, topics, services and types: checked, resolved and remapped alike on every backend.
+"""Names of nodes, topics, services and types: checked, resolved and remapped in the same way for every backend.
 
-Every backend hands absolute names to its middleware, so namespaces and remapping need no support there.
+Every backend passes absolute names to its middleware, so namespaces and remapping need no support there.
 """
 
 import re
@@ -18,7 +18,8 @@ GLOBAL_FRAMES = ("map", "earth", "world")
 
 
 def frame_name(frame: str, prefix: str) -> str:
-    """The name of a frame in the graph: those that begin with a slash, and those that robots share, stay as they are."""
+    """Return the name of a frame in the graph; those with a leading slash, and those that robots share, stay
+    unchanged."""
     if frame.startswith("/") or frame in GLOBAL_FRAMES or not frame or not prefix:
         return frame.lstrip("/")
     return f"{prefix}/{frame}"
@@ -26,7 +27,7 @@ def frame_name(frame: str, prefix: str) -> str:
 
 @cache
 def message_type(name: str) -> str:
-    """Give the full form ``nav_msgs/msg/Odometry`` of a message type.
+    """Return the full form ``nav_msgs/msg/Odometry`` of a message type.
 
     Args:
         name: full form, or ``nav_msgs/Odometry`` as written in ROS 1.
@@ -39,13 +40,13 @@ def message_type(name: str) -> str:
 
 @cache
 def service_type(name: str) -> str:
-    """Give the full form ``std_srvs/srv/Trigger`` of a service type; see `message_type`."""
+    """Return the full form ``std_srvs/srv/Trigger`` of a service type; see `message_type`."""
     return _interface_type(name, "srv")
 
 
 @cache
 def action_type(name: str) -> str:
-    """Give the full form ``nav2_msgs/action/NavigateToPose`` of an action type; see `message_type`."""
+    """Return the full form ``nav2_msgs/action/NavigateToPose`` of an action type; see `message_type`."""
     return _interface_type(name, "action")
 
 
@@ -54,54 +55,56 @@ def _interface_type(name: str, kind: str) -> str:
     if len(parts) == 2:
         parts.insert(1, kind)
     if len(parts) != 3 or parts[1] not in ("msg", "srv", "action"):
-        raise NameInvalid(f"{name!r} is no type name; write it like package/{kind}/Type")
+        raise NameInvalid(f"{name!r} is not a type name; write it like package/{kind}/Type")
     if not all(_PACKAGE.fullmatch(part) for part in parts):
         raise NameInvalid(
-            f"{name!r} is no type name: only letters, digits and _ may stand between the slashes"
+            f"{name!r} is not a type name: only letters, digits and _ are allowed between the slashes"
         )
     return "/".join(parts)
 
 
 def request_type(service: str) -> str:
-    """Name the request message of a service type given in full form."""
+    """Return the request message of a service type given in full form."""
     return f"{service}_Request"
 
 
 def response_type(service: str) -> str:
-    """Name the response message of a service type given in full form."""
+    """Return the response message of a service type given in full form."""
     return f"{service}_Response"
 
 
 def goal_type(action: str) -> str:
-    """Name the goal message of an action type given in full form."""
+    """Return the goal message of an action type given in full form."""
     return f"{action}_Goal"
 
 
 def result_type(action: str) -> str:
-    """Name the result message of an action type given in full form."""
+    """Return the result message of an action type given in full form."""
     return f"{action}_Result"
 
 
 def feedback_type(action: str) -> str:
-    """Name the feedback message of an action type given in full form."""
+    """Return the feedback message of an action type given in full form."""
     return f"{action}_Feedback"
 
 
 class NodeNames:
-    """A node's own name, its namespace and its remapping rules.
+    """A node's name, its namespace and its remapping rules.
 
     Args:
         node_name: plain name without slashes.
-        namespace: put before relative names; ``""`` is the root.
-        remap: names to use in place of others; both sides may be relative, private (``~x``) or absolute.
+        namespace: prefix of relative names; ``""`` is the root.
+        remap: replacements of names; both sides may be relative, private (``~x``) or absolute.
 
     Raises:
-        NameInvalid: one of the names breaks the rules.
+        NameInvalid: a name is invalid.
     """
 
     def __init__(self, node_name: str, namespace: str = "", remap: Mapping[str, str] | None = None) -> None:
         if not _SEGMENT.fullmatch(node_name):
-            raise NameInvalid(f"{node_name!r} is no node name: letters, digits and _ only, no digit first")
+            raise NameInvalid(
+                f"{node_name!r} is not a node name: letters, digits and _ only, no leading digit"
+            )
         self.node_name = node_name
         self.namespace = "/" + namespace.strip("/") if namespace.strip("/") else ""
         _check(self.namespace or "/root", namespace)
@@ -109,10 +112,10 @@ class NodeNames:
         self._remap = {self._expand(old): self._expand(new) for old, new in (remap or {}).items()}
 
     def resolve(self, name: str) -> str:
-        """Give the absolute, remapped form of a topic or service name.
+        """Return the absolute, remapped form of a topic or service name.
 
         Raises:
-            NameInvalid: the name breaks the rules; the text shows what was written.
+            NameInvalid: the name is invalid; the text shows it as written.
         """
         absolute = self._expand(name)
         return self._remap.get(absolute, absolute)
@@ -132,6 +135,6 @@ def _check(absolute: str, written: str) -> None:
     for segment in absolute[1:].split("/"):
         if not _SEGMENT.fullmatch(segment):
             raise NameInvalid(
-                f"{written!r} is no ROS name: {segment!r} stands between the slashes, where only letters, "
-                "digits and _ may, with no digit first"
+                f"{written!r} is not a ROS name: {segment!r}: only letters, digits and _ are allowed "
+                "between the slashes, with no leading digit"
             )

@@ -1,4 +1,4 @@
-"""What all backends have in common: names, messages, reports, connection, exit hooks, transforms."""
+"""The common part of all backends: names, messages, log, connection, exit hooks, transforms."""
 
 import asyncio
 import sys
@@ -40,23 +40,23 @@ from jacaros.trace import Tracer
 
 
 def to_stderr(text: str) -> None:
-    """Write a report as one line to standard error: where reports go by default."""
+    """Write a line to standard error, the default log."""
     print(f"[ros] {text}", file=sys.stderr)
 
 
 @dataclass(frozen=True)
 class NodeSettings:
-    """What `jacaros.ros.open.open_backend` was given.
+    """The arguments of `jacaros.ros.open.open_backend`.
 
     Attributes:
         clock: the run's clock.
         node_name: plain name of the node.
-        namespace: put before relative names.
-        remap: names to use in place of others.
-        log: takes one line about the connection: waiting, missing, found, lost.
+        namespace: prefix of relative names.
+        remap: replacements of names.
+        log: called with one line about the connection: waiting, missing, found, lost.
         interface_paths: folders with further definitions (``memory`` and, for services, ``ros1``).
-        parameters: values of parameters of our node from outside; they take the place of declared defaults.
-        orphans: what becomes of action goals that an earlier run of the node left behind.
+        parameters: values of parameters of our node from outside, in place of declared defaults.
+        orphans: what to do with action goals that an earlier run of the node left.
     """
 
     clock: Clock
@@ -70,10 +70,10 @@ class NodeSettings:
 
 
 class Member(Protocol):
-    """What a node has in its graph."""
+    """An entity of a node in its graph."""
 
     def close(self) -> None:
-        """Leave the graph, and be forgotten by the node."""
+        """Leave the graph, and deregister from the node."""
 
 
 M = TypeVar("M", bound=Member)
@@ -81,14 +81,14 @@ M = TypeVar("M", bound=Member)
 
 @dataclass(frozen=True, slots=True)
 class Wanted:
-    """What is wanted of a topic.
+    """The arguments of a subscription.
 
     Attributes:
         topic: absolute name.
         type_name: message type in full form.
-        callback: takes each message, on the loop.
-        qos: what is asked of publishers.
-        on_event: takes news of trouble, on the loop; without it they are logged.
+        callback: called with each message, on the loop.
+        qos: requested quality of service.
+        on_event: called with problems, on the loop; without it they are logged.
     """
 
     topic: str
@@ -100,15 +100,15 @@ class Wanted:
 
 @dataclass(frozen=True)
 class Parts:
-    """What a driver makes for its node; each is called with the node, an absolute name and a type in full form.
+    """The classes of a driver; each is called with the node, an absolute name and a type in full form.
 
     Attributes:
-        publisher: with the quality of service too.
+        publisher: also with the quality of service.
         subscription: with `Wanted` in place of name and type.
-        service: with the handler.
+        service: also with the handler.
         client: of a service.
-        action_client: with no more.
-        action_server: with the code to carry goals out, and the policy for several.
+        action_client: with no further argument.
+        action_server: also with the code of goals, and the policy for several.
     """
 
     publisher: Callable[..., Publisher]
@@ -120,16 +120,16 @@ class Parts:
 
 
 class Node:
-    """A backend but for its driver, which says how to start and to close, and gives the parts.
+    """A backend without its driver, which defines how to start and to close, and provides the parts.
 
     Args:
-        settings: names, clock and reports.
+        settings: names, clock and log.
         schema: the library's family of message classes.
         lifetime: how it joins and leaves.
 
     Attributes:
-        members: what the node has in the graph, in its order.
-        actions: its action clients and servers, which have something to tell when they are closed.
+        members: the node's entities in the graph, in the order of creation.
+        actions: its action clients and servers, which send messages when they are closed.
     """
 
     name = "none"
@@ -145,11 +145,11 @@ class Node:
         self.lifetime = lifetime
         self.connected = False
         self.delivered: Callable[[], None] = lambda: None
-        """Called on the loop when a message that came from outside has been delivered."""
+        """Called on the loop when a message from outside has been delivered."""
         self.tracer: Tracer | None = None
         self.orphans = Orphans(self.names.full_name, settings.orphans, settings.log)
         self.leaving_goals: LeavingGoals = {}
-        """Goals of all action clients that were asked to be cancelled and have not ended."""
+        """Goals of all action clients that are being cancelled."""
         self.given_parameters = GivenParameters(settings.parameters)
         self.members: dict[Member, None] = {}
         self.actions: WeakKeyDictionary[ActionClient | ActionServer, None] = WeakKeyDictionary()
@@ -168,7 +168,7 @@ class Node:
 
     @property
     def loop(self) -> asyncio.AbstractEventLoop:
-        """The loop on which the node was started; raises `RosError` before."""
+        """The loop on which the node was started. Raises `RosError` before."""
         if self._loop is None:
             raise RosError(
                 f"the {self.name} backend of {self.node_name} is not started: await backend.start() first"
@@ -176,15 +176,15 @@ class Node:
         return self._loop
 
     def add_interfaces(self, folder: Path) -> None:
-        """Look for definitions of types in *folder* too; see `jacaros.ros.backend.Backend`."""
+        """Search *folder* for type definitions, too; see `jacaros.ros.backend.Backend`."""
         self.factory.schema.look_in(folder)
 
     def on_connection(self, callback: Callable[[bool], None]) -> None:
-        """Have *callback* called on the loop whenever `connected` changes."""
+        """Call *callback* on the loop whenever `connected` changes."""
         self._on_connection.append(callback)
 
     def set_connected(self, connected: bool) -> None:
-        """Note that the graph was found or lost and tell everybody; on the loop."""
+        """Note that the graph was found or lost, and inform the callbacks; on the loop."""
         self.lifetime.connected(connected)
         if connected != self.connected:
             self.connected = connected
@@ -192,14 +192,14 @@ class Node:
                 callback(connected)
 
     def join(self) -> asyncio.Future[None]:
-        """Note the running loop; gives what is done as soon as the graph was found, or found to be missing."""
+        """Store the running loop. Return a future that is done when the graph was found, or is known to be missing."""
         self._loop = asyncio.get_running_loop()
         self._first_look = self._loop.create_future()
         self.lifetime.join()
         return self._first_look
 
     def found(self) -> None:
-        """Note, on the loop, that the graph is there."""
+        """Note, on the loop, that the graph was found."""
         if self._waiting is not None:
             self._waiting.__exit__(None, None, None)
             self._waiting = None
@@ -207,11 +207,11 @@ class Node:
         self.looked()
 
     def missing(self, what: str, help: str) -> None:
-        """Note, on the loop, that the graph is not there, or there no more, and is awaited.
+        """Note, on the loop, that the graph is missing or lost, and awaited.
 
         Args:
-            what: what people call it.
-            help: what a person can do about it.
+            what: its name for the log.
+            help: what the user can do about it.
         """
         if self._waiting is None and not self.lifetime.leaving:
             self._waiting = Waiting(self.clock, self.log, what, help).__enter__()
@@ -219,53 +219,53 @@ class Node:
         self.looked()
 
     def looked(self) -> None:
-        """Let `join` wait no longer."""
+        """Let `join` stop waiting."""
         if self._first_look is not None and not self._first_look.done():
             self._first_look.set_result(None)
 
     def left(self) -> None:
-        """Note, on the loop, that the node has left: nothing is awaited any more."""
+        """Note, on the loop, that the node has left, and stop waiting."""
         if self._waiting is not None:
             self._waiting.__exit__(RosError, None, None)
             self._waiting = None
         self.set_connected(False)
 
     def keep(self, member: M) -> M:
-        """Close *member* with the node, which has been started; raises `RosError` otherwise."""
+        """Close *member* with the node, which must be started. Raises `RosError` otherwise."""
         assert self.loop is not None
         self.members[member] = None
         return member
 
     def forget(self, member: Member) -> None:
-        """Note that a member has left."""
+        """Deregister an entity that has left."""
         self.members.pop(member, None)
 
     def receivers(self, topic: str) -> int:
-        """Return how many subscriptions of this node receive the messages of a topic, given by its absolute name."""
+        """Return the number of subscriptions of this node that receive the messages of a topic (absolute name)."""
         return sum(getattr(member, "received_topic", None) == topic for member in self.members)
 
     def close_actions(self) -> None:
-        """Tell servers and clients of actions that we go."""
+        """Close the clients and servers of actions, which inform their peers."""
         for action in list(self.actions):
             action.close()
 
     def close_members(self) -> None:
-        """Close what the node has in the graph."""
+        """Close the node's entities in the graph."""
         for member in list(self.members):
-            with suppress(Exception):  # whatever is wrong with one, the others are to be closed
+            with suppress(Exception):  # a failure of one must not keep the others open
                 member.close()
         self.members.clear()
 
     def after_delivery(self, callback: Callable[[], None]) -> None:
-        """Have *callback* called after messages of other processes have been delivered."""
+        """Call *callback* after messages of other processes have been delivered."""
         self.delivered = callback
 
     def resolve(self, name: str) -> str:
-        """Give the absolute, remapped form of a name."""
+        """Return the absolute, remapped form of a name."""
         return self.names.resolve(name)
 
     def fields(self, type_name: str) -> Mapping[str, FieldType]:
-        """Fields of a message type."""
+        """Return the fields of a message type."""
         return self.factory.fields(message_type(type_name))
 
     def message(self, type_name: str, /, **fields: Any) -> Any:
@@ -289,7 +289,7 @@ class Node:
         qos: QoS = DEFAULT_QOS,
         on_event: Callable[[TopicEvent], None] | None = None,
     ) -> Subscription:
-        """Have *callback* called for every message."""
+        """Call *callback* with every message."""
         self._check_deadline(qos)
         full_type = message_type(type_name)
         self.factory.fields(full_type)
@@ -323,7 +323,7 @@ class Node:
         return made
 
     def add_exit_hook(self, hook: Callable[[], None]) -> Callable[[], None]:
-        """Have *hook* called when the process stops or the backend is closed."""
+        """Call *hook* when the process ends or the backend is closed."""
         return self.lifetime.add(hook)
 
     def rosout(self, level: str, text: str) -> None:
@@ -331,15 +331,15 @@ class Node:
         self._rosout.write(level, text)
 
     async def contents(self, timeout: float = 5.0) -> GraphContents:
-        """Look at the graph."""
+        """Return the contents of the graph."""
         self._unable("looking at the graph")
 
     def parameters(self, node: str | None = None) -> Parameters:
-        """Give the parameters of our own node, or of another."""
+        """Return the parameters of our own node, or of another."""
         self._unable("parameters")
 
     def tf_listen(self) -> None:
-        """Begin to listen to transforms."""
+        """Subscribe to transforms."""
         self._frames.listen()
 
     def tf_lookup(self, target: str, source: str, stamp: float | None = None) -> Transform:
@@ -349,15 +349,15 @@ class Node:
     async def tf_wait(
         self, target: str, source: str, stamp: float | None = None, timeout: float | None = None
     ) -> Transform:
-        """Look up a transform as soon as that is possible."""
+        """Look up a transform as soon as it is possible."""
         return await self._frames.wait(target, source, stamp, timeout)
 
     def _check_deadline(self, qos: QoS) -> None:
-        """Refuse a deadline that nobody would watch."""
+        """Reject a deadline if the backend does not support them."""
         if qos.deadline is not None and DEADLINES not in self.capabilities:
             raise CapabilityMissing(
-                f"a deadline of {qos.deadline:g} s: the {self.name} backend cannot watch deadlines (--ros ros2 and --ros "
-                "memory can); leave it out"
+                f"the {self.name} backend does not support deadlines (a deadline of {qos.deadline:g} s was requested); "
+                "leave it out, or use --ros ros2 or --ros memory"
             )
 
     def _unable(self, what: str) -> NoReturn:

@@ -1,4 +1,4 @@
-"""Opening a backend by its name."""
+"""Open a backend by its name."""
 
 from importlib import import_module
 from inspect import signature
@@ -17,13 +17,13 @@ def open_backend(kind: str, clock: Clock, node_name: str, namespace: str = "", *
     """Make a node of a backend; ``await backend.start()`` joins it to its graph.
 
     Args:
-        kind: ``memory``, ``ros1``, ``ros2``, ``rosbridge``, or a class of yours, see `jacaros.ros.middleware`.
-        clock: the run's clock; the virtual one goes with ``memory`` alone.
+        kind: ``memory``, ``ros1``, ``ros2``, ``rosbridge``, or a class of your own, see `jacaros.ros.middleware`.
+        clock: the run's clock; the virtual clock works with ``memory`` only.
         node_name: plain name of the node.
-        namespace: put before relative names.
-        options: ``remap``, ``log``, ``parameters``, ``orphans``, ``interface_paths`` (see `NodeSettings`); for ``memory``
-            also ``graph``, a `jacaros.ros.drivers.memory.graph.MemoryGraph` to share; for ``ros2`` also ``domain_id``; for
-            ``rosbridge`` also ``url``, the server's address.
+        namespace: prefix of relative names.
+        options: ``remap``, ``log``, ``parameters``, ``orphans``, ``interface_paths`` (see `NodeSettings`); for
+            ``memory`` also ``graph``, a `jacaros.ros.drivers.memory.graph.MemoryGraph` to share; for ``ros2`` also
+            ``domain_id``; for ``rosbridge`` also ``url``, the server's address.
 
     Raises:
         UsageError: unknown kind or option, or the virtual clock with a real ROS graph.
@@ -51,10 +51,12 @@ def open_backend(kind: str, clock: Clock, node_name: str, namespace: str = "", *
 
 
 def _backend_class(kind: str, chosen: Middleware) -> Any:
-    # Imported by name and only now: the client libraries are heavy, and most systems have one or none.
+    # Imported by name and only now: the client libraries are large, and most systems have one or none.
     try:
         if chosen.library:
-            import_module(chosen.library)  # first, so that it is what is missing, and no part of it
+            import_module(
+                chosen.library
+            )  # first, so that the error is about the library itself, not a part of it
         module, _, name = chosen.backend.partition(":")
         return getattr(import_module(module), name)
     except ImportError as problem:
@@ -68,4 +70,4 @@ def _backend_class(kind: str, chosen: Middleware) -> Any:
             f"the backend {kind} cannot be imported: {problem}. If it is in this folder, set PYTHONPATH=."
         ) from problem
     except AttributeError as problem:
-        raise UsageError(f"there is no ROS backend {kind!r}: {problem}") from problem
+        raise UsageError(f"unknown ROS backend {kind!r}: {problem}") from problem

@@ -1,7 +1,7 @@
-"""Goals of an earlier run: its process was killed, and its action servers still pursue them.
+"""Goals of an earlier run whose process was killed: their action servers still pursue them.
 
-The ids of goals tell whose they are: they begin with the name of the node (ROS 1) or with a hash of it (ROS 2), then name
-the run.  So goals of other nodes are never taken for orphans.
+Goal ids identify their owner: they begin with the name of the node (ROS 1) or with a hash of it (ROS 2), followed by
+the run. So goals of other nodes are never taken for orphans.
 """
 
 import hashlib
@@ -10,7 +10,7 @@ from collections.abc import Awaitable, Callable
 from typing import Literal
 
 OrphanPolicy = Literal["cancel", "keep"] | Callable[[str], Awaitable[bool]]
-"""What becomes of orphans: cancelled, left alone, or cancelled if a question (text) is answered with True."""
+"""What to do with orphans: cancel them, leave them, or ask a question (text) and cancel them if the answer is True."""
 
 
 class Orphans:
@@ -18,8 +18,8 @@ class Orphans:
 
     Args:
         node_name: absolute name of the node.
-        policy: what becomes of them.
-        log: takes a warning.
+        policy: what to do with them.
+        log: called with a warning.
     """
 
     def __init__(self, node_name: str, policy: OrphanPolicy, log: Callable[[str], None]) -> None:
@@ -31,15 +31,15 @@ class Orphans:
         self._known: set[str] = set()
 
     def named_id(self, number: int, now: float) -> str:
-        """Make up an id in actionlib's manner: node (and run), number, time."""
+        """Return an id in actionlib's form: node (and run), number, time."""
         return f"{self._named}-{number}-{now:.9f}"
 
     def hashed_id(self) -> str:
-        """Make up an id of 16 bytes, as 32 hexadecimal digits."""
+        """Return an id of 16 bytes, as 32 hexadecimal digits."""
         return self._hashed + secrets.token_hex(6)
 
     def newly_found(self, goal_id: str) -> bool:
-        """Return whether a goal under way is an orphan that was not asked about before."""
+        """Return whether an active goal is an orphan that has not been seen before."""
         if (
             not goal_id.startswith(self._families)
             or goal_id.startswith((self._named, self._hashed))
@@ -50,8 +50,8 @@ class Orphans:
         return True
 
     async def may_cancel(self, action: str) -> bool:
-        """Decide about an orphan of *action*, and log it."""
-        found = f"action {action} still pursues a goal of an earlier run of this node"
+        """Decide whether to cancel an orphan of *action*, and log it."""
+        found = f"action {action} is still executing a goal of an earlier run of this node"
         if self._policy == "cancel":
             self._log(f"warning: {found}; cancelling it")
             return True

@@ -1,6 +1,6 @@
-"""Parameters of nodes: values by name, read and written by others, with news of changes.
+"""Parameters of nodes: named values that other nodes read and set, with notification of changes.
 
-On ROS 2 a parameter belongs to a node and is declared by it; on ROS 1 the master keeps all of them, nothing is
+On ROS 2 a parameter belongs to a node, which declares it; on ROS 1 the master stores all parameters, nothing is
 declared, and "a node's parameters" are those below its name.
 """
 
@@ -9,19 +9,20 @@ from dataclasses import dataclass
 from typing import Protocol
 
 ParameterValue = bool | int | float | str | list[bool] | list[int] | list[float] | list[str] | bytes
-"""What a parameter can hold everywhere; ROS 1 also has mappings, which `Parameters.get` gives by their parts ``a/b``."""
+"""The values that a parameter can have everywhere; ROS 1 also has mappings, which `Parameters.get` returns by their
+parts ``a/b``."""
 
 
 @dataclass(frozen=True, slots=True)
 class Declaration:
-    """What a node says of a parameter of its own.
+    """The declaration of a node's own parameter.
 
     Attributes:
-        default: its first value, and by it its type.
-        description: one line for people.
-        read_only: nobody may change it.
-        minimum, maximum: of a number.
-        accept: judges a new value: None to take it, or the reason for refusing it.
+        default: its initial value, which also determines its type.
+        description: one line of text.
+        read_only: whether it cannot be changed.
+        minimum, maximum: range of a number.
+        accept: decides about a new value: returns None to accept it, or the reason for refusing it.
     """
 
     default: ParameterValue
@@ -40,15 +41,16 @@ class Parameters(Protocol):
         """Absolute name of the node."""
 
     def declare(self, name: str, declaration: Declaration) -> ParameterValue:
-        """Declare a parameter of our own node and give its value (that of the launch file, if it had one).
+        """Declare a parameter of our own node and return its value (that of the launch file, if given).
 
         Raises:
-            CapabilityMissing: parameters are not declared here (`DECLARED_PARAMETERS`), or the node is another.
-            ParameterRefused: it is declared already, or the default breaks the declaration.
+            CapabilityMissing: the backend does not declare parameters (`DECLARED_PARAMETERS`), or the node is
+                another.
+            ParameterRefused: it is already declared, or the default violates the declaration.
         """
 
     def withdraw(self, name: str) -> None:
-        """Take a declaration of our own node back, also that of a read-only parameter; it may be declared anew then.
+        """Undeclare a parameter of our own node, even a read-only one; it can then be declared again.
 
         Raises:
             ParameterUnknown: our node has no such parameter.
@@ -56,40 +58,41 @@ class Parameters(Protocol):
         """
 
     async def names(self, timeout: float | None = None) -> list[str]:
-        """Names of the node's parameters, sorted; raises as `get`."""
+        """Return the names of the node's parameters, sorted. Raises as `get`."""
 
     async def get(self, name: str, timeout: float | None = None) -> ParameterValue:
-        """Give a parameter's value.
+        """Return a parameter's value.
 
         Raises:
             ParameterUnknown: the node has no such parameter.
-            ServiceUnavailable, CallTimedOut, CallFailed: the node (ROS 1: the master) cannot be asked.
+            ServiceUnavailable, CallTimedOut, CallFailed: the node (ROS 1: the master) did not answer.
         """
 
     async def set(self, name: str, value: ParameterValue, timeout: float | None = None) -> None:
         """Change a parameter.
 
         Raises:
-            ParameterUnknown: the node has declared no such parameter.
-            ParameterRefused: it is read-only, of another type, out of its range, or the node said no; the text tells.
+            ParameterUnknown: the node has not declared the parameter.
+            ParameterRefused: it is read-only, of another type, out of its range, or the node refused the value; the
+                text says which.
             ServiceUnavailable, CallTimedOut, CallFailed: as `get`.
         """
 
     def on_change(self, callback: Callable[[Mapping[str, ParameterValue]], None]) -> Callable[[], None]:
-        """Have *callback* called on the loop with the parameters of this node that were changed or declared, by anybody.
+        """Call *callback* on the loop with parameters of this node that any node has changed or declared.
 
         Returns:
-            what ends that.
+            A function that removes the callback.
 
         Raises:
-            CapabilityMissing: the middleware does not tell (`PARAMETER_EVENTS`).
+            CapabilityMissing: the middleware does not report changes (`PARAMETER_EVENTS`).
         """
 
 
 class GivenParameters:
-    """Values from outside, and which of them somebody has asked for.
+    """Values of parameters from outside, and which of them are declared.
 
-    As in other nodes of ROS 2 a value counts when its parameter is declared; one that nobody declares is not there.
+    As in other nodes of ROS 2, a value takes effect when its parameter is declared; an undeclared one does not exist.
 
     Args:
         values: by the names of the parameters.
@@ -100,22 +103,22 @@ class GivenParameters:
         self._taken: set[str] = set()
 
     def value(self, name: str) -> ParameterValue | None:
-        """The value for a parameter; None when nobody has given one."""
+        """Return the value for a parameter; None if none exists."""
         return self._values.get(name)
 
     def take(self, name: str) -> ParameterValue | None:
-        """Give the value for a parameter that is being declared; None when nobody has given one."""
+        """Return the value for a parameter that is being declared; None if none exists."""
         self._taken.add(name)
         return self._values.get(name)
 
     def items(self) -> Iterator[tuple[str, ParameterValue]]:
-        """All of them with their names."""
+        """Return all names and values."""
         yield from self._values.items()
 
     def untaken(self) -> list[str]:
-        """Names of those that nobody has declared so far, sorted."""
+        """Return the names of undeclared parameters, sorted."""
         return sorted(set(self._values) - self._taken)
 
     def known(self) -> list[str]:
-        """Names of all parameters that were declared, sorted."""
+        """Return the names of all declared parameters, sorted."""
         return sorted(self._taken)

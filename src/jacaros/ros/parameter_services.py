@@ -1,4 +1,4 @@
-"""The services of ROS 2 by which the parameters of other nodes are read and set."""
+"""The services of ROS 2 that read and set the parameters of other nodes."""
 
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -7,11 +7,11 @@ from jacaros.ros.backend import Client
 
 
 class ParameterServices:
-    """The parameter services of one node; each has a client from its first use on.
+    """The parameter services of one node; a client is made on first use.
 
     Args:
         node: absolute name of the node that has the parameters.
-        make_client: makes the client of a service, by name and type, and keeps it until our node is closed.
+        make_client: makes the client of a service, by name and type, and closes it with our node.
     """
 
     def __init__(self, node: str, make_client: Callable[[str, str], Client]) -> None:
@@ -20,7 +20,7 @@ class ParameterServices:
         self._clients: dict[str, Client] = {}
 
     def client(self, service: str) -> Client:
-        """The client of a service, such as ``GetParameters`` of ``rcl_interfaces``."""
+        """Return the client of a service, such as ``GetParameters`` of ``rcl_interfaces``."""
         client = self._clients.get(service)
         if client is None:
             name = "".join(f"_{letter.lower()}" if letter.isupper() else letter for letter in service)
@@ -29,5 +29,5 @@ class ParameterServices:
         return client
 
     async def call(self, service: str, request: Mapping[str, Any], timeout: float | None) -> Any:
-        """Call a service and give its response; *timeout* in seconds."""
+        """Call a service and return its response; *timeout* in seconds."""
         return await self.client(service).call(request, timeout)

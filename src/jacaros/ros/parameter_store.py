@@ -1,4 +1,4 @@
-"""The declared parameters of one node, with ROS 2's rules: what has a type keeps it, ranges and refusals count."""
+"""The declared parameters of one node, with ROS 2's rules: fixed types, ranges, and refusals."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -12,13 +12,13 @@ _WIDEST = 2**63
 
 
 class DeclaredParameters:
-    """What a node has declared, and the values.
+    """The declarations and values of a node.
 
     Args:
-        node: its absolute name, for texts.
-        given: values from outside that take the place of defaults.
-        changed: is told of every declaration and change, after it.
-        log: takes one line about a judgement that failed.
+        node: its absolute name, for messages.
+        given: values from outside, in place of defaults.
+        changed: called after every declaration and change.
+        log: called with one line about a failed check.
     """
 
     def __init__(
@@ -36,11 +36,11 @@ class DeclaredParameters:
         self._values: dict[str, ParameterValue] = {}
 
     def declare(self, name: str, declaration: Declaration) -> ParameterValue:
-        """Declare a parameter and give its value; see `Parameters.declare`."""
+        """Declare a parameter and return its value; see `Parameters.declare`."""
         if name in self._declarations:
-            raise ParameterRefused(f"parameter {name} of {self._node} is declared already")
+            raise ParameterRefused(f"parameter {name} of {self._node} is already declared")
         if not name:
-            raise ParameterRefused(f"a parameter of {self._node} has no name")
+            raise ParameterRefused(f"a parameter of {self._node} has an empty name")
         value = default = checked_value(declaration.default)
         if (given := self._given.take(name)) is not None:
             value = checked_value(given)
@@ -52,22 +52,22 @@ class DeclaredParameters:
         return value
 
     def withdraw(self, name: str) -> None:
-        """Take a declaration back; raises `ParameterUnknown`."""
+        """Undeclare a parameter. Raises `ParameterUnknown`."""
         self.get(name)
         del self._declarations[name], self._values[name]
 
     def names(self) -> list[str]:
-        """Names of all, sorted."""
+        """Return all names, sorted."""
         return sorted(self._values)
 
     def get(self, name: str) -> ParameterValue:
-        """Give a value; raises `ParameterUnknown`."""
+        """Return a value. Raises `ParameterUnknown`."""
         if name not in self._values:
             raise ParameterUnknown(self._unknown(name))
         return self._values[name]
 
     def set(self, name: str, value: ParameterValue) -> None:
-        """Change a value; raises `ParameterUnknown` or `ParameterRefused`."""
+        """Change a value. Raises `ParameterUnknown` or `ParameterRefused`."""
         declaration = self._declarations.get(name)
         if declaration is None:
             raise ParameterUnknown(self._unknown(name))
@@ -91,9 +91,9 @@ class DeclaredParameters:
             return None
         try:
             return declaration.accept(value)
-        except Exception as problem:  # the node lives on, and who asked learns of it
+        except Exception as problem:  # the node keeps running, and the caller receives the reason
             reason = f"{type(problem).__name__}: {problem}"
-            self._log(f"judging a parameter of {self._node} failed: {reason}")
+            self._log(f"the check of a parameter of {self._node} failed: {reason}")
             return reason
 
     def _unknown(self, name: str) -> str:
@@ -102,7 +102,7 @@ class DeclaredParameters:
 
 
 def fault_of(value: ParameterValue, declaration: Declaration) -> str | None:
-    """What keeps *value* from being that of a declared parameter: its type or its range; None: nothing does."""
+    """Return what is wrong with *value* for a declared parameter: its type or its range; None if nothing is."""
     wanted, given = kind_of(declaration.default), kind_of(value)
     if wanted != given and not _is_empty_of(wanted, given):
         told = f"of type {wanted}; {value!r} is of type {given}"
@@ -118,7 +118,8 @@ def fault_of(value: ParameterValue, declaration: Declaration) -> str | None:
 
 
 def _is_empty_of(wanted: str, given: str) -> bool:
-    """Whether one of two kinds is that of an empty list, which suits the other; alone it is one of texts, as on ROS 2."""
+    """Return whether one of two kinds is an empty list, which matches the other; alone it is a list of texts, as on
+    ROS 1."""
     return (given == "empty list" and wanted.startswith("list")) or (wanted, given) == (
         "empty list",
         "list of text",
@@ -126,10 +127,10 @@ def _is_empty_of(wanted: str, given: str) -> bool:
 
 
 def checked_value(value: Any) -> ParameterValue:
-    """Give *value* as something that a parameter can hold, in plain types.
+    """Return *value* in plain types that a parameter can hold.
 
     Raises:
-        ParameterRefused: it cannot be held; the text tells what can.
+        ParameterRefused: a parameter cannot hold it; the text lists what it can hold.
     """
     if isinstance(value, list | tuple):
         elements = [checked_value(element) for element in value]
@@ -145,12 +146,13 @@ def checked_value(value: Any) -> ParameterValue:
     elif isinstance(value, bool | int) or (isinstance(value, float) and not math.isnan(value)):
         return value
     raise ParameterRefused(
-        f"a parameter holds a bool, a number, a text, bytes, or a list of bools, ints, floats or texts; not {value!r}"
+        f"expected a bool, a number, a text, bytes, or a list of bools, ints, floats or texts, found {value!r}"
     )
 
 
 def kind_of(value: ParameterValue) -> str:
-    """Name the type of a value: ``bool``, ``int``, ``float``, ``text``, ``bytes``, ``list of int``…, ``empty list``."""
+    """Return the type of a value: ``bool``, ``int``, ``float``, ``text``, ``bytes``, ``list of int``…, ``empty
+    list``."""
     if isinstance(value, list):
         return f"list of {_NAMES[type(value[0])]}" if value else "empty list"
     return _NAMES[type(value)]

@@ -1,4 +1,4 @@
-"""One goal on the client's side: who waits for its acceptance, its end, the answer to a request for cancelling."""
+"""One goal on the client's side: callers that wait for acceptance, outcome, or the answer to a request to cancel."""
 
 import asyncio
 import math
@@ -12,7 +12,7 @@ from jacaros.ros.errors import CallTimedOut, ServiceError
 from jacaros.ros.waiting import within
 
 ENDING = 5.0
-"""Seconds that a server has for ending a goal that it was asked to cancel."""
+"""Seconds that a server has to end a goal after a request to cancel."""
 
 
 class GoalOwner(Protocol):
@@ -22,19 +22,19 @@ class GoalOwner(Protocol):
     name: str
 
     def ask_to_cancel(self, pending: "PendingGoal") -> None:
-        """Send a request for cancelling."""
+        """Send a request to cancel."""
 
     def abandon(
         self, pending: "PendingGoal", afterwards: Callable[[], Awaitable[object]] | None = None
     ) -> None:
-        """Cancel a goal that nobody wants any more."""
+        """Cancel a goal that is no longer needed."""
 
     def has_left(self, pending: "PendingGoal") -> None:
-        """Let newer goals go: this one has ended, or its server does not cancel it."""
+        """Let newer goals continue: this one has ended, or its server does not cancel it."""
 
 
 class PendingGoal:
-    """A goal on the client's side, a `GoalHandle`.  It ends once, for all who wait then or later."""
+    """A goal on the client's side, a `GoalHandle`. It ends once, for all present and later callers."""
 
     def __init__(self, sender: GoalOwner, goal_id: str, on_feedback: Callable[[Any], None] | None) -> None:
         self.goal_id = goal_id
@@ -44,7 +44,7 @@ class PendingGoal:
         self.abandoned = False
         self.end: Outcome | ServiceError | None = None
         self.leaves_by: float | None = None
-        """Time of `Clock.elapsed` until which a goal that was asked to be cancelled keeps newer goals waiting."""
+        """Time of `Clock.elapsed` until which a goal that is being cancelled delays newer goals."""
         self._sender = sender
         self._waiting: list[asyncio.Future[Outcome]] = []
         self._asking: list[asyncio.Future[bool]] = []
@@ -62,7 +62,7 @@ class PendingGoal:
             return await within(self._sender.clock, waiter, timeout)
         except TimeoutError:
             raise CallTimedOut(
-                f"goal {self.goal_id} of action {self._sender.name} is still under way after {timeout:g} s"
+                f"goal {self.goal_id} of action {self._sender.name} is still active after {timeout:g} s"
             ) from None
         finally:
             if waiter in self._waiting:
@@ -93,7 +93,7 @@ class PendingGoal:
         self._sender.abandon(self, afterwards)
 
     async def gone(self) -> bool:
-        """Wait until a goal that was asked to be cancelled has ended or goes on; False when that takes too long."""
+        """Wait until a goal that is being cancelled has ended or continues. Return False if that takes too long."""
         if self.leaves_by is None:
             return True
         follower: asyncio.Future[None] = asyncio.get_running_loop().create_future()
@@ -109,18 +109,18 @@ class PendingGoal:
         return True
 
     def cancel_answered(self, agreed: bool) -> None:
-        """The server has agreed to cancel, or not."""
+        """Note whether the server has agreed to cancel."""
         for answer in self._asking:
             settle(answer, agreed, None)
 
     def no_longer_leaves(self) -> None:
-        """The goal has ended, or its server does not cancel it: newer goals need not wait for it."""
+        """Let newer goals continue: the goal has ended, or its server does not cancel it."""
         self.leaves_by = None
         for follower in self._followers:
             settle(follower, None, None)
 
     def finish(self, end: Outcome | ServiceError) -> None:
-        """Note the goal's end and settle everything that waits for it."""
+        """Note the goal's outcome and settle everything that waits for it."""
         if self.end is not None:
             return
         self.end = end
@@ -130,9 +130,9 @@ class PendingGoal:
         for waiter in self._waiting:
             settle(waiter, end, problem)
         for answer in self._asking:
-            # What the server answered was lost or overtaken: how the goal ended tells it too.
+            # The server's answer was lost or overtaken; the outcome implies it.
             settle(answer, isinstance(end, Outcome) and end.status == "canceled", problem)
 
 
 LeavingGoals = dict[str, dict[PendingGoal, None]]
-"""Goals of one node that were asked to be cancelled and have not ended, by action."""
+"""Goals of one node that are being cancelled, by action."""

@@ -1,4 +1,4 @@
-"""Quality of service, in the words of ROS 2; ROS 1 knows the depth and latching alone."""
+"""Quality of service, in ROS 2's terms; ROS 1 has only the depth and latching."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -11,15 +11,15 @@ Durability = Literal["volatile", "transient_local"]
 
 @dataclass(frozen=True)
 class QoS:
-    """How messages of a publisher or subscription are kept and delivered.
+    """How messages of a publisher or subscription are stored and delivered.
 
     Attributes:
         reliability: ``reliable`` repeats lost messages, ``best_effort`` does not.
-        durability: ``transient_local`` publishers keep their last messages for late subscriptions; on ROS 1
-            such a publisher is latched and keeps one.
-        depth: messages kept while a receiver is behind; the oldest is dropped first.
-        deadline: a publisher promises, and a subscription expects, a message every so many seconds; None: no promise.
-            Only where the backend has the capability ``deadlines``.
+        durability: ``transient_local`` publishers store their last messages for late subscriptions; on ROS 1 such a
+            publisher is latched and stores one.
+        depth: messages stored while a receiver lags behind; the oldest is dropped first.
+        deadline: maximum number of seconds between messages that a publisher promises and a subscription expects;
+            None: none. Only with the capability ``deadlines``.
     """
 
     reliability: Reliability = "reliable"
@@ -29,35 +29,35 @@ class QoS:
 
     def __post_init__(self) -> None:
         if self.reliability not in ("reliable", "best_effort"):
-            raise RosError(f"reliability is reliable or best_effort, not {self.reliability!r}")
+            raise RosError(f"reliability: expected reliable or best_effort, found {self.reliability!r}")
         if self.durability not in ("volatile", "transient_local"):
-            raise RosError(f"durability is volatile or transient_local, not {self.durability!r}")
+            raise RosError(f"durability: expected volatile or transient_local, found {self.durability!r}")
         if isinstance(self.depth, bool) or not isinstance(self.depth, int) or self.depth < 1:
-            raise RosError(f"depth is a whole number from 1 on, not {self.depth!r}")
+            raise RosError(f"depth: expected a positive integer, found {self.depth!r}")
         if self.deadline is not None and not self.deadline > 0.0:
-            raise RosError(f"deadline is a number of seconds above zero, not {self.deadline!r}")
+            raise RosError(f"deadline: expected a number of seconds above zero, found {self.deadline!r}")
 
 
 DEFAULT_QOS = QoS()
-"""Reliable, volatile, ten messages: what ROS 2 gives to those who do not ask."""
+"""Reliable, volatile, ten messages: ROS 2's default."""
 
 SENSOR_DATA = QoS(reliability="best_effort", depth=5)
-"""ROS 2's profile for sensor streams: a late reading is worthless, so it is not repeated."""
+"""ROS 2's profile for sensor streams: a late reading is worthless, and is not repeated."""
 
 LATCHED = QoS(durability="transient_local", depth=1)
-"""The last message waits for late subscriptions: maps, robot descriptions, static transforms."""
+"""The last message is stored for late subscriptions: maps, robot descriptions, static transforms."""
 
 
 def incompatibility(offered: QoS, requested: QoS) -> str | None:
-    """Tell why a subscription's request cannot be met by a publisher's offer; None when it can.
+    """Return why a publisher's offer does not meet a subscription's request; None if it does.
 
-    The rules are those of DDS: a request may not be stricter than the offer.
+    The rules are those of DDS: a request must not be stricter than the offer.
     """
     if requested.reliability == "reliable" and offered.reliability == "best_effort":
-        return "the subscription asks for reliable, the publisher offers best_effort"
+        return "the subscription requests reliable, the publisher offers best_effort"
     if requested.durability == "transient_local" and offered.durability == "volatile":
-        return "the subscription asks for transient_local, the publisher offers volatile"
+        return "the subscription requests transient_local, the publisher offers volatile"
     if requested.deadline is not None and (offered.deadline is None or offered.deadline > requested.deadline):
         promised = "none" if offered.deadline is None else f"{offered.deadline:g} s"
-        return f"the subscription asks for a deadline of {requested.deadline:g} s, the publisher promises {promised}"
+        return f"the subscription requests a deadline of {requested.deadline:g} s, the publisher offers {promised}"
     return None

@@ -1,8 +1,8 @@
-"""The clock of a simulator: time is what ``/clock`` says (ROS's ``use_sim_time``).
+"""The clock of a simulator: time from ``/clock`` (ROS's ``use_sim_time``).
 
-Delays are measured in the time that has passed on ``/clock`` while it went forward.  So everything waits while the
-simulator pauses, runs as fast as it does, and when the simulator is reset and its time jumps back, whoever waits
-goes on waiting for the rest of the delay: nobody waits for a moment that will not come again, and nothing rings early.
+Delays are measured in the forward progress of ``/clock``. So everything waits while the simulator is paused, and runs
+at its speed. When the simulator is reset and its time jumps back, pending waits continue with their remaining time:
+no wait is for a time that never comes again, and no timer fires early.
 """
 
 import asyncio
@@ -17,38 +17,38 @@ from jacaros.timer_queue import TimerQueue
 CLOCK_TOPIC = "/clock"
 CLOCK_TYPE = "rosgraph_msgs/msg/Clock"
 CLOCK_QOS = QoS(reliability="best_effort", depth=1)
-"""What ROS 2's own nodes ask for: an old time is worth nothing."""
+"""The request of ROS 2's own nodes: an old time is worthless."""
 
 OVERTAKEN = 0.1
-"""Seconds by which a message may be older than the one before without being a jump: on an unreliable topic they can
-overtake one another."""
+"""Seconds by which a message may be older than the previous one without being a jump: on an unreliable topic they can
+overtake each other."""
 
 AHEAD = 5.0
-"""A step of more seconds is a jump: the simulator leapt, or its messages were lost meanwhile."""
+"""A step of more seconds is a jump: the simulator skipped time, or its messages were lost."""
 
 NEARLY = 1e-6
-"""Seconds by which the error of a float may make a timer seem not yet due."""
+"""Rounding error in seconds by which a timer may seem not yet due."""
 
 SILENT_AFTER = 3.0
-"""Seconds of real time after which a clock that does not move is told."""
+"""Seconds of real time after which a clock that does not move is reported."""
 
 
 class ClockSource(Protocol):
-    """What gives the messages of ``/clock``: a backend."""
+    """A source of ``/clock`` messages: a backend."""
 
     def subscription(self, topic: str, type_name: str, callback: Callable[[Any], None], qos: QoS) -> Any:
-        """Have *callback* called for each message."""
+        """Call *callback* with each message."""
 
 
 class RosClock:
-    """Time as ``/clock`` tells it; it stands at 0 until the first message, as in all ROS nodes.
+    """Time from ``/clock``; it is 0 until the first message, as in all ROS nodes.
 
     Args:
-        log: takes one line: the clock is silent, it came, it stands still, it jumped back.
+        log: called with one line: the clock is missing, has arrived, stopped, jumped.
 
     Attributes:
-        elapsed: seconds that have passed forward since the first message, pauses left out.
-        paused: whether no timer rings, although the simulator may continue.
+        elapsed: seconds of forward progress since the first message, without pauses.
+        paused: whether no timer fires, although the simulator may continue.
     """
 
     virtual = False
@@ -71,18 +71,18 @@ class RosClock:
 
     @property
     def running(self) -> bool:
-        """Whether a message of ``/clock`` has come."""
+        """Whether a message of ``/clock`` has arrived."""
         return self._time is not None
 
     def call_later(self, delay: float, callback: Callable[[], None]) -> Timer:
-        """Call *callback* when ``/clock`` has gone forward by *delay* seconds."""
+        """Call *callback* when ``/clock`` has advanced by *delay* seconds."""
         timer = self._timers.add(self.elapsed + max(0.0, delay), callback)
         if delay <= 0.0:
             asyncio.get_running_loop().call_soon(self._ring)
         return timer
 
     async def sleep(self, delay: float) -> None:
-        """Wait until ``/clock`` has gone forward by *delay* seconds."""
+        """Wait until ``/clock`` has advanced by *delay* seconds."""
         done: asyncio.Future[None] = asyncio.get_running_loop().create_future()
         timer = self.call_later(delay, lambda: None if done.done() else done.set_result(None))
         try:
@@ -91,23 +91,23 @@ class RosClock:
             timer.cancel()
 
     def busy(self, cycles: int) -> None:
-        """Nothing: the simulator moves the time."""
+        """Do nothing: the simulator moves the time."""
 
     def pause(self) -> None:
-        """Let no timer ring until `resume`; `now` still follows the simulator, which is not paused."""
+        """Stop timers until `resume`; `now` still follows the simulator, which is not paused."""
         self.paused = True
 
     def resume(self) -> None:
-        """Let timers ring after the rest of their delays."""
+        """Continue timers with their remaining delays."""
         if self.paused:
             self.paused = False
             asyncio.get_running_loop().call_soon(self._ring)
 
     def on_jump(self, told: Callable[[float], None]) -> Callable[[], None]:
-        """Have *told* called after time jumped, with the jump in seconds: below zero when it jumped back.
+        """Call *told* after a time jump with the jump in seconds, negative if backwards.
 
         Returns:
-            what ends that.
+            A function that removes the callback.
         """
         self._on_jump.append(told)
         return lambda: self._on_jump.remove(told) if told in self._on_jump else None
@@ -117,11 +117,11 @@ class RosClock:
         self._subscription = source.subscription(
             CLOCK_TOPIC, CLOCK_TYPE, lambda sample: self.move_to(to_seconds(sample.message.clock)), CLOCK_QOS
         )
-        self._log(f"waiting for the time on {CLOCK_TOPIC}")
+        self._log(f"waiting for {CLOCK_TOPIC}")
         self._look_later()
 
     def close(self) -> None:
-        """Follow the graph no more; time stands still."""
+        """Stop following the graph; time stands still."""
         if self._subscription is not None:
             self._subscription.close()
             self._subscription = None
@@ -130,13 +130,13 @@ class RosClock:
             self._watch = None
 
     def move_to(self, time: float) -> None:
-        """Take a message of ``/clock``; timers that are due ring soon, in their order."""
+        """Handle a message of ``/clock``; timers that are due fire soon, in order."""
         before = self._time
         if before is not None and before - OVERTAKEN <= time <= before:
             return
         self._time = time
         if before is None:
-            self._log(f"{CLOCK_TOPIC} is there: it is {time:.3f} s")
+            self._log(f"{CLOCK_TOPIC} found: the time is {time:.3f} s")
         elif time < before:
             self._jump(time - before)
         elif not self.paused:
@@ -157,11 +157,11 @@ class RosClock:
     def _jump(self, by: float) -> None:
         if by < 0:
             self._log(
-                f"{CLOCK_TOPIC} jumped back by {-by:.3f} s (was the simulator reset?); waits go on for the rest of their "
+                f"{CLOCK_TOPIC} jumped back by {-by:.3f} s (was the simulator reset?); waits continue with their remaining "
                 "time"
             )
         else:
-            self._log(f"{CLOCK_TOPIC} jumped ahead by {by:.3f} s; waits that end in this time are over")
+            self._log(f"{CLOCK_TOPIC} jumped ahead by {by:.3f} s; waits that end in this interval are over")
         for told in tuple(self._on_jump):
             told(by)
 
@@ -169,7 +169,7 @@ class RosClock:
         self._moved = True
         if self._told_still:
             self._told_still = False
-            self._log(f"{CLOCK_TOPIC} goes on")
+            self._log(f"{CLOCK_TOPIC} continues")
 
     def _look_later(self) -> None:
         self._watch = asyncio.get_running_loop().call_later(SILENT_AFTER, self._look)
@@ -179,12 +179,10 @@ class RosClock:
             self._told_still = True
             if self._time is None:
                 self._log(
-                    f"nobody publishes {CLOCK_TOPIC}: time stands still until a simulator does (`jacaros sim WORLD "
+                    f"no publisher on {CLOCK_TOPIC}: time stands still until a simulator publishes it (`jacaros sim WORLD "
                     "--publish-clock`); without one run with --clock real"
                 )
             else:
-                self._log(
-                    f"{CLOCK_TOPIC} stands still at {self._time:.3f} s: everybody waits for the simulator"
-                )
+                self._log(f"{CLOCK_TOPIC} stopped at {self._time:.3f} s; all agents wait for the simulator")
         self._moved = False
         self._look_later()

@@ -1,4 +1,4 @@
-"""The graph's own log: one line as a message on ``/rosout``."""
+"""The graph's own log: each line is a message on ``/rosout``."""
 
 from typing import Any, Protocol
 
@@ -10,7 +10,7 @@ from jacaros.ros.qos import QoS
 
 TOPIC = "/rosout"
 QUALITY = QoS(durability="transient_local", depth=1000)
-"""ROS 2's profile of this topic; on ROS 1 only the depth counts, for there the topic is not latched."""
+"""ROS 2's profile of this topic; on ROS 1 only the depth counts, because the topic is not latched there."""
 ROS1_QUALITY = QoS(depth=100)
 ROS1_TYPE, ROS2_TYPE = "rosgraph_msgs/msg/Log", "rcl_interfaces/msg/Log"
 ROS1_LEVELS = {"debug": 1, "info": 2, "warn": 4, "error": 8, "fatal": 16}
@@ -31,7 +31,7 @@ class RosoutWriter:
     """Publishes on ``/rosout`` (``rcl_interfaces/msg/Log``, on ROS 1 ``rosgraph_msgs/msg/Log``).
 
     Args:
-        node: the backend that publishes; the topic is joined at the first line.
+        node: the backend; the publisher is made for the first line.
     """
 
     def __init__(self, node: _Node) -> None:
@@ -51,18 +51,18 @@ class RosoutWriter:
                 header={"stamp": now}, level=number, name=names.full_name, msg=text
             )
         else:
-            # ROS 2 names loggers like Python does.
+            # ROS 2 names loggers as Python does.
             logger = names.full_name.strip("/").replace("/", ".")
             message = self._publisher.message(stamp=now, level=number, name=logger, msg=text)
         self._publisher.publish(message)
 
 
 def checked_level(level: str, numbers: dict[str, int]) -> int:
-    """Give the number of a level.
+    """Return the number of a level.
 
     Raises:
-        RosError: there is no such level.
+        RosError: the level is unknown.
     """
     if level not in numbers:
-        raise RosError(f"the level of a log line is {', '.join(numbers)}, not {level!r}")
+        raise RosError(f"unknown log level {level!r}: expected one of {', '.join(numbers)}")
     return numbers[level]

@@ -1,4 +1,4 @@
-"""Services apart from the middleware: checking messages, running handlers, and what their failures become."""
+"""Services independent of the middleware: checking messages, running handlers, and reporting their failures."""
 
 import asyncio
 import inspect
@@ -12,26 +12,26 @@ from jacaros.ros.names import response_type
 
 
 def checked_message(factory: MessageFactory, type_name: str, given: Any) -> Any:
-    """Give *given* as a message of a type: itself, or made from a mapping, or all defaults for None.
+    """Return *given* as a message of a type: unchanged, made from a mapping, or with all defaults for None.
 
     Raises:
-        MessageMismatch: it does not fit the type's definition.
+        MessageMismatch: it does not match the type definition.
     """
     if given is None or isinstance(given, Mapping):
         return factory.make(type_name, given)
     if not isinstance(given, factory.message_class(type_name)):
-        raise MessageMismatch(f"a {type_name} is needed, not {given!r}", type_name)
+        raise MessageMismatch(f"expected a {type_name}, found {given!r}", type_name)
     return given
 
 
 def published_message(factory: MessageFactory, topic: str, type_name: str, given: Any) -> Any:
-    """Make the message that a publisher sends of the mapping that it was given.
+    """Make the message for a publisher from a mapping.
 
     Raises:
-        MessageMismatch: *given* is no mapping, or does not fit the type's definition.
+        MessageMismatch: *given* is not a mapping, or does not match the type definition.
     """
     if not isinstance(given, Mapping):
-        raise MessageMismatch(f"topic {topic} carries {type_name}, not {given!r}", type_name)
+        raise MessageMismatch(f"topic {topic}: expected a {type_name}, found {given!r}", type_name)
     return factory.make(type_name, given)
 
 
@@ -43,7 +43,7 @@ class Responder:
         name: absolute name of the service.
         type_name: service type in full form.
         handler: the user's function or coroutine function.
-        log: takes one line about a handler that failed.
+        log: called with one line about a failed handler.
     """
 
     def __init__(
@@ -57,13 +57,13 @@ class Responder:
         self._tasks: set[asyncio.Task[None]] = set()
 
     def answer(self, request: Any, done: Callable[[Any, CallFailed | None], None]) -> None:
-        """Handle one request; *done* gets the response, or the failure."""
+        """Handle one request; *done* is called with the response or the failure."""
         task = asyncio.get_running_loop().create_task(self._answer(request, done))
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
 
     def close(self) -> None:
-        """Cancel the calls under way; their clients are told."""
+        """Cancel the active calls; their clients are informed."""
         for task in list(self._tasks):
             task.cancel()
 
@@ -76,7 +76,7 @@ class Responder:
         except asyncio.CancelledError:
             done(None, CallFailed(f"service {self._name} was closed during the call"))
             raise
-        except Exception as problem:  # the server lives on, and the client learns of it
+        except Exception as problem:  # the server keeps running, and the client receives the reason
             reason = f"{type(problem).__name__}: {problem}"
             self._log(f"the handler of service {self._name} failed: {reason}")
             done(None, CallFailed(f"service {self._name} failed: {reason}"))

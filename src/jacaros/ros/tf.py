@@ -1,4 +1,4 @@
-"""Coordinate transforms over the topics ``/tf`` and ``/tf_static``: sending, listening, looking up, waiting."""
+"""Coordinate transforms over the topics ``/tf`` and ``/tf_static``: publishing, subscribing, looking up, waiting."""
 
 import asyncio
 from collections.abc import Callable
@@ -16,11 +16,12 @@ from jacaros.ros.waiting import Waiting, within
 TF = QoS(depth=100)
 TF_STATIC = QoS(durability="transient_local", depth=1)
 ALL_STATIC = QoS(durability="transient_local", depth=100)
-"""For listening: there may be many publishers of static transforms, and each has its last message."""
+"""For the subscription: there may be many publishers of static transforms, each with a latched message."""
 QUIET = 1.0
-"""Seconds for which somebody waits without a word: the newest transforms are on their way as a rule."""
+"""Seconds for which a wait is not logged: the newest transforms usually arrive soon."""
 JUMP = 0.1
-"""Seconds by which the clock must go back to mean that time begins again; less is a correction of the machine's clock."""
+"""Seconds by which the clock must go back to count as a restart of time; less is a correction of the machine's
+clock."""
 MESSAGE = "tf2_msgs/msg/TFMessage"
 
 
@@ -37,10 +38,10 @@ class _Node(Protocol):
 
 
 class TransformBroadcaster:
-    """Publishes on ``/tf`` and ``/tf_static``; both topics are joined at their first use.
+    """Publishes on ``/tf`` and ``/tf_static``; both publishers are made on first use.
 
     Args:
-        node: the backend that publishes.
+        node: the backend.
     """
 
     def __init__(self, node: _Node) -> None:
@@ -53,7 +54,7 @@ class TransformBroadcaster:
         _require_type(self._node)
         message = self._node.message(MESSAGE, transforms=[transform])
         if static:
-            # A latched topic shows late receivers one message only, so it holds all static transforms.
+            # Late subscribers receive only one latched message, so it contains all static transforms.
             sent = message.transforms[0]
             self._static[sent.child_frame_id] = sent
             message = self._node.message(MESSAGE, transforms=list(self._static.values()))
@@ -67,10 +68,10 @@ class TransformBroadcaster:
 
 
 class TransformListener:
-    """Knows what was said on ``/tf`` and ``/tf_static`` since it began to listen.
+    """Stores the transforms published on ``/tf`` and ``/tf_static`` since its subscription.
 
     Args:
-        node: the backend that receives.
+        node: the backend.
     """
 
     def __init__(self, node: _Node) -> None:
@@ -78,11 +79,11 @@ class TransformListener:
         self._listening = False
         self._buffer = TransformBuffer(self._log)
         self._latest = 0.0
-        self._told: set[str] = set()
+        self._reported: set[str] = set()
         self._waiting: list[Callable[[], None]] = []
 
     def listen(self) -> None:
-        """Begin to listen, unless that was done; raises `CapabilityMissing`."""
+        """Subscribe, unless that was done. Raises `CapabilityMissing`."""
         if self._listening:
             return
         _require_type(self._node)
@@ -91,19 +92,19 @@ class TransformListener:
         self._node.subscription("/tf_static", MESSAGE, lambda sample: self._take(sample, True), ALL_STATIC)
 
     def lookup(self, target: str, source: str, stamp: float | None) -> Transform:
-        """Look up; see `jacaros.ros.backend.Backend.tf_lookup`."""
+        """Look up a transform; see `jacaros.ros.backend.Backend.tf_lookup`."""
         self.listen()
         return self._buffer.lookup(target, source, stamp)
 
     async def wait(self, target: str, source: str, stamp: float | None, timeout: float | None) -> Transform:
-        """Look up as soon as it is possible; see `jacaros.ros.backend.Backend.tf_wait`."""
+        """Look up a transform as soon as it is possible; see `jacaros.ros.backend.Backend.tf_wait`."""
         try:
             return self.lookup(target, source, stamp)
         except TransformUnavailable as problem:
             if problem.reason == "too_old":  # the past does not come back
                 raise
         what = f"transform from {source} to {target}"
-        help = "Is the node that sends it running?"
+        help = "is the node that publishes it running?"
         with Waiting(self._node.clock, self._node.log, what, help, quiet=QUIET):
             return await self._arrival(target, source, stamp, timeout)
 
@@ -151,9 +152,9 @@ class TransformListener:
                 ),
                 static,
             )
-            if fault is not None and fault not in self._told:
-                self._told.add(fault)
-                self._log(f"{sample.topic}: {fault}; it is left out")
+            if fault is not None and fault not in self._reported:
+                self._reported.add(fault)
+                self._log(f"{sample.topic}: {fault}; transform ignored")
         for look_again in list(self._waiting):
             look_again()
 
@@ -165,6 +166,4 @@ def _require_type(node: _Node) -> None:
     try:
         node.message(MESSAGE)
     except UnknownInterface as problem:
-        raise CapabilityMissing(
-            f"the {node.name} backend has no transforms here, neither to send nor to look up: {problem}"
-        ) from None
+        raise CapabilityMissing(f"the {node.name} backend has no transforms here: {problem}") from None

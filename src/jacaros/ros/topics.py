@@ -1,6 +1,7 @@
-"""Publishers and subscriptions, as far as no middleware matters: checks, news of trouble, feeds for many readers.
+"""Publishers and subscriptions independent of the middleware: checks, reports of problems, multiplexers for many
+readers.
 
-A driver derives from these classes and says only how a message goes out and how one comes in.
+A driver derives from these classes and only defines how a message is sent and received.
 """
 
 import threading
@@ -18,7 +19,7 @@ N = TypeVar("N", bound=Node)
 
 
 class _TopicEnd(Generic[N]):
-    """What publishers and subscriptions have in common."""
+    """The common part of publishers and subscriptions."""
 
     def __init__(self, node: N, topic: str, type_name: str, qos: QoS) -> None:
         self.topic = topic
@@ -26,7 +27,7 @@ class _TopicEnd(Generic[N]):
         self.qos = qos
         self._node = node
         self._closed = False
-        self._told: set[object] = set()
+        self._reported: set[object] = set()
 
     @property
     def node_name(self) -> str:
@@ -35,7 +36,7 @@ class _TopicEnd(Generic[N]):
 
     @property
     def latched(self) -> bool:
-        """Whether late subscriptions get what was said last."""
+        """Whether late subscriptions receive the last message."""
         return self.qos.durability == "transient_local"
 
     def close(self) -> None:
@@ -54,10 +55,10 @@ class TopicPublisher(_TopicEnd[N]):
     """A publisher; a driver defines `_send` and `_leave`.
 
     Args:
-        node: whose it is.
+        node: its node.
         topic: absolute name.
         type_name: message type in full form.
-        qos: what is offered to subscriptions.
+        qos: offered quality of service.
     """
 
     def __init__(self, node: N, topic: str, type_name: str, qos: QoS) -> None:
@@ -69,7 +70,7 @@ class TopicPublisher(_TopicEnd[N]):
         return self._node.factory.make(self.type_name, fields)
 
     def publish(self, message: Any) -> None:
-        """Send *message*, unless the node is leaving and this is no exit hook; see `Lifetime.send`."""
+        """Send *message*, unless the node is shutting down and this is not an exit hook; see `Lifetime.send`."""
         if not isinstance(message, self._class):
             message = published_message(self._node.factory, self.topic, self.type_name, message)
         if not self._closed:
@@ -77,10 +78,10 @@ class TopicPublisher(_TopicEnd[N]):
             if self._node.tracer is not None:
                 self._node.tracer.sent_message(self.topic, message, CURRENT.get())
 
-    def tell(self, text: str, key: object = None) -> None:
-        """Log why what is published reaches nobody, once for each *key* (the text by default)."""
-        if not self._closed and (key or text) not in self._told:
-            self._told.add(key or text)
+    def report(self, text: str, key: object = None) -> None:
+        """Log why messages are not received, once for each *key* (default: the text)."""
+        if not self._closed and (key or text) not in self._reported:
+            self._reported.add(key or text)
             self._node.log(text)
 
     def _send(self, message: Any) -> None:
@@ -89,11 +90,11 @@ class TopicPublisher(_TopicEnd[N]):
 
 
 class TopicSubscription(_TopicEnd[N]):
-    """A subscription; a driver hands messages to `deliver`, or to `put` when each is to wait for its turn.
+    """A subscription; a driver passes messages to `deliver`, or to `put` if each must wait for its turn.
 
     Args:
-        node: whose it is.
-        wanted: what of which topic.
+        node: its node.
+        wanted: topic, type and callbacks.
     """
 
     def __init__(self, node: N, wanted: Wanted) -> None:
@@ -105,65 +106,66 @@ class TopicSubscription(_TopicEnd[N]):
 
     @property
     def received_topic(self) -> str:
-        """Absolute name of the topic whose messages come here, see `Node.receivers`."""
+        """Absolute name of the topic whose messages arrive here, see `Node.receivers`."""
         return self.topic
 
     def put(self, message: Any) -> None:
-        """Queue *message* for a turn of the loop, on the loop; the oldest is dropped when the queue is full."""
+        """Queue *message* for a turn of the loop, on the loop; the oldest is dropped if the queue is full."""
         if not self._loop.is_closed():
             self._waiting.append(message)
             self._loop.call_soon(self._deliver_next)
 
     def deliver(self, message: Any) -> None:
-        """Hand a message over, on the loop."""
+        """Deliver a message, on the loop."""
         node = self._node
         why = None if node.tracer is None else node.tracer.received_message(self.topic, message)
         self._callback(Sample(message, self.topic, node.clock.now(), why))
 
-    def tell(self, trouble: TopicTrouble, text: str, key: object = None) -> None:
-        """Tell of trouble, on the loop.
+    def report(self, trouble: TopicTrouble, text: str, key: object = None) -> None:
+        """Report a problem, on the loop.
 
         Args:
-            trouble: what it is.
-            text: one line for people.
-            key: told once for each of these; each time without one.
+            trouble: its kind.
+            text: one line of text.
+            key: report it once for each key; None: each time.
         """
-        if self._closed or key in self._told:
+        if self._closed or key in self._reported:
             return
         if key is not None:
-            self._told.add(key)
+            self._reported.add(key)
         if self._on_event is None:
             self._node.log(text)
         else:
-            # Later: the one who subscribes does not have the subscription yet.
+            # Later, because the subscriber does not have the subscription yet.
             self._loop.call_soon(self._tell_now, TopicEvent(trouble, text))
 
-    def tell_other_type(self, who: str, theirs: str) -> None:
-        """Tell, once for each type, that messages of another type are published."""
-        self.tell(
+    def report_type_mismatch(self, who: str, theirs: str) -> None:
+        """Report, once for each type, that messages of another type are published."""
+        self.report(
             TopicTrouble.OTHER_TYPE,
-            f"topic {self.topic}: {who} publishes {theirs}, not {self.type_name}; write {theirs} here to receive it",
+            f"topic {self.topic}: {who} publishes {theirs}, not {self.type_name}; to receive it, write {theirs} here",
             theirs,
         )
 
-    def tell_qos(self, problem: str, whose: str = "", key: object = None) -> None:
-        """Tell that a publisher (*whose*: to whom we are not connected) offers less than is asked for."""
-        self.tell(
+    def report_qos(self, problem: str, whose: str = "", key: object = None) -> None:
+        """Report that a publisher (*whose*: which one is not connected) offers less than is requested."""
+        self.report(
             TopicTrouble.INCOMPATIBLE_QOS,
-            f"topic {self.topic}: not connected{whose}, because {problem}; ask for no more than is offered",
+            f"topic {self.topic}: incompatible QoS: not connected{whose}: {problem}; "
+            "request at most what the publisher offers",
             key,
         )
 
-    def tell_deadline(self, first: bool) -> None:
-        """Tell that a deadline passed without a message; the log hears only of the *first* after a message."""
+    def report_deadline(self, first: bool) -> None:
+        """Report that a deadline passed without a message; only the *first* after a message is logged."""
         if first or self._on_event is not None:
-            self.tell(
+            self.report(
                 TopicTrouble.DEADLINE_MISSED,
-                f"topic {self.topic}: no message came for {self.qos.deadline:g} s, which is the deadline",
+                f"topic {self.topic}: no message within the deadline of {self.qos.deadline:g} s",
             )
 
     def close(self) -> None:
-        """Leave the topic; the callback is not called any more."""
+        """Leave the topic; the callback is no longer called."""
         self._waiting.clear()
         super().close()
 
@@ -172,27 +174,27 @@ class TopicSubscription(_TopicEnd[N]):
             self._on_event(event)
 
     def _deliver_next(self) -> None:
-        # Empty when a later message pushed this turn's one out, or when the subscription was closed.
+        # Empty if a later message pushed this turn's message out, or the subscription was closed.
         if self._waiting:
             self.deliver(self._waiting.popleft())
 
 
 class Reader(Protocol):
-    """A subscription that shares a feed."""
+    """A subscription that shares a multiplexer."""
 
     def put(self, message: Any) -> None:
-        """Take a message, from any thread from which the feed gets it."""
+        """Take a message, from any thread of the multiplexer."""
 
-    def tell(self, trouble: TopicTrouble, text: str, key: object = None) -> None:
-        """Tell of trouble, on the loop."""
+    def report(self, trouble: TopicTrouble, text: str, key: object = None) -> None:
+        """Report a problem, on the loop."""
 
 
 R = TypeVar("R", bound=Reader)
-F = TypeVar("F", bound="TopicFeed[Any]")
+F = TypeVar("F", bound="TopicMultiplexer[Any]")
 
 
-class TopicFeed(Generic[R]):
-    """The process's one subscription of a topic at the middleware, shared by ours; a driver defines `_leave`.
+class TopicMultiplexer(Generic[R]):
+    """The process's only subscription of a topic at the middleware, shared by ours; a driver defines `_leave`.
 
     Args:
         topic: absolute name.
@@ -203,25 +205,25 @@ class TopicFeed(Generic[R]):
         self.topic = topic
         self.type_name = type_name
         self.known_as = type_name
-        """What the graph calls the type: actionlib's, for one, have names of their own there."""
+        """The graph's name of the type: those of actionlib, for instance, have names of their own."""
         self.readers: tuple[R, ...] = ()
         self.lock = threading.Lock()
-        """Held while readers or what is latched change."""
+        """Held while readers or latched messages change."""
 
     @property
     def publisher_count(self) -> int:
-        """How many publishers are connected now."""
+        """Number of connected publishers."""
         raise NotImplementedError
 
     def add(self, reader: R) -> None:
-        """Let *reader* have the messages, the latched ones first."""
+        """Add *reader*, which receives the latched messages first."""
         with self.lock:
             self.readers = (*self.readers, reader)
             for message in self.latched(reader):
                 reader.put(message)
 
     def remove(self, reader: R) -> bool:
-        """Serve *reader* no longer; True when it was the last one, and the topic was left."""
+        """Remove *reader*. Return True if it was the last one, and the topic was left."""
         with self.lock:
             self.readers = tuple(other for other in self.readers if other is not reader)
             last = not self.readers
@@ -230,71 +232,76 @@ class TopicFeed(Generic[R]):
         return last
 
     def join(self) -> None:
-        """Ask for the topic at a server that does not know us yet."""
+        """Subscribe at a server that does not know us yet."""
 
     def lost(self) -> None:
-        """Note that the server is gone: what is latched comes again, and may be another then."""
+        """Note that the server is gone. Latched messages are delivered again on reconnect and may have changed."""
 
     def latched(self, reader: R) -> Iterable[Any]:
-        """What a late *reader* is to get first."""
+        """Return the latched messages for a late *reader*."""
         return ()
 
     def put(self, message: Any) -> None:
-        """Hand a message to all readers."""
+        """Pass a message to all readers."""
         for reader in self.readers:
             reader.put(message)
 
     def see_type(self, type_name: str | None) -> None:
-        """Be told which type the topic has in the graph, if that is known."""
+        """Check the type of the topic in the graph, if it is known."""
         if type_name not in (None, self.known_as):
-            self.tell(
-                f"topic {self.topic} carries {type_name}, but {self.type_name} was asked for: nothing will be received; "
+            self.report(
+                f"topic {self.topic}: expected {self.type_name}, found {type_name}: nothing will be received; "
                 f"write {type_name}"
             )
 
-    def tell(self, text: str) -> None:
-        """Tell each reader, once, that what others publish is not what it asked for."""
+    def report(self, text: str) -> None:
+        """Report to each reader, once, that the published type is not the requested one."""
         for reader in self.readers:
-            reader.tell(TopicTrouble.OTHER_TYPE, text, text)
+            reader.report(TopicTrouble.OTHER_TYPE, text, text)
 
     def _leave(self) -> None:
-        """Leave the topic: nobody here listens to it any more."""
+        """Leave the topic: it has no readers."""
         raise NotImplementedError
 
 
 class SharedSubscription(TopicSubscription[N]):
-    """A subscription that reads from a feed, made with the first one of its topic and left with the last.
+    """A subscription that reads from a multiplexer, which is made with the first one of its topic and closed with the
+    last.
 
     Args:
-        feeds: those of the node by topic.
-        new_feed: makes one for a node, a topic and a type.
+        multiplexers: those of the node, by topic.
+        new_multiplexer: makes one for a node, a topic and a type.
         node, wanted: as for `TopicSubscription`.
     """
 
     def __init__(
-        self, node: N, wanted: Wanted, feeds: dict[str, F], new_feed: Callable[[N, str, str], F]
+        self, node: N, wanted: Wanted, multiplexers: dict[str, F], new_multiplexer: Callable[[N, str, str], F]
     ) -> None:
         super().__init__(node, wanted)
         topic, type_name = wanted.topic, wanted.type_name
-        self._feeds = feeds
-        if topic not in feeds:
-            feeds[topic] = new_feed(node, topic, type_name)
-        self._feed: TopicFeed[Any] | None = feeds[topic]
-        if self._feed.type_name == type_name:
-            self._feed.add(self)
+        self._multiplexers = multiplexers
+        if topic not in multiplexers:
+            multiplexers[topic] = new_multiplexer(node, topic, type_name)
+        self._multiplexer: TopicMultiplexer[Any] | None = multiplexers[topic]
+        if self._multiplexer.type_name == type_name:
+            self._multiplexer.add(self)
         else:
-            self.tell(
+            self.report(
                 TopicTrouble.OTHER_TYPE,
-                f"topic {topic} is received as {self._feed.type_name} in this process already, not as {type_name}: "
-                f"nothing will be received; write {self._feed.type_name}",
+                f"topic {topic} is received as {self._multiplexer.type_name} in this process already, not as {type_name}: "
+                f"nothing will be received; write {self._multiplexer.type_name}",
             )
-            self._feed = None
+            self._multiplexer = None
 
     @property
     def publisher_count(self) -> int:
-        """How many publishers are connected now."""
-        return 0 if self._feed is None or self._closed else self._feed.publisher_count
+        """Number of connected publishers."""
+        return 0 if self._multiplexer is None or self._closed else self._multiplexer.publisher_count
 
     def _leave(self) -> None:
-        if self._feed is not None and self._feed.remove(self) and self._feeds.get(self.topic) is self._feed:
-            del self._feeds[self.topic]
+        if (
+            self._multiplexer is not None
+            and self._multiplexer.remove(self)
+            and self._multiplexers.get(self.topic) is self._multiplexer
+        ):
+            del self._multiplexers[self.topic]

@@ -1,4 +1,4 @@
-"""Visible waiting: told at once, called missing after a few seconds with the help, told when over."""
+"""Logged waiting: the start, a message with help after a few seconds, and the end."""
 
 import asyncio
 from collections.abc import Callable
@@ -10,43 +10,43 @@ from jacaros.clock import Clock, Timer
 T = TypeVar("T")
 
 MISSING_AFTER = 3.0
-"""Seconds after which something awaited is called missing.  First discovery on ROS 2 can take two."""
+"""Seconds after which an awaited thing is reported as missing. First discovery on ROS 2 can take two."""
 
 
 class Absence:
-    """Waits in vain for one thing: who tries again and again tells people of the first, the tenth, the hundredth ..."""
+    """Repeated waits for one thing that timed out: the 1st, 10th, 100th, … is logged."""
 
     def __init__(self) -> None:
-        self._told = False
+        self._reported = False
         self._waits = 0
 
     def wait(self) -> bool:
-        """Count a wait; gives whether people are to be told of it."""
+        """Count a wait. Return whether to log it."""
         self._waits += 1
         return str(self._waits).strip("0") == "1"
 
-    def tell(self, log: Callable[[str], None], what: str) -> None:
-        """Tell people that it is awaited."""
-        self._told = True
+    def report(self, log: Callable[[str], None], what: str) -> None:
+        """Log that it is awaited."""
+        self._reported = True
         log(f"waiting for the {what}")
 
     def end(self, log: Callable[[str], None], what: str) -> None:
-        """It is there: people hear so if they were told of waiting, and the next wait is the first again."""
-        if self._told:
+        """Log that it was found, if the wait was logged; the next wait is the first again."""
+        if self._reported:
             log(f"found the {what}")
-        self._told, self._waits = False, 0
+        self._reported, self._waits = False, 0
 
 
 class Waiting:
-    """A report about something that is not there yet; a context manager around the wait.
+    """Logs the wait for something that is missing; a context manager around the wait.
 
     Args:
         clock: measures the wait.
-        log: takes one line.
+        log: called with one line.
         what: the thing, as in ``service /add (example_interfaces/srv/AddTwoInts)``.
-        help: what a person can do about it.
-        quiet: seconds in which nothing is said: for what is awaited again and again, and comes soon as a rule.
-        absence: what was waited in vain before.
+        help: what the user can do about it.
+        quiet: seconds without a message: for repeated waits that usually end soon.
+        absence: earlier waits that timed out.
     """
 
     def __init__(
@@ -61,7 +61,7 @@ class Waiting:
         self._clock = clock
         self._log = log
         self._what = what
-        self._cure = help
+        self._help = help
         self._quiet = quiet
         self._absence = absence if absence is not None else Absence()
         self._timer: Timer | None = None
@@ -70,9 +70,9 @@ class Waiting:
         if not self._absence.wait():
             return self
         if self._quiet > 0.0:
-            self._timer = self._clock.call_later(self._quiet, self._tell)
+            self._timer = self._clock.call_later(self._quiet, self._report)
         else:
-            self._tell()
+            self._report()
         return self
 
     def __exit__(
@@ -83,19 +83,19 @@ class Waiting:
         if kind is None:
             self._absence.end(self._log, self._what)
 
-    def _tell(self) -> None:
-        self._absence.tell(self._log, self._what)
+    def _report(self) -> None:
+        self._absence.report(self._log, self._what)
         self._timer = self._clock.call_later(MISSING_AFTER, self._missing)
 
     def _missing(self) -> None:
-        self._log(f"the {self._what} is missing; still trying. {self._cure}")
+        self._log(f"the {self._what} is missing; still trying; {self._help}")
 
 
 async def within(clock: Clock, future: asyncio.Future[T], seconds: float | None) -> T:
-    """Wait for *future*, at most *seconds* of the clock; None waits for ever.
+    """Wait for *future*, at most *seconds* of the clock; None: no limit.
 
     Raises:
-        TimeoutError: the time is over; the future fails with the same.
+        TimeoutError: the time is over; the future fails with it, too.
     """
 
     def expire() -> None:

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any
 
-from jacaros.artifacts.mapping.encoding import filler
+from jacaros.artifacts.mapping.encoding import builder
 from jacaros.artifacts.mapping.read_operations import read_values
 from jacaros.mas.ros_graph import RosGraph
 from jacaros.ros.backend import Publisher, Sample, Service
@@ -148,7 +148,7 @@ class FakeGraph:
             return dict(fields)
         problems: list[Problem] = []
         values = read_values(read_document(fields, problems, "a message"), ())
-        fill = filler(values, type_name, self.node, problems) if not problems else None
+        fill = builder(values, type_name, self.node, problems) if not problems else None
         if fill is None:
             text = "; ".join(
                 f"{each.message}: {each.help}" if each.help else each.message for each in problems

@@ -17,7 +17,7 @@ from jacaros.ros.handoff import in_thread, post
 from jacaros.ros.lifetime import Lifetime
 from jacaros.ros.node import Node, NodeSettings, Parts
 from jacaros.ros.typestore import DefinitionSchema
-from mqtt_driver.topics import MqttFeed, MqttPublisher, MqttSubscription, parts_of
+from mqtt_driver.topics import MqttMultiplexer, MqttPublisher, MqttSubscription, parts_of
 
 NODES = "jacaros/nodes"
 """Below it each node keeps what it has in the graph; its last will takes that away when it dies."""
@@ -46,7 +46,7 @@ class MqttBackend(Node):
             Lifetime(settings.log, self._send_rest, threaded=True),
         )
         self.broker = broker or os.environ.get("MQTT_BROKER") or "127.0.0.1:1883"
-        self.feeds: dict[str, MqttFeed] = {}
+        self.multiplexers: dict[str, MqttMultiplexer] = {}
         self.others: dict[str, dict[str, Any]] = {}
         """What the nodes of the graph have, our own among them, by the number of the node."""
         self.number = uuid.uuid4().hex
@@ -98,7 +98,7 @@ class MqttBackend(Node):
         ends = {
             "name": self.node_name,
             "out": {each.topic: each.type_name for each in self.members if isinstance(each, MqttPublisher)},
-            "in": {feed.topic: feed.type_name for feed in self.feeds.values()},
+            "in": {multiplexer.topic: multiplexer.type_name for multiplexer in self.multiplexers.values()},
         }
         document = json.dumps(ends)
         self.do(lambda client: client.publish(f"{NODES}/{self.number}", document, qos=1, retain=True))
@@ -135,8 +135,8 @@ class MqttBackend(Node):
     async def _serve(self, client: aiomqtt.Client) -> None:
         self._client = client
         await client.subscribe(f"{NODES}/+", qos=1)
-        for member in (*self.feeds.values(), *self.members):
-            if isinstance(member, MqttFeed | MqttPublisher):
+        for member in (*self.multiplexers.values(), *self.members):
+            if isinstance(member, MqttMultiplexer | MqttPublisher):
                 member.join()
         self.announce()
         self.found()
@@ -148,17 +148,17 @@ class MqttBackend(Node):
             self._note_node(place.removeprefix(f"{NODES}/"), payload)
             return
         publisher, kind, topic = parts_of(place)
-        feed = self.feeds.get(topic)
-        if feed is not None and kind == feed.type_name:
-            feed.received(publisher, payload, kept)
+        multiplexer = self.multiplexers.get(topic)
+        if multiplexer is not None and kind == multiplexer.type_name:
+            multiplexer.received(publisher, payload, kept)
 
     def _note_node(self, number: str, payload: bytes) -> None:
         self.others.pop(number, None)
         if payload:
             self.others[number] = json.loads(payload)
-        for feed in self.feeds.values():
-            for other in self.types_at(feed.topic, "out"):
-                feed.see_type(other)
+        for multiplexer in self.multiplexers.values():
+            for other in self.types_at(multiplexer.topic, "out"):
+                multiplexer.see_type(other)
 
     def _ends(self, topic: str) -> tuple[tuple[str, ...], tuple[Endpoint, ...], tuple[Endpoint, ...]]:
         there = self.others.values()

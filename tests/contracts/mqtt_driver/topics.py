@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from jacaros.ros.message import plain
 from jacaros.ros.node import Wanted
 from jacaros.ros.qos import QoS
-from jacaros.ros.topics import SharedSubscription, TopicFeed, TopicPublisher
+from jacaros.ros.topics import SharedSubscription, TopicMultiplexer, TopicPublisher
 
 if TYPE_CHECKING:
     from mqtt_driver.backend import MqttBackend
@@ -61,7 +61,7 @@ class MqttPublisher(TopicPublisher["MqttBackend"]):
         self._node.announce()
 
 
-class MqttFeed(TopicFeed["MqttSubscription"]):
+class MqttMultiplexer(TopicMultiplexer["MqttSubscription"]):
     """The node's one subscription of a topic at the broker."""
 
     def __init__(self, node: "MqttBackend", topic: str, type_name: str) -> None:
@@ -70,7 +70,7 @@ class MqttFeed(TopicFeed["MqttSubscription"]):
         self._place = place_of("+", type_name, topic)
         self._kept: dict[str, bytes] = {}
         self.join()
-        node.loop.call_soon(node.announce)  # when it is among the node's feeds
+        node.loop.call_soon(node.announce)  # when it is among the node's multiplexers
 
     @property
     def publisher_count(self) -> int:
@@ -104,7 +104,7 @@ class MqttSubscription(SharedSubscription["MqttBackend"]):
     """Subscription of `MqttBackend`; messages are decoded when it is their turn."""
 
     def __init__(self, node: "MqttBackend", wanted: Wanted) -> None:
-        super().__init__(node, wanted, node.feeds, MqttFeed)
+        super().__init__(node, wanted, node.multiplexers, MqttMultiplexer)
 
     def deliver(self, message: bytes) -> None:
         """Decode a message and hand it over."""

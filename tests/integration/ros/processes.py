@@ -70,7 +70,7 @@ class Program:
             "still trying",
             "[ros] found",
             "still listening",
-            "later after its stamp",
+            "later than earlier ones",
             "no other node is in the ROS",
             "[ros] /clock is there",
             # DDS meets shared memory of a process that another test has killed, and takes the network instead.

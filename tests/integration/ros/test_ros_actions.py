@@ -40,7 +40,7 @@ def test_every_end_of_a_goal_reaches_plan_and_server(
             "counting without end",
         )
     ]
-    # Time that was up, an intention that was dropped and a process that ended: the server was told each time.
+    # Time that was up, an intention that was dropped and a process that ended: the server received each cancellation.
     for target in (1001, 1002, 1003):
         wait_until(lambda: len(deeds_of(server, target)) == 2, f"the goal {target} has ended")  # noqa: B023
         assert deeds_of(server, target)[1] == ["end", target, True]

@@ -55,7 +55,7 @@ def test_a_world_is_listed_shown_mapped_and_checked_and_the_mapping_is_run(
     assert agents.lines == ["[look] at 0 0", "[look] has moved"]
 
 
-def test_problems_of_a_mapping_are_told(
+def test_problems_of_a_mapping_are_reported(
     kind: str, peer: Callable[[str], ProcessPeer], ask: Callable[..., Program], tmp_path: Path
 ) -> None:
     robot = peer("robot")
@@ -74,7 +74,7 @@ def test_problems_of_a_mapping_are_told(
     assert "robot.yaml:2:29: expected the type `nav_msgs/msg/Odometry`, found `nav_msgs/msg/Path`" in told
     assert "robot.yaml:3:17: no node publishes `/odmo`" in told
     assert "did you mean `odom`?" in told
-    assert ("the subscription asks for reliable, the publisher offers best_effort" in told) == (
+    assert ("the subscription requests reliable, the publisher offers best_effort" in told) == (
         kind == "ros2"
     )
 

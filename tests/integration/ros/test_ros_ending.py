@@ -1,4 +1,4 @@
-"""The agents' process ends in the middle of a motion: the robot stops, and a new process goes on."""
+"""The agents' process ends in the middle of a motion: the robot stops, and a new process continues."""
 
 import signal
 import time
@@ -43,12 +43,12 @@ def test_sigterm_stops_the_robot(
     truth = world.close()
     stood_at = standstill(truth, RAMP) - world.time_of(ended)
     print(f"SIGTERM: zero commanded after {zero_at - ended:.2f} s, standing after {stood_at:.2f} s")
-    assert not truth.events_of("command_timeout"), "it was told to stop"
+    assert not truth.events_of("command_timeout"), "it received a stop command"
     assert zero_at - ended <= COMMANDED_ZERO
     assert stood_at <= STANDING
 
 
-def test_sigkill_stops_the_robot_and_a_new_process_goes_on_from_there(
+def test_sigkill_stops_the_robot_and_a_new_process_continues(
     world: WorldProcess, run_agents: Callable[..., Agents]
 ) -> None:
     agents = run_agents("far.asl")
@@ -95,5 +95,6 @@ def test_the_goal_of_a_killed_process_is_cancelled_when_the_next_one_starts(
     world.until_truth(lambda truth: stands(truth, heard), "the robot stands")
     assert world.truth.latest().x < 3.8, "it has not driven to the goal"
     assert any(
-        "still pursues a goal of an earlier run of this node; cancelling it" in line for line in again.errors
+        "is still executing a goal of an earlier run of this node; cancelling it" in line
+        for line in again.errors
     )

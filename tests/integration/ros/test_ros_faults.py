@@ -14,7 +14,7 @@ YARD = Path(__file__).parent / "worlds" / "yard.yaml"
 NAVIGATION = {"ros1": "move_base.yaml", "ros2": "nav2.yaml"}
 
 
-def test_a_robot_that_is_killed_and_started_anew_is_navigated_again(
+def test_a_killed_and_restarted_robot_can_be_navigated_again(
     kind: str,
     environment: dict[str, str],
     run_world: Callable[..., WorldProcess],

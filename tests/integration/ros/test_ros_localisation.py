@@ -1,4 +1,4 @@
-"""``/amcl_pose`` of the world on real graphs: latched, and told again when somebody says another place."""
+"""``/amcl_pose`` of the world on real graphs: latched, and published again after a new initial pose."""
 
 from collections.abc import Callable
 
@@ -8,7 +8,7 @@ from processes import WorldProcess, wait_until
 TYPE = "geometry_msgs/msg/PoseWithCovarianceStamped"
 
 
-def test_the_pose_is_latched_and_follows_what_the_robot_is_told(
+def test_the_pose_is_latched_and_follows_initial_poses(
     world: WorldProcess, peer: Callable[[str], ProcessPeer]
 ) -> None:
     first = peer("first")
@@ -34,6 +34,6 @@ def test_the_pose_is_latched_and_follows_what_the_robot_is_told(
     )
     wait_until(
         lambda: [each["pose"]["pose"]["position"]["x"] for each in late.received("/amcl_pose")][-1] == 3.0,
-        "it believes what it was told",
+        "it believes the given pose",
     )
     assert late.received("/amcl_pose")[-1]["pose"]["covariance"][0] == 0.0

@@ -18,5 +18,5 @@ def test_a_mapping_drives_the_robot_of_another_process(
     assert agents.lines == [
         f"[house] {text}" for text in ("driven", "seen", "on the way", "back", "out of reach")
     ]
-    assert [line for line in agents.complaints if "to learn its type" not in line] == []
+    assert [line for line in agents.complaints if "to find its type" not in line] == []
     assert world.errors == []

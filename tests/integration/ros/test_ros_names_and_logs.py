@@ -59,14 +59,14 @@ def test_time_is_that_of_the_simulator(
     kind: str, run_agents: Callable[..., Agents], peer: Callable[[str], ProcessPeer]
 ) -> None:
     agents = run_agents("minute.asl", "--clock", "ros", "--node-name", "follower")
-    agents.until_error("[ros] waiting for the time on /clock")
+    agents.until_error("[ros] waiting for /clock")
     agents.until_line("[minute] waits")
-    agents.until_error("nobody publishes /clock")
+    agents.until_error("no publisher on /clock")
     simulator = peer("simulator")
     if kind == "ros2":
         assert simulator.get_parameter("use_sim_time", "/follower", timeout=20) is True
     simulator.advertise("/clock", "rosgraph_msgs/msg/Clock")
-    wait_until(lambda: simulator.subscription_count("/clock") > 0, "somebody who listens to the clock")
+    wait_until(lambda: simulator.subscription_count("/clock") > 0, "a subscriber of the clock")
 
     def show(time: float, text: str) -> None:
         """Publish a time until standard error shows what it brings about: the topic is not reliable."""
@@ -77,11 +77,11 @@ def test_time_is_that_of_the_simulator(
 
         wait_until(shown, f"{text!r} at {time:g} s")
 
-    show(100.0, "/clock is there: it is 100.000 s")
-    show(106.0, "/clock stands still at 106.000 s")
+    show(100.0, "/clock found: the time is 100.000 s")
+    show(106.0, "/clock stopped at 106.000 s")
     show(3.0, "jumped back by 103.000 s")
     agents.until_line("[minute] jumped 103")
-    show(6.0, "/clock stands still at 6.000 s")
+    show(6.0, "/clock stopped at 6.000 s")
     assert not any("has waited" in line for line in agents.lines), "9 of 10 seconds have passed"
     wait_until(lambda: simulator.publish("/clock", {"clock": 7.5}) or agents.over, "the tenth second")
     assert agents.end() == 0
@@ -89,7 +89,7 @@ def test_time_is_that_of_the_simulator(
 
 
 @pytest.mark.only("ros1", "ros2")
-def test_who_does_not_follow_a_simulator_is_told_once(
+def test_a_node_without_simulated_time_is_logged_once(
     run_agents: Callable[..., Agents], peer: Callable[[str], ProcessPeer]
 ) -> None:
     agents = run_agents("minute.asl")
@@ -101,5 +101,5 @@ def test_who_does_not_follow_a_simulator_is_told_once(
         return any("to follow the simulator run with --clock ros" in line for line in agents.errors)
 
     wait_until(help, "the help at the simulator's clock")
-    wait_until(lambda: simulator.subscription_count("/clock") == 0, "nobody listens any more")
+    wait_until(lambda: simulator.subscription_count("/clock") == 0, "no subscription is left")
     assert sum("--clock ros" in line for line in agents.errors) == 1

@@ -37,9 +37,9 @@ def test_what_is_given_at_the_start_is_followed(
             other.set_parameter("pace", 3, NODE, timeout=20)
     else:
         other.set_parameter("speed", 7.0, NODE, timeout=20)
-        agents.until_error("was set to 7.0, which is ignored: it is from 0.1 to 1, not 7.0")
+        agents.until_error("was set to 7.0; value ignored: it is from 0.1 to 1, not 7.0")
         other.set_parameter("pace", 3, NODE, timeout=20)
-        agents.until_error("was set to 3, which is ignored: it is read-only")
+        agents.until_error("was set to 3; value ignored: it is read-only")
     other.set_parameter("speed", 0.75, NODE, timeout=20)
     agents.until_line("slower")
     wait_until(lambda: other.get_parameter("speed", NODE, timeout=20) == 0.1, "the agent's value is there")
@@ -49,11 +49,11 @@ def test_what_is_given_at_the_start_is_followed(
     assert agents.end() == 0
 
 
-def test_a_value_that_does_not_fit_is_told(kind: str, run_agents: Callable[..., Agents]) -> None:
+def test_a_value_that_does_not_match_is_reported(kind: str, run_agents: Callable[..., Agents]) -> None:
     given = ["_speed:=fast"] if kind == "ros1" else ["--ros-args", "-p", "speed:=1"]
     agents = run_agents("tuned.asl", "--mapping", MAPPING, *given)
     if kind == "ros1":  # the master takes anything
-        agents.until_error("/tuned/speed was set to 'fast', which is ignored: it is of type float")
+        agents.until_error("/tuned/speed` was set to 'fast'; value ignored: it is of type float")
         agents.until_line("begins with 0.4 [hall] 2")
     else:
         assert agents.end() == 1

@@ -142,7 +142,7 @@ class FakeClient:
         while not server.offered:
             await clock.sleep(0.1)
             if clock.now() >= deadline:
-                raise ServerUnavailable(f"nobody offered the action {self.name} within {timeout:g} s")
+                raise ServerUnavailable(f"no server offered the action {self.name} within {timeout:g} s")
         accepting = asyncio.ensure_future(self._accepted(goal, on_feedback))
         try:
             await asyncio.wait(

@@ -87,7 +87,7 @@ class Navigator(RosArtifact):
 
     @operation
     async def careless(self) -> None:
-        """Want to be cancelled without being told of pauses."""
+        """Request cancellation without a pausable operation."""
         await self.act(self.goer, {}, suspend="cancel")
 
     @operation(pausable=True)

@@ -25,7 +25,7 @@ STANDSTILL = (0.0, 0.0)
 
 
 class Watcher:
-    """An observer that keeps what it is told.
+    """An observer that stores its observations.
 
     Attributes:
         believed: values of the properties by name, the newest; all of them in `all_believed`.
@@ -55,7 +55,7 @@ class Watcher:
             self.times.append(round(self.clock.elapsed, 6))
 
     def values(self, name: str) -> list[tuple[object, ...]]:
-        """The values that the property *name* took one after the other."""
+        """The successive values of the property *name*."""
         return [values for changed, values in self.changes if changed == name]
 
     def holds(self, name: str) -> list[tuple[object, ...]]:

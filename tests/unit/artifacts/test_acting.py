@@ -57,7 +57,7 @@ def test_a_server_that_refuses_is_rejected() -> None:
         ({"error_code": -4, "error_string": "joint limits"}, "", 'aborted(-4,"joint limits")'),
     ],
 )
-def test_a_server_that_gives_up_says_why(result: dict[str, Any], text: str, reason: str) -> None:
+def test_a_server_that_aborts_gives_the_reason(result: dict[str, Any], text: str, reason: str) -> None:
     async def body(lab: Lab) -> None:
         server, going = await begun(lab, "go")
         server.goals[0].end(GoalStatus.ABORTED, text, **result)
@@ -77,16 +77,16 @@ def test_a_code_may_be_a_message_as_in_moveit() -> None:
     assert error_code(Result()) == -2
 
 
-def test_somebody_elses_cancel_is_canceled() -> None:
+def test_a_goal_cancelled_by_another_client_is_canceled() -> None:
     async def body(lab: Lab) -> None:
         server, going = await begun(lab, "go")
         server.goals[0].end(GoalStatus.CANCELED)
-        assert "somebody else" in await failed(going, "canceled")
+        assert "another client cancelled" in await failed(going, "canceled")
 
     in_lab(body, None)
 
 
-def test_time_that_is_up_cancels_the_goal_and_waits_for_nobody() -> None:
+def test_a_timeout_cancels_the_goal_without_waiting() -> None:
     async def body(lab: Lab) -> None:
         server, going = await begun(lab, "go", Structure("timeout", (3,)), after=0, ending=None)
         await failed(going, "timeout(3)")
@@ -117,9 +117,7 @@ def test_a_server_that_is_not_there_is_unavailable_and_one_that_leaves_is_lost()
     in_lab(body, None)
 
 
-def test_a_server_that_does_not_say_whether_it_accepts_has_too_little_time_and_the_goal_is_cancelled() -> (
-    None
-):
+def test_a_server_that_neither_accepts_nor_rejects_in_time_has_its_goal_cancelled() -> None:
     async def body(lab: Lab) -> None:
         server = FakeServer(lab)
         server.accepting = ACCEPTANCE + 2
@@ -148,7 +146,7 @@ def test_a_goal_that_does_not_fit_is_never_sent() -> None:
 # Dropping.
 
 
-def test_dropping_cancels_the_goal_and_waits_for_nobody() -> None:
+def test_dropping_cancels_the_goal_without_waiting() -> None:
     async def body(lab: Lab) -> None:
         server, going = await begun(lab, "go", ending=None)
         going.execution.cancel()
@@ -212,7 +210,7 @@ def test_two_goals_are_pursued_side_by_side_and_one_of_them_dropped() -> None:
     in_lab(body, None)
 
 
-def test_feedback_that_comes_while_a_dropped_goal_ends_is_not_heard() -> None:
+def test_feedback_during_the_end_of_a_dropped_goal_is_ignored() -> None:
     async def body(lab: Lab) -> None:
         server = FakeServer(lab)
         server.ending = 1
@@ -231,7 +229,7 @@ def test_feedback_that_comes_while_a_dropped_goal_ends_is_not_heard() -> None:
     in_lab(body, None)
 
 
-def test_a_dropped_goal_that_ends_is_not_told() -> None:
+def test_the_end_of_a_dropped_goal_is_not_reported() -> None:
     async def body(lab: Lab) -> None:
         for end in (lambda server: None, FakeServer.leave):
             server, going = await begun(lab, "go", ending=3.0)
@@ -244,7 +242,7 @@ def test_a_dropped_goal_that_ends_is_not_told() -> None:
     in_lab(body, None)
 
 
-def test_a_server_that_has_no_time_left_to_accept_is_told_with_the_time_of_all() -> None:
+def test_a_server_without_time_to_accept_is_reported_with_the_total_time() -> None:
     async def body(lab: Lab) -> None:
         server, going = await begun(lab, "goOrRest", Structure("timeout", (4,)))
         going.execution.pause()

@@ -74,7 +74,7 @@ def test_the_scan_of_the_world_is_seen_and_given_on_request() -> None:
     in_lab(body, "house")
 
 
-def test_no_scan_is_no_scan() -> None:
+def test_a_missing_scan_fails_as_no_scan() -> None:
     async def body(lab: Lab) -> None:
         artifact = await lab.make(ArtBaseScan)
         assert (await lab.call(artifact, "getCurrentBaseScan")).reason == "no_scan(5)"

@@ -78,7 +78,7 @@ def test_recharging_ends_at_exactly_one_hundred_whatever_it_begins_with(level: i
 
 
 def test_nothing_drains_while_the_battery_is_charged_and_other_operations_are_served() -> None:
-    """Defect 5: it went on draining, and nobody could ask."""
+    """Defect 5: it kept draining, and could not be queried."""
 
     async def body(lab: Lab) -> None:
         battery = await lab.make(ArtSimBattery, option("level", 10), option("drain", 5))
@@ -248,7 +248,7 @@ def test_a_battery_that_is_almost_full_is_not_full(status: str) -> None:
     in_lab(body, None)
 
 
-def test_an_old_battery_that_never_tells_that_it_is_full_is_full_when_it_rises_no_more() -> None:
+def test_an_old_battery_is_full_when_its_charge_stops_rising() -> None:
     async def body(lab: Lab) -> None:
         battery = await lab.make(ArtSimBattery, "bot")
         publish = charge(lab.backend, "/bot/battery_state")
@@ -287,7 +287,7 @@ def test_a_battery_of_unknown_charge_is_not_shown() -> None:
     in_lab(body, None)
 
 
-def test_a_charge_that_cannot_be_is_told_and_not_shown() -> None:
+def test_an_impossible_charge_is_reported_and_not_shown() -> None:
     async def body(lab: Lab) -> None:
         artifact = await lab.make(ArtSimBattery, option("source", "robot"))
         watcher = lab.watch(artifact)

@@ -89,7 +89,7 @@ def test_wanting_success_of_a_service_that_says_nothing_about_it_is_a_mistake_of
     in_lab(body, None)
 
 
-def test_dropping_a_call_waits_for_nobody() -> None:
+def test_dropping_a_call_does_not_wait() -> None:
     async def body(lab: Lab) -> None:
         async def slow(request: Any) -> dict[str, Any]:
             await lab.sleep(1)

@@ -159,11 +159,11 @@ def test_a_house_may_have_more_rooms() -> None:
 
 
 WRONG_ROOMS: list[tuple[object, str]] = [
-    (3, "option more_rooms(3) wants a list such as"),
-    ([Structure("room", ("study",))], "wants rooms such as"),
+    (3, "option more_rooms(3): expected a list such as"),
+    ([Structure("room", ("study",))], "expected rooms such as"),
     (
         [Structure("room", ("study", [Structure("sweep", ("Floor",))]))],
-        "of the kinds vacuum, mop, scrub, not sweep",
+        "of the kinds vacuum, mop, scrub, found sweep",
     ),
 ]
 
@@ -188,7 +188,7 @@ def test_other_operations_are_served_while_a_room_is_cleaned() -> None:
         assert watcher.holds("scrub") == [("Tub", "bathroom")]
         cleaning.execution.cancel()
         await lab.sleep(5)
-        assert watcher.holds("mop") == [("", "")], "a dropped cleaning goes on with nothing"
+        assert watcher.holds("mop") == [("", "")], "a dropped cleaning does nothing more"
 
     in_lab(body, None)
 

@@ -107,7 +107,7 @@ def test_a_journey_ends_at_point_and_heading(goal: tuple[float, float]) -> None:
     assert math.degrees(unwrapped(base.pose.heading - math.radians(170))) == pytest.approx(0, abs=1)
 
 
-def test_a_point_where_the_robot_stands_already_needs_no_motion() -> None:
+def test_a_point_at_the_robot_needs_no_motion() -> None:
     base = Base(1)
     assert base.follow(DriveTo(0.01, 0.0)) < 0.5
     assert base.pose == ORIGIN
@@ -122,7 +122,7 @@ def test_turning_to_a_heading_takes_the_short_way() -> None:
     assert maneuver.progress(Pose(0, 0, math.radians(170))) == pytest.approx(math.radians(20))
 
 
-def test_what_was_covered_is_told_in_metres_and_degrees() -> None:
+def test_the_covered_distance_is_in_metres_and_degrees() -> None:
     straight, turn, there = Straight(-1.0), Turn(2.0), DriveTo(1.0, 1.0)
     for maneuver in (straight, turn, there):
         Base(1).follow(maneuver)

@@ -19,7 +19,7 @@ ODOMETRY = "nav_msgs/msg/Odometry"
 
 
 class Robot:
-    """A robot of which tests make odometry: it moves as it is told, with faults between."""
+    """A robot whose odometry is made by tests, with faults."""
 
     def __init__(self, lab: Lab) -> None:
         self._lab = lab
@@ -28,7 +28,7 @@ class Robot:
     async def say(
         self, x: float, stamp: float | None = 0.0, frame: str = "odom", **orientation: float
     ) -> None:
-        """Publish a position; a stamp is told in seconds from now, None is none."""
+        """Publish a position; the stamp is in seconds from now, None for none."""
         header = {
             "frame_id": frame,
             "stamp": 0 if stamp is None else self._lab.clock.now() + stamp,
@@ -45,7 +45,7 @@ def whys(watcher: Watcher) -> list[str]:
     return [str(arguments[1]).replace('"', "") for _, arguments in watcher.signals]
 
 
-def test_bad_messages_are_told_at_the_first_the_tenth_and_the_hundredth() -> None:
+def test_bad_messages_are_reported_on_the_1st_10th_and_100th_occurrence() -> None:
     told: list[tuple[Structure, str]] = []
     faults = Faults("/odom", lambda why, text: told.append((why, text)))
     for number in range(250):
@@ -58,14 +58,14 @@ def test_bad_messages_are_told_at_the_first_the_tenth_and_the_hundredth() -> Non
         'wrong_frame("map")',
         'not_finite("x")',
     ]
-    assert told[0][1] == "/odom: x is nan; the message is dropped"
-    assert told[1][1] == "/odom: x is nan; the message is dropped (10 times by now)"
+    assert told[0][1] == "/odom: x is nan; message dropped"
+    assert told[1][1] == "/odom: x is nan; message dropped (10 times so far)"
     assert faults.total == 251
     assert faults.counts == {"not_finite": 250, "wrong_frame": 1}
 
 
 @pytest.mark.parametrize("number", [math.nan, math.inf, -math.inf])
-def test_a_number_that_is_none_is_told_and_not_shown(number: float) -> None:
+def test_a_number_that_is_not_finite_is_reported_and_not_shown(number: float) -> None:
     async def body(lab: Lab) -> None:
         robot = Robot(lab)
         artifact = await lab.make(ArtOdometry)
@@ -77,14 +77,12 @@ def test_a_number_that_is_none_is_told_and_not_shown(number: float) -> None:
         assert watcher.values("odom") == [(0, 0, 0), (1, 0, 0), (3, 0, 0)]
         assert all(math.isfinite(each) for values in watcher.values("pose") for each in values)
         assert whys(watcher) == ["not_finite(pose.pose.position.x)"]
-        assert lab.logged == [
-            f"[{artifact.name}] /odom: pose.pose.position.x is {number}; the message is dropped"
-        ]
+        assert lab.logged == [f"[{artifact.name}] /odom: pose.pose.position.x is {number}; message dropped"]
 
     in_lab(body, None)
 
 
-def test_odometry_older_than_the_newest_is_dropped_and_the_same_again_is_no_news() -> None:
+def test_older_odometry_is_dropped_and_repeated_odometry_is_ignored() -> None:
     async def body(lab: Lab) -> None:
         robot = Robot(lab)
         watcher = lab.watch(await lab.make(ArtOdometry))
@@ -112,7 +110,7 @@ def test_a_clock_that_jumped_back_is_believed_after_a_few_messages() -> None:
     in_lab(body, None)
 
 
-def test_stragglers_between_good_messages_are_no_jump() -> None:
+def test_late_messages_between_good_ones_are_not_a_jump() -> None:
     async def body(lab: Lab) -> None:
         robot = Robot(lab)
         watcher = lab.watch(await lab.make(ArtOdometry))
@@ -125,7 +123,7 @@ def test_stragglers_between_good_messages_are_no_jump() -> None:
 
 
 def judged(*messages: tuple[float, float]) -> tuple[list[str], list[float]]:
-    """Judge the stamps of messages that arrive at some times; what was told, and how late each was."""
+    """Check the stamps of messages that arrive at some times; return the reports and the delays."""
     told: list[str] = []
     late: list[float] = []
     clock = VirtualClock()
@@ -167,11 +165,11 @@ def test_clocks_that_part_slowly_make_nothing_late() -> None:
     assert max(late) == 0.0
 
 
-def test_a_stamp_that_stands_still_tells_nothing() -> None:
+def test_a_constant_stamp_is_ignored() -> None:
     assert judged(*[(float(n), 100.0) for n in range(10)]) == ([], [0.0] * 10)
 
 
-def test_a_stamp_far_off_our_clock_is_used_and_told() -> None:
+def test_a_stamp_far_off_our_clock_is_used_and_reported() -> None:
     async def body(lab: Lab) -> None:
         robot = Robot(lab)
         watcher = lab.watch(await lab.make(ArtOdometry))
@@ -225,7 +223,7 @@ def test_a_frame_that_is_asked_for_is_the_only_one() -> None:
     in_lab(body, None)
 
 
-def test_a_scan_without_a_range_and_a_battery_without_a_number_are_told() -> None:
+def test_a_scan_without_a_range_and_a_battery_without_a_number_are_reported() -> None:
     async def body(lab: Lab) -> None:
         scanner = lab.watch(await lab.make(ArtBaseScan))
         battery = lab.watch(await lab.make(ArtSimBattery, Structure("source", (Atom("robot"),))))
@@ -246,7 +244,7 @@ def test_a_scan_without_a_range_and_a_battery_without_a_number_are_told() -> Non
     in_lab(body, None)
 
 
-def test_a_battery_that_says_nothing_any_more_is_unknown() -> None:
+def test_a_silent_battery_is_unknown() -> None:
     async def body(lab: Lab) -> None:
         options = (Structure("source", (Atom("robot"),)), Structure("expire", (3,)))
         artifact = await lab.make(ArtSimBattery, *options)
@@ -296,7 +294,7 @@ def feed(lab: Lab, until: float, fault: Any) -> None:
     tick()
 
 
-def test_a_robot_that_loses_its_pose_stops_at_once_and_the_motion_fails_with_a_reason() -> None:
+def test_a_robot_that_loses_its_pose_stops_immediately_and_the_motion_fails_with_a_reason() -> None:
     def fault(message: Any, now: float) -> None:
         if now >= 2.0:
             message.pose.pose.position.x = math.nan
@@ -350,7 +348,7 @@ def test_a_pose_from_another_frame_does_not_lead_a_motion_astray() -> None:
 # Connection.
 
 
-def test_a_topic_is_connected_while_somebody_publishes_it() -> None:
+def test_a_topic_is_connected_while_it_has_a_publisher() -> None:
     async def body(lab: Lab) -> None:
         watcher = lab.watch(await lab.make(ArtTutorial, "r", Structure("watch_connection", (True,))))
         assert watcher.holds("connected") == []

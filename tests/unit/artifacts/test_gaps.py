@@ -1,4 +1,4 @@
-"""A robot that nobody watched for a while: it stands until fresh odometry comes, and its agent is told."""
+"""A robot that was not watched for a while: it stands until new odometry arrives, and its agent is notified."""
 
 from typing import Any
 
@@ -107,7 +107,7 @@ def test_a_motion_by_time_alone_fails_when_the_robot_falls_silent() -> None:
     in_lab(body)
 
 
-def test_an_agent_is_told_that_odometry_was_away() -> None:
+def test_an_agent_is_notified_of_missing_odometry() -> None:
     async def body(lab: Lab) -> None:
         artifact = await lab.make(ArtCmdVel)
         watcher = lab.watch(artifact)

@@ -67,7 +67,7 @@ def test_in_the_graph_inside_the_process_nothing_waits() -> None:
     in_lab(body, world=None)
 
 
-def test_a_motion_that_no_base_hears_warns_once_and_begins() -> None:
+def test_a_motion_without_a_base_warns_once_and_begins() -> None:
     async def body(lab: Lab) -> None:
         wheels = await lab.make(ArtCmdVel)
         for ends in (3.5, 7.0):
@@ -75,7 +75,7 @@ def test_a_motion_that_no_base_hears_warns_once_and_begins() -> None:
             assert lab.clock.elapsed == pytest.approx(ends, abs=0.11)
         (warning,) = warnings(lab)
         assert warning.endswith(
-            " warning: no subscriber on /cmd_vel after 3 s; publishing anyway\n"
+            " warning: no subscriber on topic /cmd_vel after 3 s; publishing anyway\n"
             "  help: start the node that subscribes to it; `jacaros ros list` shows the topics of the graph"
         )
 
@@ -171,7 +171,7 @@ def test_the_first_task_of_the_household_is_published_when_its_listener_is_match
     on_a_graph(body)
 
 
-def test_a_household_that_nobody_listens_to_is_delayed_once() -> None:
+def test_a_household_without_subscribers_is_delayed_once() -> None:
     async def body(lab: Lab) -> None:
         household = await lab.make(ArtCleaning)
         await lab.do(household, "clean", 1)

@@ -260,7 +260,7 @@ def test_the_cruise_speed_is_an_option() -> None:
 # Ends.
 
 
-def test_abort_interrupts_at_once_and_tells_how_far_it_came() -> None:
+def test_abort_interrupts_immediately_and_reports_the_covered_distance() -> None:
     """Defect 1: abortMoving waited until the motion was over; defect 5: so did every other operation."""
 
     async def body(lab: Lab) -> None:
@@ -285,7 +285,7 @@ def test_abort_interrupts_at_once_and_tells_how_far_it_came() -> None:
     in_lab(body)
 
 
-def test_abort_tells_degrees_of_a_turn_and_is_harmless_without_a_motion() -> None:
+def test_abort_reports_degrees_of_a_turn_and_is_harmless_without_a_motion() -> None:
     async def body(lab: Lab) -> None:
         artifact = await lab.make(ArtCmdVel)
         await lab.do(artifact, "abortMoving")
@@ -419,7 +419,7 @@ class Relay:
             self.publisher.publish(sample.message)
 
 
-def test_the_robot_stands_while_odometry_is_lost_and_goes_on_when_it_is_back() -> None:
+def test_the_robot_stands_while_odometry_is_lost_and_then_continues() -> None:
     async def body(lab: Lab) -> None:
         lab.record()
         relay = Relay(lab)
@@ -471,7 +471,7 @@ def test_nonsense_numbers_are_refused() -> None:
 # Odometry of the moving artifacts.
 
 
-def test_current_pose_and_odometry_are_told_on_request_only() -> None:
+def test_current_pose_and_odometry_are_shown_on_request_only() -> None:
     async def body(lab: Lab) -> None:
         artifact = await lab.make(ArtCmdVelAndOdometry)
         watcher = lab.watch(artifact)
@@ -516,7 +516,7 @@ def test_a_robot_name_prefixes_topics_and_properties_and_a_namespace_topics_alon
     in_lab(body, "two_robots")
 
 
-def test_a_speed_that_is_no_speed_makes_creation_fail() -> None:
+def test_an_invalid_speed_makes_creation_fail() -> None:
     async def body(lab: Lab) -> None:
         with pytest.raises(OperationFailed, match="speed"):
             await lab.make(ArtCmdVel, Structure("speed", (-1,)))

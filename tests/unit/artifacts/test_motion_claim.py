@@ -19,7 +19,7 @@ def test_a_wake_up_before_the_wait_is_not_lost() -> None:
     run(main, clock)
 
 
-def test_abort_stops_and_wakes_whoever_drives_or_waits() -> None:
+def test_abort_stops_and_wakes_all_motions() -> None:
     stopped = []
     motions = Motions()
     tickets = [Claim(lambda number=number: stopped.append(number)) for number in range(3)]  # type: ignore[misc]

@@ -60,7 +60,7 @@ def test_properties_change_in_steps_of_the_artifact_with_the_cause_of_the_messag
     in_lab(body)
 
 
-def test_pose_tells_the_heading_in_degrees() -> None:
+def test_pose_has_the_heading_in_degrees() -> None:
     async def body(lab: Lab) -> None:
         odometry = await lab.make(ArtOdometry)
         watcher = lab.watch(odometry)
@@ -100,7 +100,7 @@ def test_on_demand_odometry_changes_only_when_asked(arguments: tuple[Any, ...]) 
         await lab.do(odometry, "getCurrentOdom")
         assert watcher.values("odom")[1] == pytest.approx((0.5, 0, 0), abs=0.01)
         await lab.do(odometry, "getCurrentOdom")
-        assert len(watcher.values("odom")) == 3, "an answer is told though it is the same"
+        assert len(watcher.values("odom")) == 3, "an answer is shown although it is the same"
         assert watcher.signals == []
 
     in_lab(body)
@@ -195,7 +195,7 @@ def test_another_topic_is_an_option_and_an_unknown_option_is_refused() -> None:
     in_lab(body, "two_robots")
 
 
-def test_a_topic_that_nobody_publishes_is_told_after_some_seconds() -> None:
+def test_a_topic_without_publishers_is_logged_after_some_seconds() -> None:
     async def body(lab: Lab) -> None:
         await lab.make(ArtOdometry, Structure("topic", ("odomm",)), name="compass")
         await lab.sleep(2.9)
@@ -203,14 +203,14 @@ def test_a_topic_that_nobody_publishes_is_told_after_some_seconds() -> None:
         await lab.sleep(10)
         [told] = lab.logged
         assert told == (
-            "[compass] the topic /odomm (nav_msgs/msg/Odometry) is missing; still listening. "
-            "Is the node that publishes it running?"
+            "[compass] no publisher on topic /odomm (nav_msgs/msg/Odometry); still listening; "
+            "is the node that publishes it running?"
         )
 
     in_lab(body)
 
 
-def test_a_topic_that_came_or_is_not_wanted_any_more_is_not_told() -> None:
+def test_a_topic_that_appeared_or_was_closed_is_not_logged() -> None:
     async def body(lab: Lab) -> None:
         await lab.make(ArtOdometry)
         given_up = await lab.make(ArtOdometry, Structure("topic", ("odomm",)))
@@ -222,7 +222,7 @@ def test_a_topic_that_came_or_is_not_wanted_any_more_is_not_told() -> None:
     in_lab(body)
 
 
-def test_a_missing_topic_is_not_told_while_the_graph_itself_is_away() -> None:
+def test_a_missing_topic_is_not_logged_while_the_graph_is_lost() -> None:
     async def body(lab: Lab) -> None:
         lab.backend.set_connected(False)  # type: ignore[attr-defined]
         await lab.make(ArtOdometry)

@@ -11,7 +11,7 @@ from jacaros.artifacts.robots.velocity import ArtCmdVel, ArtCmdVelMux, ArtCmdVel
 from jacaros.env import Structure
 
 
-def test_a_drive_goes_on_with_the_remaining_distance() -> None:
+def test_a_drive_continues_with_the_remaining_distance() -> None:
     async def body(lab: Lab) -> None:
         lab.record()
         artifact = await lab.make(ArtCmdVel)
@@ -36,7 +36,7 @@ def test_a_drive_goes_on_with_the_remaining_distance() -> None:
     in_lab(body)
 
 
-def test_a_turn_goes_on_with_the_remaining_angle() -> None:
+def test_a_turn_continues_with_the_remaining_angle() -> None:
     async def body(lab: Lab) -> None:
         artifact = await lab.make(ArtCmdVel)
         turning = lab.begin(artifact, "rotate", 270)
@@ -66,7 +66,7 @@ def test_a_pause_and_resume_in_the_same_moment_changes_nothing() -> None:
     in_lab(body)
 
 
-def test_a_motion_by_time_goes_on_with_the_remaining_time() -> None:
+def test_an_open_loop_motion_continues_with_the_remaining_time() -> None:
     async def body(lab: Lab) -> None:
         lab.record()
         artifact = await lab.make(ArtCmdVel)
@@ -83,7 +83,7 @@ def test_a_motion_by_time_goes_on_with_the_remaining_time() -> None:
 
 
 @pytest.mark.parametrize("when", [0.6, 2.0, 4.0, 5.5, 6.5, 7.5, 8.0, 8.5])
-def test_a_drive_to_a_pose_goes_on_to_the_pose_from_wherever_the_robot_is(when: float) -> None:
+def test_a_drive_to_a_pose_continues_from_wherever_the_robot_is(when: float) -> None:
     async def body(lab: Lab) -> None:
         artifact = await lab.make(ArtCmdVelMuxAndOdometry)
         other = await lab.make(ArtCmdVelMux)
@@ -223,7 +223,7 @@ def test_a_motion_that_is_suspended_while_it_waits_does_not_take_the_robot() -> 
     in_lab(body)
 
 
-def test_a_motion_asked_for_while_the_first_still_brakes_waits_until_it_stands() -> None:
+def test_a_motion_waits_until_the_previous_one_has_stopped() -> None:
     async def body(lab: Lab) -> None:
         artifact = await lab.make(ArtCmdVel)
         side = lab.begin(artifact, "moveForward", 2)

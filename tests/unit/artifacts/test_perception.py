@@ -25,7 +25,7 @@ def test_the_texts_of_the_newest_message_are_properties() -> None:
     in_lab(body, None)
 
 
-def test_parts_between_commas_are_values_if_wanted() -> None:
+def test_parts_between_commas_are_values_on_request() -> None:
     async def body(lab: Lab) -> None:
         watcher = lab.watch(await lab.make(ArtPerception, Structure("split", (True,))))
         publisher = lab.backend.publisher("/jason/perception", "perception_msgs/msg/perception")

@@ -62,12 +62,12 @@ def test_a_rate_limit_counts_time_and_keeps_the_last_value_of_a_pause() -> None:
     assert passed == [(0, (0,)), (0.2, (3,)), (0.4, (7,)), (0.6, (11,)), (0.8, (15,)), (1.0, (19,))]
 
 
-def test_after_a_quiet_time_a_message_passes_at_once_whatever_the_rate() -> None:
+def test_after_a_pause_a_message_is_delivered_immediately_whatever_the_rate() -> None:
     passed = Passed(ReadingPolicy(rate=0.5)).feed((0, (1,)), (5, (2,)), (5.5, (3,)))
     assert passed == [(0, (1,)), (5, (2,)), (7, (3,))]
 
 
-def test_a_value_that_returns_within_a_pause_is_no_news() -> None:
+def test_a_value_that_returns_within_a_pause_is_not_delivered() -> None:
     passed = Passed(ReadingPolicy(rate=1)).feed((0, (1,)), (0.2, (2,)), (0.4, (1,)))
     assert passed == [(0, (1,))]
 
@@ -136,14 +136,17 @@ def test_arguments_are_a_robot_name_and_options_in_any_order() -> None:
 @pytest.mark.parametrize(
     ("argument", "text"),
     [
-        (Structure("rote", (5,)), "no option 'rote'; it knows dead_band, expire, latest_only, mode, rate"),
-        (Structure("rate", (0,)), "rate(0) wants a number above zero"),
-        (Structure("rate", ("fast",)), "wants a number"),
-        (Structure("rate", (True,)), "wants a number"),
-        (Structure("mode", ("loud",)), "wants verbose or on_demand"),
-        (Structure("dead_band", (-1,)), "wants a number not below zero"),
-        (Structure("rate", (1, 2)), "takes a robot name and options"),
-        (5, "takes a robot name and options"),
+        (
+            Structure("rote", (5,)),
+            "no option `rote`; its options: dead_band, expire, latest_only, mode, rate",
+        ),
+        (Structure("rate", (0,)), "rate(0): expected a number above zero"),
+        (Structure("rate", ("fast",)), "expected a number"),
+        (Structure("rate", (True,)), "expected a number"),
+        (Structure("mode", ("loud",)), "expected verbose or on_demand"),
+        (Structure("dead_band", (-1,)), "expected a number that is not negative"),
+        (Structure("rate", (1, 2)), "expects a robot name and options"),
+        (5, "expects a robot name and options"),
     ],
 )
 def test_a_wrong_argument_is_refused_with_what_is_known(argument: object, text: str) -> None:

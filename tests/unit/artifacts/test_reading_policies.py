@@ -41,7 +41,7 @@ class Slow:
         self.note(f"refused {number}")
 
 
-def test_a_burst_waits_until_the_value_before_was_taken_up_and_then_only_the_newest_passes() -> None:
+def test_newest_only_delivery_holds_a_burst_back_until_the_previous_value_is_processed() -> None:
     slow = Slow(ReadingPolicy(latest_only=True))
 
     async def main() -> None:
@@ -58,7 +58,7 @@ def test_a_burst_waits_until_the_value_before_was_taken_up_and_then_only_the_new
     assert slow.log[1][0] <= 0.11
 
 
-def test_without_the_policy_every_value_passes_at_once() -> None:
+def test_without_the_policy_every_value_is_delivered_immediately() -> None:
     slow = Slow(ReadingPolicy())
 
     async def main() -> None:
@@ -84,7 +84,7 @@ def test_an_observer_that_never_takes_up_does_not_keep_values_for_ever() -> None
     assert len(times) == 3
 
 
-def test_a_value_that_waits_is_no_news_when_it_returns_to_the_one_before() -> None:
+def test_a_held_value_is_dropped_when_it_returns_to_the_previous_one() -> None:
     slow = Slow(ReadingPolicy(latest_only=True))
 
     async def main() -> None:
@@ -112,7 +112,7 @@ def test_a_closed_reading_lets_nothing_pass_that_waits() -> None:
     assert slow.log == [(0, (1,))]
 
 
-def test_values_expire_when_nobody_confirms_them_and_come_back_with_the_next_message() -> None:
+def test_values_expire_without_messages_and_return_with_the_next_one() -> None:
     slow = Slow(ReadingPolicy(expire=2.0))
 
     async def main() -> None:
@@ -170,7 +170,7 @@ class Odom:
 
 
 class SlowWatcher(Watcher):
-    """An observer that takes nothing up before it is told to."""
+    """An observer that processes nothing until it is released."""
 
     def __init__(self, clock: VirtualClock) -> None:
         super().__init__(clock)
@@ -184,7 +184,7 @@ class SlowWatcher(Watcher):
         return name in self.untaken
 
 
-def test_a_watcher_that_is_behind_is_told_the_newest_when_it_has_caught_up() -> None:
+def test_a_lagging_observer_gets_the_newest_value_when_it_has_caught_up() -> None:
     async def body(lab: Lab) -> None:
         odom = Odom(lab)
         artifact = await lab.make(ArtOdometry)
@@ -227,7 +227,7 @@ class Holder(RosArtifact):
 
     @operation
     async def hold(self) -> None:
-        await self.clock.sleep(2)  # no step: nobody else has a turn
+        await self.clock.sleep(2)  # no step: no other operation runs
 
 
 def test_at_most_one_update_waits_while_an_operation_keeps_the_artifact() -> None:

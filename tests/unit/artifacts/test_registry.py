@@ -75,9 +75,11 @@ def test_the_artifacts_file_of_a_project_is_searched_before_the_built_in_ones(tm
         find("Countre")
 
 
-def test_a_class_that_is_no_artifact_is_told(tmp_path: Path) -> None:
+def test_a_class_that_is_not_an_artifact_is_reported(tmp_path: Path) -> None:
     find = type_finder(write(tmp_path, "artifacts.py", "class Counter:\n    pass\n"))
-    with pytest.raises(UnknownArtifactType, match=r"Counter of artifacts\.py is no artifact type: derive it"):
+    with pytest.raises(
+        UnknownArtifactType, match=r"`Counter` in artifacts\.py is not an artifact type; derive it"
+    ):
         find("Counter")
 
 
@@ -131,7 +133,7 @@ def test_a_folder_without_artifacts_brings_none(tmp_path: Path) -> None:
         ("import helping\n", "helping.py:2: NameError"),
     ],
 )
-def test_a_mistake_in_the_file_is_told_with_its_line(tmp_path: Path, text: str, message: str) -> None:
+def test_a_mistake_in_the_file_is_reported_with_its_line(tmp_path: Path, text: str, message: str) -> None:
     write(tmp_path, "helping.py", "\nundefined_name\n")
     write(tmp_path, "artifacts.py", text)
     before = set(sys.modules)

@@ -47,7 +47,7 @@ def test_a_cancelled_goal_that_the_server_ends_as_aborted_is_sent_again_too() ->
     in_lab(body, None)
 
 
-def test_a_goal_that_is_aborted_before_the_server_hears_that_it_is_cancelled_is_sent_again() -> None:
+def test_a_goal_aborted_before_the_server_receives_the_cancel_is_sent_again() -> None:
     async def body(lab: Lab) -> None:
         server, going = await suspended(lab, "goOrRest", agrees=False)
         server.goals[0].end(GoalStatus.ABORTED)
@@ -108,7 +108,7 @@ def test_a_goal_that_succeeds_while_it_is_being_cancelled_has_succeeded() -> Non
     in_lab(body, None)
 
 
-def test_a_server_that_does_not_cancel_goes_on_and_its_end_counts() -> None:
+def test_a_goal_that_is_not_cancelled_continues_and_its_outcome_counts() -> None:
     async def body(lab: Lab) -> None:
         server, going = await suspended(lab, "goOrRest", agrees=False)
         await lab.sleep(10)
@@ -232,7 +232,7 @@ def test_what_cannot_work_is_said_before_anything_is_sent(name: str, told: str) 
     in_lab(body, None)
 
 
-def test_feedback_that_comes_while_a_suspended_goal_ends_is_not_heard_and_that_of_the_next_one_is() -> None:
+def test_feedback_during_the_end_of_a_suspended_goal_is_ignored() -> None:
     async def body(lab: Lab) -> None:
         server, going = await begun(lab, "goOrRest", ending=1.0)
         artifact = going.execution.request.artifact
@@ -253,7 +253,7 @@ def test_feedback_that_comes_while_a_suspended_goal_ends_is_not_heard_and_that_o
     in_lab(body, None)
 
 
-def test_a_goal_that_the_server_does_not_cancel_is_heard_on_and_people_are_told() -> None:
+def test_a_goal_that_the_server_does_not_cancel_continues_and_is_logged() -> None:
     async def body(lab: Lab) -> None:
         server, going = await begun(lab, "goOrRest", agrees=False)
         watcher = lab.watch(going.execution.request.artifact)
@@ -264,7 +264,7 @@ def test_a_goal_that_the_server_does_not_cancel_is_heard_on_and_people_are_told(
         server.goals[0].end()
         await succeeded(going)
         assert watcher.values("distance") == [(-1,), (8,)]
-        assert "[a5] the goal of /go goes on although its intention is suspended" in lab.logged
+        assert "[a5] the goal of action /go continues although its intention is suspended" in lab.logged
 
     in_lab(body, None)
 
@@ -274,7 +274,7 @@ def switched(lab: Lab) -> list[str]:
     return [line.partition("] ")[2] for line in lab.logged if "could not" not in line]
 
 
-def test_a_server_that_was_paused_goes_on_when_its_goal_was_dropped_and_has_ended() -> None:
+def test_a_paused_server_is_resumed_after_its_dropped_goal_has_ended() -> None:
     async def body(lab: Lab) -> None:
         server, going = await suspended(lab, "goOrWait", ending=2.0)
         await lab.sleep(1)
@@ -288,7 +288,7 @@ def test_a_server_that_was_paused_goes_on_when_its_goal_was_dropped_and_has_ende
     in_lab(body, None)
 
 
-def test_a_server_that_was_paused_goes_on_when_its_goal_has_ended_by_itself() -> None:
+def test_a_paused_server_is_resumed_after_its_goal_has_ended() -> None:
     async def body(lab: Lab) -> None:
         server, going = await suspended(lab, "goOrWait")
         await lab.sleep(1)
@@ -299,7 +299,7 @@ def test_a_server_that_was_paused_goes_on_when_its_goal_has_ended_by_itself() ->
     in_lab(body, None)
 
 
-def test_a_server_that_may_have_been_paused_goes_on_before_the_goal_is_sent_again() -> None:
+def test_a_possibly_paused_server_is_resumed_before_the_goal_is_sent_again() -> None:
     async def body(lab: Lab) -> None:
         server, going = await suspended(lab, "goOrWait", Structure("mute_pause", (1,)))
         await lab.sleep(1)
@@ -318,7 +318,7 @@ def test_a_server_that_cannot_be_resumed_has_its_goal_cancelled() -> None:
         server, going = await suspended(lab, "goOrWait", Structure("refuse_resume", (1,)))
         await lab.sleep(1)
         going.execution.resume()
-        assert "could not be resumed" in await failed(going, "canceled")
+        assert "cannot resume the goal" in await failed(going, "canceled")
         await lab.sleep(1)
         assert server.goals[0].over
         assert switched(lab) == ["pause", "resume", "resume"], "once more when the goal has ended"
@@ -326,7 +326,7 @@ def test_a_server_that_cannot_be_resumed_has_its_goal_cancelled() -> None:
     in_lab(body, None)
 
 
-def test_an_operation_of_many_goals_is_told_of_pauses_once() -> None:
+def test_an_operation_with_many_goals_is_notified_of_pauses_once() -> None:
     async def body(lab: Lab) -> None:
         server = FakeServer(lab)
         artifact = await lab.make(Navigator)

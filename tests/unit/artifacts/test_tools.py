@@ -100,7 +100,7 @@ async def test_a_clock_needs_a_frequency_that_it_can_tick_at(bench: Bench, clock
 
 
 @on_a_bench(Barrier, 3)
-async def test_a_barrier_holds_everybody_until_all_have_hit_it(bench: Bench, clock: VirtualClock) -> None:
+async def test_a_barrier_blocks_until_all_participants_have_hit_it(bench: Bench, clock: VirtualClock) -> None:
     for agent in ("a", "b"):
         bench.call(agent, "hit")
         bench.call(agent, "waitForAll")
@@ -111,7 +111,7 @@ async def test_a_barrier_holds_everybody_until_all_have_hit_it(bench: Bench, clo
 
 
 @on_a_bench(Barrier, 2)
-async def test_a_barrier_begins_anew(bench: Bench, clock: VirtualClock) -> None:
+async def test_a_barrier_starts_again(bench: Bench, clock: VirtualClock) -> None:
     for agent in ("a", "b"):
         bench.call(agent, "hit")
     # Before b has noticed that the first round is over, a is in the second.
@@ -125,7 +125,7 @@ async def test_a_barrier_begins_anew(bench: Bench, clock: VirtualClock) -> None:
 
 
 @on_a_bench(Barrier, 2)
-async def test_one_who_only_waits_passes_once_in_a_round(bench: Bench, clock: VirtualClock) -> None:
+async def test_an_agent_that_only_waits_passes_once_per_round(bench: Bench, clock: VirtualClock) -> None:
     for agent in ("a", "b"):
         bench.call(agent, "hit")
     bench.call("observer", "waitForAll")
@@ -137,7 +137,7 @@ async def test_one_who_only_waits_passes_once_in_a_round(bench: Bench, clock: Vi
 
 
 @on_a_bench(Latch)
-async def test_a_latch_lets_everybody_pass_once_it_is_set(bench: Bench, clock: VirtualClock) -> None:
+async def test_a_set_latch_blocks_no_agent(bench: Bench, clock: VirtualClock) -> None:
     bench.call("a", "waitForSet")
     assert bench.ended == []
     bench.call("b", "set")

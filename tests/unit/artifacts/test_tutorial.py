@@ -36,7 +36,7 @@ def test_the_service_adds_and_the_property_shows_the_sum() -> None:
     in_lab(body, None)
 
 
-def test_a_service_that_nobody_offers_fails_the_operation_and_leaves_the_property() -> None:
+def test_a_missing_service_fails_the_operation_and_keeps_the_property() -> None:
     """Defect 11: a failing service silently gave 0."""
 
     async def body(lab: Lab) -> None:
@@ -93,7 +93,7 @@ def test_other_operations_are_served_while_the_service_is_asked() -> None:
     in_lab(body, None)
 
 
-def test_chatter_is_heard_and_told_again_on_request() -> None:
+def test_chatter_is_received_and_shown_again_on_request() -> None:
     async def body(lab: Lab) -> None:
         tutorial = await lab.make(ArtTutorial)
         watcher = lab.watch(tutorial)
@@ -108,7 +108,7 @@ def test_chatter_is_heard_and_told_again_on_request() -> None:
     in_lab(body, None)
 
 
-def test_no_message_is_no_message() -> None:
+def test_a_missing_message_fails_as_no_message() -> None:
     async def body(lab: Lab) -> None:
         tutorial = await lab.make(ArtTutorial)
         assert (await lab.call(tutorial, "getCurrentMessage")).reason == "no_message(5)"

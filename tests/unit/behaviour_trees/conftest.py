@@ -84,7 +84,7 @@ class Rails:
         return runner
 
     async def make_cart(self, name):
-        """Another cart, that nobody focuses."""
+        """Another cart, which no agent focuses on."""
         return await self.other.make_artifact(name, Cart)
 
     async def at(self, moment, *call):
@@ -116,7 +116,7 @@ def on_rails():
 
 @pytest.fixture
 def reactive():
-    """A selector or sequence that begins with its first child at every tick."""
+    """A selector or sequence with the prefix `its` first child at every tick."""
 
     def make(kind, *children):
         composite = {"selector": Selector, "sequence": Sequence}[kind]

@@ -39,10 +39,10 @@ def test_while_it_is_under_way_the_tree_runs(on_rails):
         await runner.run()
         return set(seen)
 
-    assert on_rails(scene) == {(Status.RUNNING, "under way"), (Status.SUCCESS, "")}
+    assert on_rails(scene) == {(Status.RUNNING, "running"), (Status.SUCCESS, "")}
 
 
-def test_a_failure_tells_its_reason_to_people_and_to_the_blackboard(on_rails):
+def test_a_failure_logs_its_reason_and_writes_it_to_the_blackboard(on_rails):
     async def scene(rails):
         drive = Act("drive", 20, name="to the end")
         assert await rails.runner(drive).run() is Status.FAILURE
@@ -72,7 +72,7 @@ def test_the_place_of_the_failure_can_be_chosen(on_rails):
         (lambda: Act("drive", "far"), "metres"),
         (lambda: Act("drive", 1, artifact="plane"), "unknown artifact `plane`"),
         (lambda: Act("break_down"), "no wheels"),
-        (lambda: Act("drive", FromBlackboard("far")), "there is no far on the blackboard [not_on_blackboard"),
+        (lambda: Act("drive", FromBlackboard("far")), "the blackboard has no key `far` [not_on_blackboard"),
         (lambda: Act("wait_for_ever", timeout=2), "did not end within 2 s [operation_timeout"),
     ],
 )
@@ -99,7 +99,7 @@ def test_whatever_is_wrong_is_a_failure_with_its_reason(on_rails, act, told):
         (lambda: Act("drive", 20), []),
     ],
 )
-def test_a_mistake_in_the_tree_is_told_to_people_once(on_rails, act, told):
+def test_a_mistake_in_the_tree_is_logged_once(on_rails, act, told):
     async def scene(rails):
         runner = rails.runner(act())
         rails.clock.call_later(30, runner.stop)
@@ -109,7 +109,7 @@ def test_a_mistake_in_the_tree_is_told_to_people_once(on_rails, act, told):
     assert on_rails(scene) == told
 
 
-def test_it_begins_anew_when_it_is_ticked_again(on_rails):
+def test_it_starts_again_when_it_is_ticked_again(on_rails):
     async def scene(rails):
         runner = rails.runner(Act("drive", 2))
         runner.tree.add_post_tick_handler(lambda _: rails.session.value("at") == 4 and runner.stop())
@@ -162,7 +162,7 @@ def test_arguments_and_results_go_by_the_blackboard(on_rails, reactive):
     assert on_rails(scene) == 4
 
 
-def test_the_artifact_can_be_told(on_rails):
+def test_the_artifact_can_be_named(on_rails):
     async def scene(rails):
         first = rails.other.lookup("cart")
         await rails.make_cart("second")
@@ -192,9 +192,9 @@ def test_an_artifact_disposed_under_way_is_a_failure(on_rails):
     assert "drive/1" in after
 
 
-def test_without_a_session_the_cure_is_told():
+def test_without_a_session_the_error_has_help():
     with pytest.raises(
-        TypeError, match=r"behaviour 'drive\(1\)' has no session: let a TreeRunner tick its tree"
+        TypeError, match=r"behaviour `drive\(1\)` has no session; tick its tree with a TreeRunner"
     ):
         Act("drive", 1).setup()
 

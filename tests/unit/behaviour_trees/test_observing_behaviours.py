@@ -61,7 +61,7 @@ def test_of_several_properties_one_that_fits_is_enough(on_rails):
     assert on_rails(scene) == (Status.SUCCESS, Status.FAILURE, 'colour("red"), colour("green")')
 
 
-def test_a_predicate_that_raises_is_a_failure_told_once(on_rails):
+def test_a_predicate_that_raises_is_a_failure_logged_once(on_rails):
     async def scene(rails):
         check = WaitForProperty("battery", lambda level: level / 0)
         runner = rails.runner(check, period=0.1)
@@ -70,10 +70,10 @@ def test_a_predicate_that_raises_is_a_failure_told_once(on_rails):
         return check.feedback_message, rails.told
 
     feedback, told = on_rails(scene)
-    assert feedback == "its predicate raised ZeroDivisionError: division by zero"
-    assert told[0] == "[tree] behaviour 'battery?': its predicate failed:"
+    assert feedback == "the predicate raised ZeroDivisionError: division by zero"
+    assert told[0] == "[tree] behaviour 'battery?': the predicate failed:"
     assert any("test_observing_behaviours.py" in line for line in told)
-    assert sum("its predicate failed" in line for line in told) == 1
+    assert sum("the predicate failed" in line for line in told) == 1
 
 
 def test_a_predicate_for_other_values_is_a_failure(on_rails):
@@ -82,7 +82,7 @@ def test_a_predicate_for_other_values_is_a_failure(on_rails):
     assert "missing 1 required positional argument: 'more'" in feedback
 
 
-def test_waiting_for_a_property_is_noticed_at_once(on_rails):
+def test_an_awaited_property_is_noticed_immediately(on_rails):
     async def scene(rails):
         wait = WaitForProperty("battery", lambda level: level < 20)
         await asyncio.gather(rails.runner(wait).run(), rails.at(2.55, "drain", 10))
@@ -105,12 +105,12 @@ def test_properties_go_to_the_blackboard(on_rails):
         return before, after, dict(Blackboard.storage)
 
     before, after, end = on_rails(scene)
-    assert before == ({"/power": 100, "/place": 0}, "no focused artifact shows colour")
+    assert before == ({"/power": 100, "/place": 0}, "no focused artifact has colour")
     assert after == ({"/power": 100, "/place": 0, "/colour": "red"}, "")
     assert end == {}
 
 
-def test_a_signal_is_heard_once(on_rails, reactive):
+def test_a_signal_is_received_once(on_rails, reactive):
     async def scene(rails):
         heard = []
         bump = OnSignal("bump", to="bump")
@@ -157,7 +157,7 @@ def test_waiting_for_a_signal_begins_with_its_first_tick(on_rails):
     assert elapsed == pytest.approx(4.2, abs=0.011)
 
 
-def test_signals_of_other_names_and_artifacts_are_passed_over(on_rails):
+def test_signals_of_other_names_and_artifacts_are_skipped(on_rails):
     async def scene(rails):
         await rails.make_cart("second")
         rails.session.focus("second")
@@ -177,11 +177,11 @@ def test_a_predicate_of_a_signal_that_raises_is_a_failure(on_rails):
 
     status, feedback, told = on_rails(scene)
     assert status is Status.FAILURE
-    assert feedback == "its predicate raised AttributeError: 'str' object has no attribute 'colour'"
-    assert told == "[tree] behaviour 'bump!': its predicate failed:"
+    assert feedback == "the predicate raised AttributeError: 'str' object has no attribute 'colour'"
+    assert told == "[tree] behaviour 'bump!': the predicate failed:"
 
 
-def test_nothing_is_heard_after_the_end(on_rails):
+def test_nothing_is_received_after_the_end(on_rails):
     async def scene(rails):
         calls = []
         bump = OnSignal("bump", calls.append)

@@ -72,7 +72,7 @@ def test_what_comes_together_is_one_tick(on_rails):
     assert on_rails(scene) == [0, 1.0]
 
 
-def test_a_tree_whose_own_operations_wake_it_does_not_hold_time_up(on_rails):
+def test_a_tree_woken_by_its_own_operations_does_not_block_virtual_time(on_rails):
     async def scene(rails):
         runner = rails.runner(Act("drain", 1), period=None)
         runner.tree.add_post_tick_handler(lambda tree: tree.count == 100 and runner.stop())
@@ -128,7 +128,7 @@ def test_a_tree_runs_once_at_a_time(on_rails):
         runner = rails.runner(Act("drive", 2))
         task = asyncio.create_task(runner.run())
         await rails.clock.sleep(1)
-        with pytest.raises(RuntimeError, match=r"the tree 'drive\(2\)' is running already"):
+        with pytest.raises(RuntimeError, match=r"the tree `drive\(2\)` is already running"):
             await runner.run()
         return await task
 
@@ -203,7 +203,7 @@ def test_when_its_task_is_cancelled_the_cart_stops(on_rails):
     assert on_rails(scene) == 2
 
 
-def test_when_a_tick_is_broken_off_all_that_runs_is_told(on_rails):
+def test_an_interrupted_tick_reports_all_running_behaviours(on_rails):
     class Running(Behaviour):
         ended = None
 
@@ -250,7 +250,7 @@ def test_a_setup_that_raises_is_raised(on_rails):
     on_rails(scene)
 
 
-def test_a_closed_session_is_told(on_rails):
+def test_a_closed_session_is_reported(on_rails):
     async def scene(rails):
         rails.clock.call_later(1.5, rails.session.close)
         with pytest.raises(WorkspaceError, match="session tree has been closed"):
@@ -262,14 +262,14 @@ def test_a_closed_session_is_told(on_rails):
 @pytest.mark.parametrize("root", [None, Act, "patrol"])
 def test_a_tree_needs_a_root(on_rails, root):
     async def scene(rails):
-        with pytest.raises(TypeError, match="a tree needs a root behaviour of py_trees, not"):
+        with pytest.raises(TypeError, match="expected a root behaviour of py_trees, found"):
             TreeRunner(root, rails.session)
 
     on_rails(scene)
 
 
 def test_a_tree_needs_a_session():
-    with pytest.raises(TypeError, match=r"not by 'driver'; a PythonAgent has one: self\.session"):
+    with pytest.raises(TypeError, match=r"found 'driver'; a PythonAgent has one: self\.session"):
         TreeRunner(Timer(1), "driver")
 
 
@@ -282,7 +282,7 @@ def test_the_period_is_positive(on_rails, period):
     on_rails(scene)
 
 
-def test_a_timer_begins_anew(on_rails):
+def test_a_timer_starts_again(on_rails):
     async def scene(rails):
         root = py_trees.decorators.Repeat("twice", Timer(1.5), num_success=2)
         await rails.runner(root).run()
@@ -322,7 +322,7 @@ def test_what_is_quick_enough_ends_by_itself(on_rails, metres, status):
     assert on_rails(scene) is status
 
 
-def test_without_py_trees_the_cure_is_told():
+def test_without_py_trees_the_error_has_help():
     code = "import sys; sys.modules['py_trees'] = None\nimport jacaros.behaviour_trees"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.stderr.splitlines()[-1] == (
@@ -331,7 +331,7 @@ def test_without_py_trees_the_cure_is_told():
     )
 
 
-def test_an_observer_hears_of_behaviours_and_operations_from_beginning_to_end(on_rails):
+def test_an_observer_receives_behaviours_and_operations_from_beginning_to_end(on_rails):
     told = []
 
     async def scene(rails):

@@ -1,4 +1,4 @@
-"""An agent without a reasoner: tests act through its body and look at what its mind is told."""
+"""An agent without a reasoner: tests act through its body and check what its mind receives."""
 
 from collections.abc import Callable, Coroutine, Mapping
 
@@ -103,7 +103,7 @@ class Robot:
     """An agent whose mind only takes notes.
 
     Attributes:
-        log: what the mind was told, in order.
+        log: what the mind received, in order.
         beliefs: percept beliefs as text, without annotations.
         lines: what the agent printed.
     """

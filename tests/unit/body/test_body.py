@@ -15,7 +15,7 @@ async def test_outputs_are_given_to_the_variables(one: Robot, two: Robot, clock:
 
 
 @among_artifacts
-async def test_the_mind_hears_the_changes_before_the_end_of_the_action(
+async def test_the_mind_perceives_the_changes_before_the_end_of_the_action(
     one: Robot, two: Robot, clock: VirtualClock
 ) -> None:
     one.do("focus", one.make("c", "Counter"))
@@ -36,7 +36,7 @@ async def test_a_failed_operation_gives_message_and_reason(
 
 
 @among_artifacts
-async def test_an_unknown_operation_is_told_with_similar_ones(
+async def test_an_unknown_operation_is_reported_with_similar_ones(
     one: Robot, two: Robot, clock: VirtualClock
 ) -> None:
     one.make("motion", "Counter")
@@ -66,7 +66,9 @@ async def test_a_waiting_operation_ends_when_its_guard_becomes_true(
 
 
 @among_artifacts
-async def test_a_dropped_action_is_not_told_and_not_done(one: Robot, two: Robot, clock: VirtualClock) -> None:
+async def test_a_dropped_action_is_neither_reported_nor_executed(
+    one: Robot, two: Robot, clock: VirtualClock
+) -> None:
     one.make("c", "Counter")
     take = one.begin(action("take"))
     one.body.cancel_act(take)

@@ -29,7 +29,7 @@ async def test_an_artifact_is_made_with_or_without_parameters_and_id(
 
 
 @among_artifacts
-async def test_a_failed_creation_tells_why(one: Robot, two: Robot, clock: VirtualClock) -> None:
+async def test_a_failed_creation_gives_the_reason(one: Robot, two: Robot, clock: VirtualClock) -> None:
     one.make("c", "Counter")
     assert reason_of(one.do("makeArtifact", "c", "Counter")) == (
         'makeArtifactFailure("artifact_already_present","c")'
@@ -43,8 +43,8 @@ async def test_a_failed_creation_tells_why(one: Robot, two: Robot, clock: Virtua
     )
     assert "list of parameters" in message_of(one.do("makeArtifact", "e", "Counter", 1))
     wrong = one.do("makeArtifact", "e", "Counter", Var("Id"))
-    assert "wants a list of parameters; the id is the fourth argument, not Id" in message_of(wrong)
-    assert "wants a name" in message_of(one.do("makeArtifact", 3, "Counter"))
+    assert "expected a list of parameters; the id is the fourth argument, found Id" in message_of(wrong)
+    assert "expected a name" in message_of(one.do("makeArtifact", 3, "Counter"))
     assert without_ids(reason_of(wrong)) == 'wrong_op_arguments(ID,"makeArtifact/3")'
 
 
@@ -59,7 +59,7 @@ async def test_artifacts_are_found_by_type_and_listed(one: Robot, two: Robot, cl
 
 
 @among_artifacts
-async def test_an_unknown_artifact_fails_with_a_suggestion(
+async def test_a_missing_artifact_is_reported_with_a_spelling_suggestion(
     one: Robot, two: Robot, clock: VirtualClock
 ) -> None:
     one.make("motion", "Counter")
@@ -78,7 +78,7 @@ async def test_an_output_that_is_bound_is_a_wrong_argument(
         == 'wrong_op_arguments(ID,"lookupArtifact/2")'
     )
     for wrong in (one.do("makeArtifact", "d", "Counter", [], c), one.do("joinWorkspace", "/main", c)):
-        assert "is an output and wants an unbound variable, not cobj_" in message_of(wrong)
+        assert "is an output: expected an unbound variable, found cobj_" in message_of(wrong)
     assert not one.do("lookupArtifact", "d", Var()).success
 
 
@@ -104,7 +104,7 @@ async def test_an_artifact_is_focused_by_its_id_only(one: Robot, two: Robot, clo
     for name in ("focus", "stopFocus"):
         for wrong in (atom("c"), "c", 7, Var("X")):
             assert without_ids(reason_of(one.do(name, wrong))) == f'wrong_op_arguments(ID,"{name}/1")'
-    assert "(lookupArtifact gives the id for a name), not c" in message_of(one.do("focus", atom("c")))
+    assert "(lookupArtifact gives the id for a name), found c" in message_of(one.do("focus", atom("c")))
     assert (
         without_ids(reason_of(one.do("disposeArtifact", "c"))) == 'wrong_op_arguments(ID,"disposeArtifact/1")'
     )
@@ -158,7 +158,7 @@ async def test_focus_when_available_waits_for_the_artifact(
 
 
 @among_artifacts
-async def test_waiting_for_an_artifact_can_be_given_up(one: Robot, two: Robot, clock: VirtualClock) -> None:
+async def test_waiting_for_an_artifact_can_be_cancelled(one: Robot, two: Robot, clock: VirtualClock) -> None:
     waiting = one.begin(action("focusWhenAvailable", "c"))
     one.body.suspend_act(waiting)
     one.body.resume_act(waiting)

@@ -222,7 +222,7 @@ async def test_quitting_ends_everything_in_a_workspace(one: Robot, two: Robot, c
 
 
 @among_artifacts
-async def test_who_has_quit_from_the_environment_can_come_back(
+async def test_an_agent_that_quit_the_environment_can_join_again(
     one: Robot, two: Robot, clock: VirtualClock
 ) -> None:
     one.do("focus", one.make("c", "Counter"))
@@ -274,11 +274,11 @@ async def test_a_pattern_with_a_variable_fits_any_value(one: Robot, two: Robot, 
 
 
 @among_artifacts
-async def test_what_is_no_filter_is_a_wrong_argument(one: Robot, two: Robot, clock: VirtualClock) -> None:
+async def test_an_invalid_filter_is_a_wrong_argument(one: Robot, two: Robot, clock: VirtualClock) -> None:
     c = one.make("c", "Counter")
     for wrong in (3, "count", NIL, [3]):
         failure = one.do("focus", c, wrong)
-        assert "wants a filter: patterns such as count(_)" in message_of(failure)
+        assert "expected a filter: patterns such as count(_)" in message_of(failure)
         assert reason_of(failure).startswith("wrong_op_arguments(")
     assert one.beliefs == []
 
@@ -302,10 +302,10 @@ async def test_actions_that_wait_can_be_given_a_time(one: Robot, two: Robot, clo
 
 
 @among_artifacts
-async def test_a_time_that_is_none_is_refused(one: Robot, two: Robot, clock: VirtualClock) -> None:
+async def test_an_invalid_time_is_refused(one: Robot, two: Robot, clock: VirtualClock) -> None:
     for wrong in (atom("soon"), -1, Var("X")):
         failure = one.do("println", timeout=wrong)
-        assert "timeout wants a number of milliseconds" in message_of(failure)
+        assert "timeout: expected a number of milliseconds" in message_of(failure)
         assert "unknown_annotation" in str(reason_of(failure))
 
 

@@ -40,7 +40,7 @@ def test_signals_come_first_then_changes_additions_and_removals() -> None:
     ]  # fmt: skip
 
 
-def test_the_annotations_tell_where_a_percept_comes_from() -> None:
+def test_the_annotations_name_the_source_of_a_percept() -> None:
     signal, added = writer().percepts(Observation(LAMP, (Signal("tick", ()),), added=(observable("on"),)))
     names = [a[0].name for a in added.annotations]
     assert names == ["artifact_id", "artifact_name", "percept_type", "source", "workspace"]

@@ -44,7 +44,7 @@ async def test_an_annotation_directs_the_action(one: Robot, two: Robot, clock: V
 
 
 @among_artifacts
-async def test_a_directed_action_without_target_says_what_is_wrong(
+async def test_a_directed_action_without_target_fails_with_a_reason(
     one: Robot, two: Robot, clock: VirtualClock
 ) -> None:
     a = one.make("motor", "Counter", 1)
@@ -52,10 +52,10 @@ async def test_a_directed_action_without_target_says_what_is_wrong(
     failure = one.do("raed", Var(), artifact_id=a)
     assert "did you mean `read`" in message_of(failure)
     assert (reason_of(failure) or "").startswith("unknown_operation(cobj_")
-    assert "the method positive of 'motor' is no operation for agents" in message_of(one.do("positive"))
-    assert "says nothing to the environment" in message_of(one.do("read", Var(), artefact_name="motor"))
-    assert "wants an artifact" in message_of(one.do("read", Var(), artifact_id=3))
-    assert "wants a workspace" in message_of(one.do("read", Var(), wid=a))
+    assert "the method `positive` of `motor` is not an operation" in message_of(one.do("positive"))
+    assert "unknown annotation" in message_of(one.do("read", Var(), artefact_name="motor"))
+    assert "expected an artifact" in message_of(one.do("read", Var(), artifact_id=3))
+    assert "expected a workspace" in message_of(one.do("read", Var(), wid=a))
     for failure in (one.do("read", Var(), wsp="attic"), one.do("read", Var(), art="attic/c")):
         assert "attic has not been joined" in message_of(failure)
         assert reason_of(failure) == "env_failure(action_failed(read,generic_error))"
@@ -115,7 +115,7 @@ async def test_an_action_for_the_artifacts_of_a_namespace_does_not_go_elsewhere_
 
 
 @among_artifacts
-async def test_the_id_of_an_artifact_says_more_than_any_other_annotation(
+async def test_the_id_of_an_artifact_takes_precedence_over_other_annotations(
     one: Robot, two: Robot, clock: VirtualClock
 ) -> None:
     one.make("a", "Counter", 1)
@@ -145,4 +145,4 @@ async def test_an_exact_number_of_arguments_wins_over_any_number(
 
 @among_artifacts
 async def test_ids_of_other_things_are_refused(one: Robot, two: Robot, clock: VirtualClock) -> None:
-    assert "wants an artifact" in message_of(one.do("read", Var(), artifact_id=Reference(object())))
+    assert "expected an artifact" in message_of(one.do("read", Var(), artifact_id=Reference(object())))

@@ -97,7 +97,7 @@ def test_a_long_list_does_not_recurse() -> None:
     assert sum(list_items(term(items))) == sum(range(20_000))
 
 
-def test_annotations_are_left_behind() -> None:
+def test_annotations_are_dropped() -> None:
     assert to_value(Annotated(atom("a"), (atom("b"),))) == Atom("a")
 
 

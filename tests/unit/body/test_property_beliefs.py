@@ -25,7 +25,7 @@ class Rude:
 
 
 class Box(Artifact):
-    """Shows what it is told to show."""
+    """Shows the given values."""
 
     def init(self, what: str):
         self.define_property("shown", self._made(what))

@@ -139,9 +139,7 @@ def test_an_undeclared_parameter_is_reported_once(folder: Path, capsys: pytest.C
     assert run(folder, "--param", "spede:=1.0", "--param", "use_sim_time:=true") == 0
     out, told = capsys.readouterr()
     assert out == "[guard] 0.4 [hall]\n"
-    assert told == (
-        "[ros] parameter spede has no effect: nothing declares it; did you mean `speed`?\n"
-    )
+    assert told == ("[ros] parameter spede has no effect: nothing declares it; did you mean `speed`?\n")
 
 
 def test_all_invalid_values_are_reported_in_one_pass(

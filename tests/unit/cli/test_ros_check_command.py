@@ -50,12 +50,12 @@ def test_an_unknown_type_is_reported_once(capsys: pytest.CaptureFixture[str], tm
         ),
         (
             "properties:\n  pose: {topic: odom, fields: [pose.pose.positon.x]}\n",
-            "geometry_msgs/msg/Pose has no field 'positon'",
-            "did you mean 'position'?",
+            "geometry_msgs/msg/Pose has no field `positon`",
+            "did you mean `position`?",
         ),
         (
             "properties:\n  pose: {topic: odom, qos: latched}\n",
-            "incompatible QoS with /world on /odom: the subscription asks for transient_local",
+            "incompatible QoS with /world on /odom: the subscription requests transient_local",
             "write qos: default",
         ),
         (

@@ -21,20 +21,20 @@ def test_the_default_options_are_valid() -> None:
     [
         (RunOptions(fast=True, ros="ros1"), "use --clock real"),
         (RunOptions(fast=True, ros="ros2"), "use --clock real"),
-        (RunOptions(ros="ros3"), "there are memory, ros1, ros2"),
+        (RunOptions(ros="ros3"), "expected memory, ros1, ros2"),
         (RunOptions(seconds=-1), "non-negative"),
         (RunOptions(ros_clock=True), "--clock fast"),
-        (RunOptions(domain_id=3), "--domain-id goes with --ros ros2, not with --ros memory"),
-        (RunOptions(ros="ros1", domain_id=3), "not with --ros ros1"),
-        (RunOptions(ros="ros2", domain_id=233), "from 0 to 232, not 233"),
-        (RunOptions(ros="ros2", master="http://robot.lab.example:11311"), "--master goes with --ros ros1"),
+        (RunOptions(domain_id=3), "--domain-id needs --ros ros2, found --ros memory"),
+        (RunOptions(ros="ros1", domain_id=3), "found --ros ros1"),
+        (RunOptions(ros="ros2", domain_id=233), "from 0 to 232, found 233"),
+        (RunOptions(ros="ros2", master="http://robot.lab.example:11311"), "--master needs --ros ros1"),
         (RunOptions(ros="ros1", master="robot:11311"), "such as http://robot.lab.example:11311"),
         (
             RunOptions(ros="ros1", master="http://robot.lab.example:port"),
-            "not 'http://robot.lab.example:port'",
+            "found 'http://robot.lab.example:port'",
         ),
-        (RunOptions(node_name="3x"), "'3x' is no node name"),
-        (RunOptions(remap={"odom": "/a b"}), "'/a b' is no ROS name"),
+        (RunOptions(node_name="3x"), "'3x' is not a node name"),
+        (RunOptions(remap={"odom": "/a b"}), "'/a b' is not a ROS name"),
     ],
 )
 def test_options_that_exclude_each_other_are_refused(options: RunOptions, text: str) -> None:
@@ -59,9 +59,9 @@ def test_logs_and_diagnostics_go_to_real_graphs_by_default() -> None:
 
 
 def test_a_keyword_replaces_a_field_of_the_options() -> None:
-    with pytest.raises(UsageError, match="there is no ROS backend 'ros3'"):
+    with pytest.raises(UsageError, match="unknown ROS backend 'ros3'"):
         Mas(options=RunOptions(ros="memory"), ros="ros3")
-    with pytest.raises(UsageError, match="there is no ROS backend 'ros4'"):
+    with pytest.raises(UsageError, match="unknown ROS backend 'ros4'"):
         Mas(options=RunOptions(ros="ros4"))
 
 

@@ -124,7 +124,7 @@ def test_the_goal_of_a_killed_run_is_cancelled_before_the_next_run_sends_one(pol
         assert graph.stopped == [3]
         assert (await goal.outcome(5)).status is GoalStatus.SUCCEEDED
         assert graph.began == [3, 4]
-        found = "action /count still pursues a goal of an earlier run of this node"
+        found = "action /count is still executing a goal of an earlier run of this node"
         if policy == "cancel":
             assert f"warning: {found}; cancelling it" in graph.logged
         else:
@@ -133,7 +133,7 @@ def test_the_goal_of_a_killed_run_is_cancelled_before_the_next_run_sends_one(pol
     play(scene)
 
 
-def test_the_goal_of_a_killed_run_is_kept_if_that_is_wanted() -> None:
+def test_the_goal_of_a_killed_run_is_kept_on_request() -> None:
     async def scene(graph: Actionlib) -> None:
         client = await graph.open()
         await client.send({"target": 3, "period": 900.0}, timeout=20)
@@ -141,13 +141,15 @@ def test_the_goal_of_a_killed_run_is_kept_if_that_is_wanted() -> None:
         await client.send({"target": 4, "period": 0.5}, timeout=20)
         await graph.clock.sleep(5)
         assert graph.stopped == []
-        found = "action /count still pursues a goal of an earlier run of this node; the robot may be moving"
+        found = (
+            "action /count is still executing a goal of an earlier run of this node; the robot may be moving"
+        )
         assert graph.logged.count(f"warning: {found}") == 1
 
     play(scene)
 
 
-def test_the_goal_of_another_node_is_no_orphan() -> None:
+def test_the_goal_of_another_node_is_not_an_orphan() -> None:
     async def scene(graph: Actionlib) -> None:
         client = await graph.open()
         await client.send({"target": 3, "period": 900.0}, timeout=20)
@@ -160,7 +162,7 @@ def test_the_goal_of_another_node_is_no_orphan() -> None:
     play(scene)
 
 
-def test_a_server_is_ready_when_it_was_heard_after_all_topics_were_connected() -> None:
+def test_a_server_is_ready_after_its_first_message_on_all_topics() -> None:
     """A publisher is seen a moment before it knows its subscriber; a result in that moment would be lost."""
 
     async def scene(graph: Actionlib) -> None:
@@ -203,7 +205,7 @@ def test_a_goal_that_arrived_is_sent_once() -> None:
     play(scene)
 
 
-def test_a_goal_that_nobody_waits_for_any_more_is_not_sent_again() -> None:
+def test_an_abandoned_goal_is_not_sent_again() -> None:
     async def scene(graph: Actionlib) -> None:
         client = await graph.open()
         graph.swallowed = 1
@@ -217,7 +219,7 @@ def test_a_goal_that_nobody_waits_for_any_more_is_not_sent_again() -> None:
     play(scene)
 
 
-def test_a_goal_that_came_twice_is_carried_out_once() -> None:
+def test_a_duplicate_goal_is_executed_once() -> None:
     async def scene(graph: Actionlib) -> None:
         client = await graph.open()
         sent: list[Any] = []

@@ -57,7 +57,7 @@ def test_a_goal_is_accepted_once_and_ends_with_its_result() -> None:
     assert client.hears(a=State.ACTIVE, times=3) == [("accepted", "a")]
     client.goals.take_result("a", State.SUCCEEDED, "result", "there")
     assert client.told[-1] == ("ended", "a", GoalStatus.SUCCEEDED, "result", "there")
-    assert client.hears(a=State.SUCCEEDED) == [], "nobody waits for it any more"
+    assert client.hears(a=State.SUCCEEDED) == [], "no caller waits for it"
 
 
 def test_a_result_that_was_lost_is_not_awaited_for_ever() -> None:
@@ -67,7 +67,7 @@ def test_a_result_that_was_lost_is_not_awaited_for_ever() -> None:
     assert client.hears(a=State.ABORTED) == [("ended", "a", GoalStatus.ABORTED, None, "")]
 
 
-def test_a_goal_that_never_arrived_is_sent_again_but_not_at_once() -> None:
+def test_a_goal_that_never_arrived_is_sent_again_but_not_immediately() -> None:
     client = Client()
     client.sends("a")
     assert client.hears(0.9, times=2 * ENOUGH_NEWS) == [], "it may be on its way"
@@ -75,7 +75,7 @@ def test_a_goal_that_never_arrived_is_sent_again_but_not_at_once() -> None:
     assert client.hears(1.2, times=ENOUGH_NEWS) == [], "so may the second"
 
 
-def test_a_goal_whose_place_a_newer_one_has_taken_is_not_sent_again() -> None:
+def test_a_replaced_goal_is_not_sent_again() -> None:
     client = Client()
     client.sends("a")
     client.sends("b")
@@ -88,7 +88,7 @@ def test_a_server_that_was_started_again_does_not_know_the_goal() -> None:
     client = Client()
     client.sends("a")
     client.hears(a=State.ACTIVE)
-    assert client.hears(5.0, times=ENOUGH_NEWS) == [("lost", "a", "has been started again and does not know")]
+    assert client.hears(5.0, times=ENOUGH_NEWS) == [("lost", "a", "was restarted and does not know")]
 
 
 def test_a_request_for_cancelling_is_refused_by_silence() -> None:

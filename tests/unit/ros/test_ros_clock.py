@@ -39,7 +39,7 @@ def test_time_is_zero_until_the_first_message_and_then_that_of_the_newest() -> N
     on_loop(main)
 
 
-def test_timers_ring_in_their_order_when_the_clock_has_gone_forward() -> None:
+def test_timers_fire_in_order_when_the_clock_advances() -> None:
     async def main(clock: RosClock, lines: list[str]) -> None:
         rung: list[str] = []
         clock.call_later(2.0, lambda: rung.append("late"))
@@ -62,7 +62,7 @@ def test_timers_ring_in_their_order_when_the_clock_has_gone_forward() -> None:
     on_loop(main)
 
 
-def test_after_a_jump_back_waits_go_on_for_the_rest_of_their_time() -> None:
+def test_after_a_jump_back_waits_continue_with_their_remaining_time() -> None:
     async def main(clock: RosClock, lines: list[str]) -> None:
         rung: list[float] = []
         jumps: list[float] = []
@@ -97,7 +97,7 @@ def test_a_leap_ahead_is_reported_and_a_step_is_not() -> None:
         assert round(clock.elapsed, 3) == 64.1
 
     lines = on_loop(main)
-    assert "/clock jumped ahead by 60.000 s; waits that end in this time are over" in lines
+    assert "/clock jumped ahead by 60.000 s; waits that end in this interval are over" in lines
 
 
 def test_a_periodic_timer_rings_once_after_a_jump_and_not_in_a_burst() -> None:
@@ -118,7 +118,7 @@ def test_a_periodic_timer_rings_once_after_a_jump_and_not_in_a_burst() -> None:
     on_loop(main)
 
 
-def test_messages_that_overtook_each_other_are_no_jump() -> None:
+def test_reordered_messages_are_not_a_jump() -> None:
     async def main(clock: RosClock, lines: list[str]) -> None:
         clock.move_to(10.0)
         clock.move_to(10.02)
@@ -142,7 +142,7 @@ def test_a_sleeper_that_is_cancelled_leaves_no_timer() -> None:
     on_loop(main)
 
 
-def test_it_follows_the_graph_and_tells_of_silence_and_pauses() -> None:
+def test_it_follows_the_graph_and_logs_silence_and_pauses() -> None:
     lines: list[str] = []
     real = VirtualClock()
 
@@ -152,13 +152,13 @@ def test_it_follows_the_graph_and_tells_of_silence_and_pauses() -> None:
         clock = RosClock(lines.append)
         clock.listen(node)
         await real.sleep(10.0)
-        assert sum("nobody publishes /clock" in line for line in lines) == 1
+        assert sum("no publisher on /clock" in line for line in lines) == 1
         publisher = node.publisher("/clock", CLOCK_TYPE)
         await publish(publisher, 7.0)
         assert clock.now() == 7.0
-        assert any("goes on" in line for line in lines)
+        assert any("continues" in line for line in lines)
         await real.sleep(10.0)
-        assert sum("stands still at 7.000 s" in line for line in lines) == 1
+        assert sum("stopped at 7.000 s" in line for line in lines) == 1
         clock.close()
         await publish(publisher, 9.0)
         assert clock.now() == 7.0

@@ -63,7 +63,7 @@ class _Listener:
 
 
 class ServerLife(RuleBasedStateMachine):
-    """A server's goals; the code of each does what it is told through a future."""
+    """A server's goals; a future controls the code of each."""
 
     goals = Bundle("goals")
 
@@ -183,7 +183,7 @@ class ServerLife(RuleBasedStateMachine):
 
 
 class _Wire:
-    """A server that answers when and how it is told."""
+    """A server that answers when and how a test wants."""
 
     def __init__(self) -> None:
         self.offered = True
@@ -295,8 +295,8 @@ class ClientLife(RuleBasedStateMachine):
 
     def _end(self) -> None:
         self.wire.offered = True
-        self.run.do(self.sender.server_present, True)  # whoever waits for it goes on
-        self.run.turn(ENDING + 1.0)  # and whoever waits for the end of a goal that was cancelled
+        self.run.do(self.sender.server_present, True)  # callers that wait for it continue
+        self.run.turn(ENDING + 1.0)  # and callers that wait for the end of a cancelled goal
         self.wire.offered = False
         self.run.do(self.sender.server_present, False)
         self.run.turn(SERVER_LOST_AFTER + 1.0)

@@ -1,4 +1,4 @@
-"""Sending a goal to a server that was seen, and then is not there for whoever carries the goal to it."""
+"""Sending a goal to a server that was seen, but is gone when the goal is sent."""
 
 import asyncio
 from typing import Any
@@ -15,11 +15,11 @@ COUNT = "jacaros_interfaces/action/Count"
 
 
 class Carrier:
-    """A wire that finds nobody for the first goals.
+    """A wire that finds no server for the first goals.
 
     Args:
         clock: of the client.
-        absent: how many goals find nobody.
+        absent: number of goals without a server.
     """
 
     offered = True
@@ -64,12 +64,14 @@ def test_it_is_sent_again_as_long_as_there_is_time() -> None:
     run(scene, clock)
 
 
-def test_the_end_of_the_time_says_that_nobody_offers_the_action() -> None:
+def test_the_timeout_reports_that_no_server_offers_the_action() -> None:
     clock = VirtualClock()
 
     async def scene() -> None:
         carrier = Carrier(clock, absent=float("inf"))
-        with pytest.raises(ServerUnavailable, match=r"nobody offered action /count \(.*Count\) within 2 s"):
+        with pytest.raises(
+            ServerUnavailable, match=r"no server offered action /count \(.*Count\) within 2 s"
+        ):
             await carrier.sender.send({"target": 1}, timeout=2.0)
         assert 1.8 <= clock.elapsed <= 2.0
         assert not carrier.sender.busy

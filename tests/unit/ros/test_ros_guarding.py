@@ -46,7 +46,7 @@ def test_heartbeats_in_time_keep_the_guard_quiet() -> None:
 
 
 def test_a_heartbeat_that_ceases_trips_the_guard_once() -> None:
-    assert Watched().look(10.29, 10.31, 10.4, 20.0) == ["no heartbeat of the agents for 0.31 s"]
+    assert Watched().look(10.29, 10.31, 10.4, 20.0) == ["no heartbeat from the agents for 0.31 s"]
 
 
 def test_the_guard_knows_when_to_look_again() -> None:
@@ -54,7 +54,7 @@ def test_the_guard_knows_when_to_look_again() -> None:
     assert watched.watch.look(10.1) == pytest.approx(0.2)
 
 
-def test_a_process_that_dies_trips_the_guard_at_once() -> None:
+def test_a_process_that_dies_trips_the_guard_immediately() -> None:
     watched = Watched()
     watched.watch.lose()
     assert watched.done == ["the agents' process died"]
@@ -77,10 +77,10 @@ def test_new_agents_release_the_robot_by_permission() -> None:
     watched.watch.connect(20.0)
     assert watched.watch.tripped
     watched.watch.permit()
-    assert watched.look(20.1, 20.5)[2:] == ["no heartbeat of the agents for 0.50 s"]
+    assert watched.look(20.1, 20.5)[2:] == ["no heartbeat from the agents for 0.50 s"]
 
 
-def test_a_goodbye_is_no_death() -> None:
+def test_a_goodbye_does_not_trip_the_guard() -> None:
     watched = Watched()
     watched.watch.leave()
     assert watched.look(20.0) == []
@@ -187,7 +187,7 @@ def test_a_guard_sends_zero_until_the_agents_return_and_ends_with_them(tmp_path:
     assert not (tmp_path / "s").exists()
 
 
-def test_a_guard_that_dies_before_it_is_ready_is_no_guard_that_was_lost(tmp_path: Path) -> None:
+def test_a_guard_that_dies_before_it_is_ready_does_not_count_as_lost(tmp_path: Path) -> None:
     async def dying(_reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         writer.close()
 

@@ -119,7 +119,7 @@ def test_a_closed_handoff_forgets_what_waits() -> None:
     run(main, WallClock())
 
 
-def test_a_loop_that_ended_is_no_error() -> None:
+def test_an_ended_loop_is_not_an_error() -> None:
     loop = asyncio.new_event_loop()
     loop.close()
     Handoff[int](loop, 1, print).put(1)
@@ -142,7 +142,7 @@ def test_blocking_work_is_done_in_a_thread() -> None:
     run(main, WallClock())
 
 
-def test_given_up_work_disturbs_nobody() -> None:
+def test_cancelled_work_has_no_effect() -> None:
     async def main() -> None:
         go = threading.Event()
         future = in_thread(asyncio.get_running_loop(), go.wait, "worker")
@@ -172,7 +172,7 @@ def test_a_thread_asks_the_loop_and_waits() -> None:
     run(main, WallClock())
 
 
-def test_what_is_on_the_loop_already_is_delivered_at_once_but_one_item_a_turn() -> None:
+def test_items_on_the_loop_are_delivered_immediately_but_one_per_turn() -> None:
     async def main() -> None:
         got: list[int] = []
         handoff = Handoff[int](asyncio.get_running_loop(), 2, got.append)

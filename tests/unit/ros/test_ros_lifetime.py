@@ -250,9 +250,9 @@ def test_a_closed_node_leaves_no_thread_behind() -> None:
 
 
 @pytest.mark.usefixtures("process")
-def test_a_thread_stops_only_what_the_loop_was_told_to_stop() -> None:
+def test_a_thread_stops_only_what_the_loop_should_have_stopped() -> None:
     first, second = Lifetime(print, threaded=True), Lifetime(print, threaded=True)
-    first._told = True
+    first._reported = True
     first.stop_if_late(0.0)
     second.stop_if_late(0.0)
     assert (first.state, second.state) == (State.LEAVING, State.JOINING)

@@ -57,7 +57,7 @@ def test_messages_are_delivered_in_the_order_of_publishing_over_all_topics() -> 
     play(scene)
 
 
-def test_a_message_is_handed_over_by_reference_and_takes_no_time() -> None:
+def test_a_message_is_passed_by_reference_and_takes_no_time() -> None:
     async def scene(nodes: Nodes) -> None:
         node = await nodes.open("node")
         got: list[Sample] = []
@@ -110,7 +110,7 @@ def test_closing_in_a_callback_stops_what_waits() -> None:
     play(scene)
 
 
-def test_nodes_that_take_a_topic_for_different_things_both_say_so() -> None:
+def test_nodes_with_different_types_for_a_topic_both_log_it() -> None:
     async def scene(nodes: Nodes) -> None:
         one, two = await nodes.open("one"), await nodes.open("two")
         publisher = one.publisher("/a", "std_msgs/msg/Int32")
@@ -121,12 +121,12 @@ def test_nodes_that_take_a_topic_for_different_things_both_say_so() -> None:
         assert (got, publisher.subscription_count, subscription.publisher_count) == ([], 0, 0)
         assert nodes.log == [
             (
-                "topic /a: /two takes it for std_msgs/msg/String and gets nothing of what is published here as "
+                "topic /a: /two expects std_msgs/msg/String and does not receive what is published here as "
                 "std_msgs/msg/Int32"
             ),
             (
-                "topic /a: /one publishes std_msgs/msg/Int32, not std_msgs/msg/String; write std_msgs/msg/Int32 here to "
-                "receive it"
+                "topic /a: /one publishes std_msgs/msg/Int32, not std_msgs/msg/String; to receive it, write "
+                "std_msgs/msg/Int32 here"
             ),
         ]
 
@@ -140,8 +140,9 @@ def test_an_incompatible_wish_is_reported() -> None:
         node.subscription("/a", "std_msgs/msg/Int32", print)
         assert nodes.log == [
             (
-                "topic /a: not connected, because the subscription asks for reliable, the publisher offers best_effort; "
-                "ask for no more than is offered"
+                "topic /a: incompatible QoS: not connected: the subscription requests reliable, "
+                "the publisher offers best_effort; "
+                "request at most what the publisher offers"
             )
         ]
 
@@ -239,7 +240,7 @@ def test_a_call_of_another_type_fails() -> None:
     play(scene)
 
 
-def test_a_newer_service_takes_over() -> None:
+def test_a_newer_service_replaces_the_older_one() -> None:
     async def scene(nodes: Nodes) -> None:
         node = await nodes.open("node")
         old = node.service("/add", ADD, lambda r: {"sum": 1})

@@ -117,7 +117,7 @@ def test_messages_can_come_several_times_and_late() -> None:
     play(scene)
 
 
-def test_who_subscribes_later_is_disturbed_too() -> None:
+def test_later_subscriptions_are_disturbed_too() -> None:
     async def scene(lab: Lab) -> None:
         _, there = await lab.open()
         lab.graph.disturb("/n", dropped())
@@ -129,7 +129,7 @@ def test_who_subscribes_later_is_disturbed_too() -> None:
     play(scene)
 
 
-def test_a_vanished_node_says_nothing_more() -> None:
+def test_a_vanished_node_is_silent() -> None:
     async def scene(lab: Lab) -> None:
         here, there = await lab.open()
         hooked: list[str] = []
@@ -140,7 +140,7 @@ def test_a_vanished_node_says_nothing_more() -> None:
         assert (await there.contents()).nodes == ("/there",)
         with pytest.raises(RosError, match="was taken away"):
             here.publisher("/n", INT)
-        with pytest.raises(RosError, match="no node, service or action /nobody"):
+        with pytest.raises(RosError, match="unknown node, service or action: /nobody"):
             lab.graph.vanish("/nobody")
 
     play(scene)

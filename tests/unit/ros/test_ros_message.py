@@ -78,7 +78,7 @@ def test_a_mismatch_names_field_and_type(type_name: str, fields: dict[str, Any],
     assert where in str(caught.value)
 
 
-def test_an_unknown_field_tells_the_known_ones() -> None:
+def test_an_unknown_field_lists_the_known_ones() -> None:
     with pytest.raises(MessageMismatch, match="did you mean angular") as caught:
         make("geometry_msgs/msg/Twist", anguler={})
     assert caught.value.known == ("linear", "angular")
@@ -147,7 +147,7 @@ def test_field_names_leave_fillers_out() -> None:
     assert field_names(3) is None
 
 
-def test_an_unknown_type_names_the_cure() -> None:
+def test_an_unknown_type_has_a_help() -> None:
     with pytest.raises(UnknownInterface, match=r"interface_paths .*: my_msgs/msg/Thing\.msg"):
         make("my_msgs/msg/Thing")
 

@@ -27,19 +27,19 @@ def test_service_types_have_one_full_form() -> None:
 
 
 @pytest.mark.parametrize("written", ["", "Odometry", "a/b/c/d", "a//b", "a/mesg/b", "1a/B", "a/B c", "/a/B"])
-def test_what_is_no_type_name_is_refused(written: str) -> None:
-    with pytest.raises(NameInvalid, match="no type name"):
+def test_an_invalid_type_name_is_refused(written: str) -> None:
+    with pytest.raises(NameInvalid, match="not a type name"):
         message_type(written)
 
 
 @pytest.mark.parametrize("name", ["", "a/b", "1a", "a b", "~a"])
-def test_what_is_no_node_name_is_refused(name: str) -> None:
-    with pytest.raises(NameInvalid, match="no node name"):
+def test_an_invalid_node_name_is_refused(name: str) -> None:
+    with pytest.raises(NameInvalid, match="not a node name"):
         NodeNames(name)
 
 
 @pytest.mark.parametrize("name", ["", "/", "a//b", "a/", "/a b", "/1", "~", "{x}", "a-b"])
-def test_what_is_no_topic_name_is_refused(name: str) -> None:
+def test_an_invalid_topic_name_is_refused(name: str) -> None:
     with pytest.raises(NameInvalid):
         NodeNames("node").resolve(name)
 

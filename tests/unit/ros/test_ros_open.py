@@ -24,7 +24,7 @@ def test_virtual_time_and_a_real_graph_do_not_go_together(kind: str) -> None:
 
 
 @pytest.mark.parametrize(("kind", "library"), [("ros1", "rospy"), ("ros2", "rclpy")])
-def test_a_missing_library_names_itself_and_the_cure(kind: str, library: str) -> None:
+def test_a_missing_library_is_named_with_help(kind: str, library: str) -> None:
     if importlib.util.find_spec(library) is not None:
         pytest.skip(f"{library} is installed here")
     with pytest.raises(BackendUnavailable, match=rf"(?s){library}.*tools/install_{kind}\.sh"):

@@ -24,7 +24,7 @@ class Store:
         return self.parameters.declare(name, Declaration(default, **more))
 
 
-def test_every_declaration_and_change_is_told() -> None:
+def test_every_declaration_and_change_is_reported() -> None:
     store = Store()
     store.declare("a", 1)
     store.parameters.set("a", 2)
@@ -39,7 +39,7 @@ def test_a_given_value_takes_the_place_of_the_default() -> None:
     assert store.parameters.get("speed") == 0.25
 
 
-def test_given_values_that_nobody_declares_are_known() -> None:
+def test_given_but_undeclared_values_are_known() -> None:
     store = Store(speed=0.25, spede=1)
     store.declare("speed", 0.5)
     store.declare("turn", 2)
@@ -48,7 +48,7 @@ def test_given_values_that_nobody_declares_are_known() -> None:
     assert "spede" not in store.parameters.names()
 
 
-def test_what_to_write_for_a_whole_number_is_told() -> None:
+def test_the_error_for_an_integer_says_what_to_write() -> None:
     store = Store(speed=1)
     with pytest.raises(ParameterRefused, match=r"of type float; 1 is of type int; write 1\.0"):
         store.declare("speed", 0.5)
@@ -123,10 +123,10 @@ def test_a_judgement_that_fails_refuses() -> None:
     store.declare("p", 1, accept=lambda value: allowed[value])
     with pytest.raises(ParameterRefused, match="KeyError: 2"):
         store.parameters.set("p", 2)
-    assert store.log == ["judging a parameter of /node failed: KeyError: 2"]
+    assert store.log == ["the check of a parameter of /node failed: KeyError: 2"]
 
 
-def test_unknown_names_are_told_with_those_that_there_are() -> None:
+def test_unknown_names_are_reported_with_the_known_ones() -> None:
     store = Store()
     with pytest.raises(ParameterUnknown, match="/node has no parameter a; it has none"):
         store.parameters.get("a")
@@ -137,7 +137,7 @@ def test_unknown_names_are_told_with_those_that_there_are() -> None:
 
 @pytest.mark.parametrize("value", [None, {"a": 1}, [1, "a"], [[1]], [b"a"], math.nan, object()])
 def test_other_values_are_no_parameters(value: Any) -> None:
-    with pytest.raises(ParameterRefused, match="a parameter holds"):
+    with pytest.raises(ParameterRefused, match="expected a bool, a number"):
         checked_value(value)
 
 

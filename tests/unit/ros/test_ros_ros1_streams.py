@@ -107,7 +107,7 @@ def test_a_long_message_comes_whole(pair: tuple[socket.socket, socket.socket]) -
 def test_what_piled_up_while_the_loop_was_busy_comes_together(
     pair: tuple[socket.socket, socket.socket],
 ) -> None:
-    """Only so the newest of it can be told from the oldest."""
+    """Otherwise the newest cannot be distinguished from the oldest."""
     ours, theirs = pair
     piled_up = [b"%04d" % number * 256 for number in range(100)]
 
@@ -136,7 +136,7 @@ def test_what_came_before_the_end_is_taken(pair: tuple[socket.socket, socket.soc
     run(main, WallClock())
 
 
-def test_an_inlet_may_be_closed_by_who_takes(pair: tuple[socket.socket, socket.socket]) -> None:
+def test_a_receiver_may_close_its_inlet(pair: tuple[socket.socket, socket.socket]) -> None:
     ours, theirs = pair
 
     async def main() -> None:
@@ -156,7 +156,7 @@ def test_an_inlet_may_be_closed_by_who_takes(pair: tuple[socket.socket, socket.s
     run(main, WallClock())
 
 
-def test_messages_leave_at_once_and_in_order(pair: tuple[socket.socket, socket.socket]) -> None:
+def test_messages_leave_immediately_and_in_order(pair: tuple[socket.socket, socket.socket]) -> None:
     ours, theirs = pair
     outbox = Outbox(ours, 10)
     for number in range(100):
@@ -167,7 +167,7 @@ def test_messages_leave_at_once_and_in_order(pair: tuple[socket.socket, socket.s
     outbox.close()
 
 
-def test_a_slow_subscriber_holds_nobody_up_and_gets_the_newest_messages_whole(
+def test_a_slow_subscriber_blocks_no_publisher_and_gets_the_newest_messages(
     pair: tuple[socket.socket, socket.socket],
 ) -> None:
     ours, theirs = pair
@@ -202,7 +202,7 @@ def test_nothing_is_dropped_where_any_number_may_wait(pair: tuple[socket.socket,
     outbox.close()
 
 
-def test_a_subscriber_that_has_gone_is_told(pair: tuple[socket.socket, socket.socket]) -> None:
+def test_a_lost_subscriber_is_reported(pair: tuple[socket.socket, socket.socket]) -> None:
     ours, theirs = pair
     outbox = Outbox(ours, 3)
     theirs.close()

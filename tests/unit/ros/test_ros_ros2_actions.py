@@ -3,7 +3,7 @@
 import pytest
 
 from jacaros.ros.protocols import ros2_actions
-from jacaros.ros.protocols.ros2_actions import SignsOfLife
+from jacaros.ros.protocols.ros2_actions import FailureDetector
 
 
 class Watched:
@@ -15,7 +15,7 @@ class Watched:
         self.looks = 0
         self.told: list[bool] = []
         monkeypatch.setattr(ros2_actions.time, "monotonic", lambda: self.now)
-        self.signs = SignsOfLife(self._probed, self.told.append, self._look)
+        self.detector = FailureDetector(self._probed, self.told.append, self._look)
         self.answering = True
         self.telling = False
 
@@ -30,19 +30,19 @@ class Watched:
         for _ in range(round(seconds / 0.1)):
             self.now += 0.1
             asked = self.probes
-            self.signs.check(self.now, under_way, waiting)
+            self.detector.check(self.now, under_way, waiting)
             if self.answering and self.probes > asked:
-                self.signs.heard()
-                self.signs.probe_answered()
+                self.detector.heard()
+                self.detector.probe_answered()
             if self.telling:
-                self.signs.heard()
+                self.detector.heard()
 
 
 @pytest.fixture
 def watched(monkeypatch: pytest.MonkeyPatch) -> Watched:
     made = Watched(monkeypatch)
-    made.signs.heard()
-    made.signs.goal_begins()
+    made.detector.heard()
+    made.detector.goal_begins()
     return made
 
 
@@ -52,7 +52,7 @@ def test_a_silent_server_that_answers_is_not_suspected(watched: Watched) -> None
     assert 10 < watched.probes < 25
 
 
-def test_a_server_that_tells_is_hardly_asked(watched: Watched) -> None:
+def test_a_server_that_reports_is_rarely_polled(watched: Watched) -> None:
     watched.telling = True
     watched.live(20.0)
     assert (watched.told, watched.probes) == ([], 1)
@@ -74,11 +74,11 @@ def test_a_server_that_never_answers_while_it_works_is_not_suspected(watched: Wa
 def test_an_answer_that_waited_for_the_end_of_the_goal_proves_nothing(watched: Watched) -> None:
     watched.answering = False
     watched.live(5.0)
-    watched.signs.heard()
-    watched.signs.probe_answered()
+    watched.detector.heard()
+    watched.detector.probe_answered()
     watched.live(0.2)
-    watched.signs.rest()
-    watched.signs.goal_begins()
+    watched.detector.rest()
+    watched.detector.goal_begins()
     watched.live(30.0)
     assert watched.told == []
 
@@ -87,62 +87,62 @@ def test_a_suspicion_that_was_wrong_is_taken_back_and_not_repeated(watched: Watc
     watched.live(3.0)
     watched.answering = False
     watched.live(3.0)
-    watched.signs.heard()
+    watched.detector.heard()
     watched.live(30.0)
     assert watched.told == [False, True]
 
 
-def test_another_server_is_judged_anew(watched: Watched) -> None:
+def test_another_server_starts_without_suspicion(watched: Watched) -> None:
     watched.live(3.0)
-    watched.signs.stranger()
+    watched.detector.reset()
     watched.answering = False
     watched.live(30.0)
     assert watched.told == []
 
 
-def test_a_silent_server_of_which_nothing_is_known_is_looked_for_with_fresh_eyes(watched: Watched) -> None:
+def test_a_silent_server_without_history_gets_a_liveness_check(watched: Watched) -> None:
     watched.answering = False
     watched.live(2.0)
     assert (watched.looks, watched.told) == (1, [])
-    watched.signs.looked(found=False)
+    watched.detector.looked(found=False)
     assert watched.told == [False]
-    watched.signs.looked(found=True)
+    watched.detector.looked(found=True)
     assert watched.told == [False, True]
 
 
 def test_a_server_that_was_found_is_believed_for_a_while(watched: Watched) -> None:
     watched.answering = False
     watched.live(2.0)
-    watched.signs.looked(found=True)
+    watched.detector.looked(found=True)
     watched.live(25.0)
     assert (watched.looks, watched.told) == (1, [])
     watched.live(25.0)
     assert watched.looks == 2
 
 
-def test_a_sign_that_comes_during_the_look_outweighs_it(watched: Watched) -> None:
+def test_a_message_during_the_liveness_check_overrides_it(watched: Watched) -> None:
     watched.answering = False
     watched.live(2.0)
-    watched.signs.heard()
-    watched.signs.looked(found=False)
+    watched.detector.heard()
+    watched.detector.looked(found=False)
     assert watched.told == []
 
 
-def test_a_server_that_answers_is_not_looked_for_before_it_is_silent(watched: Watched) -> None:
+def test_an_answering_server_is_not_checked_before_it_is_silent(watched: Watched) -> None:
     watched.live(20.0)
     assert watched.looks == 0
     watched.answering = False
     watched.live(3.0)
     assert (watched.looks, watched.told) == (1, [False])
-    watched.signs.looked(found=True)
+    watched.detector.looked(found=True)
     assert watched.told == [False, True]
 
 
-def test_a_server_that_does_not_say_whether_it_accepts_is_looked_for(watched: Watched) -> None:
+def test_a_server_that_neither_accepts_nor_rejects_is_checked(watched: Watched) -> None:
     watched.answering = False
     watched.live(0.9, under_way=False, waiting=True)
     assert watched.looks == 0
     watched.live(0.5, under_way=False, waiting=True)
     assert (watched.looks, watched.probes) == (1, 0)
-    watched.signs.looked(found=False)
+    watched.detector.looked(found=False)
     assert watched.told == [False]

@@ -10,8 +10,8 @@ from jacaros.ros.interfaces.ros2_package import (
     BUILT_IN,
     PACKAGE,
     definitions,
-    look_alikes,
     origin,
+    similar_types,
     write_package,
 )
 
@@ -26,7 +26,7 @@ def test_all_definitions_are_in_it_and_in_its_list_of_files(tmp_path: Path) -> N
     package = write_package(tmp_path)
     assert package == tmp_path / PACKAGE
     files = {path.relative_to(package).as_posix() for path in package.glob("*/*.*")}
-    assert files == set(look_alikes())
+    assert files == set(similar_types())
     assert {"action/Count.action", "action/NavigateToPose.action", "srv/AddTwoInts.srv"} <= files
     listed = set(re.findall(r'"(.*)"', (package / "CMakeLists.txt").read_text()))
     assert listed == files
@@ -34,16 +34,16 @@ def test_all_definitions_are_in_it_and_in_its_list_of_files(tmp_path: Path) -> N
 
 def test_types_of_ros_1_alone_are_not_in_it() -> None:
     assert {"AutoDocking", "BumperEvent", "MoveBase"}.isdisjoint(
-        found.name for found in look_alikes().values()
+        found.name for found in similar_types().values()
     )
-    assert look_alikes()["msg/SensorState.msg"].package == "turtlebot3_msgs"
+    assert similar_types()["msg/SensorState.msg"].package == "turtlebot3_msgs"
     assert origin("action", "MoveBase") is None
 
 
 def test_rosidl_takes_the_names_of_all_types() -> None:
     """One that it refuses lets the whole package fail to build."""
     wrong = [
-        found.name for found in look_alikes().values() if not re.fullmatch(r"[A-Z][A-Za-z0-9]*", found.name)
+        found.name for found in similar_types().values() if not re.fullmatch(r"[A-Z][A-Za-z0-9]*", found.name)
     ]
     assert wrong == []
 
@@ -52,11 +52,11 @@ def test_the_manifest_names_what_the_definitions_need(tmp_path: Path) -> None:
     manifest = ElementTree.parse(write_package(tmp_path) / "package.xml").getroot()
     depends = {element.text for element in manifest.findall("depend")}
     assert {"action_msgs", "geometry_msgs", "std_msgs"} <= depends
-    assert depends.isdisjoint({PACKAGE, *(found.package for found in look_alikes().values())})
+    assert depends.isdisjoint({PACKAGE, *(found.package for found in similar_types().values())})
     assert manifest.findtext("member_of_group") == "rosidl_interface_packages"
 
 
-def test_references_between_look_alikes_stay_inside(tmp_path: Path) -> None:
+def test_references_between_substitutes_stay_inside(tmp_path: Path) -> None:
     put(tmp_path / "in", "a_msgs/msg/Part.msg", "uint8 kind\n")
     put(
         tmp_path / "in",
@@ -68,7 +68,7 @@ def test_references_between_look_alikes_stay_inside(tmp_path: Path) -> None:
     assert "DEPENDENCIES std_msgs\n" in (package / "CMakeLists.txt").read_text()
 
 
-def test_constants_that_an_earlier_part_has_are_left_out(tmp_path: Path) -> None:
+def test_constants_of_an_earlier_part_are_omitted(tmp_path: Path) -> None:
     put(
         tmp_path / "in",
         "a_msgs/action/Do.action",
@@ -82,22 +82,22 @@ def test_constants_that_an_earlier_part_has_are_left_out(tmp_path: Path) -> None
 def test_two_types_of_one_name_are_refused_unless_they_are_the_same(tmp_path: Path) -> None:
     put(tmp_path, "a_msgs/msg/Same.msg", "# one\nuint8 kind\n")
     put(tmp_path, "b_msgs/msg/Same.msg", "# other\nuint8 kind  # of it\n")
-    assert list(look_alikes(tmp_path)) == ["msg/Same.msg"]
+    assert list(similar_types(tmp_path)) == ["msg/Same.msg"]
     put(tmp_path, "b_msgs/msg/Same.msg", "uint16 kind\n")
     with pytest.raises(ValueError, match="the same name in jacaros_interfaces"):
-        look_alikes(tmp_path)
+        similar_types(tmp_path)
 
 
 def test_packages_that_every_ros_2_has_are_left_to_it(tmp_path: Path) -> None:
     put(tmp_path, "nav_msgs/srv/GetMap.srv", "---\nOccupancyGrid map\n")
     put(tmp_path, "a_msgs/msg/Part.msg", "uint8 kind\n")
-    assert list(look_alikes(tmp_path)) == ["msg/Part.msg"]
+    assert list(similar_types(tmp_path)) == ["msg/Part.msg"]
 
 
 def test_transforms_have_a_package_of_their_own_name(tmp_path: Path) -> None:
     package = write_package(tmp_path, "tf2_msgs")
     assert [path.name for path in package.glob("msg/*")] == ["TFMessage.msg"]
-    assert "tf2_msgs" not in {found.package for found in look_alikes().values()}
+    assert "tf2_msgs" not in {found.package for found in similar_types().values()}
     with pytest.raises(ValueError, match="no definitions of no_msgs"):
         write_package(tmp_path, "no_msgs")
 
@@ -107,7 +107,7 @@ def test_what_is_written_replaces_what_was_there(tmp_path: Path) -> None:
     assert not (write_package(tmp_path) / "msg/Old.msg").exists()
 
 
-def test_look_alikes_know_what_they_look_like() -> None:
+def test_substitutes_know_their_originals() -> None:
     assert origin("action", "NavigateToPose") == "nav2_msgs"
     assert origin("srv", "AddTwoInts") == "example_interfaces"
     assert origin("action", "Count") is None

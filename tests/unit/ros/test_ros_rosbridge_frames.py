@@ -83,7 +83,7 @@ def told_of(payload: bytes) -> list[str]:
 )
 def test_a_frame_of_junk_is_reported_and_ignored(payload: bytes) -> None:
     (told,) = told_of(payload)
-    assert told.startswith("the rosbridge server sent a frame that is not an operation; it is ignored: ")
+    assert told.startswith("ignored an invalid frame of the rosbridge server: ")
     assert len(told) < 600
 
 
@@ -194,7 +194,7 @@ def test_a_server_of_another_name_is_not_trusted(certificate: Path) -> None:
 
 
 class Robot:
-    """A server on a socket, in a thread of its own; it reads only when it is told to."""
+    """A server on a socket, in a thread of its own; it reads only on request."""
 
     def __init__(self) -> None:
         self._listening = socket.create_server(("127.0.0.1", 0))

@@ -69,7 +69,7 @@ def test_a_packed_array_is_read_with_its_infinite_numbers(translator: Translator
         ({"angle_min": "wide"}, "field angle_min of sensor_msgs/msg/LaserScan"),
         ({"ranges": 7}, "field ranges"),
         ({"header": {"stamp": 7}}, "field stamp of std_msgs/msg/Header"),
-        (7, "is given for a sensor_msgs/msg/LaserScan"),
+        (7, "expected a sensor_msgs/msg/LaserScan, found 7"),
     ],
 )
 def test_what_is_not_of_the_type_is_refused_with_the_name_of_the_field(

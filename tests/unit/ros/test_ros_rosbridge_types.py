@@ -1,4 +1,4 @@
-"""Types that nobody here knows, of a rosbridge server that does not know them either or does not say."""
+"""Unknown types, with a rosbridge server that does not know them either or does not answer."""
 
 from typing import Any
 

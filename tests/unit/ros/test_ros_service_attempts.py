@@ -9,7 +9,7 @@ from jacaros.ros.waiting import Absence
 
 
 def end_of_call(takes: float, offered: bool) -> str:
-    """Call a service for a second; each attempt takes so long to find out that nobody is there."""
+    """Call a service for a second; each attempt takes some time to find no server."""
     clock = VirtualClock()
     attempts: list[float] = []
 
@@ -32,7 +32,7 @@ def end_of_call(takes: float, offered: bool) -> str:
 
 def test_who_was_missing_to_the_last_is_missing_though_the_last_attempt_had_no_time() -> None:
     for takes in (0.03, 0.04, 0.13, 0.2, 0.29):
-        assert end_of_call(takes, offered=False) == "nobody offered service /x within 1 s"
+        assert end_of_call(takes, offered=False) == "no node offered service /x within 1 s"
 
 
 def test_who_came_meanwhile_and_did_not_answer_timed_out() -> None:
@@ -43,7 +43,7 @@ def test_one_attempt_without_an_answer_timed_out() -> None:
     assert end_of_call(7.0, offered=False) == "service /x did not answer within 1 s"
 
 
-def test_people_are_told_of_the_first_the_tenth_and_the_hundredth_wait_in_vain() -> None:
+def test_the_1st_10th_and_100th_unsuccessful_wait_is_logged() -> None:
     clock = VirtualClock()
     said: list[str] = []
     there = False

@@ -60,19 +60,19 @@ def test_parts_are_known_without_asking_for_the_whole(tmp_path: Path) -> None:
         ("no_msgs/msg/Nothing", "message type no_msgs/msg/Nothing is not known"),
     ],
 )
-def test_unknown_types_are_told(name: str, message: str) -> None:
+def test_unknown_types_are_reported(name: str, message: str) -> None:
     schema = DefinitionSchema()
     with pytest.raises(UnknownInterface, match=message):
         schema.action(name) if name.endswith("action/Nothing") else schema.fields(name)
 
 
-def test_a_definition_that_refers_to_an_unknown_type_is_told(tmp_path: Path) -> None:
+def test_a_definition_that_refers_to_an_unknown_type_is_reported(tmp_path: Path) -> None:
     write(tmp_path, "kitchen_msgs/action/Serve.action", "no_msgs/Table table\n---\n---\n")
     with pytest.raises(UnknownInterface, match="no_msgs/msg/Table"):
         DefinitionSchema([tmp_path]).action("kitchen_msgs/action/Serve")
 
 
-def test_a_definition_without_its_lines_is_told(tmp_path: Path) -> None:
+def test_a_definition_without_its_lines_is_reported(tmp_path: Path) -> None:
     write(tmp_path, "kitchen_msgs/action/Half.action", "int32 a\n---\nint32 b\n")
     with pytest.raises(
         UnknownInterface, match=r"definition of kitchen_msgs/action/Half is wrong.*two lines ---"

@@ -1,14 +1,14 @@
-"""What artifacts for robots are made of.
+"""Building blocks of artifacts for robots.
 
 ================================ ======================================================================
-file                             what it holds
+file                             content
 ================================ ======================================================================
-`ros_artifact`                   what all derive from, made of `connected_artifact` (topics, services,
-                                 actions) and `sensing_artifact` (readings of sensors)
+`ros_artifact`                   the parent class, built from `connected_artifact` (topics, services,
+                                 actions) and `sensing_artifact` (sensor readings)
 `options`                        arguments of ``makeArtifact``
-`reading`                        policies for sensors
-`acting`, `services`             goals, calls, and what an artifact itself offers
-`connection`                     is somebody there?
-`faults`                         bad messages, and code that fails
+`reading`                        reading policies for sensors
+`acting`, `services`             action goals, service calls, and services that an artifact offers
+`connection`                     whether a publisher or subscriber is connected
+`faults`                         bad messages, and failing callbacks
 ================================ ======================================================================
 """

@@ -1,17 +1,17 @@
-"""One goal of an action as one step of a plan: sent, followed, suspended, given up.
+"""An action goal as one step of a plan: sent, followed, suspended, cancelled.
 
-What ends it early is one of six reasons; a plan gets them as ``env_failure_reason(R)``:
+A goal that does not succeed ends with one of six reasons, which a plan receives as ``env_failure_reason(R)``:
 
 ====================  ==============================================================================================
-R                     what happened
+R                     meaning
 ====================  ==============================================================================================
-rejected              the server refused the goal; the robot has done nothing
-aborted(Code,Text)    the server gave up: the result's ``error_code`` (0 without one), and what the server says of it;
-                      `Conduct.aborted` may give another code, and more arguments
-canceled              somebody else cancelled the goal
-timeout(S)            S seconds were too few; the goal is cancelled
+rejected              the server rejected the goal; the robot has done nothing
+aborted(Code,Text)    the server aborted the goal: the result's ``error_code`` (0 if it has none) and its error text;
+                      `GoalOptions.aborted` can supply another code, and further arguments
+canceled              another client cancelled the goal
+timeout(S)            the goal took longer than S seconds, and was cancelled
 server_unavailable    no server offered the action within 5 s; the robot has done nothing
-server_lost           the server went away during the goal: whether the robot goes on is not known
+server_lost           the server disappeared during the goal; it is unknown whether the robot is still moving
 ====================  ==============================================================================================
 """
 
@@ -30,27 +30,27 @@ from jacaros.ros.pending_goal import ENDING
 T = TypeVar("T")
 
 Suspending = Literal["go_on", "cancel", "pause"]
-"""What becomes of a goal while its intention is suspended: it goes on; it is cancelled, and sent again at ``.resume``; or
-it is paused."""
+"""Effect of suspending the intention on its goal: the goal continues; it is cancelled, and sent again on ``.resume``;
+or it is paused."""
 
 Switch = Callable[[], Awaitable[object] | None]
-"""Pauses a goal or lets it go on, such as by calling a service; it stands outside of all operations."""
+"""Pause or resume a goal, for instance by calling a service. Runs outside of all operations."""
 
 ACCEPTANCE = 5.0
-"""Seconds that a server has for being there and for accepting a goal."""
+"""Seconds to wait for the server to appear and to accept a goal."""
 
 GRACE = 1.0
-"""Seconds in which the end of a goal may come that is why the server would not cancel it."""
+"""Seconds to wait for the result of a goal after its server has refused to cancel it: it may just have ended."""
 
 CODES = ("error_code", "error_code.val")
-"""Fields of results that say why a goal was aborted: of Nav2 and others, and of MoveIt."""
+"""Result fields that hold an error code: of Nav2 and others, and of MoveIt."""
 
 TEXTS = ("error_msg", "error_string", "message")
-"""Fields of results that say it in words."""
+"""Result fields that hold an error text."""
 
 
 class GoalFailed(Exception):
-    """A goal did not succeed.
+    """Raised when a goal does not succeed.
 
     Attributes:
         functor, arguments: the failure reason, such as ``aborted(203,"no path")``.
@@ -62,17 +62,18 @@ class GoalFailed(Exception):
 
 
 @dataclass(frozen=True, slots=True)
-class Conduct:
-    """How a goal is followed.
+class GoalOptions:
+    """How a goal runs.
 
     Attributes:
-        timeout: seconds that the goal may take in all; None: no limit.  Time in which it is cancelled or paused because
-            of a suspended intention does not count.
-        on_feedback: takes each feedback message while the goal is under way, on the loop.
-        under_way: told True when a goal is sent, and False when it is over or nobody wants it any more.
-        suspend: what a suspended intention means for the goal.
-        pause, resume: pause the goal at its server, and let it go on; for ``suspend="pause"``.
-        aborted: gives Code, and what follows Text in ``aborted(Code,Text)``, from the result of an aborted goal.
+        timeout: seconds that the goal may take in total; None: no limit. Time during which it is cancelled or paused
+            because its intention is suspended does not count.
+        on_feedback: called on the loop with each feedback message while the goal is active.
+        under_way: called with True when a goal is sent, and with False when it ends or its operation no longer needs
+            it.
+        suspend: effect of suspending the intention on the goal.
+        pause, resume: pause the goal at its server, and resume it; for ``suspend="pause"``.
+        aborted: computes Code, and what follows Text in ``aborted(Code,Text)``, from the result of an aborted goal.
     """
 
     timeout: float | None = None
@@ -84,42 +85,42 @@ class Conduct:
     aborted: "Callable[[Any], tuple[object, ...]] | None" = None
 
 
-class Pursuit:
-    """The life of one goal, from the request of an operation to the result.
+class GoalRunner:
+    """Run one goal, from the request of an operation to the result.
 
     Args:
-        client: of the action.
+        client: client of the action.
         goal: fields of the goal.
-        conduct: how it is followed.
-        clock: measures the times.
-        execution: the operation; it tells of pauses.
-        log: takes a line about trouble that harms nobody.
+        options: how the goal runs.
+        clock: measures the time-outs.
+        execution: the operation, which reports pauses.
+        log: called with a line about a problem that does not end the goal.
     """
 
     def __init__(
         self,
         client: ActionClient,
         goal: Mapping[str, Any],
-        conduct: Conduct,
+        options: GoalOptions,
         clock: Clock,
         execution: OperationExecution,
         log: Callable[[str], None],
     ) -> None:
-        self._client, self._goal, self._conduct = client, goal, conduct
+        self._client, self._goal, self._options = client, goal, options
         self._clock, self._execution, self._log = clock, execution, log
         self._used = self._limit = 0.0
         self._heeded = self._held = False
         self._wake: asyncio.Future[None] | None = None
 
     async def run(self) -> Any:
-        """Pursue the goal to its end and give the result message.
+        """Run the goal to its end and return the result message.
 
-        Cancelling this cancels the goal, and waits for nobody.
+        Cancelling this coroutine cancels the goal without waiting for the server.
 
         Raises:
-            GoalFailed: with one of the reasons of this file.
+            GoalFailed: with one of the reasons listed at the top of this file.
         """
-        forget = None if self._conduct.suspend == "go_on" else self._execution.on_pause(self._on_pause)
+        forget = None if self._options.suspend == "go_on" else self._execution.on_pause(self._on_pause)
         try:
             while True:
                 if forget is not None:
@@ -146,21 +147,21 @@ class Pursuit:
 
     @property
     def _paused(self) -> bool:
-        return self._conduct.suspend != "go_on" and self._execution.paused
+        return self._options.suspend != "go_on" and self._execution.paused
 
     def _heed(self, under_way: bool) -> None:
-        """Hear the feedback, or no more: a goal that is being cancelled may go on with it for a while."""
+        """Switch feedback on or off. A goal that is being cancelled may send feedback for a while; it is ignored."""
         if under_way != self._heeded:
             self._heeded = under_way
-            if self._conduct.under_way is not None:
-                self._conduct.under_way(under_way)
+            if self._options.under_way is not None:
+                self._options.under_way(under_way)
 
     def _hear(self, feedback: Any) -> None:
-        if self._heeded and self._conduct.on_feedback is not None:
-            self._conduct.on_feedback(feedback)
+        if self._heeded and self._options.on_feedback is not None:
+            self._options.on_feedback(feedback)
 
     async def _once(self) -> Outcome | None:
-        """Send the goal and follow it; None when it was cancelled because the intention was suspended."""
+        """Send the goal and follow it. Return None if it was cancelled because the intention was suspended."""
         self._heed(True)
         try:
             handle = await self._send()
@@ -181,18 +182,18 @@ class Pursuit:
             _forget(ending)
 
     async def _send(self) -> GoalHandle | None:
-        """Send the goal; None when the intention was suspended before the server accepted it, which cancels it."""
-        conduct = self._conduct
+        """Send the goal. Return None, and cancel it, if the intention is suspended before the server accepts it."""
+        options = self._options
         began, share, self._limit = self._clock.elapsed, ACCEPTANCE, ACCEPTANCE
-        if conduct.timeout is not None and conduct.timeout - self._used < ACCEPTANCE:
-            share, self._limit = conduct.timeout - self._used, conduct.timeout
+        if options.timeout is not None and options.timeout - self._used < ACCEPTANCE:
+            share, self._limit = options.timeout - self._used, options.timeout
         sending = asyncio.ensure_future(self._client.send(self._goal, self._hear, share))
         try:
             while not sending.done():
-                if conduct.suspend == "cancel":
+                if options.suspend == "cancel":
                     await self._first_of(sending, None)
                     if self._paused and not sending.done():
-                        sending.cancel()  # which cancels the goal, should the server accept it
+                        sending.cancel()  # also cancels the goal if the server accepts it later
                         return None
                 else:
                     await any_of(self._clock, (sending,), None)
@@ -206,10 +207,10 @@ class Pursuit:
             _forget(sending)
 
     async def _follow(self, handle: GoalHandle, ending: "asyncio.Future[Outcome]") -> Outcome | None:
-        timeout = self._conduct.timeout
+        timeout = self._options.timeout
         while not ending.done():
             if self._paused:
-                if self._conduct.suspend == "pause" and await self._is_held():
+                if self._options.suspend == "pause" and await self._is_held():
                     await self._rest(ending)
                 elif await self._is_cancelled(handle, ending):
                     return None
@@ -223,40 +224,40 @@ class Pursuit:
         return ending.result()
 
     async def _rest(self, ending: "asyncio.Future[Outcome]") -> None:
-        """Wait for the end of the pause, or of the goal."""
+        """Wait for the end of the pause or of the goal."""
         await self._resumed_or(ending, None)
         if not ending.done() and not await self._release():
-            raise GoalFailed(f"the goal of {self._client.name} could not be resumed", "canceled")
+            raise GoalFailed(f"cannot resume the goal of action {self._client.name}", "canceled")
 
     async def _is_cancelled(self, handle: GoalHandle, ending: "asyncio.Future[Outcome]") -> bool:
-        """Cancel the goal for a suspended intention; False when it succeeds meanwhile, or goes on.
+        """Cancel the goal of a suspended intention. Return False if it succeeds meanwhile or continues.
 
-        A goal that was asked to be cancelled counts as cancelled however it ends, unless it succeeded: a server that
-        takes the next goal before it has dealt with the request ends this one as aborted.
+        Once cancelling was requested, the goal counts as cancelled however it ends, unless it succeeds: a server that
+        accepts the next goal before it handles the request reports this one as aborted.
         """
         self._heed(False)
         try:
             agreed = await handle.cancel(ENDING)
         except CallTimedOut as error:
-            self._log(f"{error}; it may go on although its intention is suspended")
+            self._log(f"{error}; the goal may continue although its intention is suspended")
             agreed = False
         if agreed:
             await any_of(self._clock, (ending,), ENDING)
             if not ending.done():
                 raise ServerLost(f"action {self._client.name} agreed to cancel a goal but did not end it")
         else:
-            # A server also refuses because the goal has just ended, and that may be on its way.
+            # The server also refuses if the goal has just ended; then the result is about to arrive.
             await self._resumed_or(ending, GRACE)
         if ending.done():
             return ending.result().status is not GoalStatus.SUCCEEDED
         self._heed(True)
         if self._paused:
-            self._log(f"the goal of {self._client.name} goes on although its intention is suspended")
+            self._log(f"the goal of action {self._client.name} continues although its intention is suspended")
             await self._resumed_or(ending, None)
         return False
 
     async def _resumed_or(self, ending: "asyncio.Future[Outcome]", seconds: float | None) -> None:
-        """Wait for the end of the pause, or of the goal, at most *seconds*."""
+        """Wait for the end of the pause or of the goal, at most *seconds*."""
         resumed = asyncio.ensure_future(self._execution.resumed())
         try:
             await any_of(self._clock, (ending, resumed), seconds)
@@ -264,33 +265,35 @@ class Pursuit:
             _forget(resumed)
 
     async def _is_held(self) -> bool:
-        """Pause the goal at its server; False when that failed."""
+        """Pause the goal at its server. Return False if that failed."""
         self._held = True
-        problem = await self._switch(self._conduct.pause, "paused")
-        # A server that was asked and did not answer may have paused.
+        problem = await self._switch(self._options.pause, "paused")
+        # The server may have paused even if it did not answer.
         self._held = problem is None or isinstance(problem, CallTimedOut)
         return problem is None
 
     async def _release(self) -> bool:
-        """Let the server go on that was paused: with the goal, or with those of others after it; False when it does not."""
+        """Resume a paused server, for this goal or for the goals of other clients. Return False if that failed."""
         if self._held:
-            self._held = await self._switch(self._conduct.resume, "resumed") is not None
+            self._held = await self._switch(self._options.resume, "resumed") is not None
         return not self._held
 
     async def _switch(self, switch: Switch | None, what: str) -> Exception | None:
-        """Pause the server, or let it go on; gives what went wrong."""
+        """Pause or resume the server. Return the error, if any."""
         assert switch is not None
         try:
             waiting = switch()
             if waiting is not None:
                 await waiting
-        except Exception as error:  # whatever a user's code raises: the robot must not drive on because of it
-            self._log(f"the goal of {self._client.name} could not be {what}: {type(error).__name__}: {error}")
+        except Exception as error:  # whatever user code raises, the robot must not keep moving because of it
+            self._log(
+                f"the goal of action {self._client.name} could not be {what}: {type(error).__name__}: {error}"
+            )
             return error
         return None
 
     async def _first_of(self, future: "asyncio.Future[Any]", seconds: float | None) -> None:
-        """Wait for *future*, for a pause to begin, or for so many seconds."""
+        """Wait for *future* or for a pause to begin, at most *seconds*."""
         self._wake = asyncio.get_running_loop().create_future()
         if self._paused:
             self._wake.set_result(None)
@@ -301,9 +304,9 @@ class Pursuit:
         if outcome.status is GoalStatus.SUCCEEDED:
             return outcome.result
         if outcome.status is GoalStatus.CANCELED:
-            text = outcome.text or f"the goal of {self._client.name} was cancelled by somebody else"
+            text = outcome.text or f"another client cancelled the goal of action {self._client.name}"
             raise GoalFailed(text, "canceled")
-        explain = self._conduct.aborted
+        explain = self._options.aborted
         code, *more = (error_code(outcome.result),) if explain is None else explain(outcome.result)
         text = outcome.text or error_text(outcome.result)
         told = f": {text}" if text else ""
@@ -314,7 +317,7 @@ class Pursuit:
 
 
 def error_code(result: Any) -> int:
-    """The number by which a result says what went wrong; 0 without one."""
+    """Return the error code of a result, 0 if it has none."""
     for path in CODES:
         value: Any = result
         for name in path.split("."):
@@ -325,7 +328,7 @@ def error_code(result: Any) -> int:
 
 
 def error_text(result: Any) -> str:
-    """The words by which a result says what went wrong; empty without any."""
+    """Return the error text of a result, empty if it has none."""
     for name in TEXTS:
         value = getattr(result, name, "")
         if isinstance(value, str) and value:
@@ -334,7 +337,7 @@ def error_text(result: Any) -> str:
 
 
 def missing_number(fields: object, path: str = "") -> str | None:
-    """Path of the first field of a goal or request that is NaN; None when there is none."""
+    """Return the path of the first NaN in the fields of a goal or request, None if none exists."""
     if isinstance(fields, float) and math.isnan(fields):
         return path
     if isinstance(fields, Mapping):
@@ -347,7 +350,7 @@ def missing_number(fields: object, path: str = "") -> str | None:
 
 
 async def any_of(clock: Clock, futures: tuple["asyncio.Future[Any]", ...], seconds: float | None) -> None:
-    """Wait until one of *futures* is done, at most *seconds* of the clock; None waits for ever."""
+    """Wait until one of *futures* is done, at most *seconds* on the clock; None: no limit."""
     over: asyncio.Future[None] = asyncio.get_running_loop().create_future()
 
     def wake(done: object = None) -> None:
@@ -367,7 +370,7 @@ async def any_of(clock: Clock, futures: tuple["asyncio.Future[Any]", ...], secon
 
 
 def _forget(future: "asyncio.Future[T]") -> None:
-    """Give up what is still waited for; what was raised meanwhile is nobody's business."""
+    """Cancel a future, or ignore its outcome if it is done."""
     if future.done():
         if not future.cancelled():
             future.exception()
@@ -376,5 +379,5 @@ def _forget(future: "asyncio.Future[T]") -> None:
 
 
 def _figure(seconds: float) -> float | int:
-    """Seconds as programs write them: 5 and not 5.0."""
+    """Write whole seconds as programs do: 5, not 5.0."""
     return int(seconds) if seconds == int(seconds) else seconds

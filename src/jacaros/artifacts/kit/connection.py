@@ -1,6 +1,5 @@
-"""Is somebody there?  The property ``connected(Topic)``, a word about topics that nobody publishes, and the wait for a
-first subscription: what is sent before that is lost, and no error says so.
-"""
+"""Publishers and subscribers at the other end: the property ``connected(Topic)``, a warning about topics without a
+publisher, and the wait for the first subscriber. Messages sent before that are lost without an error."""
 
 import math
 from collections import deque
@@ -13,21 +12,21 @@ from jacaros.ros.backend import Backend, Publisher, Sample, Subscription
 from jacaros.ros.waiting import MISSING_AFTER
 
 LOOK = 0.5
-"""Seconds between two looks at who publishes a topic."""
+"""Seconds between two checks of who publishes a topic."""
 
 
 class Connection:
-    """Follows whether a publisher of a topic is connected.
+    """Track whether a publisher of a topic is connected.
 
-    `Backend.connected` does not count: topics of ROS 1 outlive the master, and where they do not outlive the graph, no
-    publisher is connected.
+    `Backend.connected` is not used: topics of ROS 1 survive the master, and elsewhere a lost graph has no connected
+    publishers.
 
     Args:
-        backend: the node that listens.
+        backend: the subscribing node.
         clock: measures the times.
-        subscription: to the topic.
-        changed: told whether it is connected, whenever that changes; at first it is not.
-        expire: it is also lost when no message came for so many seconds; None: never for that.
+        subscription: subscription of the topic.
+        changed: called with the state whenever it changes; the initial state is not connected.
+        expire: the topic also counts as lost after this number of seconds without a message; None: never.
     """
 
     def __init__(
@@ -46,13 +45,13 @@ class Connection:
         self._look_again()
 
     def hear(self, sample: Sample) -> None:
-        """A message came."""
+        """Note that a message arrived."""
         self._heard = self._clock.elapsed
         if not self.connected:
             self.look()
 
     def look(self) -> None:
-        """See how it is now."""
+        """Check the present state."""
         if not self._closed:
             connected = self._is_connected()
             if connected != self.connected:
@@ -60,7 +59,7 @@ class Connection:
                 self._changed(connected)
 
     def close(self) -> None:
-        """Look no more."""
+        """Stop checking."""
         self._closed = True
         self._timer.cancel()
 
@@ -82,30 +81,30 @@ _watched: WeakKeyDictionary[Backend, WeakSet[Connection]] = WeakKeyDictionary()
 
 
 def _watch(backend: Backend, connection: Connection) -> None:
-    """Let a connection look at once when the graph is found or lost; a backend knows no way to stop that."""
+    """Check a connection immediately when the graph is found or lost. A backend cannot remove such a callback."""
     connections = _watched.get(backend)
     if connections is None:
         connections = _watched[backend] = WeakSet()
 
-        def tell(connected: bool, everybody: WeakSet[Connection] = connections) -> None:
+        def report(connected: bool, everybody: WeakSet[Connection] = connections) -> None:
             for each in list(everybody):
                 each.look()
 
-        backend.on_connection(tell)
+        backend.on_connection(report)
     connections.add(connection)
 
 
 class MissingTopic:
-    """Tells in a log that a topic is missing when nobody publishes it after `MISSING_AFTER` seconds.
+    """Log a warning if no node publishes a topic after `MISSING_AFTER` seconds.
 
-    While the graph cannot be reached nothing is told: that is a report of its own.
+    Nothing is logged while the graph cannot be reached; the backend reports that.
 
     Args:
-        backend: the node that listens.
+        backend: the subscribing node.
         clock: measures the seconds.
-        subscription: to the topic.
-        type_name: of its messages.
-        log: takes one line.
+        subscription: subscription of the topic.
+        type_name: message type.
+        log: called with one line.
     """
 
     def __init__(
@@ -128,46 +127,46 @@ class MissingTopic:
     def _look(self) -> None:
         connected_before, self._connected = self._connected, self._backend.connected
         if not (connected_before and self._connected):
-            self._wait()  # a graph that has just been found has not told yet who is in it
+            self._wait()  # discovery is incomplete just after the graph was found
         elif self._subscription.publisher_count == 0:
             self._log(
-                f"the topic {self._subscription.topic} ({self._type_name}) is missing; still listening. "
-                "Is the node that publishes it running?"
+                f"no publisher on topic {self._subscription.topic} ({self._type_name}); still listening; "
+                "is the node that publishes it running?"
             )
 
     def close(self) -> None:
-        """Tell nothing any more."""
+        """Stop logging."""
         self._timer.cancel()
 
 
 MATCH_TIMEOUT = 3.0
-"""Seconds that an operation waits for a subscription by default.  First discovery on ROS 2 can take two."""
+"""Default number of seconds that an operation waits for a subscriber. First discovery on ROS 2 can take two."""
 
 MATCH_OPTIONS: Mapping[str, Reader] = {"match_timeout": positive, "unmatched": one_of("warn", "fail")}
 """Options of artifacts whose operations publish."""
 
 MATCH_LOOK = 0.05
-"""Seconds between two looks at the number of subscriptions."""
+"""Seconds between two checks of the number of subscribers."""
 
 TURN = 0.005
-"""Seconds between two looks at the messages that wait in front."""
+"""Seconds between two checks of the queue of waiting messages."""
 
 SETTLING = 0.2
-"""Seconds between the first match and the first message: the other end may have to match too, as may a bridge's own
-publisher and further subscriptions."""
+"""Seconds between the first match and the first message: the other end may still be matching, and so may a bridge's
+own publisher and further subscribers."""
 
 
 Missed = Callable[[str, float, bool], None]
-"""Takes the topic, the seconds, and whether the wait before was in vain as well."""
+"""Called with the topic, the seconds, and whether the previous wait also timed out."""
 
 
 class Matching:
-    """Paces the operations that publish on one topic, so that the first message arrives.
+    """Delay the operations that publish on a topic so that the first message arrives.
 
     Args:
         publisher: sends the messages.
-        timeout: seconds to wait; 0.0 in a graph where subscriptions are matched immediately.
-        missed: called when no subscription was matched in time; an exception ends the operation.
+        timeout: seconds to wait; 0.0 in a graph where subscribers are matched immediately.
+        missed: called when no subscriber was matched in time; an exception ends the operation.
     """
 
     def __init__(self, publisher: Publisher, timeout: float, missed: Missed) -> None:
@@ -176,10 +175,10 @@ class Matching:
         self._missed = missed
         self._vain = False
         self._line: deque[object] = deque()
-        """The messages that wait, in order: a later one must not overtake them when a subscription is matched."""
+        """Waiting messages, in order: a later one must not overtake them when a subscriber is matched."""
 
     def exists(self) -> bool:
-        """Whether a message may be sent now: a subscription is matched, and no earlier message waits."""
+        """Return whether a message may be sent now: a subscriber is matched, and no earlier message is waiting."""
         return not self._line and self._matched()
 
     def _matched(self) -> bool:
@@ -189,14 +188,15 @@ class Matching:
         return False
 
     def pauses(self, always: bool = False) -> Iterator[float]:
-        """Give the seconds to pause, one pause after the other, until messages arrive or the time is over.
+        """Yield the seconds of each pause until messages arrive or the time is over.
 
-        There are none while a subscription is matched.  After a wait in vain there are none either until one has been
-        matched, so that a topic without subscribers delays only the first operation.  The message must be sent as soon
-        as there are no more pauses: the next one in line may go then.
+        There are no pauses while a subscriber is matched. After a wait that timed out it also yields nothing until one
+        is matched, so that a topic without subscribers delays only the first operation. Send the message as soon as
+        the iterator ends: the next message in the queue may then be sent.
 
         Args:
-            always: wait again after a wait in vain: for open-loop motions, which go wrong when a command is lost.
+            always: wait again after a wait that timed out: for open-loop motions, which go wrong when a command is
+                lost.
         """
         if self.exists():
             return
@@ -207,7 +207,7 @@ class Matching:
                 if self._line[0] is claim:
                     break
                 yield TURN
-            while self._line[0] is not claim:  # those in front are suspended, and lose their place
+            while self._line[0] is not claim:  # suspended messages ahead lose their place
                 self._line.popleft()
             yield from self._first_pauses(always)
         finally:
@@ -215,8 +215,8 @@ class Matching:
                 self._line.remove(claim)
 
     def _first_pauses(self, always: bool) -> Iterator[float]:
-        """Give the pauses of the first message in line."""
-        if self._matched():  # those in front have waited
+        """Yield the pauses of the first message in the queue."""
+        if self._matched():  # the messages ahead have waited
             return
         if not self._vain or always:
             for _ in range(math.ceil(self._timeout / MATCH_LOOK)):

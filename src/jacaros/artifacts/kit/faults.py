@@ -1,26 +1,26 @@
-"""Bad messages of a topic: counted, told once and then at 10, 100, 1000 …, never acted on.
+"""Bad messages of a topic: counted, reported on the 1st, 10th, 100th, … occurrence, and never acted on.
 
-A plan hears of them by the signal ``bad_message(Topic, Why)``:
+A plan receives them as the signal ``bad_message(Topic, Why)``:
 
 =====================  ======================================================================  ==============
-Why                    what is wrong                                                           the message is
+Why                    problem                                                                 the message is
 =====================  ======================================================================  ==============
-not_finite(What)       a number is NaN or infinite; What is its field, or the property          dropped
-wrong_frame(Frame)     it is given in another frame than the messages before, or than wanted    dropped
-out_of_order(S)        its stamp is S seconds older than that of a message before               dropped
-clock_jumped(S)        all stamps are now S seconds older than before: the clock was set back   used
-stamp_off(S)           its stamp is S seconds (10 or more) off our clock, minus: in the past    used
-out_of_range(What)     a number cannot be true, such as a negative charge; What is its field            dropped
-late(S)                it came S seconds (0.5 or more) later after its stamp than those before  used [1]_
+not_finite(What)       a number is NaN or infinite; What is its field, or the property         dropped
+wrong_frame(Frame)     its frame is not that of earlier messages, or not the requested one     dropped
+out_of_order(S)        its stamp is S seconds older than that of an earlier message            dropped
+clock_jumped(S)        all stamps are now S seconds older than before: the clock was set back  used
+stamp_off(S)           its stamp differs from our clock by S seconds (10 or more; past: < 0)   used
+out_of_range(What)     a number is impossible, such as a negative charge; What is its field    dropped
+late(S)                its delay is S seconds (0.5 or more) longer than that of earlier ones   used [1]_
 =====================  ======================================================================  ==============
 
-.. [1] Not for driving: a motion stands as if no odometry came.
+.. [1] Not for driving: a motion stops as if odometry were missing.
 
-A stamp alone does not tell how old a message is: senders have clocks of their own.  But the time from stamp to arrival
-stays the same, but for the way: what comes much later after its stamp than others did was held up.  When a clock was set
-back, stamps go back too; when messages are late, they do not.
+A stamp alone does not show how old a message is, because senders have clocks of their own.  But apart from transport, the
+time from stamp to arrival is constant: a message whose delay is much longer than that of others was held up.  When a clock
+is set back, stamps go back too; when messages are late, they do not.
 
-Faults in the code that hears messages (`Listener`) are logged in the same way.
+`Listener` logs exceptions in message callbacks in the same way.
 """
 
 import math
@@ -32,63 +32,66 @@ from jacaros.env.values import Structure
 from jacaros.ros.backend import Sample
 from jacaros.ros.message import to_seconds
 
-Tell = Callable[[Structure, str], None]
-"""Takes the reason, and a text for people."""
+Report = Callable[[Structure, str], None]
+"""Called with the reason, and with a text for the log."""
 
 SILENCE = 5.0
-"""Seconds without a good message after which one in another frame is taken: its sender was started anew."""
+"""Seconds without a good message after which a new frame is accepted: the sender was restarted."""
 
 
 class Faults:
-    """Counts the bad messages of one topic, and tells of them without filling the log.
+    """Count the bad messages of one topic, and report them without flooding the log.
 
     Args:
         topic: absolute name.
-        tell: told of the first of a kind, the tenth, the hundredth and so on.
+        report: called on the 1st, 10th, 100th, … message of a kind.
 
     Attributes:
-        counts: how many there were of each kind, such as ``not_finite``.
+        counts: number of messages of each kind, such as ``not_finite``.
     """
 
-    def __init__(self, topic: str, tell: Tell) -> None:
+    def __init__(self, topic: str, report: Report) -> None:
         self.counts: dict[str, int] = {}
-        self._topic, self._tell = topic, tell
+        self._topic, self._report = topic, report
 
     @property
     def total(self) -> int:
-        """How many there were."""
+        """Number of bad messages."""
         return sum(self.counts.values())
 
     def add(self, why: Structure, text: str) -> None:
-        """Note a bad message.
+        """Count a bad message.
 
         Args:
             why: the reason for programs.
-            text: what was found and what becomes of the message, for people.
+            text: what was found, and what happens to the message.
         """
         times = self.counts[why.functor] = self.counts.get(why.functor, 0) + 1
         if str(times).strip("0") == "1":
-            again = f" ({times} times by now)" if times > 1 else ""
-            self._tell(why, f"{self._topic}: {text}{again}")
+            again = f" ({times} times so far)" if times > 1 else ""
+            self._report(why, f"{self._topic}: {text}{again}")
 
     def not_finite(self, what: str, number: float) -> None:
-        """Note that a message was dropped because of a number."""
-        self.add(Structure("not_finite", (what,)), f"{what} is {number}; the message is dropped")
+        """Count a message that was dropped because a number is not finite."""
+        self.add(Structure("not_finite", (what,)), f"{what} is {number}; message dropped")
 
     def out_of_range(self, what: str, number: float) -> None:
-        """Note that a message was dropped because of a number that cannot be true."""
-        self.add(Structure("out_of_range", (what,)), f"{what} is {number:g}; the message is dropped")
+        """Count a message that was dropped because a number is impossible."""
+        self.add(
+            Structure("out_of_range", (what,)),
+            f"{what} is {number:g}, which is out of range; message dropped",
+        )
 
 
 class Header:
-    """Judges the headers (``std_msgs/msg/Header``) of one topic's messages.
+    """Check the headers (``std_msgs/msg/Header``) of the messages of a topic.
 
-    A stamp of zero and an empty frame say nothing and are never wrong.
+    A zero stamp and an empty frame carry no information and are accepted.
 
     Args:
-        faults: where bad ones are noted.
+        faults: counts bad messages.
         clock: measures how late messages are.
-        frame: the only frame that is right; empty: that of the first message.
+        frame: the only accepted frame; empty: that of the first message.
     """
 
     def __init__(self, faults: Faults, clock: Clock, frame: str = "") -> None:
@@ -100,16 +103,16 @@ class Header:
 
     @property
     def frame(self) -> str:
-        """The frame in which messages are believed now; empty while it is not known."""
+        """The frame that is accepted now; empty while it is unknown."""
         return self._frame
 
     @property
     def late(self) -> float:
-        """By how many seconds the newest message was later than others before; 0 when it was not."""
+        """How many seconds later than earlier messages the newest one arrived; 0 if it was in time."""
         return self._stamps.late
 
     def accepts(self, sample: Sample) -> bool:
-        """Whether a message may be used; notes it when not."""
+        """Return whether a message may be used; count it if not."""
         header: Any = sample.message.header
         frame = header.frame_id
         good = (not frame or frame == self._frame or self._is_in_frame(frame, sample.stamp)) and (
@@ -126,24 +129,24 @@ class Header:
         if not self._wanted and (not self._frame or not 0.0 <= now - self._good_at < SILENCE):
             self._frame = frame
             return True
-        text = f"the frame is {frame}, not {self._frame}; the message is dropped"
+        text = f"expected frame {self._frame}, found {frame}; message dropped"
         self._faults.add(Structure("wrong_frame", (frame,)), text)
         return False
 
 
 Complain = Callable[[str, BaseException], None]
-"""Logs what went wrong, with the place in the code."""
+"""Log an exception, with its place in the code."""
 
 
 class Listener:
-    """Calls back for each message; what is raised is logged, and told again at 10, 100, 1000 … times.
+    """Call a callback for each message. Log its exceptions on the 1st, 10th, 100th, … occurrence.
 
-    A sensor may send a thousand messages a second, so a mistake in the code that hears them must not fill the log.
+    A sensor may send a thousand messages a second, so a faulty callback must not flood the log.
 
     Args:
         topic: for the log.
-        callback: takes a message.
-        complain: logs a fault.
+        callback: called with each message.
+        complain: logs an exception.
     """
 
     def __init__(self, topic: str, callback: Callable[[Sample], None], complain: Complain) -> None:
@@ -151,7 +154,7 @@ class Listener:
         self._faults: dict[str, int] = {}
 
     def __call__(self, sample: Sample) -> None:
-        """Take a message."""
+        """Handle a message."""
         try:
             self._callback(sample)
         except Exception as error:
@@ -163,11 +166,11 @@ class Listener:
         if times == 1:
             self._complain(f"the callback of topic {self._topic} failed:", error)
         elif str(times).strip("0") == "1":
-            self._complain(f"the callback of topic {self._topic} has failed {times} times:", error)
+            self._complain(f"the callback of topic {self._topic} failed ({times} times so far):", error)
 
 
 def _line(error: Exception) -> int:
-    """The line that raised *error*."""
+    """Return the line that raised *error*."""
     trace = error.__traceback__
     while trace is not None and trace.tb_next is not None:
         trace = trace.tb_next
@@ -175,30 +178,31 @@ def _line(error: Exception) -> int:
 
 
 FAR = 10.0
-"""Seconds between a stamp and our clock that are worth a word; the clocks of two machines differ by less."""
+"""Seconds between a stamp and our clock that are reported; the clocks of two machines usually differ by less."""
 
 STRAGGLING = 1.0
-"""A message may be overtaken by so many seconds; of a clock that was set back by less, the stamps soon catch up."""
+"""Seconds by which one message may overtake another. If a clock is set back by less, its stamps soon catch up."""
 
 IN_A_ROW = 3
-"""So many stamps one after the other that are still older are no stragglers: the clock of the sender was set back."""
+"""Number of consecutive older stamps that show that the sender's clock was set back."""
 
 LATE = 0.5
-"""Seconds by which a message must be later than others before to be worth a word."""
+"""Additional delay, in seconds, that is reported."""
 
 DRIFT = 1e-3
-"""Seconds by which two clocks may part in each second: a clock that is being corrected is that fast, none is faster."""
+"""Seconds per second by which two clocks may drift apart: a clock that is being adjusted drifts this fast, none
+faster."""
 
 
 class Stamps:
-    """Judges the stamps of one topic's messages.
+    """Check the stamps of the messages of a topic.
 
     Args:
-        faults: where bad ones are noted.
+        faults: counts bad messages.
         clock: measures how late messages are.
 
     Attributes:
-        late: by how many seconds the newest message was later than others before.
+        late: how many seconds later than earlier messages the newest one arrived.
     """
 
     def __init__(self, faults: Faults, clock: Clock) -> None:
@@ -211,22 +215,23 @@ class Stamps:
         self._heard = 0.0
 
     def accept(self, stamp: float, now: float) -> bool:
-        """Return whether a message may be used; both times in seconds since the epoch, *stamp* by the sender's clock.
+        """Return whether a message may be used. Both times are in seconds since the epoch, *stamp* on the sender's
+        clock.
 
         Args:
-            stamp: of the message; 0.0: it has none.
-            now: by our clock; 0.0: it is not known yet.
+            stamp: stamp of the message; 0.0: none.
+            now: time on our clock; 0.0: not known yet.
         """
         if stamp == 0.0:
             return True
-        # A clock that follows /clock stands at 0 until its first message, and odometry may come before that.
+        # A clock that follows /clock is at 0 until its first message, and odometry may arrive before that.
         if now != 0.0 and abs(stamp - now) >= FAR:
             off = round(stamp - now, 3)
-            text = f"the stamp is {off:g} s off our clock; do both follow the same clock (use_sim_time)?"
+            text = f"the stamp differs from our clock by {off:g} s; do both follow the same clock (use_sim_time)?"
             self._faults.add(Structure("stamp_off", (off,)), text)
         if stamp >= self._newest or self._has_jumped(stamp):
             if self._dropped >= IN_A_ROW:
-                self._least = None  # the sender's clock was set back, by little
+                self._least = None  # the sender's clock was set back slightly
             if stamp > self._newest or self._least is None:
                 self._note_delay(stamp)
             self._newest = stamp
@@ -235,12 +240,12 @@ class Stamps:
             return True
         self._dropped += 1
         late = round(self._newest - stamp, 3)
-        text = f"the stamp is {late:g} s older than that of a message before; the message is dropped"
+        text = f"the stamp is {late:g} s older than that of an earlier message; message dropped"
         self._faults.add(Structure("out_of_order", (late,)), text)
         return False
 
     def _has_jumped(self, stamp: float) -> bool:
-        """Whether this stamp, older than others, shows with those before it that the sender's clock was set back."""
+        """Return whether this older stamp and the ones before it show that the sender's clock was set back."""
         late = round(self._newest - stamp, 3)
         if late < STRAGGLING or (self._stragglers and stamp < self._stragglers[-1]):
             self._stragglers.clear()
@@ -248,14 +253,14 @@ class Stamps:
             self._stragglers.append(stamp)
         if len(self._stragglers) < IN_A_ROW:
             return False
-        self._faults.add(Structure("clock_jumped", (late,)), f"the stamps jumped back by {late:g} s")
+        self._faults.add(Structure("clock_jumped", (late,)), f"the stamps went back by {late:g} s")
         self._least = None
         return True
 
     def _note_delay(self, stamp: float) -> None:
-        """Compare the time that the message took with the shortest so far, which clocks that part make longer."""
+        """Compare the delay of a message with the shortest so far; the limit grows as the clocks drift apart."""
         now = self._clock.elapsed
-        delay = now - stamp  # from another zero; only differences count
+        delay = now - stamp  # the zero is arbitrary; only differences count
         if self._least is not None:
             self._least = min(delay, self._least + DRIFT * (now - self._heard))
         else:
@@ -264,5 +269,5 @@ class Stamps:
         self.late = delay - self._least
         if self.late >= LATE:
             late = round(self.late, 3)
-            text = f"a message came {late:g} s later after its stamp than others before: nobody drives by it"
+            text = f"the message arrived {late:g} s later than earlier ones; motions do not use it"
             self._faults.add(Structure("late", (late,)), text)

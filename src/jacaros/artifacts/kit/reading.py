@@ -1,19 +1,20 @@
-"""Readings: which of a sensor's messages become property updates (thesis, section 6.3).
+"""Readings: which messages of a sensor update a property (thesis, section 6.3).
 
-One `ReadingPolicy` puts together what keeps a sensor from flooding the minds that watch it, and from deceiving them:
+A `ReadingPolicy` keeps a sensor from flooding the agents that observe it, and from misleading them:
 
 =============  ==========================================================================================
-policy         what it does
+policy         effect
 =============  ==========================================================================================
-dead band      equal values and small changes are dropped; one figure for all fields or one for each
-rate           what is left is spread out
-on demand      nothing is passed until somebody asks
-latest only    the next value waits until the one before has been taken up, and then the newest is passed
-expire         values that nobody confirmed for some seconds are withdrawn
-finite         values with NaN or an infinite number are refused
+dead band      equal values and small changes are dropped; one number for all fields or one for each
+rate           updates are spaced out
+on demand      values are delivered on request only
+latest only    newest-only delivery (conflation): while an observer has not processed the previous value,
+               updates are held back, and then the newest is delivered
+expire         values are withdrawn after some seconds without a message
+finite         messages with NaN or an infinite number are refused
 =============  ==========================================================================================
 
-The range of view, for messages that hold many elements, is in `view`.
+The range of view, for messages with many elements, is in `sensing_artifact`.
 """
 
 import asyncio
@@ -35,32 +36,33 @@ READING_OPTIONS: dict[str, Reader] = {
     "latest_only": yes_or_no,
     "expire": positive,
 }
-"""Options of artifacts that read sensors: ``mode(on_demand)``, ``rate(Hz)``, ``dead_band(D)``, ``latest_only(false)``,
-``expire(S)``."""
+"""Options of artifacts that read sensors: ``mode(on_demand)``, ``rate(Hz)``, ``dead_band(D)``,
+``latest_only(false)``, ``expire(S)``."""
 
 TURNS = 20
-"""So many turns of the loop in a row a value that waits looks whether it may pass; no time passes meanwhile."""
+"""Turns of the loop in which a held value checks whether it may be delivered; no time passes meanwhile."""
 
 LOOK_AGAIN = 0.005
-"""Seconds between two looks after that."""
+"""Seconds between two checks after that."""
 
 LONGEST_WAIT = 1.0
-"""Seconds after which a value passes although the one before was not taken up: observers may never take it up."""
+"""Seconds after which a held value is delivered although the previous one was not processed: an observer may never do
+so."""
 
 
 @dataclass(frozen=True, slots=True)
 class ReadingPolicy:
-    """When values are passed on.
+    """When values are delivered.
 
     Attributes:
-        on_demand: never by themselves, only by `Reading.passed`.
-        rate: at most so many times a second; None: no limit.
-        dead_band: a value is passed when some number field differs by more than this from the one passed
-            before; one figure for all fields or one for each. 0 drops equal values only.
-        latest_only: while observers have not taken up the value before, nothing is passed; then the newest is.
-            For states, such as poses; not for messages of which each counts.
-        expire: values are withdrawn when no message came for so many seconds; None: never.
-        finite: values with NaN or an infinite number are no message at all.
+        on_demand: only on request, by `Reading.passed`.
+        rate: updates per second at most; None: no limit.
+        dead_band: a value is delivered if a number differs by more than this from the one delivered before; one
+            number for all fields or one for each. 0 drops equal values only.
+        latest_only: while observers have not processed the previous value, nothing is delivered; then the newest is.
+            For states, such as poses; not for messages that all count.
+        expire: seconds without a message after which values are withdrawn; None: never.
+        finite: refuse messages with NaN or an infinite number.
     """
 
     on_demand: bool = False
@@ -74,7 +76,7 @@ class ReadingPolicy:
     def from_options(
         cls, options: Mapping[str, object], on_demand: bool = False, latest_only: bool = True
     ) -> "ReadingPolicy":
-        """Make the policy that `READING_OPTIONS` ask for; *on_demand* and *latest_only* hold when they say nothing."""
+        """Make the policy from `READING_OPTIONS`; *on_demand* and *latest_only* are the defaults."""
         mode = options.get("mode", "on_demand" if on_demand else "verbose")
         rate, band = options.get("rate"), options.get("dead_band", 0.0)
         expire = options.get("expire")
@@ -84,7 +86,7 @@ class ReadingPolicy:
         return cls(mode == "on_demand", rate, band, bool(options.get("latest_only", latest_only)), expire)
 
     def differ(self, old: Values, new: Values) -> bool:
-        """Whether *new* is worth passing after *old*."""
+        """Return whether *new* differs enough from *old* to be delivered."""
         if old == new:
             return False
         if self.dead_band == 0.0 and self.finite:
@@ -109,12 +111,12 @@ class ReadingPolicy:
 
 @dataclass(frozen=True, slots=True)
 class Outlet:
-    """What else somebody who takes values wants to be told, and is asked.
+    """Further callbacks of a receiver of values.
 
     Attributes:
-        withdraw: the values passed last are out of date.
-        refuse: values were no message at all, because of this number that they hold.
-        behind: whether the values passed last have still to be taken up.
+        withdraw: called when the values delivered last are out of date.
+        refuse: called with a number that is not finite; the message is not used.
+        behind: returns whether the values delivered last are still unprocessed.
     """
 
     withdraw: Callable[[], None] = lambda: None
@@ -123,21 +125,21 @@ class Outlet:
 
 
 ALOOF = Outlet()
-"""Wants to be told nothing, and is always up to date."""
+"""Ignores withdrawals and refusals, and never lags behind."""
 
 
 class Reading:
-    """The newest values of one sensor, and the decision when to pass them on.
+    """The newest values of one sensor, and the decision when to deliver them.
 
-    The first message always passes.  Under a rate limit the newest value of a pause is passed when the
-    pause is over: the last message of a burst is late at most, never lost.
+    The first message is always delivered. Under a rate limit the newest value of an interval is delivered at its end:
+    the last message of a burst may be late, but is never lost.
 
     Args:
-        policy: when to pass values on.
-        clock: the time for rate limit and expiry.
-        deliver: takes the values that are passed, and the cause that led to them; None for a reading that is only asked.
-        outlet: is told the rest.
-        name: of the property that shows the values, if there is one.
+        policy: when to deliver values.
+        clock: measures rate limit and expiry.
+        deliver: called with the values and their cause; None for a reading that is only queried.
+        outlet: further callbacks.
+        name: name of the property that shows the values, if any.
     """
 
     def __init__(
@@ -162,19 +164,19 @@ class Reading:
         self._expecting: list[asyncio.Future[None]] = []
 
     def take(self, values: Values, cause: Cause | None = None) -> None:
-        """Take a message's values, and pass them on now, later or never."""
+        """Take the values of a message, and deliver them now, later or never."""
         if self.policy.finite and (why := not_finite(values)) is not None:
             self._outlet.refuse(why)
         else:
             self.take_finite(values, cause)
 
     def take_finite(self, values: Values, cause: Cause | None = None) -> None:
-        """Take a message's values whose numbers are known to be finite, and pass them on now, later or never."""
+        """As `take`, for values whose numbers are known to be finite."""
         if self.offer(values, cause):
             self._deliver_newest()
 
     def offer(self, values: Values, cause: Cause | None) -> bool:
-        """Take values whose numbers are known to be finite; True when they count as passed on, which the caller does."""
+        """Take values whose numbers are known to be finite. Return True if the caller must deliver them now."""
         self.newest, self._cause = values, cause
         if self.policy.expire is not None:
             self._confirm(self.policy.expire)
@@ -186,9 +188,9 @@ class Reading:
         )
 
     def passed(self) -> Values:
-        """The newest values, passed on by the caller; empty before the first message.
+        """Return the newest values, which the caller delivers; empty before the first message.
 
-        Equal values are not passed on again afterwards.
+        Equal values are not delivered again afterwards.
         """
         if self.newest is None:
             return ()
@@ -199,7 +201,7 @@ class Reading:
         """Wait for the first message.
 
         Raises:
-            TimeoutError: none came in *timeout* seconds.
+            TimeoutError: none arrived within *timeout* seconds.
         """
         if self.newest is not None:
             return
@@ -211,7 +213,7 @@ class Reading:
             self._expecting.remove(expected)
 
     def close(self) -> None:
-        """Pass nothing on any more."""
+        """Stop delivering."""
         self._deliver, self._outlet = None, ALOOF
         self._queue.close()
         for timer in (self._pause, self._expiry):
@@ -228,7 +230,7 @@ class Reading:
         self._deliver(self.newest, self._cause)
 
     def _may_pass(self) -> bool:
-        """Whether the newest values are passed on now; if so they count as passed."""
+        """Return whether to deliver the newest values now; if so, they count as delivered."""
         if self.newest is None or self._deliver is None:
             return False
         passes = self._delivered is None or self.policy.differ(self._delivered, self.newest)
@@ -247,7 +249,7 @@ class Reading:
             self._deliver_if_new()
 
     def _confirm(self, seconds: float) -> None:
-        # One timer looks after any number of messages: a fast sensor costs no more than a slow one.
+        # One timer serves any number of messages, so a fast sensor costs no more than a slow one.
         self._taken = self._clock.elapsed
         if self._expiry is None:
             self._expiry = self._clock.call_later(seconds, self._look_at_age)
@@ -262,20 +264,20 @@ class Reading:
         self.withdraw()
 
     def withdraw(self) -> None:
-        """What was passed holds no more; the next values are passed whatever they are."""
+        """Withdraw the delivered values; the next values are delivered in any case."""
         self.newest = self._delivered = self._cause = None
         self._outlet.withdraw()
 
 
 class Queue:
-    """The wait of at most one value until the one before has been taken up.
+    """Hold back at most one value until the previous one has been processed.
 
     Args:
         clock: measures the wait.
-        look: called again and again while something waits; calls `wait`, or ends the waiting.
+        look: called repeatedly while a value is held back; calls `wait`, or ends the wait.
 
     Attributes:
-        waits: whether something waits; set to False to end that.
+        waits: whether a value is held back; set it to False to end the wait.
     """
 
     def __init__(self, clock: Clock, look: Callable[[], None]) -> None:
@@ -287,7 +289,7 @@ class Queue:
         self._closed = False
 
     def wait(self) -> bool:
-        """Look again soon; False when it has waited long enough."""
+        """Check again soon. Return False if the wait has been long enough."""
         if not self.waits:
             self.waits, self._turns, self._began = True, 0, self._clock.elapsed
         elif self._clock.elapsed - self._began >= LONGEST_WAIT:
@@ -300,7 +302,7 @@ class Queue:
         return True
 
     def close(self) -> None:
-        """Look no more."""
+        """Stop checking."""
         self._closed = True
         if self._timer is not None:
             self._timer.cancel()
@@ -311,7 +313,7 @@ class Queue:
 
 
 def not_finite(values: Values) -> float | None:
-    """The first number of *values* that is NaN or infinite, those in lists too; None when there is none."""
+    """Return the first NaN or infinite number in *values*, including lists; None if none exists."""
     for value in values:
         if isinstance(value, float):
             if not math.isfinite(value):

@@ -1,4 +1,5 @@
-"""The part of an artifact that lets properties follow sensors: readings, and what lies in a robot's range of view."""
+"""The part of an artifact that updates properties from sensors: readings, and the elements in a robot's range of
+view."""
 
 import math
 from collections.abc import Callable, Iterable
@@ -14,20 +15,19 @@ FIRST_MESSAGE = 5.0
 
 
 class SensingArtifact(ConnectedArtifact):
-    """An artifact with readings of sensors; see `jacaros.artifacts.kit.ros_artifact.RosArtifact`."""
+    """An artifact with sensor readings; see `jacaros.artifacts.kit.ros_artifact.RosArtifact`."""
 
     def reading(self, name: str, policy: ReadingPolicy, *initial: object, topic: str = "") -> Reading:
-        """Let the property *name* follow a sensor by *policy*; ends with the artifact.
+        """Update the property *name* from a sensor according to *policy*, until the artifact is disposed.
 
-        The callback of the sensor gives its values to `Reading.take`; an operation that refreshes the
-        property on request calls `refresh`.  A property that is not there yet, or no more, is defined by the next
-        values.
+        The callback of the sensor passes its values to `Reading.take`; an operation that updates the property on
+        request calls `refresh`. If the property does not exist, the next values define it.
 
         Args:
-            name: of the property.
-            policy: when it is updated.
-            initial: values before the first message, which are shown unless they would have to expire.
-            topic: of the robot, whose messages with numbers that are none are told of; else they go by *name*.
+            name: name of the property.
+            policy: when the property is updated.
+            initial: values before the first message; not shown if the policy makes values expire.
+            topic: topic of the robot under which messages with NaN or infinite numbers are reported; default: *name*.
         """
         if initial and policy.expire is None:
             self.define_property(name, *initial)
@@ -43,21 +43,21 @@ class SensingArtifact(ConnectedArtifact):
         return self.kept(Reading(policy, self.clock, deliver, outlet, name))
 
     def take_together(self, cause: Cause | None, *taken: tuple[Reading, Values]) -> None:
-        """Give several readings the values of one message, whose numbers are known to be finite; what they pass on becomes
-        known in one step."""
+        """Pass the values of one message, whose numbers are known to be finite, to several readings; all updates are
+        published in one step."""
         shown = [(reading.name, values) for reading, values in taken if reading.offer(values, cause)]
         if shown:
             self._tell_readings(shown, cause)
 
     def _tell_readings(self, shown: list[tuple[str, Values]], cause: Cause | None) -> None:
-        """Give properties new values now, or as soon as the artifact is free."""
+        """Update properties now, or as soon as the artifact is free."""
         if not self._steps.tell(self._show_values, shown, cause):
             self._steps.publication.coming.update(name for name, _ in shown)
             self.start(self.show_readings, shown, cause=cause)
 
     @internal_operation
     def show_readings(self, shown: object) -> None:
-        """Give properties new values, on behalf of a sensor: names and values."""
+        """Update properties from a sensor: pairs of name and values."""
         assert isinstance(shown, list)
         self._steps.publication.coming.difference_update(name for name, _ in shown)
         for name, values in shown:
@@ -65,7 +65,7 @@ class SensingArtifact(ConnectedArtifact):
 
     @internal_operation
     def withdraw_reading(self, name: str) -> None:
-        """Take the property *name* away: what it says has expired."""
+        """Remove the property *name*: its values have expired."""
         if self.has_property(name):
             self.remove_property(name)
 
@@ -74,9 +74,9 @@ class SensingArtifact(ConnectedArtifact):
 
     @internal_operation
     def show_elements(self, name: str, elements: object) -> None:
-        """Have one property *name* for each of some tuples of values, and none of those before; see `RangeOfView`.
+        """Show one property *name* for each tuple of values, and remove the others; see `RangeOfView`.
 
-        An element that was shown before gives no event.
+        An element that was already shown causes no event.
         """
         assert isinstance(elements, list)
         wanted = dict.fromkeys(elements)
@@ -89,37 +89,37 @@ class SensingArtifact(ConnectedArtifact):
                 self.define_property(name, *new)
 
     async def newest(self, reading: Reading, missing: str) -> Values:
-        """Give the newest values of a sensor to an operation; waits for its first message.
+        """Return the newest values of a sensor to an operation; wait for its first message if necessary.
 
-        A step boundary if it has to wait.
+        A step boundary only if it waits.
 
         Raises:
-            OperationFailed: no message came in `FIRST_MESSAGE` seconds; *missing* names the reason, such as
+            OperationFailed: no message arrived within `FIRST_MESSAGE` seconds; *missing* names the reason, such as
                 ``no_odometry(5)``.
         """
         if reading.newest is None:
             try:
                 await self.step(reading.first(FIRST_MESSAGE))
             except TimeoutError:
-                self.fail(f"no message came in {FIRST_MESSAGE:g} s", missing, FIRST_MESSAGE)
+                self.fail(f"no message arrived within {FIRST_MESSAGE:g} s", missing, FIRST_MESSAGE)
         assert reading.newest is not None
         return reading.newest
 
     async def refresh(self, name: str, reading: Reading, missing: str) -> None:
-        """Give the property *name* the `newest` values, equal to the old ones or not."""
+        """Update the property *name* to the `newest` values, even if they are equal."""
         await self.newest(reading, missing)
         self._show_values(name, reading.passed())
 
 
 MOVED = 0.01
-"""Metres that a robot must have moved before what is in view is looked at anew."""
+"""Metres that a robot must move before the elements in view are computed again."""
 
 Place = Callable[[Values], tuple[float, float]]
-"""Where an element lies: x and y in metres, in the frame of the robot's position."""
+"""Return the position of an element: x and y in metres, in the frame of the robot's position."""
 
 
 def first_two(element: Values) -> tuple[float, float]:
-    """The place of an element whose first two values are x and y."""
+    """Return the position of an element whose first two values are x and y."""
     x, y = element[:2]
     assert isinstance(x, int | float)
     assert isinstance(y, int | float)
@@ -127,14 +127,14 @@ def first_two(element: Values) -> tuple[float, float]:
 
 
 class RangeOfView:
-    """The elements of the newest message that lie within a range of the robot.
+    """The elements of the newest message within a range of the robot.
 
-    Until the robot's position is known nothing is in view.
+    Until the robot's position is known, nothing is in view.
 
     Args:
-        reach: metres; an element just so far away is in view.
-        show: takes the elements in view, in the order of the message, whenever they have changed.
-        place: where an element lies.
+        reach: metres, inclusive.
+        show: called with the elements in view, in the order of the message, whenever they change.
+        place: returns the position of an element.
     """
 
     def __init__(
@@ -146,12 +146,12 @@ class RangeOfView:
         self._shown: list[Values] = []
 
     def take(self, elements: Iterable[Values], cause: Cause | None = None) -> None:
-        """Take the elements of a message; one whose place is not finite is never in view."""
+        """Take the elements of a message; an element whose position is not finite is never in view."""
         self._elements = [(*self._place(each), each) for each in elements]
         self._look(cause)
 
     def stand(self, x: float, y: float, cause: Cause | None = None) -> None:
-        """Be told where the robot is."""
+        """Update the position of the robot."""
         before = self._here
         if before is None or math.dist(before, (x, y)) > MOVED:
             self._here = (x, y)

@@ -1,28 +1,28 @@
 """Services that an artifact calls, and services and actions that it offers.
 
-What ends a call without a response is one of these reasons; a plan gets them as ``env_failure_reason(R)``:
+A call without a response fails with one of these reasons, which a plan receives as ``env_failure_reason(R)``:
 
 ============================  ======================================================================================
-R                             what happened
+R                             meaning
 ============================  ======================================================================================
-service_unavailable(Name)     nobody offers the service
-service_timeout(S)            the server is there, but did not answer within S seconds
+service_unavailable(Name)     no node offers the service
+service_timeout(S)            the server exists, but did not answer within S seconds
 service_failed(Name)          the server failed, or the connection to it broke
-refused(Text)                 it answered ``success: false``, where the operation takes that for a failure
+refused(Text)                 it answered ``success: false``, and the operation treats that as a failure
 ============================  ======================================================================================
 
-Requests of others are carried out as internal operations of the artifact.
+Requests from other nodes run as internal operations of the artifact.
 
-What comes from the graph takes turns with the operations of agents: its steps change properties, send signals and wait, and
-a step that fails is undone.  Whatever becomes of it, its client gets an answer:
+They take turns with the operations of agents: their steps change properties, send signals and wait, and a step that
+fails is undone.  The client always gets an answer:
 
 =====================  ==========================================  ====================================================
-how it ends            client of a service                         client of an action
+end of the operation   client of a service                         client of an action
 =====================  ==========================================  ====================================================
-well                   the response that was set                   succeeded, with the result that was set
+success                the response that was set                   succeeded, with the result that was set
 ``self.fail(Text)``    ``success: false`` and ``message: Text``,   aborted, with this text; the result's ``error_code``
                        or a failed call without such fields        is that of the reason ``aborted(Code)``
-client cancels                                                     canceled, when ``finally`` has run
+client cancels                                                     canceled, after ``finally`` has run
 artifact disposed      a failed call                               aborted
 =====================  ==========================================  ====================================================
 """
@@ -47,14 +47,14 @@ ABORTED = "aborted"
 
 
 class RequestFailed(Exception):
-    """The operation that was to serve a request failed; the text says why."""
+    """Raised when the operation that serves a request fails."""
 
 
 class Reply:
-    """What the client of a request gets when it has been served.
+    """The answer to a request.
 
     Attributes:
-        message: the response or result; None for one with its defaults.
+        message: the response or result; None: one with default values.
     """
 
     def __init__(self, ros: Backend, type_name: str) -> None:
@@ -62,21 +62,21 @@ class Reply:
         self.message: Any = None
 
     def set(self, message: Any = None, /, **fields: Any) -> None:
-        """Give a message, or the fields of one; a later call replaces it.
+        """Set the message, or its fields; a later call replaces it.
 
         Raises:
-            MessageMismatch: a field is unknown, or its value does not fit.
+            MessageMismatch: a field is unknown, or a value does not match its type.
         """
         self.message = message if message is not None else self._ros.message(self._type_name, **fields)
 
 
-class Offer:
-    """A service or action of an artifact whose requests one of its operations serves.
+class ServedOperation:
+    """A service or action of an artifact whose requests are served by one of its operations.
 
     Args:
         ros: the middleware.
         steps: the operations of the artifact.
-        artifact: its id.
+        artifact: id of the artifact.
         declared: the operation; it takes a request (of an action: the goal) and a `Reply`.
     """
 
@@ -84,7 +84,7 @@ class Offer:
         self._ros, self._steps, self._artifact, self._declared = ros, steps, artifact, declared
 
     def handler(self, type_name: str) -> Handler:
-        """What the middleware calls for each request of a service."""
+        """Return the function that the middleware calls for each request of a service."""
         response = response_type(type_name)
         fields = self._ros.fields(response)
 
@@ -93,7 +93,7 @@ class Offer:
             outcome = await self._serve(request, reply)
             if outcome.ok:
                 return reply.message
-            text = outcome.message or "it failed"
+            text = outcome.message or "the operation failed"
             if "success" in fields and fields["success"].base == "bool":
                 return {"success": False, **({"message": text} if "message" in fields else {})}
             raise RequestFailed(text)
@@ -101,7 +101,7 @@ class Offer:
         return handle
 
     def execute(self, type_name: str) -> Callable[[ServerGoal], Awaitable[Any]]:
-        """What the middleware calls for each goal of an action."""
+        """Return the function that the middleware calls for each goal of an action."""
         result = result_type(type_name)
         has_code = "error_code" in self._ros.fields(result)
 
@@ -111,22 +111,24 @@ class Offer:
             if outcome.ok:
                 return reply.message
             code = _code(outcome.reason) if has_code else None
-            raise Abort(outcome.message or "it failed", None if code is None else {"error_code": code})
+            raise Abort(
+                outcome.message or "the operation failed", None if code is None else {"error_code": code}
+            )
 
         return carry_out
 
     async def _serve(self, request: object, reply: Reply) -> OperationOutcome:
-        """Carry the operation out; cancelling this cancels it, and is over when its ``finally`` has run."""
+        """Run the operation. Cancelling this coroutine cancels it, and returns after its ``finally`` has run."""
         done: asyncio.Future[OperationOutcome] = asyncio.get_running_loop().create_future()
 
-        def tell(outcome: OperationOutcome) -> None:
+        def report(outcome: OperationOutcome) -> None:
             if not done.done():
                 done.set_result(outcome)
 
-        wanted = OperationRequest(self._artifact, self._declared.name, (request, reply), None, on_done=tell)
+        wanted = OperationRequest(self._artifact, self._declared.name, (request, reply), None, on_done=report)
         execution = self._steps.start(self._declared, wanted)
         if execution is None:
-            raise RequestFailed(f"artifact {self._artifact.name} takes no requests any more")
+            raise RequestFailed(f"artifact {self._artifact.name} is disposed and serves no requests")
         try:
             return await done
         except asyncio.CancelledError:
@@ -137,7 +139,7 @@ class Offer:
 
 
 def _code(reason: object) -> int | None:
-    """The number in a reason such as ``aborted(203)``."""
+    """Return the number in a reason such as ``aborted(203)``."""
     if isinstance(reason, Structure) and reason.functor == ABORTED and reason.arguments:
         code = reason.arguments[0]
         if isinstance(code, int) and not isinstance(code, bool):
@@ -146,11 +148,11 @@ def _code(reason: object) -> int | None:
 
 
 MESSAGES = ("message", "status_message", "error_msg", "error_message")
-"""Fields in which responses say in words why they refuse."""
+"""Response fields that hold the text of a refusal."""
 
 
 class CallFailure(Exception):
-    """A call had no response that counts.
+    """Raised when a call has no usable response.
 
     Attributes:
         functor, arguments: the failure reason, such as ``service_timeout(2)``.
@@ -162,17 +164,17 @@ class CallFailure(Exception):
 
 
 async def call(client: Client, timeout: float, fields: Mapping[str, Any], must_succeed: bool) -> Any:
-    """Call a service and give its response.
+    """Call a service and return its response.
 
     Args:
-        client: of the service.
-        timeout: seconds for waiting for the server and for the answer together.
-        fields: of the request.
-        must_succeed: take ``success: false`` in the response for a failure.
+        client: client of the service.
+        timeout: seconds to wait for the server and for the response, in total.
+        fields: fields of the request.
+        must_succeed: treat ``success: false`` in the response as a failure.
 
     Raises:
-        CallFailure: with one of the reasons of this file.
-        RosError: the request does not fit the service, or its responses have no field ``success``.
+        CallFailure: with one of the reasons listed at the top of this file.
+        RosError: the request does not match the service type, or its response has no field ``success``.
     """
     name = Atom(client.name.lstrip("/"))
     try:
@@ -191,11 +193,11 @@ async def call(client: Client, timeout: float, fields: Mapping[str, Any], must_s
 
 
 def succeeded(client: Client, response: Any) -> bool:
-    """Whether a response says ``success: true``; raises `RosError` when it says nothing about that."""
+    """Return whether a response has ``success: true``. Raises `RosError` if it has no such field."""
     success = getattr(response, "success", None)
     if success is None:
         known = ", ".join(field_names(response) or ()) or "none"
         raise RosError(
-            f"service {client.name} cannot be told to have succeeded: its response has no field success (it has {known})"
+            f"service {client.name}: cannot check its success: the response has no field `success` (it has {known})"
         )
     return bool(success)

@@ -1,4 +1,4 @@
-"""Cells of the ground with whole-number coordinates, and their labels."""
+"""Cells of the ground with integer coordinates, and their labels."""
 
 from collections.abc import Collection, Mapping
 
@@ -11,20 +11,20 @@ OBSTACLE = "obstacle"
 """Label of a cell that no route enters."""
 
 UNKNOWN = "unknown"
-"""Label of a cell of which nothing is known; no route enters it."""
+"""Label of a cell that nothing is known about; no route enters it."""
 
 GOAL = "goal"
-"""Label of the cell to which ``getRoute`` leads when no other is named."""
+"""Label of the destination of ``getRoute``."""
 
 
 class LabelledCells:
-    """Cells that have been given a label, one each.
+    """Cells with one label each.
 
     Args:
         obstacle: the label of cells that no route enters.
 
     Attributes:
-        obstacle: the same.
+        obstacle: the label of obstacles.
     """
 
     def __init__(self, obstacle: str = OBSTACLE) -> None:
@@ -33,7 +33,7 @@ class LabelledCells:
         self._places: dict[Cell, str] = {}
 
     def put(self, cell: Cell, label: str) -> bool:
-        """Label a cell, replacing an earlier label; return whether that changed the places."""
+        """Label a cell, replacing an earlier label. Return whether that changed the places."""
         self._labels[cell] = label
         before = self._places.pop(cell, None)
         if label not in (FREE, UNKNOWN, OBSTACLE, self.obstacle):
@@ -50,7 +50,7 @@ class LabelledCells:
         self._places.clear()
 
     def load(self, labels: Mapping[Cell, str]) -> None:
-        """Take what a whole map says in place of all free cells and obstacles; places stay."""
+        """Replace all free cells and obstacles by those of a complete map; places stay."""
         self._labels = {cell: self.obstacle if label == OBSTACLE else label for cell, label in labels.items()}
         self._labels.update(self._places)
 
@@ -59,7 +59,7 @@ class LabelledCells:
         return self._labels
 
     def near(self, centre: Cell, reach: int) -> list[Cell]:
-        """Return the cells with a label that are at most *reach* columns and rows from *centre*, sorted."""
+        """Return the labelled cells at most *reach* columns and rows from *centre*, sorted."""
         x, y = centre
         if (2 * reach + 1) ** 2 > len(self._labels):
             return sorted(cell for cell in self._labels if max(abs(cell[0] - x), abs(cell[1] - y)) <= reach)
@@ -67,7 +67,7 @@ class LabelledCells:
         return [(a, b) for a in columns for b in rows if (a, b) in self._labels]
 
     def places(self) -> Mapping[Cell, str]:
-        """Return the cells with another label than free, obstacle and unknown."""
+        """Return the cells with a label other than free, obstacle and unknown."""
         return self._places
 
     def blocked(self) -> set[Cell]:

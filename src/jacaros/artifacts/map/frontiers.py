@@ -1,4 +1,4 @@
-"""Frontier exploration: where the known free ground ends at the unknown (Yamauchi 1997)."""
+"""Frontier exploration: the border between known free ground and unknown ground (Yamauchi 1997)."""
 
 from collections import deque
 from collections.abc import Collection, Iterator
@@ -10,11 +10,11 @@ _AROUND = (*_NEXT, (1, 1), (-1, 1), (-1, -1), (1, -1))
 
 
 def frontier(free: Collection[Cell], known: Collection[Cell], least: int) -> set[Cell]:
-    """Return the free cells beside an unknown one, without pieces of less than *least* cells."""
+    """Return the free cells next to an unknown one, without connected pieces of fewer than *least* cells."""
     edge = {
         (x, y)
         for x, y in free
-        # Written out: a loop over the four takes three times as long, and maps have 100,000 cells.
+        # Unrolled: a loop over the four neighbours takes three times as long, and maps have 100,000 cells.
         if (x + 1, y) not in known
         or (x - 1, y) not in known
         or (x, y + 1) not in known
@@ -31,17 +31,17 @@ def frontier(free: Collection[Cell], known: Collection[Cell], least: int) -> set
 
 
 def around(cells: Collection[Cell], free: Collection[Cell], reach: int) -> set[Cell]:
-    """Return the free cells that are at most *reach* steps over free cells from some cells."""
+    """Return the free cells at most *reach* steps over free cells from some cells."""
     return set(_spread(set(cells), free, reach, _AROUND))
 
 
 def nearest(start: Cell, enterable: Collection[Cell], wanted: Collection[Cell]) -> Cell | None:
-    """Return the nearest wanted cell that is reachable over enterable cells, None if there is none."""
+    """Return the nearest wanted cell that can be reached over enterable cells, None if none exists."""
     return next((cell for cell in _spread({start}, enterable, len(enterable), _NEXT) if cell in wanted), None)
 
 
 def _spread(seeds: set[Cell], over: Collection[Cell], reach: int, steps: tuple[Cell, ...]) -> Iterator[Cell]:
-    """Yield the cells reached from *seeds* over some cells, the near ones first, the same in every run."""
+    """Yield the cells reached from *seeds*, nearest first, in the same order in every run."""
     seen = set(seeds)
     waiting = deque((cell, 0) for cell in sorted(seeds))
     while waiting:

@@ -1,4 +1,4 @@
-"""Grids of others: ``nav_msgs/msg/OccupancyGrid``, and the image of a map file, as labels of cells."""
+"""Occupancy grids, as ``nav_msgs/msg/OccupancyGrid`` or the image of a map file, converted to labels of cells."""
 
 import math
 from collections.abc import Sequence
@@ -9,10 +9,10 @@ from jacaros.artifacts.map.cells import FREE, OBSTACLE, Cell
 from jacaros.artifacts.robots.control import Pose, heading_of
 
 OCCUPIED = 65
-"""Occupancy, in percent, from which on a cell is an obstacle: map_server's threshold."""
+"""Occupancy in percent from which a cell is an obstacle: map_server's threshold."""
 
 CLEAR = 25
-"""Occupancy, in percent, below which a cell is free: map_server's threshold."""
+"""Occupancy in percent below which a cell is free: map_server's threshold."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,7 +21,7 @@ class Grid:
 
     Attributes:
         resolution: side of a cell, in metres.
-        width: cells in a row.
+        width: cells per row.
         origin: pose of the corner of the first cell.
         occupancy: 0 to 100 percent, -1 for unknown; rows from the bottom.
     """
@@ -40,9 +40,9 @@ class Grid:
         return Grid(float(info.resolution), int(info.width), origin, message.data)
 
     def labels(self, size: float) -> dict[Cell, str]:
-        """Return free cells and obstacles as cells of another *size*, in metres, that is not smaller.
+        """Return free cells and obstacles as cells of another *size* (metres), which must not be smaller.
 
-        A cell is an obstacle if a part of it is, and free if its known parts are free.
+        A cell is an obstacle if any part of it is, and free if its known parts are free.
         """
         found: dict[Cell, str] = {}
         corner, step = self.origin, self.resolution / size

@@ -1,4 +1,4 @@
-"""Room for the robot: cells too near to an obstacle are not for routes."""
+"""Clearance for the robot: routes avoid cells that are too close to an obstacle."""
 
 import math
 from collections.abc import Collection
@@ -9,7 +9,7 @@ from jacaros.artifacts.map.cells import Cell
 def inflated(passable: set[Cell], blocked: Collection[Cell], radius: float, here: Cell) -> set[Cell]:
     """Return the passable cells whose centres are farther than *radius* from those of obstacles.
 
-    A robot that is too near to an obstacle already may leave it: the passable cells around it stay.
+    A robot that is already too close to an obstacle may drive away: the passable cells around it stay.
 
     Args:
         passable: cells that a point could enter.

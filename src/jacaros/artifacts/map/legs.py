@@ -1,4 +1,4 @@
-"""Straight legs of a route over cells, for a robot that turns on the spot and drives straight ahead."""
+"""Straight legs of a route, for a robot that turns on the spot and drives straight ahead."""
 
 import math
 from collections.abc import Collection, Sequence
@@ -9,11 +9,11 @@ from jacaros.artifacts.robots.control import Pose
 
 
 class Leg(NamedTuple):
-    """What legs are made of.
+    """Limits of legs.
 
     Attributes:
         size: side of a cell, in metres.
-        longest: metres.
+        longest: maximum length, in metres.
     """
 
     size: float
@@ -21,13 +21,14 @@ class Leg(NamedTuple):
 
 
 def next_leg(way: Sequence[Cell], free: Collection[Cell], pose: Pose, leg: Leg) -> tuple[float, float]:
-    """Return the turn in radians, to the left if positive, and the metres to the farthest cell in a straight line.
+    """Return the turn (radians, positive to the left) and the distance (metres) to the farthest cell in a straight
+    line.
 
     Args:
         way: cells from start to goal.
         free: cells that may be entered.
-        pose: of the robot, in metres; it can be slightly off the route.
-        leg: the size of cells, and the longest leg.
+        pose: pose of the robot, in metres; it may be slightly off the route.
+        leg: size of cells, and maximum length.
     """
     size = leg.size
     at = min(range(len(way)), key=lambda i: (math.dist(pose[:2], (way[i][0] * size, way[i][1] * size)), i))
@@ -46,7 +47,7 @@ def next_leg(way: Sequence[Cell], free: Collection[Cell], pose: Pose, leg: Leg) 
 
 
 def _clear(pose: Pose, x: float, y: float, free: Collection[Cell], size: float) -> bool:
-    """Return whether the straight line to a point leads over free cells; the robot's own may be any."""
+    """Return whether the straight line to a point crosses only free cells; the robot's own cell is not checked."""
     steps = max(1, math.ceil(math.dist(pose[:2], (x, y)) / (0.5 * size)))
     here = (math.floor(pose.x / size + 0.5), math.floor(pose.y / size + 0.5))
     for step in range(1, steps + 1):

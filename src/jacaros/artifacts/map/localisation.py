@@ -1,4 +1,4 @@
-"""Where a robot is on the map: its odometry, and a correction of it."""
+"""The pose of a robot on the map: its odometry, and a correction."""
 
 import math
 from collections import deque
@@ -7,16 +7,16 @@ from jacaros.artifacts.map.poses import ORIGIN, between, followed_by, inverse
 from jacaros.artifacts.robots.control import Pose
 
 REMEMBERED = 40
-"""Poses of odometry that are kept: two seconds at 20 Hz, for sensors that are late."""
+"""Number of odometry poses that are stored: two seconds at 20 Hz, for sensors that arrive late."""
 
 
 class Localisation:
     """The pose of a robot on the map.
 
     Attributes:
-        correction: where the frame of odometry stands on the map; at its origin until something corrects it.
+        correction: pose of the odometry frame on the map; the origin until something corrects it.
         pose: the newest pose on the map; None before the first odometry.
-        driven: metres driven, by odometry.
+        driven: metres driven, according to odometry.
     """
 
     def __init__(self) -> None:
@@ -26,7 +26,7 @@ class Localisation:
         self._odometry: deque[tuple[float, Pose]] = deque(maxlen=REMEMBERED)
 
     def take_odometry(self, stamp: float, pose: Pose) -> None:
-        """Take a pose of odometry; *stamp* in seconds."""
+        """Take a pose from odometry; *stamp* in seconds."""
         if self._odometry:
             last, before = self._odometry[-1]
             self.driven += math.dist(before[:2], pose[:2])
@@ -41,7 +41,7 @@ class Localisation:
         return None if found is None else followed_by(self.correction, found)
 
     def correct(self, stamp: float, pose: Pose) -> None:
-        """Take it that the robot was at *pose* on the map at *stamp*; nothing happens before the first odometry."""
+        """Correct the pose: the robot was at *pose* on the map at *stamp*. No effect before the first odometry."""
         found = self._odometry_at(stamp)
         if found is not None:
             self.correction = followed_by(pose, inverse(found))

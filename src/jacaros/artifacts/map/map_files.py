@@ -1,6 +1,6 @@
-"""Maps in the format of ROS's map_server: a YAML file, and beside it an image (PGM; PNG can be read, too).
+"""Maps in the format of ROS's map_server: a YAML file, and an image next to it (PGM; PNG can be read, too).
 
-Places are in a key of their own, ``places``, which map_server ignores.
+Places have a key of their own, ``places``, which map_server ignores.
 """
 
 from collections.abc import Mapping
@@ -17,7 +17,7 @@ from jacaros.text_files import file_text
 from jacaros.yaml_nodes import Problem, YamlFileError, read_document
 
 _BLACK, _WHITE, _GREY = 0, 254, 205
-"""Shades of obstacles, free cells and unknown ones, as map_saver writes them."""
+"""Grey values of obstacles, free cells and unknown cells, as map_saver writes them."""
 
 _YAML = """\
 image: {image}
@@ -35,12 +35,12 @@ class MapFileError(JacarosError):
 
 
 def save(file: Path, size: float, labels: Mapping[Cell, str], places: Mapping[str, Cell]) -> None:
-    """Write a map: *file*, and an image of the same name that ends with ``.pgm``.
+    """Write a map: *file*, and an image of the same name with the suffix ``.pgm``.
 
     Args:
-        file: ends with ``.yaml``; its folder is made if it does not exist.
+        file: ends with ``.yaml``; its folder is created if necessary.
         size: side of a cell, in metres.
-        labels: the obstacles and the free cells; any label that is not ``free`` is an obstacle.
+        labels: the obstacles and the free cells; any label other than ``free`` is an obstacle.
         places: cells by name.
 
     Raises:
@@ -90,7 +90,7 @@ def load(file: Path) -> Saved:
     """Read a map.
 
     Raises:
-        MapFileError: a file does not exist or cannot be read, or has mistakes.
+        MapFileError: a file does not exist, cannot be read, or has mistakes.
     """
     try:
         text = file_text(file)
@@ -100,9 +100,9 @@ def load(file: Path) -> Saved:
             raise YamlFileError(file.name, text, problems)
         image = read_image(file.parent / header.image)
     except ImageError as error:
-        raise MapFileError(f"cannot read the map {file}: {error}; {error.help}") from None
+        raise MapFileError(f"cannot read the map `{file}`: {error}; {error.help}") from None
     except (OSError, ValueError, JacarosError) as error:
-        raise MapFileError(f"cannot read the map {file}: {error}") from None
+        raise MapFileError(f"cannot read the map `{file}`: {error}") from None
     width, rows = image.width, range(image.height - 1, -1, -1)
     occupancy = [
         header.occupancy[shade] for row in rows for shade in image.pixels[row * width : (row + 1) * width]

@@ -12,28 +12,28 @@ from jacaros.artifacts.map.scans import ScanOptions, moved, read_scan
 from jacaros.artifacts.robots.control import Pose
 
 DRIVEN = 0.1
-"""Metres after which the next scan is taken into the map."""
+"""Metres after which the next scan is added to the map."""
 
 TURNED = math.radians(6.0)
-"""Radians after which it is."""
+"""Radians after which the next scan is added to the map."""
 
 STOOD = 2.0
-"""Seconds after which it is also added without motion: something else may have moved."""
+"""Seconds after which a scan is also added without motion: something else may have moved."""
 
 MATCHED = 120
-"""Points of a scan that are matched, about."""
+"""Approximate number of points of a scan that are matched."""
 
 
 class Mapper:
-    """Puts scans into a grid, each from where the robot was at its time.
+    """Add scans to a grid, each from the robot's pose at its time.
 
     Args:
         cells: the grid.
         options: how scans are read.
-        matching: correct the pose by matching scans with what was seen before.
+        matching: correct the pose by matching scans with earlier ones.
 
     Attributes:
-        localisation: where the robot is.
+        localisation: the robot's pose.
     """
 
     def __init__(self, cells: OccupancyCells, options: ScanOptions, matching: bool) -> None:
@@ -43,10 +43,10 @@ class Mapper:
         self._last: tuple[float, Pose] | None = None
 
     def take_scan(self, stamp: float, message: Any) -> bool:
-        """Take a ``sensor_msgs/msg/LaserScan`` of the time *stamp*, in seconds.
+        """Take a ``sensor_msgs/msg/LaserScan`` with the time *stamp*, in seconds.
 
         Returns:
-            Whether it went into the map: not before the first odometry, and not if the robot stands where it stood.
+            Whether it was added to the map: not before the first odometry, and not if the robot has not moved.
         """
         pose = self.localisation.pose_at(stamp)
         if pose is None or not self._is_news(stamp, pose):
@@ -76,7 +76,7 @@ class Mapper:
         )
 
     def begin_with(self, obstacles: Collection[Cell]) -> None:
-        """Forget the scans so far, and match those to come with some *obstacles*, as of a map that was loaded."""
+        """Forget earlier scans, and match later ones with *obstacles*, such as those of a loaded map."""
         size = self._cells.size
         self._surfaces = Surfaces()
         self._surfaces.add((x * size, y * size) for x, y in sorted(obstacles))

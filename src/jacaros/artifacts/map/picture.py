@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from jacaros.artifacts.map.cells import FREE, OBSTACLE, UNKNOWN, Cell, LabelledCells
 
 WIDEST = 200
-"""Columns and rows that are drawn at most, around the agent."""
+"""Maximum number of columns and rows, around the agent."""
 
 _SIGNS = {FREE: ".", OBSTACLE: "#", UNKNOWN: " "}
 
@@ -14,8 +14,8 @@ def picture(cells: LabelledCells, things: Mapping[Cell, str], here: Cell) -> lis
     """Draw a map, the highest y first.
 
     Args:
-        cells: those to draw.
-        things: names of what else is in cells.
+        cells: the cells to draw.
+        things: names of further objects, by cell.
         here: the agent's cell, drawn as ``@``.
 
     Returns:

@@ -26,18 +26,18 @@ from jacaros.ros.qos import LATCHED, SENSOR_DATA
 AMCL_POSE = "geometry_msgs/msg/PoseWithCovarianceStamped"
 
 SHORTEST_FRONTIER = 0.4
-"""Metres that a frontier is long at least; a shorter one is a gap between two beams."""
+"""Minimum length of a frontier, in metres; a shorter one is a gap between two beams."""
 
 
 def names(value: object) -> tuple[str, ...]:
-    """A list of names."""
+    """Read a list of names."""
     if not isinstance(value, list) or not all(isinstance(each, str) for each in value):
         raise ValueError("a list of names")
     return tuple(str(each) for each in value)
 
 
 def mount(value: object) -> Pose:
-    """A list of x, y and an angle in degrees."""
+    """Read a list of x, y (metres) and an angle (degrees)."""
     if not isinstance(value, list) or len(value) != 3:
         raise ValueError("a list of x, y (metres) and degrees")
     x, y, degrees = map(number, value)
@@ -45,29 +45,29 @@ def mount(value: object) -> Pose:
 
 
 class ArtMap(ArtSlamData):
-    """A map of what a robot's laser sees, or of ``/map``, with the robot on it.
+    """A map built from a robot's laser scans or from ``/map``, with the robot on it.
 
-    Cell X, Y has its centre at X and Y times the size of a cell.  A cell is free or an obstacle as most scans have it
-    (log odds, Moravec and Elfes 1985); labels that agents write go before that.  Scans are put into the map from where
-    the robot is by odometry, corrected by matching them with what was seen before; the origin of the map is that of
-    odometry.
+    The centre of cell X, Y is X and Y times the size of a cell from the origin. Whether a cell is free or an obstacle
+    is decided by most of the scans (log odds, Moravec and Elfes 1985); labels of agents take precedence. Scans are
+    added at the robot's pose: odometry, corrected by matching the scan with earlier ones. The origin of the map is
+    that of odometry.
 
     Options:
-        source(scan) or source(map): where cells come from, ``/scan`` (the default) or ``/map``.
-        pose_from(scans), pose_from(odometry) or pose_from(amcl): where the robot is by odometry corrected by scans (the
-            default with ``source(scan)``), by odometry alone, or corrected by ``/amcl_pose`` (the default with
+        source(scan) or source(map): the source of cells, ``/scan`` (default) or ``/map``.
+        pose_from(scans), pose_from(odometry) or pose_from(amcl): the robot's pose is odometry corrected by scans
+            (default with ``source(scan)``), odometry alone, or odometry corrected by ``/amcl_pose`` (default with
             ``source(map)``).
-        cell_size(S): side of a cell in metres (0.1); with ``source(map)`` that of the map at least.
-        max_range(R): metres (4) beyond which beams are cut off.
-        laser([X, Y, D]): where the laser is on the robot, metres and degrees; in its middle, looking ahead, by default.
-        radius(R): room that the robot needs, in metres (0.25): routes keep the centres of cells farther than this from
-            those of obstacles.  A robot of 0.17 m keeps clear by a few centimetres.
-        leg(M): longest leg that `getLeg` gives, in metres (1).
-        view(R): show obstacles up to R metres from the robot as ``pos2d(obstacle, X, Y)``, whenever the robot comes to
-            another cell; 0, the default, leaves that to `getVisionRange`.
+        cell_size(S): side of a cell in metres (0.1); with ``source(map)`` at least that of the map.
+        max_range(R): metres (4) at which beams are cut off.
+        laser([X, Y, D]): pose of the laser on the robot, metres and degrees; default: in its centre, facing ahead.
+        radius(R): clearance of the robot, in metres (0.25): routes keep the centres of cells farther than this from
+            those of obstacles. A robot with a radius of 0.17 m keeps a few centimetres away from them.
+        leg(M): maximum length of a leg of `getLeg`, in metres (1).
+        view(R): show obstacles up to R metres from the robot as ``pos2d(obstacle, X, Y)``, whenever the robot enters
+            another cell; 0 (default): only `getVisionRange` shows them.
         robots(Names): show other robots on the same map by their ``/NAME/amcl_pose``.
-        things(true): show things that are recognised, on ``/jason/perception`` as `ArtPerception` has it: the texts are
-            name, metres ahead, and metres to the left.  A thing stays where it was seen last.
+        things(true): show recognised things from ``/jason/perception``, in the form of `ArtPerception`: the texts are
+            name, metres ahead, and metres to the left. A thing stays where it was last seen.
         scan_topic(T), odometry_topic(T), map_topic(T), amcl_topic(T): other topics.
     """
 
@@ -89,7 +89,7 @@ class ArtMap(ArtSlamData):
     usual_radius: ClassVar[float] = 0.25
 
     def open(self) -> None:
-        """Begin with an empty map, and listen."""
+        """Begin with an empty map, and subscribe to the sensors."""
         super().open()
         self._done: set[Cell] = set()
         self._showing = False
@@ -137,7 +137,7 @@ class ArtMap(ArtSlamData):
             take = partial(self._take_other, name)
             self.kept(self.ros.subscription(f"/{name}/amcl_pose", AMCL_POSE, take, LATCHED))
 
-    # ---- what the sensors say
+    # ---- sensor messages
 
     def _take_odometry(self, odometry: Odometry) -> None:
         stamp = to_seconds(odometry.sample.message.header.stamp) or odometry.sample.stamp
@@ -179,11 +179,11 @@ class ArtMap(ArtSlamData):
                 ahead, left = float(place[0]), float(place[1])
                 cell = self._seen.cell_at(*point_ahead(pose, ahead, left))
             except (ValueError, IndexError, OverflowError):
-                continue  # a text of another form
+                continue  # a text in another format
             self.start(self.update_object, name.strip(), *cell, cause=sample.cause)
 
     def _locate(self, sample: Sample) -> None:
-        """Note where the robot is; what agents perceive follows if it has come to another cell."""
+        """Update the robot's position; if it has entered another cell, update the properties."""
         pose = self._mapper.localisation.pose
         if pose is None:
             return
@@ -205,21 +205,22 @@ class ArtMap(ArtSlamData):
 
     @property
     def driven(self) -> float:
-        """Metres driven so far, by odometry."""
+        """Metres driven so far, according to odometry."""
         return self._mapper.localisation.driven
 
-    # ---- where to go
+    # ---- destinations
 
     @operation(name="getLeg")
     def get_leg(self, degrees: Out, metres: Out) -> None:
-        """Give the next straight leg of the newest route: how far to turn, to the left if positive, and how far to drive.
+        """Give the next straight leg of the newest route: how far to turn (positive to the left), and how far to
+        drive.
 
-        A leg ends where the route bends, or after ``leg(M)`` metres.  At the end of the route both are 0.  Fails with
-        ``no_route`` before the first route, and with ``no_odometry`` while it is not known where the robot is.
+        A leg ends where the route bends, or after ``leg(M)`` metres. At the end of the route both are 0. Fails with
+        ``no_route`` before the first route, and with ``no_odometry`` while the robot's pose is unknown.
         """
         pose = self._mapper.localisation.pose
         if pose is None:
-            self.fail("no odometry came yet", "no_odometry")
+            self.fail("no odometry has arrived", "no_odometry")
         if not self.way:
             self.fail("no route: call getRoute first", "no_route")
         longest = self._metres("leg", 1.0)
@@ -229,11 +230,11 @@ class ArtMap(ArtSlamData):
 
     @operation(name="getFrontier")
     async def get_frontier(self, x: Out, y: Out) -> None:
-        """Give a cell from which unknown ground is seen that a route leads to: the nearest one.
+        """Give the nearest reachable cell from which unknown ground can be seen.
 
-        A frontier that the robot stands at, and that is there still, cannot be seen from there, and is left out from then
-        on.  Fails with ``explored`` when there is none, and with ``no_scan(5)`` (``no_map(5)`` with ``source(map)``) when
-        nothing is known after 5 s.
+        If the robot is at a frontier that is still there, the ground behind it cannot be seen, and the frontier is
+        left out from then on. Fails with ``explored`` if no frontier is left, and with ``no_scan(5)`` (``no_map(5)``
+        with ``source(map)``) if nothing is known after 5 s.
         """
         await self.newest(self._first, "no_map" if self._text("source", "scan") == "map" else "no_scan")
         free, known = self.cells.passable(), self.cells.known()
@@ -243,12 +244,12 @@ class ArtMap(ArtSlamData):
         self._done |= edge & around({self.here}, free, reach)
         found = nearest(self.here, enterable, around(edge - self._done, free, reach) & enterable)
         if found is None:
-            self.fail("no unknown ground can be reached", "explored")
+            self.fail("no reachable cell borders unknown ground", "explored")
         x.set(found[0])
         y.set(found[1])
 
     def begin_with_map(self) -> None:
-        """Match scans with the map that is there now."""
+        """Match scans with the present map."""
         self._done.clear()
         self._mapper.begin_with(self.cells.blocked())
 

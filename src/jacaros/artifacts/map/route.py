@@ -1,4 +1,4 @@
-"""The shortest way over free cells, and the direction of its first step."""
+"""The shortest route over free cells, and the direction of its first step."""
 
 import heapq
 import math
@@ -10,18 +10,18 @@ _DIAGONAL = math.sqrt(2.0)
 
 
 def route(free: Collection[Cell], start: Cell, goal: Cell) -> list[Cell] | None:
-    """Shortest way from *start* to *goal* over *free* cells, by A* with eight neighbours.
+    """Return the shortest route from *start* to *goal* over *free* cells, by A* with eight neighbours.
 
-    A diagonal step needs both cells beside it free, so that a robot does not cut corners.  Start and goal
-    count as free.  Of several shortest ways the same one is found each time.
+    A diagonal step needs both adjacent cells free, so that a robot does not cut corners. Start and goal count as
+    free. If several routes are shortest, the result is the same each time.
 
     Args:
-        free: cells that may be entered; a set for speed.
-        start: first cell of the way.
-        goal: last cell of the way.
+        free: cells that may be entered; a set, for speed.
+        start: first cell of the route.
+        goal: last cell of the route.
 
     Returns:
-        All cells from start to goal, both included; None without a route.
+        All cells from start to goal, inclusive; None if there is no route.
     """
     open_cells: list[tuple[float, float, Cell]] = [(_octile(start, goal), 0.0, start)]
     costs = {start: 0.0}

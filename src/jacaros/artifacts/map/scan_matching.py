@@ -1,8 +1,8 @@
-"""Scan matching: where a robot is by what its laser sees, against what it has seen before.
+"""Scan matching: correct the pose of a robot by comparing a laser scan with earlier ones.
 
-A scan is moved until its points lie on the lines that earlier scans have left (iterated closest point, with distances to
-lines: Chen and Medioni 1991).  Odometry says where to begin, and counts as much as the directions that the lines leave open
-need, such as along a corridor.
+A scan is moved until its points lie on the lines of earlier scans (iterated closest point with point-to-line
+distances: Chen and Medioni 1991).  Odometry gives the initial pose, and is weighted so that it decides the directions
+that the lines leave open, such as along a corridor.
 """
 
 import math
@@ -14,30 +14,31 @@ from jacaros.artifacts.map.occupancy import Point
 from jacaros.artifacts.robots.control import Pose
 
 BUCKET = 0.1
-"""Side of the squares, in metres, in each of which the points seen are averaged."""
+"""Side, in metres, of the squares in which observed points are averaged."""
 
 MOST = 30
-"""Points that a square averages; more change nothing, so that the map does not drift with the robot."""
+"""Maximum number of points that a square averages; further points change nothing, so that the map does not drift with
+the robot."""
 
 FAR = 0.3
-"""Metres from its line beyond which a point does not count."""
+"""Metres from its line beyond which a point is ignored."""
 
 DOUBTFUL = 0.04
 """Metres from its line at which a point counts half."""
 
 STRAIGHT = 0.15
-"""Most that the points of a line may be spread across, as a share of how they are spread along it (variances)."""
+"""Maximum spread of the points of a line across it, as a fraction of the spread along it (variances)."""
 
 ROUNDS = 12
 FEW = 12
-"""Points on lines that a match needs."""
+"""Minimum number of points on lines for a match."""
 
 TRUST = (4.0, 4.0, 10.0)
-"""How much odometry counts for x, y and heading, in points."""
+"""Weights of odometry for x, y and heading, in points."""
 
 
 class Line(NamedTuple):
-    """A piece of a wall: a point of it, and the direction across."""
+    """A piece of a wall: a point on it, and its normal."""
 
     x: float
     y: float
@@ -46,7 +47,7 @@ class Line(NamedTuple):
 
 
 class Surfaces:
-    """Where echoes came from, averaged, as pieces of lines."""
+    """Positions of echoes, averaged, as pieces of lines."""
 
     def __init__(self) -> None:
         self._sums: dict[Cell, tuple[int, float, float]] = {}
@@ -56,7 +57,7 @@ class Surfaces:
         return bool(self._sums)
 
     def add(self, echoes: Iterable[Point]) -> None:
-        """Take the echoes of a scan, on the map."""
+        """Add the echoes of a scan, in map coordinates."""
         self._lines.clear()
         sums = self._sums
         for x, y in echoes:
@@ -66,14 +67,15 @@ class Surfaces:
                 sums[key] = (count + 1, sum_x + x, sum_y + y)
 
     def line_near(self, x: float, y: float) -> Line | None:
-        """Return the line through the points seen near a point, None if there is none or they are not on a line."""
+        """Return the line through the points observed near a point, None if no points exist or they are not on a
+        line."""
         key = (math.floor(x / BUCKET), math.floor(y / BUCKET))
         if key not in self._lines:
             self._lines[key] = self._fit(key)
         return self._lines[key]
 
     def _fit(self, key: Cell) -> Line | None:
-        """Fit a line to the averages of the squares around, the near ones more than the far ones."""
+        """Fit a line to the averages of the surrounding squares, weighted by distance."""
         column, row = key
         weight = sum_x = sum_y = 0.0
         found: list[tuple[float, float, float]] = []
@@ -101,15 +103,15 @@ class Surfaces:
 
 
 def match(surfaces: Surfaces, points: Sequence[Point], guess: Pose) -> Pose | None:
-    """Find the pose at which the points of a scan lie best on what was seen before.
+    """Find the pose at which the points of a scan fit earlier ones best.
 
     Args:
-        surfaces: what was seen before.
+        surfaces: what earlier scans observed.
         points: echoes, in the frame of the robot; a hundred are enough.
-        guess: the pose by odometry; it must be within some `FAR` of the true one, and a few degrees.
+        guess: the pose according to odometry; it must be within about `FAR` and a few degrees of the true one.
 
     Returns:
-        The pose, or None when too few points lie on lines.
+        The pose, or None if too few points lie on lines.
     """
     pose = guess
     for _ in range(ROUNDS):
@@ -136,7 +138,7 @@ def match(surfaces: Surfaces, points: Sequence[Point], guess: Pose) -> Pose | No
 
 
 class _Normal:
-    """The normal equations of one round: least squares for a small motion of the pose."""
+    """The normal equations of one iteration: least squares for a small motion of the pose."""
 
     def __init__(self, pose: Pose, guess: Pose) -> None:
         tx, ty, tt = TRUST
@@ -145,7 +147,7 @@ class _Normal:
         self._b = [tx * (guess.x - pose.x), ty * (guess.y - pose.y), tt * turned]
 
     def add(self, jx: float, jy: float, jt: float, off: float) -> None:
-        """Take a point that is *off* its line, and how a motion along x and y and a turn change that."""
+        """Add a point that is *off* its line, and the effect of a motion along x and y and of a turn."""
         weight = 1.0 / (1.0 + (off / DOUBTFUL) ** 2)
         wx, wy, wt = weight * jx, weight * jy, weight * jt
         a, b = self._a, self._b
@@ -160,7 +162,7 @@ class _Normal:
         b[2] -= wt * off
 
     def solved(self) -> tuple[float, float, float]:
-        """Return the motion; the matrix is positive definite, because odometry counts in every direction."""
+        """Return the motion; the matrix is positive definite because odometry counts in every direction."""
         (a, b, c), (_, d, e), (_, _, f) = self._a
         p, q, r = self._b
         m00, m01, m02 = d * f - e * e, c * e - b * f, b * e - c * d

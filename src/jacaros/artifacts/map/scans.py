@@ -11,19 +11,19 @@ Point = tuple[float, float]
 
 
 SAME_SURFACE = 0.5
-"""How much the ranges of neighbouring beams may differ to be taken for echoes of one surface, as a share of the range."""
+"""Relative difference of the ranges of neighbouring beams up to which they are taken for echoes of one surface."""
 
 LONGEST_GRAZE = 2.5
-"""Metres that a beam may be said to run beside a surface."""
+"""Maximum distance in metres for which a beam is assumed to run along a surface."""
 
 
 class Scan(NamedTuple):
-    """What a scan says, in metres from the robot.
+    """The content of a scan, in metres from the robot.
 
     Attributes:
-        origin: where the laser is.
-        echoes: where there is something.
-        clear: up to where each beam shows that the ground is free.
+        origin: position of the laser.
+        echoes: positions of echoes.
+        clear: for each beam, the end of the ground that it shows to be free.
     """
 
     origin: Point
@@ -36,10 +36,10 @@ class ScanOptions:
     """How scans are read.
 
     Attributes:
-        longest: metres beyond which beams are cut off.
+        longest: metres at which beams are cut off.
         mount: pose of the laser on the robot.
-        beside: metres from a surface within which a beam says nothing, such as the side of a cell: it may pass through
-            the same cell as the surface.
+        beside: metres from a surface within which a beam carries no information, such as the side of a cell: it may
+            cross the same cell as the surface.
     """
 
     longest: float
@@ -48,10 +48,10 @@ class ScanOptions:
 
 
 def read_scan(message: Any, options: ScanOptions) -> Scan:
-    """Take the points out of a ``sensor_msgs/msg/LaserScan``.
+    """Read the points of a ``sensor_msgs/msg/LaserScan``.
 
-    A beam without an echo is infinite or beyond the sensor's range (REP 117).  One that is not a number, or nearer than the
-    sensor can measure, says nothing.
+    A beam without an echo is infinite or beyond the sensor's range (REP 117). A NaN, or a range below the sensor's
+    minimum, is ignored.
     """
     mount, longest = options.mount, options.longest
     echoes: list[Point] = []
@@ -78,7 +78,7 @@ def read_scan(message: Any, options: ScanOptions) -> Scan:
 def _beside(reading: float, before: float, sine: float, cosine: float, near: float) -> float:
     """Return for how many metres before its echo a beam runs within *near* metres of the surface.
 
-    The surface runs from the echo of the beam before to this one; the flatter the beam meets it, the longer it is beside.
+    The surface runs from the echo of the previous beam to this one; the flatter the angle, the longer the distance.
     """
     across = abs(before * sine)
     if across == 0.0 or not abs(reading - before) < SAME_SURFACE * reading:
@@ -87,7 +87,7 @@ def _beside(reading: float, before: float, sine: float, cosine: float, near: flo
 
 
 def moved(scan: Scan, pose: Pose) -> Scan:
-    """Return a scan in map coordinates, for a robot at *pose*."""
+    """Convert a scan to map coordinates, for a robot at *pose*."""
     sine, cosine = math.sin(pose.heading), math.cos(pose.heading)
     x, y = pose.x, pose.y
 

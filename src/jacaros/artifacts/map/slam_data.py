@@ -1,6 +1,4 @@
-"""``ArtSlamData`` of the thesis: the ground as labelled cells, of which an agent perceives what is in its range of view,
-and routes over them.
-"""
+"""``ArtSlamData`` of the thesis: the ground as labelled cells, the cells in an agent's range of view, and routes."""
 
 import math
 from collections.abc import Sequence
@@ -21,28 +19,29 @@ ME = Atom("me")
 
 
 class ArtSlamData(RosArtifact):
-    """A map of cells with whole-number coordinates and a label each, such as free, obstacle, goal, home.
+    """A map of cells with integer coordinates and one label each, such as free, obstacle, goal, home.
 
-    It needs no ROS: agents write what they learn and read what is near (range of view), so that no belief
-    base has to hold the whole map.  x grows to the east, y to the north (thesis, chapter 9 and listing B.1).
+    It needs no ROS: agents write what they find out, and read what is near (range of view), so that no belief base
+    has to hold the whole map. x points east, y north (thesis, chapter 9 and listing B.1).
 
     Options:
         obstacle(Label): another label for cells that no route enters.
         cell_size(S): side of a cell in metres (1).
-        radius(R): room that the robot needs, in metres (0): routes keep the centres of cells farther than this from those
-            of obstacles.
+        radius(R): clearance of the robot, in metres (0): routes keep the centres of cells farther than this from
+            those of obstacles.
 
     Properties:
-        pos2d(X, Y): the agent's cell, 0, 0 at first.
-        pos2d(Object, X, Y): the cell of an object, an atom: `me`, the agent; each place, which is a cell with any other
-            label than free, obstacle and unknown, such as `home` and `goal`; each thing of `updateObject`; and
+        pos2d(X, Y): the agent's cell, initially 0, 0.
+        pos2d(Object, X, Y): the cell of an object, an atom: `me`, the agent; each place, which is a cell with a label
+            other than free, obstacle and unknown, such as `home` and `goal`; each thing of `updateObject`; and
             `obstacle`, one for each obstacle in the newest range of view.
         cell(X, Y, Label): one for each labelled cell of the newest range of view.
         currentRange(List): the same as a list of ``cell(X, Y, Label)``.
         route(List): the newest route, a list of ``cell(X, Y)`` from the agent's cell to the goal.
-        direction(D): where the route leads next, an atom: `east`, `northeast`, `north` ..., or `reached` at its end.
-        degrees(D): how far to turn for that, in (-180, 180], to the left if positive.  An agent that has not moved
-            looks to the east, or where the first argument says: ``makeArtifact("m", "ArtSlamData", ["north"], Id)``.
+        direction(D): the direction of the next step of the route, an atom: `east`, `northeast`, `north` ..., or
+            `reached` at its end.
+        degrees(D): how far to turn for that, in (-180, 180], positive to the left. An agent that has not moved faces
+            east, or as the first argument says: ``makeArtifact("m", "ArtSlamData", ["north"], Id)``.
 
     Signals:
         currentRange(X, Y, Label): after `getVisionRange`, one for each labelled cell, column by column.
@@ -72,7 +71,7 @@ class ArtSlamData(RosArtifact):
         self.define_property("degrees", 0)
 
     def new_cells(self, obstacle: str) -> LabelledCells:
-        """Return the cells to begin with; for subclasses with sensors."""
+        """Return the initial cells. Subclasses with sensors override it."""
         return LabelledCells(obstacle)
 
     # ---- labels
@@ -85,25 +84,25 @@ class ArtSlamData(RosArtifact):
 
     @operation(name="updateObject")
     def update_object(self, thing: str, x: int, y: int) -> None:
-        """Note where a thing is that can move, such as another robot; its former cell is forgotten."""
+        """Set the cell of a movable thing, such as another robot; its previous cell is forgotten."""
         self._things[str(thing)] = (x, y)
         self.show_objects()
 
     @operation(name="removeObject")
     def remove_object(self, thing: str) -> None:
-        """Forget a thing; nothing happens if it is unknown."""
+        """Forget a thing; no effect if it is unknown."""
         self._things.pop(str(thing), None)
         self.show_objects()
 
     @operation(name="getSlamData")
     def get_slam_data(self, x: int, y: int, label: Out) -> None:
-        """Give a cell's label, the atom ``unknown`` when it has none."""
+        """Give the label of a cell, the atom ``unknown`` if it has none."""
         label.set(self.cells.label((x, y)) or Atom(UNKNOWN))
 
     @operation
     @operation(name="clearSlamData")
     def clear(self) -> None:
-        """Forget all labels and things, and the range of view and route that came from them."""
+        """Forget all labels and things, and the range of view and route based on them."""
         self.cells.clear()
         self._things.clear()
         self.way = []
@@ -115,48 +114,49 @@ class ArtSlamData(RosArtifact):
     def print_slam_data(self) -> None:
         """Print the map, north at the top.
 
-        ``.`` is free, ``#`` an obstacle, ``@`` the agent, a capital the first letter of a place's or thing's name.
+        ``.`` is free, ``#`` an obstacle, ``@`` the agent, a capital letter the initial of a place or thing.
         """
         things = {cell: name for name, cell in self._things.items()}
         for line in picture(self.cells, things, self.here):
             self.log(line)
 
-    # ---- the agent's place
+    # ---- the agent's position
 
     @operation(name="updatePos")
     def update_pos(self, x: int, y: int) -> None:
-        """Note the agent's cell."""
+        """Set the agent's cell."""
         self.stand((x, y), self.heading)
 
     @operation(name="updatePos")
     def update_pos_and_direction(self, direction: str, x: int, y: int) -> None:
-        """Note where the agent looks, such as ``east``, and its cell; ``unknown_direction(D)`` for another word."""
+        """Set the direction that the agent faces, such as ``east``, and its cell. Fails with ``unknown_direction(D)``
+        for another word."""
         degrees = DEGREES.get(str(direction))
         if degrees is None:
             known = ", ".join(DEGREES)
             self.fail(
-                f"unknown direction {direction}: expected one of {known}", "unknown_direction", direction
+                f"unknown direction `{direction}`: expected one of {known}", "unknown_direction", direction
             )
         self.stand((x, y), degrees)
 
     @operation(name="moveUp")
     def move_up(self) -> None:
-        """Note that the agent has moved to the next cell in the north (y + 1), and looks there."""
+        """Move the agent to the next cell in the north (y + 1), facing north."""
         self._step(0, 1)
 
     @operation(name="moveDown")
     def move_down(self) -> None:
-        """Note that the agent has moved to the next cell in the south (y - 1), and looks there."""
+        """Move the agent to the next cell in the south (y - 1), facing south."""
         self._step(0, -1)
 
     @operation(name="moveLeft")
     def move_left(self) -> None:
-        """Note that the agent has moved to the next cell in the west (x - 1), and looks there."""
+        """Move the agent to the next cell in the west (x - 1), facing west."""
         self._step(-1, 0)
 
     @operation(name="moveRight")
     def move_right(self) -> None:
-        """Note that the agent has moved to the next cell in the east (x + 1), and looks there."""
+        """Move the agent to the next cell in the east (x + 1), facing east."""
         self._step(1, 0)
 
     def _step(self, dx: int, dy: int) -> None:
@@ -165,11 +165,11 @@ class ArtSlamData(RosArtifact):
         self.stand(there, DEGREES[compass(self.here, there)])
 
     def stand(self, cell: Cell, heading: float, distance: float | None = None) -> None:
-        """Have the agent in *cell*.
+        """Set the agent's position.
 
         Args:
-            cell: where it is.
-            heading: where it looks, in degrees.
+            cell: the agent's cell.
+            heading: direction that it faces, in degrees.
             distance: metres driven since the last call; None: the straight line.
         """
         self._driven += self.size * math.dist(self.here, cell) if distance is None else distance
@@ -194,21 +194,21 @@ class ArtSlamData(RosArtifact):
 
     @operation(name="getVisionRange")
     def get_vision_range(self, x: int, y: int, reach: int) -> None:
-        """Show all labelled cells up to *reach* cells from *x*, *y*, and none of the range before."""
+        """Show all labelled cells up to *reach* cells from *x*, *y*, in place of the previous range."""
         near = self.cells.near((x, y), max(0, reach))
         self._show_range(near)
         for cell in near:
             self.signal("currentRange", *cell, self.cells.label(cell))
 
     def _show_range(self, cells: Sequence[Cell]) -> None:
-        """Replace the cells shown; one that stays as it was gives no event."""
+        """Replace the cells shown; an unchanged cell causes no event."""
         shown = [(*cell, self.cells.label(cell)) for cell in cells]
         self._show("cell", 3, shown)
         self.update_property("currentRange", [Structure("cell", each) for each in shown])
         self.show_obstacles(cells)
 
     def show_obstacles(self, cells: Sequence[Cell]) -> None:
-        """Show those of some cells that are obstacles as ``pos2d(obstacle, X, Y)``, and no others."""
+        """Show the obstacles among some cells as ``pos2d(obstacle, X, Y)``, and no others."""
         self._obstacles = [cell for cell in cells if self.cells.label(cell) == self.cells.obstacle]
         self.show_objects()
 
@@ -221,7 +221,7 @@ class ArtSlamData(RosArtifact):
         self._show("pos2d", 3, objects)
 
     def _show(self, name: str, arity: int, wanted: Sequence[tuple[object, ...]]) -> None:
-        """Have one property called *name* for each of some tuples, and no other with *arity* values."""
+        """Have one property *name* for each tuple, and no others with *arity* values."""
         shown = [each.values for each in self.find_properties(name) if len(each.values) == arity]
         kept, keep = set(shown), set(wanted)
         for old in shown:
@@ -237,7 +237,7 @@ class ArtSlamData(RosArtifact):
     def get_route(self) -> None:
         """Show the shortest route from the agent's cell to the nearest cell labelled ``goal``.
 
-        Fails with ``no_goal``, or with ``no_route(X, Y)`` when the goal cannot be reached over known cells.
+        Fails with ``no_goal``, or with ``no_route(X, Y)`` if the goal cannot be reached over known cells.
         """
         self.find_route(self._goal())
 
@@ -255,9 +255,9 @@ class ArtSlamData(RosArtifact):
     def give_route_to(self, x: int, y: int, found: Out | str) -> None:
         """As `get_route_to`, and give the route to the caller.
 
-        With ``"X"`` or ``"Y"`` as the third argument, the first two are the present and the wanted coordinate on that axis:
-        `route` shows the text ``"east"``, ``"west"``, ``"north"``, ``"south"`` or ``"reached"``, `degrees` how far to turn
-        for it, and the agent then counts as looking there.  Signals ``tick_route``; fails with ``unknown_axis(Axis)``.
+        With ``"X"`` or ``"Y"`` as the third argument, the first two are the present and the target coordinate on that
+        axis: `route` shows the text ``"east"``, ``"west"``, ``"north"``, ``"south"`` or ``"reached"``, `degrees` the
+        necessary turn, and the agent then faces that way. Signals ``tick_route``; fails with ``unknown_axis(Axis)``.
         """
         if isinstance(found, Out):
             found.set(self.find_route((x, y)))
@@ -267,20 +267,20 @@ class ArtSlamData(RosArtifact):
     def _route_along(self, current: int, goal: int, axis: str) -> None:
         words = {"X": ("west", "east"), "Y": ("south", "north")}.get(axis.upper())
         if words is None:
-            self.fail(f"unknown axis {axis}: expected X or Y", "unknown_axis", axis)
+            self.fail(f"unknown axis `{axis}`: expected X or Y", "unknown_axis", axis)
         word = "reached" if current == goal else words[goal > current]
         self.update_properties(word, self._turn_to(DEGREES.get(word, self.heading)))
         self.signal("tick_route")
 
     @operation(name="updateProperties")
     def update_properties(self, route: str, degrees: float) -> None:
-        """Show other values of `route` and `degrees`; an agent with a route ``"east"`` looks to the east."""
+        """Show other values of `route` and `degrees`; an agent with the route ``"east"`` faces east."""
         self.heading = DEGREES.get(str(route), self.heading)
         self.update_property("route", str(route))
         self.update_property("degrees", degrees)
 
     def _turn_to(self, heading: float) -> float:
-        """Degrees from where the agent looks to *heading*, in (-180, 180]."""
+        """Return the turn in degrees from the agent's heading to *heading*, in (-180, 180]."""
         turn = math.remainder(heading - self.heading, 360.0)
         return 180.0 if turn == -180.0 else turn
 
@@ -307,7 +307,7 @@ class ArtSlamData(RosArtifact):
         return cells
 
     def enterable(self) -> set[Cell]:
-        """Return the cells that a route may enter: passable, and not too near to an obstacle."""
+        """Return the cells that a route may enter: passable, and not too close to an obstacle."""
         if not self.radius:
             return self.cells.passable()
         return inflated(self.cells.passable(), self.cells.blocked(), self.radius / self.size, self.here)
@@ -324,10 +324,10 @@ class ArtSlamData(RosArtifact):
 
     @operation(name="saveMap")
     def save_map(self, file: str) -> None:
-        """Write the map in the format of map_server: *file*, such as ``runs/flat.yaml``, and an image beside it.
+        """Write the map in the format of map_server: *file*, such as ``runs/flat.yaml``, and an image next to it.
 
-        Places are saved with it.  Fails with ``map_file(File)`` if it cannot be written, and with ``restricted`` in a run
-        with ``--restrict``.
+        Places are included. Fails with ``map_file(File)`` if the file cannot be written, and with ``restricted`` in a
+        run with ``--restrict``.
         """
         self._check_files("saveMap")
         from jacaros.artifacts.map.map_files import save
@@ -337,14 +337,14 @@ class ArtSlamData(RosArtifact):
         try:
             save(Path(file), self.size, ground, places)
         except OSError as error:
-            self.fail(f"cannot write the map {file}: {error}", "map_file", file)
+            self.fail(f"cannot write the map `{file}`: {error}", "map_file", file)
 
     @operation(name="loadMap")
     def load_map(self, file: str) -> None:
-        """Read a map in the format of map_server, in place of what was known; its places are added.
+        """Replace the map by one in the format of map_server; its places are added.
 
-        Fails with ``map_file(File)`` if it cannot be read, or its cells are larger than ``cell_size(S)``, and with
-        ``restricted`` in a run with ``--restrict``.
+        Fails with ``map_file(File)`` if the file cannot be read or its cells are larger than ``cell_size(S)``, and
+        with ``restricted`` in a run with ``--restrict``.
         """
         self._check_files("loadMap")
         from jacaros.artifacts.map.map_files import MapFileError, load
@@ -354,7 +354,7 @@ class ArtSlamData(RosArtifact):
         except MapFileError as error:
             self.fail(str(error), "map_file", file)
         if saved.grid.resolution > self.size * 1.001:
-            text = f"the cells of {file} are {saved.grid.resolution:g} m wide, more than cell_size({self.size:g})"
+            text = f"the cells of `{file}` are {saved.grid.resolution:g} m wide, more than cell_size({self.size:g})"
             self.fail(text, "map_file", file)
         self.cells.load(saved.grid.labels(self.size))
         for name, (x, y) in saved.places.items():
@@ -363,7 +363,7 @@ class ArtSlamData(RosArtifact):
         self.show_objects()
 
     def begin_with_map(self) -> None:
-        """React to a map that was loaded or forgotten; for subclasses with sensors."""
+        """Called after a map was loaded or cleared. Subclasses with sensors override it."""
 
     def _check_files(self, name: str) -> None:
         if self.resources.get("restricted"):

@@ -1,17 +1,17 @@
-"""Artifacts from mapping files: a robot for agents without Python.  docs/reference/mapping.md describes the files.
+"""Artifacts from mapping files: robots for agents, without Python code.  docs/reference/mapping.md describes the files.
 
 ============================================== =======================================================================
-file                                           what it holds
+file                                           content
 ============================================== =======================================================================
-`declared`                                     what a file says, as data
+`declared`                                     the content of a file, as data
 `file`, `read_*`                               reading it
-`interfaces`, `checking`, `manual`             types of messages; what does not fit them; what is told of an artifact
-`paths`, `units`, `decoding`, `encoding`       out of messages, and into them
-`rows`                                         of a message, or of each element of an array
-`artifact`, `host`, `operation_methods`        the class that is made of it
-`feeds`, `frames`, `parameters`                properties and signals
-`deriving`, `stamped_frames`                   properties and signals composed of events of others; frames at the
-                                               stamps of messages
-`operating`, `publishing`, `type_search`       operations; types that the file leaves out
+`interfaces`, `checking`, `manual`             message types; checking a mapping against them; documentation
+`paths`, `units`, `decoding`, `encoding`       reading values from messages, and building messages
+`rows`                                         values of a message, or of each element of an array
+`artifact`, `host`, `operation_methods`        the class made from a file
+`topic_multiplexer`, `frames`, `parameters`    properties and signals
+`deriving`, `stamped_frames`                   properties and signals derived from others; frames at the stamps of
+                                               messages
+`operating`, `publishing`, `type_search`       operations; types that the file omits
 ============================================== =======================================================================
 """

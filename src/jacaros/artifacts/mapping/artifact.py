@@ -1,6 +1,5 @@
-"""The artifact that a mapping file declares, and the making of its class: types by the names of mapping
-files, ``turtlebot.yaml``, ``fleet.yaml#arm``.
-"""
+"""The artifact that a mapping file declares, and the construction of its class. Types have the names of mapping
+files: ``turtlebot.yaml``, ``fleet.yaml#arm``."""
 
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
@@ -13,14 +12,14 @@ from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.artifacts.mapping.checking import type_problems
 from jacaros.artifacts.mapping.declared import ArtifactPart, MappingError, MappingFile, Place
 from jacaros.artifacts.mapping.deriving import Derivation, with_angles
-from jacaros.artifacts.mapping.feeds import Feed, Topic
 from jacaros.artifacts.mapping.file import find_mapping, load_mapping, shipped_mappings
-from jacaros.artifacts.mapping.frames import FrameFeed
+from jacaros.artifacts.mapping.frames import FrameUpdater
 from jacaros.artifacts.mapping.host import Elements, Tap
 from jacaros.artifacts.mapping.manual import Documentation, parameter_words
 from jacaros.artifacts.mapping.operating import Operations
 from jacaros.artifacts.mapping.operation_methods import methods, motion_uses
 from jacaros.artifacts.mapping.parameters import NodeParameter, OwnParameter, kept_by_master
+from jacaros.artifacts.mapping.topic_multiplexer import TopicMultiplexer, Updater
 from jacaros.artifacts.mapping.type_search import TypeSearch
 from jacaros.env.artifact import internal_operation
 from jacaros.env.errors import UnknownArtifactType
@@ -30,17 +29,18 @@ from jacaros.yaml_nodes import Problem, shown
 
 
 class MappedArtifact(RosArtifact):
-    """An artifact made from a mapping file; `mapped_type` makes a class of its own for each.
+    """An artifact made from a mapping file; `mapped_type` makes a class for each.
 
     Options:
-        tf_prefix(P): stands before names of frames, in place of the namespace (with the node's in front).
+        tf_prefix(P): prefix of frame names, in place of the namespace (including the node's).
         match_timeout(S): how long operations that publish wait for a subscriber (3 s).
-        unmatched(W): ``warn`` or ``fail`` when there is none by then.
+        unmatched(W): effect of a missing subscriber: ``warn`` or ``fail``.
 
     Attributes:
         mapping: the file.
-        part: what the file says of this artifact.
-        property_histories: seconds for which agents that focus it keep past values, by name; see `jacaros.env.property`.
+        part: the declaration of this artifact.
+        property_histories: seconds for which agents that focus on it keep past values, by name; see
+            `jacaros.env.property`.
     """
 
     known_options: ClassVar[Mapping[str, Callable[[object], object]]] = {"tf_prefix": text, **MATCH_OPTIONS}
@@ -49,7 +49,7 @@ class MappedArtifact(RosArtifact):
     property_histories: ClassVar[Mapping[str, float]]
 
     def open(self) -> None:
-        """Check the mapping against the types of this middleware, and connect everything."""
+        """Check the mapping against the types of this middleware, and open everything."""
         for folder in self.part.interfaces:
             self.ros.add_interfaces(folder)
         problems = type_problems(self.part, self.ros)
@@ -58,7 +58,7 @@ class MappedArtifact(RosArtifact):
             self.fail(str(error), "wrong_mapping", self.mapping.file)
         if self.part.connected is not False and "watch_connection" not in self.options:
             self.options = {**self.options, "watch_connection": self.part.connected}
-        self._told: set[object] = set()
+        self._reported: set[object] = set()
         self._notes: dict[str, tuple[object, ...]] = {}
         self._followers: dict[str, list[Callable[[Values], None]]] = {}
         self.readings: dict[str, Reading] = {}
@@ -72,19 +72,19 @@ class MappedArtifact(RosArtifact):
         }
         search = TypeSearch(self)
         self.operating = Operations(self)
-        topics: dict[object, Topic] = {}
+        topics: dict[object, TopicMultiplexer] = {}
         for part in self.part.topics:
-            feed = Feed(self, part)
+            updater = Updater(self, part)
             assert part.topic is not None
             key = (part.topic.text, part.type_name and part.type_name.text, part.qos)
             if key in topics:
-                topics[key].feeds.append(feed)
+                topics[key].updaters.append(updater)
             else:
-                topics[key] = Topic(self, part.topic, part.type_name, part.qos, [feed])
+                topics[key] = TopicMultiplexer(self, part.topic, part.type_name, part.qos, [updater])
         for topic in topics.values():
             topic.begin(search)
         for frame in self.part.frames:
-            self.kept(FrameFeed(self, frame))
+            self.kept(FrameUpdater(self, frame))
         for parameter in self.part.parameters:
             if parameter.declaration is None:
                 self.kept(NodeParameter(self, parameter))
@@ -103,30 +103,30 @@ class MappedArtifact(RosArtifact):
 
     @property
     def robot_prefix(self) -> str:
-        """What stands before relative names: what ``makeArtifact`` said, or else the file."""
+        """Prefix of relative names: from ``makeArtifact``, or else from the file."""
         given = super().robot_prefix
         return given or (f"/{self.part.namespace}" if self.part.namespace else "")
 
     def robot_topic(self, name: str) -> str:
-        """A name below the robot's namespace, which is below that of the node; one with a slash in front stays."""
+        """Return a name below the robot's namespace, which is below that of the node; an absolute name stays."""
         if name.startswith(("/", "~")) or not self.robot_prefix:
             return name
         return f"{self.robot_prefix.lstrip('/')}/{name}"
 
     @property
     def tf_prefix(self) -> str:
-        """What stands before names of frames."""
+        """Prefix of frame names."""
         given = self.options.get("tf_prefix", self.part.tf_prefix)
         if given is not None:
             return str(given).strip("/")
         return self.frame_prefix
 
     def frame(self, name: str) -> str:
-        """The name of a frame in the graph."""
+        """Return the name of a frame in the graph."""
         return frame_name(name, self.tf_prefix)
 
     def adapted(self, field: str, value: object) -> object:
-        """A constant for the field of a message: names of frames get their prefix."""
+        """Adapt a constant for the field of a message: frame names get their prefix."""
         if field in ("frame_id", "child_frame_id") and isinstance(value, str):
             return self.frame(value)
         return value
@@ -134,17 +134,17 @@ class MappedArtifact(RosArtifact):
     # ---- properties
 
     def reading_of(self, name: str, policy: ReadingPolicy, *initial: object) -> Reading:
-        """The reading of a property, also for operations that refresh it."""
+        """Return the reading of a property, also for operations that refresh it."""
         made = self.readings[name] = self.reading(name, policy, *initial)
         return made
 
     def annotate(self, name: str, notes: tuple[object, ...]) -> None:
-        """Give the property *name* these annotations when it is shown next."""
+        """Set the annotations that the property *name* gets when it is shown next."""
         if notes or name in self._notes:
             self._notes[name] = notes
 
     def follow_property(self, name: str, follower: Callable[[Values], None]) -> None:
-        """Have *follower* told the values of the property *name* whenever it is shown."""
+        """Call *follower* with the values of the property *name* whenever it is shown."""
         self._followers.setdefault(name, []).append(follower)
 
     def _show_values(self, name: str, values: Values) -> None:
@@ -158,12 +158,12 @@ class MappedArtifact(RosArtifact):
 
     @internal_operation
     def show_rows(self, name: str) -> None:
-        """Bring the properties of the elements *name* up to date."""
+        """Update the properties of the elements *name*."""
         self.elements[name].show()
 
     @internal_operation
     def show_derived(self, name: str) -> None:
-        """Bring the derived property *name* up to date."""
+        """Update the derived property *name*."""
         self.derivations[name].show()
 
     @internal_operation
@@ -175,41 +175,41 @@ class MappedArtifact(RosArtifact):
 
     @internal_operation
     async def run_process(self, process: object) -> None:
-        """Run what takes its time for as long as the artifact is there."""
+        """Run a long-running process for as long as the artifact exists."""
         assert callable(process)
         await process()  # pyright: ignore[reportGeneralTypeIssues]
 
-    # ---- reports
+    # ---- log
 
-    def tell_once(self, key: object, place: Place, message: str, help: str = "") -> None:
-        """Tell people what is wrong, with the line of the mapping, the first time only."""
-        if key in self._told:
+    def report_once(self, key: object, place: Place, message: str, help: str = "") -> None:
+        """Log a problem with the line of the mapping, the first time only."""
+        if key in self._reported:
             return
-        self._told.add(key)
-        self.tell([place.problem(message, help)])
+        self._reported.add(key)
+        self.report([place.problem(message, help)])
 
-    def tell(self, problems: list[Problem]) -> None:
-        """Tell people what is wrong."""
+    def report(self, problems: list[Problem]) -> None:
+        """Log problems."""
         lines = self.mapping.text.splitlines()
         for problem in problems:
             self.log(shown(self.mapping.file, lines, problem))
 
     def on_topic_event(self, topic: str, place: Place) -> Callable[[TopicEvent], None]:
-        """What is done about trouble at a topic: it is told once for each kind."""
+        """Return a callback that logs each kind of problem of a topic once."""
 
-        def tell(event: TopicEvent) -> None:
+        def report(event: TopicEvent) -> None:
             weak = event.trouble is TopicTrouble.INCOMPATIBLE_QOS
-            help = "write qos: sensor_data, which hears any publisher" if weak else ""
-            self.tell_once((topic, event.trouble), place, event.text, help)
+            help = "write qos: sensor_data, which is compatible with any publisher" if weak else ""
+            self.report_once((topic, event.trouble), place, event.text, help)
 
-        return tell
+        return report
 
 
 class TunedArtifact(MappedArtifact):
-    """A mapped artifact with parameters of our own node, which it may have to ask for before it is made."""
+    """A mapped artifact with parameters of our own node, which it may have to request before it is made."""
 
     async def init(self, *arguments: object) -> None:  # type: ignore[override]
-        """Take the robot's name and options, which may be left out; on ROS 1 ask the master for parameters."""
+        """Read the robot's name and options, both optional; on ROS 1 request the parameters from the master."""
         super().init(*arguments)
         if self.own_parameters and kept_by_master(self.ros):
             for each in self.own_parameters:
@@ -217,7 +217,7 @@ class TunedArtifact(MappedArtifact):
 
 
 def mapped_type(mapping: MappingFile, name: str) -> type[MappedArtifact]:
-    """The class of one artifact of a file; its operations are operations like any others."""
+    """Make the class of one artifact of a file; its operations are ordinary operations."""
     part = mapping.artifacts[name]
     members: dict[str, Any] = {
         "__doc__": Documentation(mapping, part),
@@ -237,18 +237,18 @@ def _class_name(name: str) -> str:
 
 
 _made: dict[tuple[Path, int, str], type[MappedArtifact]] = {}
-"""Classes by file, its time and artifact: a file that has not changed gives the same class."""
+"""Classes by file, modification time and artifact: an unchanged file gives the same class."""
 
 
 def find_mapped_type(name: str, folders: Sequence[Path]) -> type[MappedArtifact]:
-    """The type that ``FILE`` or ``FILE#ARTIFACT`` names.
+    """Return the type that ``FILE`` or ``FILE#ARTIFACT`` refers to.
 
     Args:
-        name: of the file, with the name of the artifact where the file has several.
-        folders: where it is looked for before the mappings that come with the package.
+        name: name of the file, with the name of the artifact if the file has several.
+        folders: searched before the mappings that come with the package.
 
     Raises:
-        UnknownArtifactType: there is no such file or artifact, or the file is wrong; the text tells.
+        UnknownArtifactType: the file or artifact does not exist, or the file has mistakes.
     """
     file, _, artifact = name.partition("#")
     path = find_mapping(file, folders)
@@ -274,5 +274,5 @@ def _make(path: Path, file: str, artifact: str) -> type[MappedArtifact]:
     if artifact not in mapping.artifacts:
         write = " or ".join(f"{file}#{each}" for each in names)
         what = f"has no artifact {artifact}" if artifact else f"has {len(names)} artifacts"
-        raise UnknownArtifactType(f"{file}#{artifact}", (), f"{file} {what}; write {write}")
+        raise UnknownArtifactType(f"{file}#{artifact}", (), f"`{file}` {what}; write {write}")
     return mapped_type(mapping, artifact)

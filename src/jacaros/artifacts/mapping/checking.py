@@ -1,4 +1,4 @@
-"""Checks a mapping against the definitions of its message types."""
+"""Check a mapping against the definitions of its message types."""
 
 from collections.abc import Callable
 from typing import Any
@@ -14,8 +14,8 @@ from jacaros.artifacts.mapping.declared import (
     TopicPart,
     Written,
 )
-from jacaros.artifacts.mapping.decoding import taker
-from jacaros.artifacts.mapping.encoding import filler, fitting
+from jacaros.artifacts.mapping.decoding import reader
+from jacaros.artifacts.mapping.encoding import builder, fitting
 from jacaros.artifacts.mapping.interfaces import Interfaces
 from jacaros.artifacts.mapping.paths import WrongPath
 from jacaros.artifacts.mapping.rows import extractor
@@ -40,7 +40,7 @@ def check_mapping(mapping: MappingFile, interfaces: Interfaces) -> None:
 
 
 def type_problems(part: ArtifactPart, interfaces: Interfaces) -> list[Problem]:
-    """What is wrong in an artifact when it is compared with the message types that it names."""
+    """Return the mistakes that appear when an artifact is compared with the message types that it names."""
     problems: list[Problem] = []
     for topic in part.topics:
         if topic.type_name is not None and known(topic.type_name, topic.type_name.text, interfaces, problems):
@@ -52,19 +52,21 @@ def type_problems(part: ArtifactPart, interfaces: Interfaces) -> list[Problem]:
 
 
 def known(written: Written, needed: str, interfaces: Interfaces, problems: list[Problem]) -> bool:
-    """Whether a type is known; tells it if not."""
+    """Return whether a type is known; report it if not."""
     try:
         interfaces.fields(needed)
     except UnknownInterface as error:
         problems.append(
-            written.place.problem(f"the type {written.text} {UNCERTAIN}", _cure(written.text, error))
+            written.place.problem(f"the type `{written.text}` {UNCERTAIN}", _cure(written.text, error))
         )
         return False
     return True
 
 
 def _cure(type_name: str, error: UnknownInterface) -> str:
-    from jacaros.artifacts.mapping.interfaces import similar_types  # here: only for mistakes
+    from jacaros.artifacts.mapping.interfaces import (
+        similar_types,
+    )  # imported here: only needed after a mistake
 
     near = similar_types(type_name)
     return f"did you mean {' or '.join(near)}?" if near else str(error)
@@ -79,13 +81,13 @@ def check_topic(topic: TopicPart, type_name: str, interfaces: Interfaces, proble
 
 def _check_counts(topic: TopicPart, type_name: str, interfaces: Interfaces, problems: list[Problem]) -> None:
     if topic.fields is not None:
-        return  # told by the reader
+        return  # the reader has reported it
     count = len(interfaces.fields(type_name))
     band = topic.policy.dead_band
     for what, given in (("initial", topic.initial), ("dead_band", band if isinstance(band, tuple) else None)):
         if given is not None and len(given) != count:
             problems.append(
-                topic.place.problem(f"'{what}' has {len(given)} values, and {type_name} {count} fields")
+                topic.place.problem(f"`{what}` has {len(given)} values, but {type_name} has {count} fields")
             )
 
 
@@ -95,9 +97,9 @@ def _check_operation(
     types = message_types(operation.kind, written.text)
     if not known(written, types[0], interfaces, problems):
         return
-    filler(fitting(operation, types[0], interfaces), types[0], interfaces, problems)
+    builder(fitting(operation, types[0], interfaces), types[0], interfaces, problems)
     if operation.at_end is not None:
-        filler(operation.at_end, types[0], interfaces, problems)
+        builder(operation.at_end, types[0], interfaces, problems)
     if types[1:]:
         check_answer(operation, types[1], interfaces, problems)
     for feedback in operation.feedback:
@@ -105,7 +107,7 @@ def _check_operation(
 
 
 def message_types(kind: OperationKind, type_name: str) -> tuple[str, ...]:
-    """The types of what is sent, what comes back at the end, and what comes back before."""
+    """Return the types of what is sent, of the final answer, and of feedback."""
     if kind is OperationKind.SERVICE:
         return request_type(type_name), response_type(type_name)
     if kind is OperationKind.ACTION:
@@ -116,16 +118,16 @@ def message_types(kind: OperationKind, type_name: str) -> tuple[str, ...]:
 def check_answer(
     operation: OperationPart, type_name: str, interfaces: Interfaces, problems: list[Problem]
 ) -> None:
-    """Check outputs, success and what tells of failures against a response or result."""
+    """Check outputs, success and error fields against a response or result."""
     code = () if operation.code is None else (operation.code,)
     for field in (*operation.outputs, *code, *operation.aborted):
         _tried(
-            field.place, lambda field=field: taker(field, FieldType(type_name), None, interfaces), problems
+            field.place, lambda field=field: reader(field, FieldType(type_name), None, interfaces), problems
         )
     success = operation.success
     if success is not None:
         field = FieldPart(success.path, success.place)
-        _tried(success.place, lambda: taker(field, FieldType(type_name), None, interfaces), problems)
+        _tried(success.place, lambda: reader(field, FieldType(type_name), None, interfaces), problems)
 
 
 def _tried(place: Place, make: Callable[..., Any], problems: list[Problem]) -> None:

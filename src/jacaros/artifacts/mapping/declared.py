@@ -1,4 +1,4 @@
-"""What a mapping file declares, as plain data with places; nothing here knows yet whether types and fields exist."""
+"""The content of a mapping file, as plain data with positions. Whether types and fields exist is not known here."""
 
 from dataclasses import dataclass, field
 from enum import StrEnum
@@ -15,17 +15,17 @@ from jacaros.streams.schema import OCCURRENCE, Spec
 from jacaros.yaml_nodes import Problem, YamlFileError
 
 ALWAYS = ReadingPolicy()
-"""Every change is told."""
+"""Every change is published."""
 
 
 class Place(NamedTuple):
-    """A place in the file, counted from 1."""
+    """A position in the file, counted from 1."""
 
     line: int
     column: int
 
     def problem(self, message: str, help: str = "") -> Problem:
-        """A mistake here."""
+        """Make a problem at this position."""
         return Problem(self.line, self.column, message, help)
 
 
@@ -35,7 +35,7 @@ START = Place(1, 1)
 
 @dataclass(frozen=True, slots=True)
 class Written:
-    """A piece of text and its place."""
+    """A text and its position."""
 
     text: str
     place: Place
@@ -46,17 +46,18 @@ NOTHING = Written("", START)
 
 @dataclass(frozen=True, slots=True)
 class Conversion:
-    """What becomes of a value on its way between message and agent.
+    """The conversion of a value between message and agent.
 
     Attributes:
-        kind: ``yaw``, ``pitch``, ``roll``, ``name``, ``atom``, ``object``, ``count``, ``min``, ``max``, ``mean`` or "".
-        prefix: with which the constants begin that ``name`` means.
+        kind: ``yaw``, ``pitch``, ``roll``, ``name``, ``atom``, ``object``, ``count``, ``min``, ``max``, ``mean`` or
+            "".
+        prefix: prefix of the constants for ``name``.
         names: atoms for values.
-        unit: the unit for the agent, for the manual; empty when none is said.
-        knows_message_unit: the mapping says in which unit messages have it.
-        line: of units, scale and offset; None when the number stays as it is.
-        digits: decimals; None: as many as there are.
-        floor: whole numbers, rounded down instead of to the nearest.
+        unit: the agent's unit, for the manual; empty if none is given.
+        knows_message_unit: whether the mapping gives the unit of the message.
+        line: the linear conversion of units, scale and offset; None if the number stays unchanged.
+        digits: decimals; None: all.
+        floor: integers, rounded down instead of to the nearest.
     """
 
     kind: str = ""
@@ -75,13 +76,13 @@ AS_IT_IS = Conversion()
 
 @dataclass(frozen=True, slots=True)
 class FieldPart:
-    """One entry of ``fields`` of a property: a path, and what becomes of it.
+    """One entry of ``fields`` of a property: a path and a conversion.
 
     Attributes:
-        shares: where in a list values are taken, 0 to 1; None: not a sample.
-        otherwise: in place of numbers that are not finite; None: there is nothing.
-        dead_band: of this value; None: that of the property.
-        name: for the manual.
+        shares: positions in a list at which values are sampled, 0 to 1; None: not a sample.
+        otherwise: replacement for numbers that are not finite; None: none.
+        dead_band: dead band of this value; None: that of the property.
+        name: name for the manual.
     """
 
     path: Path
@@ -94,19 +95,19 @@ class FieldPart:
 
     @property
     def count(self) -> int:
-        """How many values it gives."""
+        """Number of values that the field yields."""
         return 1 if self.shares is None else len(self.shares)
 
 
 @dataclass(frozen=True, slots=True)
 class RangeOfView:
-    """What is near enough to be shown.
+    """The range within which elements are shown.
 
     Attributes:
-        metres: how far it may be.
-        distance: path of the distance; empty when positions are given.
+        metres: maximum distance.
+        distance: path of the distance; empty if positions are given.
         at: paths of the position's coordinates x and y.
-        origin: the property whose first values are the place that is counted from; None: the robot itself.
+        origin: the property whose first values are the origin; None: the robot itself.
     """
 
     metres: float
@@ -121,15 +122,15 @@ class TopicPart:
     """A property or signal from a topic, or from the feedback of an action.
 
     Attributes:
-        topic: its name; None for feedback.
-        type_name: of its messages; None: found at run time.
-        fields: None: all of the message.
-        each: the array of which each element has a property or signal of its own.
-        key: tells which element is which; None: the first field.
-        initial: values before the first message; None: there is no property then.
-        when_changed: a signal is sent only for other values than before.
+        topic: name of the topic; None for feedback.
+        type_name: message type; None: found at run time.
+        fields: None: the whole message.
+        each: the array whose elements each have a property or signal.
+        key: identifies an element; None: the first field.
+        initial: values before the first message; None: no property until then.
+        when_changed: send a signal only if its values differ from the previous ones.
         frame: the only frame whose messages are shown; None: any.
-        history: seconds for which agents that focus the artifact keep past values.
+        history: seconds for which agents that focus on the artifact keep past values.
     """
 
     name: str
@@ -158,10 +159,10 @@ class FramePart:
 
     Attributes:
         target, source: frames, as written.
-        fields: with paths of one step, ``x`` to ``stamp``.
-        rate: looks a second.
-        oldest: seconds that a transform may be old; None: any.
-        history: as of a `TopicPart`.
+        fields: have paths of one step, ``x`` to ``stamp``.
+        rate: look-ups per second.
+        oldest: maximum age of a transform, in seconds; None: any.
+        history: as for a `TopicPart`.
     """
 
     name: str
@@ -182,9 +183,9 @@ class ParameterPart:
     """A property from a parameter of a node.
 
     Attributes:
-        node: whose it is; empty for our own.
-        declaration: of a parameter of our own.
-        rate: for middlewares that do not tell of changes.
+        node: the node; empty for our own.
+        declaration: declaration of a parameter of our own.
+        rate: polling rate for middlewares that do not report changes.
     """
 
     name: str
@@ -200,12 +201,12 @@ class ParameterPart:
 
 @dataclass(frozen=True, slots=True)
 class DerivedPart:
-    """A property or signal composed of events of others.
+    """A property or signal derived from events of others.
 
     Attributes:
         spec: the pattern; None after a mistake.
         sources: the properties and signals, as written.
-        history: as of a `TopicPart`.
+        history: as for a `TopicPart`.
     """
 
     name: str
@@ -222,7 +223,7 @@ class DerivedPart:
 
 
 class Source(StrEnum):
-    """Where a value for a message comes from."""
+    """The source of a value for a message."""
 
     CONSTANT = "constant"
     PARAMETER = "parameter"
@@ -236,10 +237,11 @@ class ValuePart:
 
     Attributes:
         target: path of the field; empty for the value of a node's parameter.
-        source: what it comes from.
-        value: of a constant.
-        parameter: number of the operation's parameter; within `elements`, that of the element's part, -1 for all of it.
-        elements: the values of each message in a list, of which `parameter` gives the elements.
+        source: kind of the source.
+        value: value of a constant.
+        parameter: number of the operation's parameter; within `elements`, number of the element's part, -1 for the
+            whole element.
+        elements: the values of each message in a list whose elements come from `parameter`.
     """
 
     target: Path
@@ -253,7 +255,7 @@ class ValuePart:
 
 @dataclass(frozen=True, slots=True)
 class Success:
-    """The field of a response or result that tells whether it went well, and its value then."""
+    """The field of a response or result that shows success, and its value then."""
 
     path: Path
     place: Place
@@ -261,7 +263,7 @@ class Success:
 
 
 class OperationKind(StrEnum):
-    """What an operation does."""
+    """The kind of an operation."""
 
     PUBLISH = "publish"
     SERVICE = "service"
@@ -279,24 +281,26 @@ class OperationPart:
     Attributes:
         parameters: names of the inputs.
         target: topic, service, action or parameter of a node.
-        type_name: None: found at run time, or there is none.
+        type_name: None: found at run time, or not needed.
         values: fields of the message, request or goal; the value of a parameter.
-        other_values: the same for other versions of the type, tried one after the other when ``values`` does not fit.
-        outputs: fields of the response or result that go to output parameters.
+        other_values: alternatives for other versions of the type, tried in turn if ``values`` does not match.
+        outputs: fields of the response or result for the output parameters.
         success: None: a field ``success`` if there is one.
-        any_success: nothing is looked at.
+        any_success: success is not checked.
         duration: seconds of repeated publishing.
-        at_end: fields of the last message; None: zero for velocities, else nothing.
-        match_timeout: seconds to wait for a subscription before the first message; None: the artifact's option.
-        unmatched: ``warn`` or ``fail`` when there is none; None: the artifact's option.
-        node: whose parameter is set or given; empty for our own.
-        properties: those that are refreshed or read.
+        at_end: fields of the last message; None: zero for velocities, else no message.
+        match_timeout: seconds to wait for a subscriber before the first message; None: the artifact's option.
+        unmatched: ``warn`` or ``fail`` without a subscriber; None: the artifact's option.
+        node: the node whose parameter is set or read; empty for our own.
+        properties: properties that are refreshed or read.
         feedback: properties from the feedback.
-        code: field of the result that is the Code of ``aborted(Code,Text)``; None: a field ``error_code`` if there is one.
+        code: field of the result that is the Code of ``aborted(Code,Text)``; None: a field ``error_code`` if there is
+            one.
         aborted: fields of the result that follow Code and Text.
-        suspend: what a suspended intention means for the goal: ``go_on``, ``cancel``, or ``pause`` by two operations.
+        suspend: effect of suspending the intention on the goal: ``go_on``, ``cancel``, or ``pause`` by two
+            operations.
         pause, resume: names of these operations.
-        uses: resources that it holds meanwhile; empty: those of a motion, if it is one.
+        uses: resources that it holds while it runs; empty: those of a motion, if it is one.
     """
 
     name: str
@@ -335,9 +339,10 @@ class ArtifactPart:
 
     Attributes:
         tf_prefix: None: the namespace.
-        connected: whether it is shown that topics are connected; seconds: they are not when no message came for so long.
+        connected: whether to show that topics are connected; a number: seconds without a message after which they are
+            not.
         topics: properties and signals from topics.
-        derived: properties and signals composed of events of others.
+        derived: properties and signals derived from events of others.
         interfaces: folders with definitions of types.
     """
 
@@ -356,7 +361,7 @@ class ArtifactPart:
 
     @property
     def properties(self) -> tuple[TopicPart, ...]:
-        """Those from topics."""
+        """Properties from topics."""
         return tuple(part for part in self.topics if not part.signal)
 
     @property
@@ -373,11 +378,11 @@ class ArtifactPart:
 
 @dataclass(frozen=True, slots=True)
 class MappingFile:
-    """A whole file.
+    """A complete file.
 
     Attributes:
-        file: its name, as messages show it.
-        text: for excerpts.
+        file: its name, as shown in messages.
+        text: its text, for excerpts.
         artifacts: by name, in the order of the file.
     """
 
@@ -386,9 +391,9 @@ class MappingFile:
     artifacts: dict[str, ArtifactPart] = field(default_factory=dict)
 
     def where(self, place: Place) -> str:
-        """A place for a line of the log."""
+        """Format a position for the log."""
         return f"{self.file}:{place.line}"
 
 
 class MappingError(YamlFileError):
-    """A wrong mapping file, with all its mistakes."""
+    """Raised for a mapping file with mistakes; holds all of them."""

@@ -1,6 +1,5 @@
-"""Takes the values of a field out of messages: paths, lists and conversions, made into functions once for a
-type.  Big things go by reference (`MessageHandle`): what an agent passes on and never looks into.
-"""
+"""Read the values of fields from messages. Paths, lists and conversions are compiled to functions once per type.
+Large values that an agent only passes on are given by reference (`MessageHandle`)."""
 
 import dataclasses
 import math
@@ -19,19 +18,19 @@ from jacaros.ros.message import TIMES, to_seconds
 
 QUATERNION = "geometry_msgs/msg/Quaternion"
 
-Take = Callable[[Any, Any, int], tuple[object, ...]]
-"""Takes a message, its current element (the message again without ``each``) and the place of that."""
+Read = Callable[[Any, Any, int], tuple[object, ...]]
+"""Takes a message, its current element (the message again without ``each``) and the element's index; returns values."""
 
 Convert = Callable[[Any], object]
 
 
 class Unshowable(Exception):
-    """A message cannot be shown: a number is not finite, or a list is too short; the text says which.
+    """Raised for a message that cannot be shown: a number is not finite, or a list is too short.
 
     Attributes:
-        path: of the field.
-        help: what to write into the mapping.
-        functor: of the reason for programs.
+        path: path of the field.
+        help: what to write in the mapping.
+        functor: functor of the reason for programs.
     """
 
     def __init__(self, path: str, message: str, help: str, functor: str = "not_finite") -> None:
@@ -39,18 +38,18 @@ class Unshowable(Exception):
         self.path, self.help, self.functor = path, help, functor
 
 
-def taker(field: FieldPart, message: FieldType, element: FieldType | None, interfaces: Interfaces) -> Take:
-    """A function that takes the values of *field*.
+def reader(field: FieldPart, message: FieldType, element: FieldType | None, interfaces: Interfaces) -> Read:
+    """Return a function that reads the values of *field*.
 
     Args:
-        field: what is wanted.
+        field: the field.
         message: type of the messages.
         element: type of the elements, with ``each``.
         interfaces: knows the types.
 
     Raises:
-        WrongPath: the path leads nowhere, or the conversion does not fit what is there.
-        UnknownInterface: a type is not known.
+        WrongPath: the path does not exist, or the conversion does not match its type.
+        UnknownInterface: a type is unknown.
     """
     from_message = element is None or field.path.of_message
     root = message if element is None or field.path.of_message else element
@@ -68,10 +67,12 @@ def taker(field: FieldPart, message: FieldType, element: FieldType | None, inter
         except IndexError:
             if has_spare:
                 return values(math.nan, whole)
-            help = "ask for the list, or for an element that is always there"
+            help = "read the list, or an element that always exists"
             if is_number:
-                help = f'say what to show instead: {{path: "{path}", otherwise: 0}}'
-            raise Unshowable(path, f"{path} is not there: the list is shorter", help, "no_element") from None
+                help = f'write a replacement: {{path: "{path}", otherwise: 0}}'
+            raise Unshowable(
+                path, f"`{path}` does not exist: the list is shorter", help, "no_element"
+            ) from None
         return values(raw, whole)
 
     return take
@@ -80,7 +81,7 @@ def taker(field: FieldPart, message: FieldType, element: FieldType | None, inter
 def _values(
     field: FieldPart, leaf: FieldType, root: FieldType, message: FieldType, interfaces: Interfaces
 ) -> Callable[[Any, Any], tuple[object, ...]]:
-    """What becomes of what stands at the path; takes the whole message too, for ``otherwise``."""
+    """Return the conversion of the value at the path; it takes the whole message, too, for ``otherwise``."""
     kind = field.conversion.kind
     if kind == "object":
         return lambda raw, _: (MessageHandle(raw, str(leaf)),)
@@ -90,7 +91,7 @@ def _values(
         if levels != 1:
             what = "sample" if field.shares is not None else f"as: {kind}"
             raise WrongPath(
-                f"'{what}' is for lists, and {field.path.text} is {leaf}", "name a field that is a list"
+                f"`{what}` is for lists, but `{field.path.text}` is {leaf}", "name a field that is a list"
             )
         return _of_list(field, single, root, message, interfaces)
     base = _element(field, single, root, message, interfaces)
@@ -127,7 +128,7 @@ def _of_list(
             if not len(raw):
                 raise Unshowable(
                     field.path.text,
-                    f"{field.path.text} is empty",
+                    f"`{field.path.text}` is empty",
                     "a sample needs a list with elements",
                     "no_element",
                 )
@@ -135,7 +136,7 @@ def _of_list(
 
         return sample
     if single.base not in FLOATS and single.base not in INTEGER_RANGES:
-        raise WrongPath(f"'as: {kind}' is for lists of numbers, and {field.path.text} is of {single}")
+        raise WrongPath(f"`as: {kind}` is for lists of numbers, but `{field.path.text}` is of {single}")
     reduce = _REDUCE[kind]
 
     def reduced(raw: Any, whole: Any) -> tuple[object, ...]:
@@ -149,17 +150,17 @@ def _of_list(
 
 @lru_cache(64)
 def _places(count: int, shares: tuple[float, ...]) -> tuple[int, ...]:
-    """Which elements of so many are sampled; the others are never touched."""
+    """Return the indices of the sampled elements; the others are never read."""
     return tuple(round(share * (count - 1)) for share in shares)
 
 
 def _items(raw: Any) -> Any:
-    """The elements as plain Python values: those of numpy are many times slower."""
+    """Return the elements as plain Python values: those of numpy are many times slower."""
     return raw.tolist() if hasattr(raw, "tolist") else raw
 
 
 Element = Callable[[Any, Any], object]
-"""Converts one value; takes the whole message too."""
+"""Converts one value; takes the whole message, too."""
 
 
 def _element(
@@ -194,7 +195,7 @@ def _element(
 
 
 def _check_conversion(field: FieldPart, single: FieldType) -> None:
-    """Refuse what does not fit the type."""
+    """Reject a conversion that does not match the type."""
     conversion, path = field.conversion, field.path.text
     if field.conversion.kind not in (*ANGLES, *LISTS):
         check_names(conversion, path, single.base)
@@ -202,24 +203,26 @@ def _check_conversion(field: FieldPart, single: FieldType) -> None:
     number = single.base in FLOATS or single.base in INTEGER_RANGES or single.base in TIMES
     if kind in ANGLES and single.base != QUATERNION:
         help = "name the field that is a geometry_msgs/msg/Quaternion, such as pose.pose.orientation"
-        raise WrongPath(f"'as: {kind}' is for quaternions, and {path} is {single}", help)
+        raise WrongPath(f"`as: {kind}` is for quaternions, but `{path}` is {single}", help)
     if kind == "atom" and single.base != "string":
-        raise WrongPath(f"'as: atom' is for strings, and {path} is {single}", "leave 'as' out")
+        raise WrongPath(f"`as: atom` is for strings, but `{path}` is {single}", "leave `as` out")
     if kind not in (*ANGLES, "count") and not number:
         for key, given in (("unit, scale or offset", conversion.line), ("round", conversion.digits)):
             if given is not None:
                 raise WrongPath(
-                    f"{key} needs a number, and {path} is {single}", "name a field that is a number"
+                    f"{key} needs a number, but `{path}` is {single}", "name a field that is a number"
                 )
     if field.otherwise is not None and single.base not in FLOATS and kind not in ANGLES:
-        raise WrongPath(f"'otherwise' is for floating-point numbers, and {path} is {single}", "leave it out")
+        raise WrongPath(
+            f"`otherwise` is for floating-point numbers, but `{path}` is {single}", "leave it out"
+        )
 
 
 def check_names(conversion: Conversion, path: str, base: str) -> None:
-    """Refuse names for values that the field cannot have.
+    """Reject names for values that the field cannot have.
 
     Raises:
-        WrongPath: one of them.
+        WrongPath: one of the values is impossible.
     """
     wanted = _NAMED.get(base) or ((int,) if base in INTEGER_RANGES else None)
     for value, name in conversion.names:
@@ -227,11 +230,11 @@ def check_names(conversion: Conversion, path: str, base: str) -> None:
             not isinstance(value, wanted) or isinstance(value, bool) != (base == "bool")
         ):
             help = f"write names: {{true: {name}}}" if base == "bool" else f"write values of {base}"
-            raise WrongPath(f"'names' has {value!r}, and {path} is {base}", help)
+            raise WrongPath(f"`names` has {value!r}, but `{path}` is {base}", help)
         low, high = INTEGER_RANGES.get(base, (-math.inf, math.inf))
         if isinstance(value, int) and not low <= value <= high:
             raise WrongPath(
-                f"'names' has {value}, and {path} is {base}", f"write values from {low} to {high}"
+                f"`names` has {value}, but `{path}` is {base}", f"write values from {low} to {high}"
             )
 
 
@@ -243,7 +246,7 @@ _NAMED: dict[str, tuple[type, ...]] = {
 
 
 _ALMOST = 1e-6
-"""So little below a whole number is the fault of the arithmetic, or of a message's 32 bits: 100 times 0.57 is 56.999…"""
+"""A difference this small to an integer is a rounding error, also of 32-bit numbers: 100 times 0.57 is 56.999…"""
 
 
 def _rounding(digits: int, floor: bool) -> Convert:
@@ -253,7 +256,7 @@ def _rounding(digits: int, floor: bool) -> Convert:
 
 
 def converted(conversion: Conversion) -> Convert:
-    """The steps that follow: names, or else units and rounding."""
+    """Return the conversion after the path: names, or else units and rounding."""
     steps: list[Convert] = []
     if (line := conversion.line) is not None:
         steps.append(line.there)
@@ -281,19 +284,19 @@ def _in_turn(steps: list[Convert]) -> Convert:
 def _otherwise(
     field: FieldPart, message: FieldType, interfaces: Interfaces
 ) -> Callable[[float, Any], object]:
-    """What stands in for a number that is not finite."""
+    """Return the replacement for a number that is not finite."""
     otherwise, path = field.otherwise, field.path.text
     if otherwise is None:
 
         def refuse(value: float, _: Any) -> object:
-            help = f"say what to show instead: {{path: {path}, otherwise: 0}}"
-            raise Unshowable(path, f"{path} is {value:g}", help)
+            help = f"write a replacement: {{path: {path}, otherwise: 0}}"
+            raise Unshowable(path, f"`{path}` is {value:g}", help)
 
         return refuse
     if isinstance(otherwise, Path):
         leaf = follow(otherwise, message, interfaces.fields)
         if leaf.array or not (leaf.base in FLOATS or leaf.base in INTEGER_RANGES):
-            raise WrongPath(f"'otherwise' is to be a number, and {otherwise.text} is {leaf}")
+            raise WrongPath(f"`otherwise` must be a number, but `{otherwise.text}` is {leaf}")
         get = getter(otherwise)
         nearest = getter(_nearest(otherwise, message, interfaces))
         after = converted(dataclasses.replace(field.conversion, names=()))
@@ -302,7 +305,9 @@ def _otherwise(
             instead = float((nearest if value == -math.inf else get)(whole, 0))
             if not math.isfinite(instead):
                 raise Unshowable(
-                    path, f"{path} is {value:g}, and so is {otherwise.text}", "write a figure for 'otherwise'"
+                    path,
+                    f"`{path}` is {value:g}, and so is `{otherwise.text}`",
+                    "write a number for `otherwise`",
                 )
             return after(instead)
 
@@ -312,7 +317,8 @@ def _otherwise(
 
 
 def _nearest(otherwise: Path, message: FieldType, interfaces: Interfaces) -> Path:
-    """What stands in for minus infinity: an echo too near to be measured (REP 117) is not one beyond ``range_max``."""
+    """Return the replacement for minus infinity: an echo too close to measure (REP 117) is not one beyond
+    ``range_max``."""
     if not otherwise.text.endswith("range_max"):
         return otherwise
     nearest = read_path(otherwise.text.removesuffix("range_max") + "range_min")
@@ -324,13 +330,13 @@ def _nearest(otherwise: Path, message: FieldType, interfaces: Interfaces) -> Pat
 
 
 def _named(field: FieldPart, root: FieldType, interfaces: Interfaces) -> Convert:
-    """Names of constants for values."""
+    """Return the conversion of values to names of constants."""
     owner, last = owner_of(field.path, root, interfaces)
     known = constants(interfaces, owner)
     meant = chosen(known, last, field.conversion.prefix)
     if not meant:
         listed = ", ".join(known) or "none"
-        begin = f"that begins with {field.conversion.prefix}" if field.conversion.prefix else ""
+        begin = f"with the prefix `{field.conversion.prefix}`" if field.conversion.prefix else ""
         raise WrongPath(
             f"{owner} has no constant {begin}".rstrip(),
             f"its constants: {listed}; or write names: {{0: ...}}",
@@ -340,18 +346,18 @@ def _named(field: FieldPart, root: FieldType, interfaces: Interfaces) -> Convert
         plain = value[0] if isinstance(value, bytes) and len(value) == 1 else value
         if plain in names:
             raise WrongPath(
-                f"{owner}: the constants {names[plain]} and {name} have the same value {plain}",
-                f"write prefix: ... with which those of '{last}' begin, or names: {{{plain}: {name}}}",
+                f"{owner}: the constants `{names[plain]}` and `{name}` have the same value {plain}",
+                f"write prefix: ... with the common prefix of the constants of `{last}`, or names: {{{plain}: {name}}}",
             )
         names[plain] = Atom(name)
     return lambda raw: names.get(value := octet(raw), value)
 
 
 def owner_of(path: Path, root: FieldType, interfaces: Interfaces) -> tuple[str, str]:
-    """The message type that a path's last field belongs to, and the name of that field."""
+    """Return the message type that contains a path's last field, and the name of that field."""
     names = [place for place, step in enumerate(path.steps) if isinstance(step, str) and step.startswith(".")]
     if not names:
-        raise WrongPath(f"'{path.text}' is no field, so that it has no constants", "name a field")
+        raise WrongPath(f"`{path.text}` is not a field, so it has no constants", "name a field")
     last = path.steps[names[-1]]
     assert isinstance(last, str)
     above = Path(path.text, path.steps[: names[-1]], path.of_message)
@@ -363,7 +369,7 @@ def octet(raw: Any) -> Any:
 
 
 def _plain(path: str, single: FieldType, interfaces: Interfaces) -> Convert:
-    """A value of a type as agents get it: numbers, texts, seconds, structures for messages."""
+    """Return the conversion of a type for agents: numbers, texts, seconds, structures for messages."""
     if single.base in TIMES:
         return to_seconds
     if single.is_message:
@@ -381,12 +387,12 @@ def _finite(path: str, value: float) -> float:
     if math.isfinite(value):
         return value
     raise Unshowable(
-        path, f"{path} is {value:g}", "name single fields, and say what to show instead: otherwise: 0"
+        path, f"`{path}` is {value:g}", "name single fields, each with a replacement: otherwise: 0"
     )
 
 
 def _structure(path: str, type_name: str, interfaces: Interfaces) -> Convert:
-    """A message as a structure: ``geometry_msgs/msg/Point`` is ``point(X,Y,Z)``."""
+    """Convert a message to a structure: ``geometry_msgs/msg/Point`` is ``point(X,Y,Z)``."""
     name = type_name.rpartition("/")[2]
     functor = name[:1].lower() + name[1:]
     parts = [
@@ -408,7 +414,7 @@ def _yaw(q: Any) -> float:
 
 
 def _pitch(q: Any) -> float:
-    # Rounding may put the sine a little beyond 1.
+    # Rounding may put the sine slightly beyond 1.
     return math.asin(max(-1.0, min(1.0, 2.0 * (q.w * q.y - q.z * q.x))))
 
 
@@ -420,13 +426,13 @@ _ANGLES: dict[str, Callable[[Any], float]] = {"yaw": _yaw, "pitch": _pitch, "rol
 
 
 class MessageHandle:
-    """An image, a cloud, a map: a message, or a part of one, that crosses to agents as an opaque reference.
+    """An image, a cloud, a map: a message, or a part of one, that agents receive as an opaque reference.
 
-    Internal actions and operations in Python get the handle itself and read `value`; nothing is copied on the way.
+    Internal actions and operations in Python receive the handle itself and read `value`; nothing is copied.
 
     Attributes:
-        value: the message or array, as the middleware gave it; read-only by agreement.
-        type_name: of the message, or of what it holds: ``sensor_msgs/msg/Image``, ``uint8[]``.
+        value: the message or array, as the middleware delivered it; read-only by convention.
+        type_name: type of the message, or of its content: ``sensor_msgs/msg/Image``, ``uint8[]``.
     """
 
     __slots__ = ("type_name", "value")

@@ -18,18 +18,18 @@ from jacaros.streams.schema import JOINING, Spec
 from jacaros.trace import Cause
 
 JUMP = 0.1
-"""Seconds by which the clock must go back to mean that time begins again."""
+"""Seconds by which the clock must go back to count as a restart of time."""
 
 
 class Derivation:
     """A derived property or signal.
 
-    It hears of every message of its streams, before dead bands, rates and the range of view.
+    It receives every message of its streams, before dead bands, rates and the range of view apply.
 
     Args:
         host: the artifact.
-        part: what the mapping says.
-        spec: of the pattern.
+        part: its declaration.
+        spec: the pattern.
     """
 
     def __init__(self, host: Host, part: DerivedPart, spec: Spec) -> None:
@@ -54,13 +54,13 @@ class Derivation:
         self._wait()
 
     def hear(self, stream: int, stamp: float, values: Values | None, cause: Cause | None) -> None:
-        """Take an event of one of the streams.
+        """Handle an event of one of the streams.
 
         Args:
             stream: its number.
-            stamp: of the message; 0 for none. One in the future counts as the present.
-            values: of the event; None when the property ended.
-            cause: what led to it.
+            stamp: stamp of the message; 0: none. A future stamp counts as the present.
+            values: values of the event; None if the property ended.
+            cause: the cause of the event.
         """
         now = self._host.clock.now()
         if now < self._latest - JUMP:
@@ -76,14 +76,14 @@ class Derivation:
         self._settle()
 
     def _hear_end(self, stream: int, stamp: float, values: Values | None, cause: Cause | None) -> None:
-        """Hear that a frame is no longer known; while it is, its values are looked up at stamps."""
+        """Handle the end of a frame; while it is known, its values are looked up at stamps."""
         if values is None:
             self.hear(stream, stamp, None, cause)
 
     def _take_with_frames(
         self, time: float, values: Values, frames: dict[int, Values], cause: Cause | None
     ) -> None:
-        """Take a message of the first stream with the frames at its time."""
+        """Handle a message of the first stream together with the frames at its time."""
         self._latest, self._cause = self._host.clock.now(), cause
         for number, found in frames.items():
             self._pattern.take(number, time, found)
@@ -109,8 +109,8 @@ class Derivation:
         if self._told_dropped in (1, 10, 100):
             part = self._part
             message = f"{part.name}: {self._told_dropped} late messages dropped"
-            help_ = "give it more time: lateness: 0.2"
-            self._host.tell_once((part.name, self._told_dropped), part.place, message, help_)
+            help_ = "allow more time: lateness: 0.2"
+            self._host.report_once((part.name, self._told_dropped), part.place, message, help_)
 
     def _emit(self, kind: str, values: Values) -> None:
         host, name = self._host, self._part.name
@@ -124,7 +124,7 @@ class Derivation:
             tap(self._latest, None if kind == HIDE else values, self._cause)
 
     def show(self) -> None:
-        """Bring the property up to date, within an operation."""
+        """Update the property within an operation."""
         host, name = self._host, self._part.name
         while self._pending:
             before, self._shown = self._shown, self._pending.popleft()
@@ -137,7 +137,7 @@ class Derivation:
                 host.update_property(name, *self._shown)
 
     def _wait(self) -> None:
-        """Ring when the pattern wants to be looked at; a timer that rings earlier serves as well."""
+        """Set a timer for the pattern's next deadline; a timer that is earlier is kept."""
         due = self._pattern.deadline
         if self._timer is not None:
             if self._due <= due:
@@ -157,7 +157,7 @@ class Derivation:
         self._wait()
 
     def close(self) -> None:
-        """Ring no more."""
+        """Cancel the timer."""
         if self._timer is not None:
             self._timer.cancel()
             self._timer = None
@@ -172,7 +172,7 @@ def frames_at_stamps(spec: Spec, part: ArtifactPart) -> dict[int, FramePart]:
 
 
 def with_angles(spec: Spec, part: ArtifactPart) -> Spec:
-    """The pattern, with the values that are headings: their numbers begin again after a turn."""
+    """Return the pattern with the values marked that are headings: their numbers wrap around after a turn."""
     if spec.operator != "interpolated":
         return spec
     fields = {each.name: each.fields or () for each in part.topics} | {
@@ -188,13 +188,13 @@ def with_angles(spec: Spec, part: ArtifactPart) -> Spec:
 
 
 def _turn(field: FieldPart) -> float:
-    """The whole turn of an angle in the unit of the agent; 0 for what is not one."""
+    """Return a full turn of an angle in the agent's unit; 0 if the field is not an angle."""
     if field.conversion.kind not in ANGLES and field.path.text not in ANGLES:
         return 0.0
     return 360.0 if field.conversion.unit == "degrees" else math.tau
 
 
 def stamp_of(message: object, latched: bool) -> float:
-    """The stamp of a message, in seconds; 0 if it has none, or is latched: kept for those who come late, it is old."""
+    """Return the stamp of a message, in seconds; 0 if it has none, or is latched and therefore old."""
     header = None if latched else getattr(message, "header", None)
     return to_seconds(header.stamp) if header is not None else 0.0

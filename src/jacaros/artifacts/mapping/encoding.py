@@ -1,4 +1,4 @@
-"""Fills messages with what agents give: the way of `decoding`, backwards."""
+"""Build messages from the values of agents: the reverse of `decoding`."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -19,14 +19,14 @@ from jacaros.ros.values import single_value
 from jacaros.yaml_nodes import Problem
 
 Fill = Callable[[Sequence[object], float], dict[str, Any]]
-"""Takes the arguments of an operation and the time; gives the fields of a message as nested mappings.
+"""Takes the arguments of an operation and the time; returns the fields of a message as nested mappings.
 
 Raises `WrongValue`.
 """
 
 
 class WrongValue(ValueError):
-    """An argument does not fit its field; the text says which.
+    """Raised for an argument that does not match its field.
 
     Attributes:
         field: path of the field.
@@ -38,24 +38,24 @@ class WrongValue(ValueError):
 
 
 Give = Callable[[Sequence[object], float], Any]
-"""Gives one value."""
+"""Returns one value."""
 
 
-def filler(
+def builder(
     values: Sequence[ValuePart],
     type_name: str,
     interfaces: Interfaces,
     problems: list[Problem],
     adapt: Callable[[str, object], object] = lambda field, value: value,
 ) -> Fill | None:
-    """A function that gives the fields of a message.
+    """Return a function that builds the fields of a message.
 
     Args:
-        values: what the mapping says of them.
-        type_name: of the message.
+        values: the values that the mapping declares.
+        type_name: message type.
         interfaces: knows the types.
-        problems: takes what is wrong; the result is None then.
-        adapt: changes constants, given the name of the field, such as names of frames.
+        problems: receives mistakes; the result is then None.
+        adapt: changes constants, given the name of the field, such as frame names.
     """
     before = len(problems)
     made: list[tuple[ValuePart, Give]] = []
@@ -78,10 +78,10 @@ def filler(
 
 
 def fitting(part: OperationPart, type_name: str, interfaces: Interfaces) -> tuple[ValuePart, ...]:
-    """The fields of an operation that fit a version of the type; those that stand first when none do."""
+    """Return the fields of an operation that match a version of the type; the first ones if none do."""
     for values in (part.values, *part.other_values) if part.other_values else ():
         problems: list[Problem] = []
-        filler(values, type_name, interfaces, problems)
+        builder(values, type_name, interfaces, problems)
         if not problems:
             return values
     return part.values
@@ -95,7 +95,7 @@ def _put(into: dict[Any, Any], part: ValuePart, value: Any) -> None:
 
 
 def _lists(value: Any) -> Any:
-    """Mappings whose keys are the numbers of elements, as lists."""
+    """Convert mappings whose keys are indices of elements to lists."""
     if not isinstance(value, dict):
         return value
     if value and all(isinstance(key, int) for key in value):
@@ -104,7 +104,7 @@ def _lists(value: Any) -> Any:
 
 
 def _gaps(values: Sequence[ValuePart]) -> list[Problem]:
-    """Elements of a list that are left out, and fields that are said twice."""
+    """Return the elements of a list that are missing, and fields that are given twice."""
     found: list[Problem] = []
     numbers: dict[tuple[Any, ...], set[int]] = {}
     for part in values:
@@ -115,15 +115,13 @@ def _gaps(values: Sequence[ValuePart]) -> list[Problem]:
     for part in values:
         above = (whole.get(part.target.steps[:depth]) for depth in range(1, len(part.target.steps)))
         for other in filter(None, above):
-            told = (
-                f"'{part.target.text}' is in '{other.target.text}', which stands in line {other.place.line}"
-            )
+            told = f"`{part.target.text}` is part of `{other.target.text}` on line {other.place.line}"
             found.append(part.place.problem(told, "leave one of them out"))
         for depth, step in enumerate(part.target.steps):
             if isinstance(step, int) and not 0 <= step < len(numbers[part.target.steps[:depth]]):
                 found.append(
                     part.place.problem(
-                        f"'{part.target.text}': elements before it are left out", "begin with [0]"
+                        f"`{part.target.text}`: earlier elements are missing", "begin with [0]"
                     )
                 )
     return found
@@ -147,7 +145,7 @@ def _give(
     path = part.target.text
     if part.source is Source.NOW:
         if leaf.base not in TIMES or leaf.array:
-            raise WrongPath(f"'now' is a time, and {path} is {leaf}", "write another value")
+            raise WrongPath(f"`now` is a time, but `{path}` is {leaf}", "write another value")
         return lambda arguments, now: now
     if part.source is Source.CONSTANT:
         value = _constant(part, adapt(last, part.value), convert, leaf, owner, interfaces)
@@ -161,12 +159,14 @@ def _give(
             given = arguments[number]
         else:
             raise WrongValue(
-                f"{path} is to be part {number + 1} of an element that has {len(arguments)}", path
+                f"`{path}` is part {number + 1} of an element, but the element has {len(arguments)}", path
             )
         try:
             return convert(given)
         except (TypeError, ValueError) as error:
-            raise WrongValue(f"{path} ({leaf}) cannot be {text(given, quoted=True)}: {error}", path) from None
+            raise WrongValue(
+                f"`{path}` ({leaf}) cannot be {text(given, quoted=True)}: {error}", path
+            ) from None
 
     return of_parameter
 
@@ -179,7 +179,7 @@ def _constant(
     owner: str,
     interfaces: Interfaces,
 ) -> Any:
-    """A constant as the field wants it, tried out on a message."""
+    """Convert a constant to the type of the field, and try it on a message."""
     path = part.target.text
     if (
         isinstance(value, str)
@@ -191,7 +191,7 @@ def _constant(
             plain = "write true or false" if leaf.base == "bool" else "write a number"
             listed = ", ".join(known)
             raise WrongPath(
-                f"{path} is {leaf}, and {value!r} is no constant of {owner}",
+                f"`{path}` is {leaf}, but {value!r} is not a constant of {owner}",
                 f"its constants: {listed}" if listed else f"{plain}, or a parameter: $name",
             )
         value = known[value]
@@ -199,7 +199,7 @@ def _constant(
     try:
         converted = convert(value)
     except (TypeError, ValueError) as error:
-        raise WrongPath(f"{path} ({leaf}) cannot be {value!r}: {error}", "write another value") from None
+        raise WrongPath(f"`{path}` ({leaf}) cannot be {value!r}: {error}", "write another value") from None
     last = part.target.steps[-1]
     try:
         if isinstance(last, str):
@@ -210,7 +210,7 @@ def _constant(
         raise WrongPath(str(error), "write another value, or a parameter: $name") from None
     except (TypeError, ValueError) as error:
         raise WrongPath(
-            f"{path} is {leaf}, but {error}", "write another value, or a parameter: $name"
+            f"`{path}` is {leaf}, but {error}", "write another value, or a parameter: $name"
         ) from None
     return converted
 
@@ -221,10 +221,10 @@ def _check(part: ValuePart, leaf: FieldType) -> None:
         check_names(part.conversion, path, leaf.base)
     if kind in ANGLES and (leaf.base != QUATERNION or leaf.array):
         help = "name the field that is a geometry_msgs/msg/Quaternion, such as pose.pose.orientation"
-        raise WrongPath(f"'as: {kind}' gives a quaternion, and {path} is {leaf}", help)
+        raise WrongPath(f"`as: {kind}` makes a quaternion, but `{path}` is {leaf}", help)
     number = leaf.base in FLOATS or leaf.base in INTEGER_RANGES or leaf.base in TIMES
     if part.conversion.line is not None and not number and kind not in ANGLES:
-        raise WrongPath(f"unit, scale or offset needs a number, and {path} is {leaf}", "leave it out")
+        raise WrongPath(f"unit, scale or offset needs a number, but `{path}` is {leaf}", "leave it out")
 
 
 def _converter(
@@ -244,7 +244,7 @@ def _converter(
     if conversion.kind == "name":
         meant = chosen(constants(interfaces, owner), last, conversion.prefix)
         if not meant:
-            raise WrongPath(f"{owner} has no constants for {last}", "write names: {0: ...}")
+            raise WrongPath(f"{owner} has no constants for `{last}`", "write names: {0: ...}")
         words |= {name: value[0] if isinstance(value, bytes) else value for name, value in meant.items()}
 
     if DURATION in (leaf.base, owner) and not leaf.array:  # as a whole, or its seconds
@@ -253,7 +253,7 @@ def _converter(
     def convert(value: Any) -> Any:
         if words and isinstance(
             value, str
-        ):  # what it stands for is the message's value: it has the message's unit
+        ):  # a name stands for the message's value, which has the message's unit
             return for_field(_word(value, words), leaf, interfaces)
         for step in steps:
             value = step(value)
@@ -264,25 +264,26 @@ def _converter(
 
 def _not_negative(value: Any) -> Any:
     if isinstance(value, int | float) and value < 0:
-        raise ValueError("a duration is not negative")
+        raise ValueError("expected a duration that is not negative")
     return value
 
 
 def _number(value: object) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float):
-        raise TypeError("a number is wanted")
+        raise TypeError("expected a number")
     return float(value)
 
 
 def _word(value: str, known: dict[str, Any]) -> Any:
     found = known.get(str(value), known.get(str(value).lower()))
     if found is None:
-        raise ValueError(f"it is to be one of {', '.join(known)}")
+        raise ValueError(f"expected one of {', '.join(known)}")
     return found
 
 
 def for_field(value: Any, leaf: FieldType, interfaces: Interfaces) -> Any:
-    """What an agent gives, as a field takes it: structures and lists stand for messages, by the order of their fields."""
+    """Convert a value of an agent to the type of a field: structures and lists stand for messages, in the order of
+    their fields."""
     if isinstance(value, MessageHandle):
         return value.value
     if leaf.array:
@@ -300,7 +301,7 @@ def _message(value: Any, type_name: str, interfaces: Interfaces) -> Any:
         return value
     known = interfaces.fields(type_name)
     if len(parts) != len(known):
-        raise ValueError(f"{type_name} has the {len(known)} fields {', '.join(known)}")
+        raise ValueError(f"{type_name} has {len(known)} fields: {', '.join(known)}")
     return {
         name: for_field(part, kind, interfaces)
         for (name, kind), part in zip(known.items(), parts, strict=True)
@@ -314,17 +315,17 @@ def _each(
     problems: list[Problem],
     adapt: Callable[[str, object], object],
 ) -> Give:
-    """A list of messages from a list of structures, lists or single values."""
+    """Return a function that builds a list of messages from a list of structures, lists or single values."""
     path = part.target.text
     if not leaf.array or not leaf.is_message:
-        raise WrongPath(f"'each' fills a list of messages, and {path} is {leaf}", "write a value")
-    fill = filler(part.elements, leaf.base, interfaces, problems, adapt)
+        raise WrongPath(f"`each` fills a list of messages, but `{path}` is {leaf}", "write a value")
+    fill = builder(part.elements, leaf.base, interfaces, problems, adapt)
     number = part.parameter
 
     def of_elements(arguments: Sequence[object], now: float) -> Any:
         given = arguments[number]
         if isinstance(given, str) or not isinstance(given, list | tuple):
-            raise WrongValue(f"{path} is to be a list, not {text(given, quoted=True)}", path)
+            raise WrongValue(f"`{path}`: expected a list, found {text(given, quoted=True)}", path)
         assert fill is not None
         return [fill(_parts(each), now) for each in given]
 

@@ -1,4 +1,4 @@
-"""Mapping files: found, read, and checked for all that can be told without knowing any message type."""
+"""Mapping files: found, read, and checked as far as possible without message types."""
 
 import re
 from collections import Counter
@@ -26,7 +26,7 @@ from jacaros.yaml_nodes import Node, Problem, read_document
 from jacaros.yaml_syntax import read_text, top_keys
 
 SHIPPED = Path(__file__).parent.parent / "mappings"
-"""Where the mappings are that come with the package."""
+"""Folder of the mappings that come with the package."""
 
 ENDINGS = (".yaml", ".yml")
 
@@ -47,12 +47,13 @@ _KEYS = (
 
 
 def shipped_mappings() -> list[str]:
-    """File names of the mappings that come with the package."""
+    """Return the file names of the mappings that come with the package."""
     return sorted(path.name for path in SHIPPED.glob("*.yaml"))
 
 
 def find_mapping(name: str, folders: Sequence[Path] = (Path(),)) -> Path | None:
-    """The file of a mapping, first below *folders*, then among the shipped ones; None when there is none."""
+    """Return the file of a mapping, first below *folders*, then among those of the package; None if it does not
+    exist."""
     for folder in folders:
         if is_file(path := folder / name):
             return path
@@ -61,7 +62,7 @@ def find_mapping(name: str, folders: Sequence[Path] = (Path(),)) -> Path | None:
 
 
 def is_mapping(path: Path) -> bool:
-    """Whether a YAML file is a mapping file, wrong as it may be: it declares artifacts or parts of one."""
+    """Return whether a YAML file is a mapping file, even a faulty one: it declares artifacts or parts of one."""
     return bool(top_keys(path) & {"artifacts", "properties", "signals", "operations"})
 
 
@@ -78,7 +79,7 @@ def load_mapping(path: Path) -> MappingFile:
 
 
 def read_with_problems(path: Path) -> tuple[MappingFile, list[Problem]]:
-    """What can be read of a file, and what is wrong with it."""
+    """Return the readable content of a file, and its mistakes."""
     name = _shown(path)
     try:
         text, wrong = read_text(path)
@@ -95,7 +96,7 @@ def read_with_problems(path: Path) -> tuple[MappingFile, list[Problem]]:
 
 
 def _shown(path: Path) -> str:
-    """A path as people write it: from the current folder on, if it is below that."""
+    """Return a path relative to the current folder if it is below it."""
     whole, here = path.resolve(), Path.cwd()
     return str(whole.relative_to(here)) if whole.is_relative_to(here) else str(path)
 
@@ -116,7 +117,7 @@ def read_mapping(text: str, name: str = "mapping.yaml") -> MappingFile:
 def _read(document: Node, path: Path, problems: list[Problem]) -> dict[str, ArtifactPart]:
     if document.value is None:
         if not problems:
-            document.wrong("the file says nothing", "begin with properties: or operations:")
+            document.wrong("the file is empty", "begin with properties: or operations:")
         return {}
     if not isinstance(document.value, dict) or "artifacts" not in document.value:
         return {path.stem: _artifact(path.stem, Place(1, 1), document, path.parent)}
@@ -124,22 +125,23 @@ def _read(document: Node, path: Path, problems: list[Problem]) -> dict[str, Arti
     for name, _ in document.entries():
         if name.value in _KEYS and name.value != "interfaces":
             name.wrong(
-                f"'{name.value}' stands beside 'artifacts'", "indent it, below the name of an artifact"
+                f"`{name.value}` is on the same level as `artifacts`",
+                "indent it, below the name of an artifact",
             )
     shared = _interfaces(entries["interfaces"], path.parent) if "interfaces" in entries else ()
     found = {}
     for name, node in entries["artifacts"].entries():
         if not isinstance(name.value, str) or not _NAME.fullmatch(name.value):
-            name.wrong(f"{name.value!r} is no name of an artifact", "write a word")
+            name.wrong(f"{name.value!r} is not a name for an artifact", "write a word")
             continue
         found[str(name.value)] = _artifact(str(name.value), place_of(name), node, path.parent, shared)
     if not found and not problems:
-        entries["artifacts"].wrong("there are no artifacts", "write the name of one below 'artifacts'")
+        entries["artifacts"].wrong("no artifacts", "write the name of one below `artifacts`")
     return found
 
 
 def _interfaces(node: Node, folder: Path) -> tuple[Path, ...]:
-    """Folders with definitions of types; relative ones are counted from that of the file."""
+    """Return the folders with definitions of types; relative paths start at the file's folder."""
     found = []
     for item in node.sequence() if isinstance(node.value, list) else [node]:
         path = (folder / item.text()).resolve()
@@ -147,8 +149,8 @@ def _interfaces(node: Node, folder: Path) -> tuple[Path, ...]:
             found.append(path)
         elif isinstance(item.value, str):
             item.wrong(
-                f"there is no folder {item.value}",
-                "name a folder, counted from this file, that has PACKAGE/msg/NAME.msg",
+                f"folder not found: `{item.value}`",
+                "name a folder, relative to this file, that contains PACKAGE/msg/NAME.msg",
             )
     return tuple(found)
 
@@ -190,7 +192,7 @@ def _pairs(entries: dict[str, Node], key: str) -> Iterator[tuple[Node, Node]]:
 
 
 def _variants(entries: dict[str, Node]) -> Iterator[tuple[Node, Node]]:
-    """Names and values of operations; a list has several of one name."""
+    """Yield names and values of operations; a list has several of one name."""
     for name, node in _pairs(entries, "operations"):
         if not isinstance(node.value, list) or not any(isinstance(item, dict) for item in node.value):
             yield name, node
@@ -206,12 +208,12 @@ def _connected(node: Node) -> bool | float:
     if isinstance(value, int | float) and 0.0 < value < float("inf"):
         return float(value)
     help = "write true" if str(value).lower() in ("yes", "on") else "write true, or a number such as 2"
-    node.wrong("'connected' must be true, false, or a number of seconds above zero", help)
+    node.wrong("`connected` must be true, false, or a number of seconds above zero", help)
     return True
 
 
 def _observable(part: ArtifactPart) -> Iterator[tuple[str, str, Place]]:
-    """Kind, name and place of all that agents come to believe."""
+    """Yield kind, name and position of everything that agents perceive."""
     for topic in part.topics:
         yield ("signal" if topic.signal else "property"), topic.name, topic.place
     for kind, parts in (
@@ -227,35 +229,36 @@ def _observable(part: ArtifactPart) -> Iterator[tuple[str, str, Place]]:
 
 
 def _names(part: ArtifactPart) -> Iterator[Problem]:
-    """Names that two things of an artifact have; signals may share one with a property, as beliefs and events do not."""
+    """Yield names that are used twice in an artifact. A signal may share one with a property, as events do with
+    beliefs."""
     seen: dict[str, tuple[str, Place]] = {}
     for kind, name, place in _observable(part):
         if name == UNNAMED:
-            continue  # told already
+            continue  # already reported
         if name in seen and (kind != "feedback" or seen[name][0] != "feedback"):
             first, before = seen[name]
             yield place.problem(
-                f"the {kind} '{name}' has the name of the {first} of line {before.line}",
+                f"the {kind} `{name}` has the same name as the {first} on line {before.line}",
                 "give it another name",
             )
         seen.setdefault(name, (kind, place))
 
 
 def _arities(part: ArtifactPart) -> Iterator[Problem]:
-    """Operations that agents cannot tell apart: of one name, with as many arguments."""
+    """Yield operations that agents cannot tell apart: same name, same number of arguments."""
     seen: dict[tuple[str, int], Place] = {}
     for operation in part.operations:
         key = (operation.name, arity(part, operation))
         before = seen.setdefault(key, operation.place)
         if before is not operation.place and operation.name != UNNAMED:
             yield operation.place.problem(
-                f"'{operation.name}' with {key[1]} arguments is in line {before.line} already",
+                f"duplicate operation `{operation.name}` with {key[1]} arguments; the first is on line {before.line}",
                 "give it another name, or other parameters",
             )
 
 
 def _switches(part: ArtifactPart) -> Iterator[Problem]:
-    """Operations that are to pause and resume others, and that there are not, or that cannot."""
+    """Yield operations that are named to pause and resume others, but do not exist or are not able to."""
     plain = {each.name: each for each in part.operations if arity(part, each) == 0}
     able = [name for name, each in plain.items() if is_switch(each)]
     for operation in part.operations:
@@ -264,31 +267,32 @@ def _switches(part: ArtifactPart) -> Iterator[Problem]:
                 continue
             known = any(each.name == wanted.text for each in part.operations)
             yield wanted.place.problem(
-                f"'{wanted.text}' cannot pause or resume a goal: it takes arguments, or its time"
+                f"`{wanted.text}` cannot pause or resume a goal: it takes arguments, or runs for a while"
                 if known
-                else f"there is no operation '{wanted.text}'",
-                "name one without arguments that calls a service, publishes once or sets a parameter; there "
-                f"{'are: ' + ', '.join(able) if able else 'is none yet'}",
+                else f"unknown operation `{wanted.text}`",
+                "name one without arguments that calls a service, publishes once or sets a parameter; "
+                f"{'possible: ' + ', '.join(able) if able else 'none exists yet'}",
             )
 
 
 def _own_parameters(part: ArtifactPart) -> Iterator[Problem]:
-    """Operations on parameters of our own that the artifact does not declare."""
+    """Yield operations on parameters of our own that the artifact does not declare."""
     own = [each.parameter for each in part.parameters if not each.node]
     for operation in part.operations:
         if operation.kind not in (OperationKind.SET, OperationKind.GET) or operation.node:
             continue
         if operation.target.text not in own:
             yield operation.target.place.problem(
-                f"'{operation.name}' names no node, and '{operation.target.text}' is no parameter of our own",
-                f"of our own there are: {', '.join(own)}"
+                f"`{operation.name}` names no node, and `{operation.target.text}` is not a parameter of our own",
+                f"our own parameters: {', '.join(own)}"
                 if own
-                else "write whose parameter it is: node: controller_server",
+                else "write the node that has the parameter: node: controller_server",
             )
 
 
 def _references(part: ArtifactPart) -> Iterator[Problem]:
-    """Properties that operations and ranges of view mean and that there are not, and properties nobody can ask for."""
+    """Yield unknown properties in operations and ranges of view, and properties on demand without an operation that
+    requests them."""
     own: dict[str, TopicPart | None] = {each.name: each for each in part.properties}
     own |= {each.name: None for each in part.frames}
     told = ", ".join(own) or "none"
@@ -298,25 +302,25 @@ def _references(part: ArtifactPart) -> Iterator[Problem]:
             asked[wanted.text] += 1
             if wanted.text not in own:
                 yield wanted.place.problem(
-                    f"there is no property '{wanted.text}'", f"properties from topics and frames: {told}"
+                    f"unknown property `{wanted.text}`", f"properties from topics and frames: {told}"
                 )
                 continue
             topic = own[wanted.text]
             if topic is not None and topic.each is not None:
                 yield wanted.place.problem(
-                    f"'{wanted.text}' is one property for each element, and always told", "leave it out"
+                    f"`{wanted.text}` is one property for each element, and always up to date", "leave it out"
                 )
             elif operation.kind is OperationKind.READ and topic is not None and topic.fields is None:
                 yield wanted.place.problem(
-                    f"the number of values of '{wanted.text}' is not known", f"give '{wanted.text}' fields"
+                    f"the number of values of `{wanted.text}` is not known", f"give `{wanted.text}` fields"
                 )
     for topic in part.topics:
         if topic.view is not None and (origin := topic.view.origin) is not None and origin.text not in own:
             yield origin.place.problem(
-                f"there is no property '{origin.text}'", f"properties from topics and frames: {told}"
+                f"unknown property `{origin.text}`", f"properties from topics and frames: {told}"
             )
         if topic.policy.on_demand and topic.name not in asked:
             yield topic.place.problem(
-                f"nobody can ask for '{topic.name}', which is told on demand",
+                f"no operation requests `{topic.name}`, which is updated on demand",
                 f"add an operation: look: {{refresh: {topic.name}}}",
             )

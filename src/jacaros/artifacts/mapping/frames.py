@@ -1,4 +1,4 @@
-"""Frames of tf as properties: looked up so many times a second."""
+"""Frames of tf as properties, looked up at a fixed rate."""
 
 import math
 from collections.abc import Callable, Iterable
@@ -13,12 +13,12 @@ from jacaros.ros.protocols.transform import Transform
 from jacaros.ros.waiting import MISSING_AFTER
 
 
-class FrameFeed:
-    """A property from a transform; it is there while the transform is known.
+class FrameUpdater:
+    """A property from a transform; it exists while the transform is known.
 
     Args:
         host: the artifact.
-        part: what the mapping says.
+        part: its declaration.
     """
 
     def __init__(self, host: Host, part: FramePart) -> None:
@@ -28,7 +28,7 @@ class FrameFeed:
         self._values = values_of(part.fields)
         self._notes = [(note.name, note.path.text, converted(note.conversion)) for note in part.annotations]
         self._taps = host.taps.get(part.name, ())
-        self._told = -1.0
+        self._reported = -1.0
         self._began = host.clock.elapsed
         try:
             host.ros.tf_listen()
@@ -52,8 +52,8 @@ class FrameFeed:
         )
         values = self._values(transform)
         self._reading.take(values)
-        if self._taps and (transform.stamp != self._told or not transform.stamp):
-            self._told = transform.stamp
+        if self._taps and (transform.stamp != self._reported or not transform.stamp):
+            self._reported = transform.stamp
             for tap in self._taps:
                 tap(transform.stamp, values, None)
 
@@ -61,9 +61,9 @@ class FrameFeed:
         self._withdraw()
         part = self._part
         if self._host.clock.elapsed - self._began >= MISSING_AFTER:
-            message = f"{part.name} is not known: {error}; still listening"
-            self._host.tell_once(
-                part.name, part.place, message, "are the nodes that send these frames running?"
+            message = f"`{part.name}` is unknown: {error}; still listening"
+            self._host.report_once(
+                part.name, part.place, message, "are the nodes that publish these frames running?"
             )
 
     def _is_old(self, transform: Transform) -> bool:
@@ -79,12 +79,12 @@ class FrameFeed:
                 tap(0.0, None, None)
 
     def close(self) -> None:
-        """Look no more."""
+        """Stop the look-ups."""
         self._timer.cancel()
 
 
 def values_of(fields: Iterable[FieldPart]) -> Callable[[Transform], Values]:
-    """Return what gives the values of a transform that are shown."""
+    """Return a function that reads the shown values of a transform."""
     parts = [(field.path.text, converted(field.conversion)) for field in fields]
     return lambda transform: tuple([convert(_part(transform, what)) for what, convert in parts])
 

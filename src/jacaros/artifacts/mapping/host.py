@@ -1,4 +1,4 @@
-"""What the parts of a mapped artifact use of it."""
+"""The interface of a mapped artifact for its parts."""
 
 from collections.abc import Awaitable, Callable, Mapping
 from typing import Any, ClassVar, NoReturn, Protocol, TypeVar
@@ -19,7 +19,7 @@ from jacaros.yaml_nodes import Problem
 T = TypeVar("T")
 
 Tap = Callable[[float, Values | None, Cause | None], None]
-"""Hears of the messages of a property or signal: stamp (0 for none), values (None when it ended), cause."""
+"""Called for each message of a property or signal with its stamp (0: none), values (None: it ended) and cause."""
 
 
 class Elements(Protocol):
@@ -33,9 +33,9 @@ class Elements(Protocol):
 
 
 class Host(Protocol):
-    """The artifact, as `jacaros.artifacts.mapping.artifact.MappedArtifact` is one.
+    """A mapped artifact, such as `jacaros.artifacts.mapping.artifact.MappedArtifact`.
 
-    A protocol, so that the parts need not know the class that is put together from them.
+    It is a protocol so that the parts need not know the class that is built from them.
     """
 
     name: str
@@ -55,7 +55,7 @@ class Host(Protocol):
     @property
     def run_process(self) -> Callable[..., object]: ...
     @property
-    def tell_bad_message(self) -> Callable[..., object]: ...
+    def report_bad_message(self) -> Callable[..., object]: ...
     @property
     def ros(self) -> Backend: ...
     @property
@@ -130,6 +130,6 @@ class Host(Protocol):
     def fail(self, message: str, functor: str | None = None, *arguments: object) -> NoReturn: ...
     def log(self, text: str) -> None: ...
 
-    def tell_once(self, key: object, place: Place, message: str, help: str = "") -> None: ...
-    def tell(self, problems: list[Problem]) -> None: ...
+    def report_once(self, key: object, place: Place, message: str, help: str = "") -> None: ...
+    def report(self, problems: list[Problem]) -> None: ...
     def on_topic_event(self, topic: str, place: Place) -> Callable[[TopicEvent], None]: ...

@@ -1,4 +1,4 @@
-"""What is known of message types: by the middleware of a run, or by the definitions that come with the package."""
+"""Message types, from the middleware of a run or from the definitions that come with the package."""
 
 import difflib
 import re
@@ -16,17 +16,17 @@ _CONSTANT = re.compile(r"[A-Z][A-Z0-9_]*")
 
 
 class Interfaces(Protocol):
-    """Tells and makes messages; every backend can."""
+    """Describes and makes messages; every backend can."""
 
     def fields(self, type_name: str) -> Mapping[str, FieldType]:
-        """Fields of a type, also of parts such as ``pkg/srv/Name_Request``; raises `UnknownInterface`."""
+        """Return the fields of a type, also of parts such as ``pkg/srv/Name_Request``. Raises `UnknownInterface`."""
 
     def message(self, type_name: str, /, **fields: Any) -> Any:
-        """Make a message; raises `UnknownInterface`, `MessageMismatch`."""
+        """Make a message. Raises `UnknownInterface`, `MessageMismatch`."""
 
 
 class StoredInterfaces:
-    """The definitions that come with the package or are installed here: what is checked where there is no middleware."""
+    """The definitions of the package and of this machine, for checks without a middleware."""
 
     def __init__(self, folders: tuple[Path, ...] = ()) -> None:
         self._factory = MessageFactory(DefinitionSchema((*folders, *installed())))
@@ -42,12 +42,12 @@ class StoredInterfaces:
 
 @lru_cache(maxsize=8)
 def stored_interfaces(folders: tuple[Path, ...] = ()) -> StoredInterfaces:
-    """One for all who have the same *folders* of further definitions: it remembers what it has read."""
+    """Return the shared instance for *folders* of further definitions; it caches what it has read."""
     return StoredInterfaces(folders)
 
 
 def constants(interfaces: Interfaces, type_name: str) -> dict[str, object]:
-    """The constants of a message type by name; those of a service's or an action's parts too."""
+    """Return the constants of a message type by name, also those of the parts of services and actions."""
     kind = type(interfaces.message(type_name))
     return {
         name: value
@@ -63,10 +63,10 @@ _SMALL = ("byte", "char", "int8", "uint8")
 
 
 def constants_by_field(interfaces: Interfaces, type_name: str) -> dict[str, dict[str, object]]:
-    """The constants of a message type by the field whose values they name; those that belong to no field under ``""``.
+    """Return the constants of a message type by the field whose values they name; those without a field under ``""``.
 
-    A constant belongs to the field whose name it begins with.  If the type has a single integer field, and that is of
-    8 bits, the constants of all other names belong to it, provided that no two have the same value.
+    A constant belongs to the field whose name is its prefix. If the type has a single integer field, and that has 8
+    bits, all other constants belong to it, provided that no two have the same value.
     """
     fields = interfaces.fields(type_name)
     longest = sorted(fields, key=len, reverse=True)
@@ -90,9 +90,9 @@ def _can_have(field: FieldType, constant: object) -> bool:
 
 
 def chosen(known: Mapping[str, object], field: str, prefix: str) -> dict[str, object]:
-    """The constants that are meant for a field, with what their names have in common cut off, in lower case.
+    """Return the constants for a field, without their common prefix, in lower case.
 
-    Those that begin with *prefix*, or else with the field's name, or else all.
+    These are the constants that begin with *prefix*, or else with the field's name, or else all.
     """
     for start in (prefix,) if prefix else (f"{field.upper()}_", ""):
         found = {
@@ -106,7 +106,7 @@ def chosen(known: Mapping[str, object], field: str, prefix: str) -> dict[str, ob
 
 
 PARTS = ("_Request", "_Response", "_Goal", "_Result", "_Feedback")
-"""What names of messages end with that are parts of services and actions."""
+"""Suffixes of messages that are parts of services and actions."""
 
 
 def known_types(kind: str) -> list[str]:
@@ -120,5 +120,5 @@ def known_types(kind: str) -> list[str]:
 
 
 def similar_types(type_name: str) -> list[str]:
-    """At most two known types whose names are nearly *type_name*."""
+    """Return at most two known types with similar names."""
     return difflib.get_close_matches(type_name, known_types(type_name.split("/")[1]), 2, 0.8)

@@ -1,4 +1,4 @@
-"""What `jacaros describe` and agents are told of a mapped artifact; worked out only when somebody asks.
+"""Documentation of a mapped artifact for `jacaros describe` and agents; generated on request.
 
 Kind, unit and rounding of values come from the definitions of the messages.
 """
@@ -22,7 +22,7 @@ from jacaros.artifacts.mapping.declared import (
     ValuePart,
 )
 from jacaros.artifacts.mapping.decoding import octet, owner_of
-from jacaros.artifacts.mapping.encoding import filler, fitting
+from jacaros.artifacts.mapping.encoding import builder, fitting
 from jacaros.artifacts.mapping.interfaces import (
     Interfaces,
     chosen,
@@ -48,7 +48,7 @@ _TRANSFORM = {"x": "metres", "y": "metres", "z": "metres", "stamp": "seconds"}
 
 
 class Documentation:
-    """The docstring of a mapped artifact, with the sections that manuals are made of.
+    """The docstring of a mapped artifact, with the usual sections.
 
     Args:
         mapping: the file.
@@ -78,7 +78,7 @@ def _properties(part: ArtifactPart, interfaces: Interfaces) -> Iterator[str]:
         told = frame.description or f"frame {frame.source} in {frame.target}"
         words = [_of_transform(field) for field in frame.fields]
         told += _kept(frame.history)
-        yield f"{usage(frame.name, frame.fields)}: {_told(told, frame.fields, words)}."
+        yield f"{usage(frame.name, frame.fields)}: {_described(told, frame.fields, words)}."
     for parameter in part.parameters:
         yield f"{parameter.name}(Value): {_of_parameter(parameter)}."
     for derived in part.derived:
@@ -93,7 +93,7 @@ def _properties(part: ArtifactPart, interfaces: Interfaces) -> Iterator[str]:
 
 
 def _of_parameter(part: ParameterPart) -> str:
-    """What a parameter is, and of our own its type, default and range."""
+    """Describe a parameter; for our own also type, default and range."""
     declaration = part.declaration
     if declaration is None:
         return (part.description or f"parameter {part.parameter} of {part.node}").rstrip(".")
@@ -118,7 +118,7 @@ def _signals(part: ArtifactPart, interfaces: Interfaces) -> Iterator[str]:
 
 
 def _derived(part: DerivedPart, spec: Spec) -> str:
-    """The entry of a derived property or signal."""
+    """Describe a derived property or signal."""
     shape = OPERATORS[spec.operator]
     told = part.description or f"{shape.meaning}, of {' and '.join(spec.sources)}"
     values = (
@@ -132,7 +132,7 @@ def _derived(part: DerivedPart, spec: Spec) -> str:
 
 
 def _kept(history: float | None) -> str:
-    """How long past values are kept, after a comma."""
+    """Return how long past values are kept, after a comma."""
     return "" if history is None else f", past values are kept for {history:g} s"
 
 
@@ -146,14 +146,14 @@ def _from_topic(topic: TopicPart, interfaces: Interfaces) -> str:
 
 
 def _observed(topic: TopicPart, type_name: str, told: str, interfaces: Interfaces) -> str:
-    """The entry of a property or signal."""
+    """Describe a property or signal."""
     fields, words = topic.fields, []
     if type_name:
         with suppress(WrongPath, UnknownInterface):
             element = _element(topic, FieldType(type_name), interfaces)
             fields = fields_of(topic, element or FieldType(type_name), interfaces)
             words = [word_for_field(each, FieldType(type_name), element, interfaces) for each in fields]
-    return f"{usage(topic.name, fields)}: {_told(told, fields or (), words)}."
+    return f"{usage(topic.name, fields)}: {_described(told, fields or (), words)}."
 
 
 def _element(topic: TopicPart, message: FieldType, interfaces: Interfaces) -> FieldType | None:
@@ -163,11 +163,11 @@ def _element(topic: TopicPart, message: FieldType, interfaces: Interfaces) -> Fi
 
 
 def _when(policy: ReadingPolicy) -> str:
-    """When it is told, after a comma."""
+    """Return when it is updated, after a comma."""
     words = [
         "on demand" if policy.on_demand else "",
         f"at most {policy.rate:g} times a second" if policy.rate is not None else "",
-        f"gone after {policy.expire:g} s without a message" if policy.expire is not None else "",
+        f"removed after {policy.expire:g} s without a message" if policy.expire is not None else "",
     ]
     return "".join(f", {word}" for word in words if word)
 
@@ -178,8 +178,8 @@ def _of_transform(field: FieldPart) -> str:
     return with_unit("number", unit, field.conversion.digits)
 
 
-def _told(told: str, fields: tuple[FieldPart, ...], words: list[str]) -> str:
-    """What a property is, and what its values are."""
+def _described(told: str, fields: tuple[FieldPart, ...], words: list[str]) -> str:
+    """Describe a property and its values."""
     names, place = variables(fields), 0
     values = []
     for field, word in zip(fields, words, strict=False):
@@ -196,7 +196,7 @@ def _span(names: list[str]) -> str:
 
 
 def variables(fields: tuple[FieldPart, ...]) -> list[str]:
-    """The values of fields as agents may call them."""
+    """Return variable names for the values of fields."""
     return [
         "".join(part[:1].upper() + part[1:] for part in word.split("_"))
         for word in unlike((), values_of(fields))
@@ -204,7 +204,7 @@ def variables(fields: tuple[FieldPart, ...]) -> list[str]:
 
 
 def usage(name: str, fields: tuple[FieldPart, ...] | None) -> str:
-    """A property as agents write it."""
+    """Return a property in an agent's notation."""
     if fields is None:
         return f"{name}(...)"
     words = variables(fields)
@@ -212,7 +212,7 @@ def usage(name: str, fields: tuple[FieldPart, ...] | None) -> str:
 
 
 def parameter_words(artifact: ArtifactPart, part: OperationPart) -> dict[str, str]:
-    """What the parameters of an operation take and give, as far as it is known."""
+    """Describe the parameters of an operation as far as they are known."""
     interfaces = stored_interfaces(artifact.interfaces)
     type_name = part.type_name.text if part.type_name is not None else _likely_type(part, interfaces)
     types = message_types(part.kind, type_name) if type_name else ()
@@ -225,11 +225,11 @@ def parameter_words(artifact: ArtifactPart, part: OperationPart) -> dict[str, st
 
 
 def _likely_type(part: OperationPart, interfaces: Interfaces) -> str:
-    """The type of a velocity whose type the mapping leaves to the robot; empty for others."""
+    """Return the type of a velocity whose type the mapping omits; empty for others."""
     if part.kind is OperationKind.PUBLISH and part.values:
         for type_name in VELOCITIES:
             problems: list[Problem] = []
-            filler(part.values, type_name, interfaces, problems)
+            builder(part.values, type_name, interfaces, problems)
             if not problems:
                 return type_name
     return ""
@@ -247,7 +247,7 @@ def _inputs(part: OperationPart, types: tuple[str, ...], interfaces: Interfaces)
 
 
 def _of_unit(value: ValuePart) -> str:
-    """What is known without a type: the unit that the mapping says."""
+    """Return what is known without a type: the unit in the mapping."""
     unit = value.conversion.unit.replace("_", " ")
     return with_unit("number", unit, None) if unit else ""
 
@@ -255,7 +255,7 @@ def _of_unit(value: ValuePart) -> str:
 _SMALL = ("byte", "char", "int8", "uint8", "int16", "uint16")
 """Types of integers whose range an ordinary value can exceed."""
 _FEW = 8
-"""So many names of constants are told."""
+"""Number of constants that are listed."""
 
 _UNIT_WORDS = {
     "m": "metres",
@@ -277,13 +277,13 @@ _UNIT_WORDS = {
     "lx": "lux",
     "°C": "degrees Celsius",
 }
-"""Units of messages as people read them; others stay as they are."""
+"""Names of message units; others stay unchanged."""
 
 
 def word_for_field(
     field: FieldPart, message: FieldType, element: FieldType | None, interfaces: Interfaces
 ) -> str:
-    """What an agent gets of a field: ``number in metres, 2 decimals``; empty when that is not known."""
+    """Describe what an agent gets from a field: ``number in metres, 2 decimals``; empty if unknown."""
     root = message if element is None or field.path.of_message else element
     try:
         leaf = follow(field.path, root, interfaces.fields)
@@ -299,7 +299,7 @@ def word_for_field(
 
 
 def word_for_value(part: ValuePart, message: FieldType, interfaces: Interfaces) -> str:
-    """What an agent gives for a field of a message; empty when that is not known."""
+    """Describe what an agent provides for a field of a message; empty if unknown."""
     try:
         leaf = follow(part.target, message, interfaces.fields)
         if part.source is Source.ELEMENTS:
@@ -319,7 +319,7 @@ def _list_of(leaf: FieldType) -> str:
 
 
 def _elements(part: ValuePart, element: FieldType, interfaces: Interfaces) -> str:
-    """A list that fills a list of messages, by the parts of its elements."""
+    """Describe a list that fills a list of messages, by the parts of its elements."""
     given = {each.parameter: each for each in part.elements if each.source is Source.PARAMETER}
     words = [word_for_value(each, element, interfaces) or "a value" for _, each in sorted(given.items())]
     return f"list, of each element: {'; '.join(words)}" if words else "list"
@@ -346,7 +346,7 @@ def _converted(
 
 
 def _limits(path: Path, leaf: FieldType, root: FieldType, interfaces: Interfaces) -> str:
-    """What the definition allows: a longest string, the constants of the field."""
+    """Return the limits in the definition: the maximum length of a string, the constants of the field."""
     longest = f" of at most {leaf.bound} characters" if leaf.bound else ""
     if path.steps and isinstance(path.steps[-1], str) and path.steps[-1].startswith("."):
         owner, last = owner_of(path, root, interfaces)
@@ -357,7 +357,7 @@ def _limits(path: Path, leaf: FieldType, root: FieldType, interfaces: Interfaces
 
 
 def _kind(base: str, conversion: Conversion, kind: str, unit: str) -> str:
-    """A plain value, with its unit and decimals."""
+    """Describe a plain value, with its unit and decimals."""
     if base in TIMES:
         kind, unit = "number", "seconds"
     if not kind:
@@ -375,7 +375,7 @@ def _kind(base: str, conversion: Conversion, kind: str, unit: str) -> str:
 
 
 def with_unit(kind: str, unit: str, digits: int | None) -> str:
-    """A number: ``number in metres, 2 decimals``, ``whole number in percent``, ``number from 0 to 1``."""
+    """Describe a number: ``number in metres, 2 decimals``, ``whole number in percent``, ``number from 0 to 1``."""
     if digits == 0:
         kind = "whole number"
     told = f" from {unit}" if unit[:1].isdigit() else f" in {unit}" if unit else ""
@@ -383,7 +383,7 @@ def with_unit(kind: str, unit: str, digits: int | None) -> str:
 
 
 def _shown_unit(conversion: Conversion, unit: str) -> str:
-    """The unit for the agent: what the mapping says, or else that of the message, unless the mapping scales it."""
+    """Return the agent's unit: that of the mapping, or else that of the message, unless the mapping scales it."""
     if conversion.unit:
         per_second = unit == "radians per second" and conversion.unit == "degrees"
         return "degrees per second" if per_second else conversion.unit.replace("_", " ")

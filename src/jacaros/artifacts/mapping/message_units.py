@@ -1,4 +1,4 @@
-"""Units of the fields of messages, which no definition tells to programs."""
+"""Units of the fields of messages, which definitions do not contain in machine-readable form."""
 
 from collections.abc import Mapping
 
@@ -52,16 +52,16 @@ _UNITS: Mapping[str, Mapping[str, str]] = {
     "irobot_create_msgs/action/RotateAngle_Goal": {"angle": "rad", "max_rotation_speed": "rad/s"},
     "irobot_create_msgs/action/RotateAngle_Feedback": {"remaining_angle_travel": "rad"},
 }
-"""Units of fields, from the comments of the definitions and REP 103; a vector's parts have the unit of the vector."""
+"""Units of fields, from the comments of the definitions and REP 103; the parts of a vector have its unit."""
 
 
 def unit_of(type_name: str, field: str) -> str:
-    """The unit of a field; empty where there is none, or it is not known."""
+    """Return the unit of a field; empty if none exists, or it is unknown."""
     return _UNITS.get(type_name, {}).get(field, "")
 
 
 def unit_at(path: Path, root: FieldType, interfaces: Interfaces) -> str:
-    """The unit of what stands at a path that leads somewhere; a vector's parts have that of the vector."""
+    """Return the unit at an existing path; the parts of a vector have its unit."""
     here, unit = root, ""
     for step in path.steps:
         if isinstance(step, str) and step.startswith("."):
@@ -82,31 +82,31 @@ _KINDS = {
     "°C": "temperature",
     "0 to 1": "share",
 }
-"""Kinds of those units of messages that mappings convert."""
+"""Kinds of the message units that mappings convert."""
 
 
 def _kinds(unit: str) -> set[str]:
-    """The kinds that values in a unit of messages can have: of "rad or m" an angle and a length; of volts none."""
+    """Return the possible kinds of values in a message unit: angle and length for "rad or m", none for volts."""
     return {_KINDS[each] for each in unit.split(" or ") if each in _KINDS}
 
 
 def check_unit(conversion: Conversion, path: Path, root: FieldType, interfaces: Interfaces) -> None:
-    """Refuse a unit that the value of a message cannot have.
+    """Reject a unit that the value of a message cannot have.
 
     Raises:
-        WrongPath: the message has it in a unit of another kind.
+        WrongPath: the message uses a unit of another kind.
     """
     if not conversion.unit or conversion.knows_message_unit or conversion.kind in ANGLES:
         return
     there = unit_at(path, root, interfaces)
     if there == conversion.unit:
-        raise WrongPath(f"messages have {path.text} in {there} already", "leave 'unit' out")
+        raise WrongPath(f"messages already have `{path.text}` in {there}", "leave `unit` out")
     kinds, wanted = _kinds(there), UNITS[conversion.unit].kind
     if not there or wanted in kinds:
         return
     listed = ", ".join(name for name, each in UNITS.items() if each.kind in kinds)
-    units = f"units of {' and '.join(sorted(kinds))} are {listed}; or" if kinds else "leave 'unit' out, or"
+    units = f"units of {' and '.join(sorted(kinds))} are {listed}; or" if kinds else "leave `unit` out, or"
     raise WrongPath(
-        f"messages have {path.text} in {there}, and {conversion.unit} is a unit of {wanted}",
-        f"{units} say what messages have: message_unit: ...",
+        f"messages have `{path.text}` in {there}, but {conversion.unit} is a unit of {wanted}",
+        f"{units} write the unit of the message: message_unit: ...",
     )

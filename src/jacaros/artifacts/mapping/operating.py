@@ -8,14 +8,14 @@ from jacaros.artifacts.kit.acting import error_code, error_text
 from jacaros.artifacts.kit.services import MESSAGES
 from jacaros.artifacts.mapping.checking import check_answer, message_types
 from jacaros.artifacts.mapping.declared import FieldPart, OperationKind, OperationPart, Source, Success
-from jacaros.artifacts.mapping.decoding import Take, Unshowable, taker
-from jacaros.artifacts.mapping.encoding import Fill, WrongValue, filler, fitting
-from jacaros.artifacts.mapping.feeds import Feed, feedback_feed
+from jacaros.artifacts.mapping.decoding import Read, Unshowable, reader
+from jacaros.artifacts.mapping.encoding import Fill, WrongValue, builder, fitting
 from jacaros.artifacts.mapping.host import Host
 from jacaros.artifacts.mapping.operation_methods import arity
 from jacaros.artifacts.mapping.parameters import own_name, parameter_converter
 from jacaros.artifacts.mapping.paths import getter, read_path
 from jacaros.artifacts.mapping.publishing import Publishing
+from jacaros.artifacts.mapping.topic_multiplexer import Updater, feedback_updater
 from jacaros.artifacts.mapping.type_search import ask_type
 from jacaros.env.artifact import Out
 from jacaros.env.values import Atom, plain
@@ -35,23 +35,23 @@ from jacaros.yaml_nodes import Problem
 
 
 class Runner(Protocol):
-    """Carries out one operation."""
+    """Runs one operation."""
 
     async def run(self, inputs: Sequence[object], outs: Sequence[Out]) -> None:
-        """Do it, within an operation of the artifact."""
+        """Run it within an operation of the artifact."""
 
 
 class Switch(Protocol):
-    """Carries out an operation that pauses or resumes the server of a goal."""
+    """Runs an operation that pauses or resumes the server of a goal."""
 
     async def ready(self) -> None:
-        """Find out what is not known yet, within an operation of the artifact."""
+        """Look up missing types, within an operation of the artifact."""
 
     async def switch(self) -> None:
-        """Do it, outside of all operations.
+        """Run it, outside of all operations.
 
         Raises:
-            RosError, OperationFailed: it did not work.
+            RosError, OperationFailed: it failed.
         """
 
 
@@ -71,24 +71,24 @@ class Operations:
             if arity(host.part, part) == 0
         }
         for part, runner in zip(parts, self._runners, strict=True):
-            if isinstance(runner, _Pursuing) and part.suspend == "pause":
-                # That these operations are of the right kind was seen when the file was read.
+            if isinstance(runner, _ActionOperation) and part.suspend == "pause":
+                # The reader has checked that these operations are of the right kind.
                 runner.switches = (plain[part.pause.text], plain[part.resume.text])  # type: ignore[assignment]
 
     async def run(self, number: int, inputs: Sequence[object], outs: Sequence[Out]) -> None:
-        """Carry out the operation with this place in the file."""
+        """Run the operation with this index in the file."""
         await self._runners[number].run(inputs, outs)
 
 
-class _Answered:
-    """What services and actions share: a request that is filled, an answer that is taken apart."""
+class _RemoteOperation:
+    """Common code of services and actions: build a request, read the answer."""
 
     what = "service"
 
     def __init__(self, host: Host, part: OperationPart) -> None:
         self._host, self._part = host, part
         self._fill: Fill | None = None
-        self._takes: list[Take] = []
+        self._takes: list[Read] = []
         self._check = part.success
         if part.type_name is not None:
             self._open(part.type_name.text)
@@ -97,21 +97,21 @@ class _Answered:
         host, part = self._host, self._part
         types = message_types(part.kind, type_name)
         problems: list[Problem] = []
-        fill = filler(fitting(part, types[0], host.ros), types[0], host.ros, problems, host.adapted)
+        fill = builder(fitting(part, types[0], host.ros), types[0], host.ros, problems, host.adapted)
         check_answer(part, types[1], host.ros, problems)
         self._more(types, problems)
         if problems:
-            host.tell(problems)
-            host.fail(f"{part.name} does not fit the type {type_name}", "wrong_mapping", part.name)
+            host.report(problems)
+            host.fail(f"`{part.name}` does not match the type {type_name}", "wrong_mapping", part.name)
         answer = FieldType(types[1])
-        self._takes = [taker(field, answer, None, host.ros) for field in part.outputs]
+        self._takes = [reader(field, answer, None, host.ros) for field in part.outputs]
         if part.success is None and not part.any_success and "success" in host.ros.fields(types[1]):
             self._check = Success(read_path("success"), part.place)
         self._connect(type_name)
         self._fill = fill
 
     def _more(self, types: tuple[str, ...], problems: list[Problem]) -> None:
-        """Prepare what else is to fit."""
+        """Prepare further fields of a subclass."""
 
     def _connect(self, type_name: str) -> None:
         """Make the client."""
@@ -142,7 +142,7 @@ class _Answered:
             out.set(value)
 
 
-class _Calling(_Answered):
+class _ServiceOperation(_RemoteOperation):
     """One operation with ``service``."""
 
     _client: Client
@@ -176,36 +176,36 @@ class _Calling(_Answered):
 
 
 NOT_SHOWN = Atom("unknown")
-"""A value of a failed goal's result that agents cannot have, such as NaN."""
+"""Replaces a value of a failed goal's result that agents cannot have, such as NaN."""
 
 
-class _Pursuing(_Answered):
+class _ActionOperation(_RemoteOperation):
     """One operation with ``action``."""
 
     what = "action"
     _client: ActionClient
 
     def __init__(self, host: Host, part: OperationPart) -> None:
-        self._feeds: list[Feed] = [feedback_feed(host, each) for each in part.feedback]
+        self._updaters: list[Updater] = [feedback_updater(host, each) for each in part.feedback]
         self._under_way = 0
-        self._code: Take | None = None
-        self._aborted: list[Take] = []
+        self._code: Read | None = None
+        self._aborted: list[Read] = []
         self.switches: tuple[Switch, Switch] | tuple[()] = ()
         super().__init__(host, part)
 
     def _more(self, types: tuple[str, ...], problems: list[Problem]) -> None:
         part, answer, ros = self._part, FieldType(types[1]), self._host.ros
         if not problems:
-            self._code = None if part.code is None else taker(part.code, answer, None, ros)
-            self._aborted = [taker(field, answer, None, ros) for field in part.aborted]
-        for feed in self._feeds:
-            feed.prepare(types[2], problems)
+            self._code = None if part.code is None else reader(part.code, answer, None, ros)
+            self._aborted = [reader(field, answer, None, ros) for field in part.aborted]
+        for updater in self._updaters:
+            updater.prepare(types[2], problems)
 
     def _connect(self, type_name: str) -> None:
         self._client = self._host.action_client(self._part.target.text, type_name)
 
     async def run(self, inputs: Sequence[object], outs: Sequence[Out]) -> None:
-        """Pursue a goal to its end."""
+        """Run a goal to its end."""
         await self._ready()
         for each in self.switches:
             await each.ready()
@@ -215,8 +215,8 @@ class _Pursuing(_Answered):
             self._client,
             self._fields(inputs),
             timeout=part.timeout,
-            on_feedback=self._feed if self._feeds else None,
-            under_way=self._count if self._feeds else None,
+            on_feedback=self._updater if self._updaters else None,
+            under_way=self._count if self._updaters else None,
             suspend=part.suspend,
             pause=pause,
             resume=resume,
@@ -226,15 +226,15 @@ class _Pursuing(_Answered):
             text = error_text(result)
             code, *more = self._explain(result)
             told = f": {text}" if text else ""
-            host.fail(f"action {self._client.name} had no success{told}", "aborted", code, text, *more)
+            host.fail(f"action {self._client.name} did not succeed{told}", "aborted", code, text, *more)
         self._give(result, outs)
 
     def _explain(self, result: Any) -> tuple[object, ...]:
-        """The code of a result that tells of a failure, and the other values that the mapping wants with it."""
+        """Return the error code of a result, and the further values that the mapping declares."""
         code = error_code(result) if self._code is None else self._shown(self._code, result)[0]
         return (code, *(value for take in self._aborted for value in self._shown(take, result)))
 
-    def _shown(self, take: Take, result: Any) -> Sequence[object]:
+    def _shown(self, take: Read, result: Any) -> Sequence[object]:
         try:
             return take(result, result, 0)
         except Unshowable:
@@ -243,21 +243,21 @@ class _Pursuing(_Answered):
     def _count(self, begins: bool) -> None:
         self._under_way += 1 if begins else -1
         if not self._under_way:
-            # Later: what a failing step starts does not begin.
+            # Later, because an operation started by a failing step is discarded.
             asyncio.get_running_loop().call_soon(self._withdraw)
 
-    def _feed(self, message: Any) -> None:
-        for feed in self._feeds:
-            feed.take_message(message, None, self._client.name)
+    def _updater(self, message: Any) -> None:
+        for updater in self._updaters:
+            updater.take_message(message, None, self._client.name)
 
     def _withdraw(self) -> None:
         if not self._under_way:
-            for feed in self._feeds:
-                feed.withdraw()
+            for updater in self._updaters:
+                updater.withdraw()
 
 
-class _OfNode:
-    """What the operations on parameters of nodes share."""
+class _ParameterOperation:
+    """Common code of the operations on parameters of nodes."""
 
     def __init__(self, host: Host, part: OperationPart) -> None:
         self._host, self._part = host, part
@@ -282,7 +282,7 @@ class _OfNode:
         self._host.fail(str(error), "service_failed", node)
 
 
-class _Setting(_OfNode):
+class _SetParameter(_ParameterOperation):
     """One operation with ``set_parameter``."""
 
     async def run(self, inputs: Sequence[object], outs: Sequence[Out]) -> None:
@@ -293,20 +293,20 @@ class _Setting(_OfNode):
             self._fail(error)
 
     async def ready(self) -> None:
-        """All is known."""
+        """Do nothing: everything is known."""
 
     async def switch(self) -> None:
         """Set the parameter."""
         await self._set(self._value(()))
 
     async def _set(self, value: Any) -> None:
-        # Agents do not tell 1 from 1.0, nodes do.
+        # Agents do not distinguish 1 from 1.0, but nodes do.
         if isinstance(value, int) and not isinstance(value, bool):
             try:
                 if isinstance(await self._parameters.get(self._name, self._part.timeout), float):
                     value = float(value)
             except ParameterUnknown:
-                pass  # setting it tells more
+                pass  # setting it gives a better error
         await self._parameters.set(self._name, value, self._part.timeout)
 
     def _value(self, inputs: Sequence[object]) -> Any:
@@ -320,13 +320,15 @@ class _Setting(_OfNode):
         if (line := part.conversion.line) is not None:
             if isinstance(value, bool) or not isinstance(value, int | float):
                 self._host.fail(
-                    f"{self._name} wants a number, not {value!r}", "parameter_refused", Atom(self._name)
+                    f"parameter `{self._name}`: expected a number, found {value!r}",
+                    "parameter_refused",
+                    Atom(self._name),
                 )
             return line.back(value)
         return str(value) if isinstance(value, Atom) else value
 
 
-class _Getting(_OfNode):
+class _GetParameter(_ParameterOperation):
     """One operation with ``get_parameter``."""
 
     async def run(self, inputs: Sequence[object], outs: Sequence[Out]) -> None:
@@ -343,7 +345,7 @@ class _Getting(_OfNode):
                 self._host.fail(f"{error}: {error.help}", error.functor, error.path)
 
 
-class _Asking:
+class _RequestOperation:
     """One operation with ``refresh`` or ``read``."""
 
     def __init__(self, host: Host, part: OperationPart) -> None:
@@ -362,10 +364,10 @@ class _Asking:
 
 _RUNNERS: dict[OperationKind, Any] = {
     OperationKind.PUBLISH: Publishing,
-    OperationKind.SERVICE: _Calling,
-    OperationKind.ACTION: _Pursuing,
-    OperationKind.SET: _Setting,
-    OperationKind.GET: _Getting,
-    OperationKind.REFRESH: _Asking,
-    OperationKind.READ: _Asking,
+    OperationKind.SERVICE: _ServiceOperation,
+    OperationKind.ACTION: _ActionOperation,
+    OperationKind.SET: _SetParameter,
+    OperationKind.GET: _GetParameter,
+    OperationKind.REFRESH: _RequestOperation,
+    OperationKind.READ: _RequestOperation,
 }

@@ -1,4 +1,4 @@
-"""Operations of a mapping as methods: with names, arities and outputs like those that are written in Python."""
+"""Operations of a mapping as methods, with names, arities and outputs as if written in Python."""
 
 import inspect
 from collections.abc import Callable
@@ -10,11 +10,11 @@ from jacaros.env.resources.resource import WHEELS
 from jacaros.ros.guarded import VELOCITIES
 
 Words = Callable[[ArtifactPart, OperationPart], dict[str, str]]
-"""Tells what the parameters of an operation take, for manuals."""
+"""Describes the parameters of an operation, for manuals."""
 
 
 def methods(part: ArtifactPart, words: Words) -> dict[str, Callable[..., Any]]:
-    """The operations of an artifact, by names that no method of a class has."""
+    """Return the operations of an artifact, by names that cannot clash with methods of a class."""
     return {f"mapped {number}": _method(part, number, words) for number in range(len(part.operations))}
 
 
@@ -39,14 +39,14 @@ def _method(artifact: ArtifactPart, number: int, words: Words) -> Callable[..., 
 
 
 def is_pausable(part: OperationPart) -> bool:
-    """Whether it does something at a pause of its intention."""
+    """Return whether it reacts when its intention is suspended."""
     return part.kind is OperationKind.PUBLISH or (
         part.kind is OperationKind.ACTION and part.suspend != "go_on"
     )
 
 
 def motion_uses(artifact: ArtifactPart) -> tuple[str, ...]:
-    """What operations use that are motions and do not say so: repeated velocities."""
+    """Return the resources of operations that are motions without declaring resources: repeated velocities."""
     moves = any(
         part.kind is OperationKind.PUBLISH
         and part.rate is not None
@@ -58,19 +58,19 @@ def motion_uses(artifact: ArtifactPart) -> tuple[str, ...]:
 
 
 def is_switch(part: OperationPart) -> bool:
-    """Whether it is of those that pause and resume goals of others: it asks for something and is over."""
+    """Return whether it can pause and resume goals of others: it sends a request and ends."""
     if part.kind is OperationKind.PUBLISH:
         return part.rate is None
     return part.kind in (OperationKind.SERVICE, OperationKind.SET)
 
 
 def arity(artifact: ArtifactPart, part: OperationPart) -> int:
-    """How many arguments an operation takes, outputs included."""
+    """Return the number of arguments of an operation, including outputs."""
     return len(part.parameters) + len(output_names(artifact, part))
 
 
 def output_names(artifact: ArtifactPart, part: OperationPart) -> list[str]:
-    """Names for the output parameters."""
+    """Return names for the output parameters."""
     if part.kind is not OperationKind.READ:
         return values_of(part.outputs)
     wanted = part.properties[0].text if part.properties else ""
@@ -80,7 +80,7 @@ def output_names(artifact: ArtifactPart, part: OperationPart) -> list[str]:
 
 
 def values_of(fields: tuple[FieldPart, ...]) -> list[str]:
-    """A word for each value that fields give."""
+    """Return a word for each value of the fields."""
     return [
         field.name or "value" if field.shares is None else f"{field.name}{place + 1}"
         for field in fields
@@ -89,7 +89,7 @@ def values_of(fields: tuple[FieldPart, ...]) -> list[str]:
 
 
 def unlike(taken: tuple[str, ...], names: list[str]) -> list[str]:
-    """The same names, with numbers where one stands twice."""
+    """Return the same names, with numbers appended to duplicates."""
     seen, found = set(taken), []
     for name in names:
         plain = "".join(c if c.isalnum() or c == "_" else "_" for c in name)
@@ -102,16 +102,16 @@ def unlike(taken: tuple[str, ...], names: list[str]) -> list[str]:
 
 
 def description(part: OperationPart) -> str:
-    """What an operation does, for people."""
+    """Describe an operation."""
     of_type = f" ({part.type_name.text})" if part.type_name is not None else ""
     named = ", ".join(each.text for each in part.properties)
     usual = {
         OperationKind.PUBLISH: f"Publishes on {part.target.text}{of_type}.",
         OperationKind.SERVICE: f"Calls the service {part.target.text}{of_type}.",
-        OperationKind.ACTION: f"Pursues a goal of the action {part.target.text}{of_type}.",
+        OperationKind.ACTION: f"Runs a goal of the action {part.target.text}{of_type}.",
         OperationKind.SET: f"Sets the parameter {part.target.text} of {part.node or 'our own node'}.",
         OperationKind.GET: f"Gives the parameter {part.target.text} of {part.node or 'our own node'}.",
-        OperationKind.REFRESH: f"Gives {named} the newest values.",
+        OperationKind.REFRESH: f"Updates {named} to the newest values.",
         OperationKind.READ: f"Gives the newest values of {named}.",
     }
     return part.description or usual[part.kind]

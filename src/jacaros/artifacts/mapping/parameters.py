@@ -1,7 +1,7 @@
-"""Parameters of nodes as properties: those of others, and those of our own node, which a mapping declares.
+"""Parameters of nodes as properties: those of other nodes, and those of our own node, which a mapping declares.
 
-Launch files give our own, people change them, agents see them.  No definition says of which type others are, so what does
-not fit is seen when it comes.
+Launch files set our own, other nodes change them, agents perceive them. No definition gives the types of other nodes'
+parameters, so a mismatch is detected when a value arrives.
 """
 
 import dataclasses
@@ -27,14 +27,14 @@ from jacaros.ros.parameter_store import fault_of
 from jacaros.yaml_nodes import Problem
 
 PATIENCE = 2.0
-"""Seconds for telling a parameter: for the master of ROS 1 before the default counts, for a node before it is asked
-again."""
+"""Seconds to wait for a parameter: for the master of ROS 1 before the default applies, for a node before the next
+attempt."""
 
 
 def own_name(host: Host, name: str) -> str:
-    """The name that a parameter of our node has in the graph: below the artifact's namespace, ``r1.speed``.
+    """Return the name that a parameter of our node has in the graph: below the artifact's namespace, ``r1.speed``.
 
-    On ROS 1, where names have slashes for that, it is ``r1/speed``; ``patrol.speed`` is ``patrol/speed`` there.
+    On ROS 1 names have slashes instead of dots: ``r1/speed``; ``patrol.speed`` becomes ``patrol/speed``.
     """
     prefix = host.robot_prefix.strip("/").replace("/", ".")
     whole = f"{prefix}.{name}" if prefix else name
@@ -42,19 +42,19 @@ def own_name(host: Host, name: str) -> str:
 
 
 def kept_by_master(ros: Backend) -> bool:
-    """Whether nothing is declared because a master keeps everybody's parameters, as on ROS 1."""
+    """Return whether parameters are not declared because a master stores those of all nodes, as on ROS 1."""
     return DECLARED_PARAMETERS not in ros.capabilities and REGISTRATION in ros.capabilities
 
 
 class OwnParameter:
-    """A property from a parameter of our own node; it is there from the start.
+    """A property from a parameter of our own node; it exists from the start.
 
-    Where parameters are declared, others can set only what fits the declaration.  On ROS 1 the master takes anything:
-    there a value that does not fit is told, and the one before it counts.
+    Where parameters are declared, other nodes can only set values that match the declaration. On ROS 1 the master
+    accepts anything: a value that does not match is logged and ignored.
 
     Args:
         host: the artifact.
-        part: what the mapping says.
+        part: its declaration.
     """
 
     def __init__(self, host: Host, part: ParameterPart) -> None:
@@ -67,9 +67,9 @@ class OwnParameter:
         self._closed = False
 
     def declare(self) -> Problem | None:
-        """Declare it, and show its value; what is wrong with it instead.
+        """Declare it and show its value. Return a problem, if any.
 
-        On ROS 1 `ask` is to follow.
+        On ROS 1, call `ask` next.
         """
         ros = self._host.ros
         if kept_by_master(ros):
@@ -91,10 +91,10 @@ class OwnParameter:
         if given is None or fault_of(given, self._declaration) is None:
             return "give it another name: parameter: NAME"
         fitting = quote(f"{self._name}:={json.dumps(self._declaration.default)}")
-        return f"say another value where the agents are started, such as --param {fitting}"
+        return f"set another value where the agents are started, such as --param {fitting}"
 
     async def ask(self) -> None:
-        """Show what the master of ROS 1 has for it, or else the default, and follow."""
+        """Show the value stored by the master of ROS 1, or else the default, and follow changes."""
         host = self._host
         parameters = host.ros.parameters()
         host.at_dispose(parameters.on_change(self._changed))
@@ -104,7 +104,7 @@ class OwnParameter:
             value = self._declaration.default
         except RosError as error:
             host.log(
-                f"{self._name} is {self._declaration.default!r} until the master tells another value: {error}"
+                f"`{self._name}` is {self._declaration.default!r} until the master reports another value: {error}"
             )
             value = self._declaration.default
         self._judge(value)
@@ -122,7 +122,7 @@ class OwnParameter:
             self._judge(values[self._name])
 
     def _judge(self, value: ParameterValue) -> None:
-        """Take a value that nobody has checked, unless it does not fit."""
+        """Use an unchecked value if it matches the declaration."""
         value = _alike(value, self._declaration)
         fault = fault_of(value, self._declaration)
         if fault is None:
@@ -132,20 +132,20 @@ class OwnParameter:
 
     def _ignore(self, value: ParameterValue, why: str) -> None:
         place, node = self._part.place, self._host.ros.node_name
-        told = f"the parameter {node}/{self._name} was set to {value!r}, which is ignored: {why}"
-        self._host.tell([place.problem(told, "set another value")])
+        told = f"parameter `{node}/{self._name}` was set to {value!r}; value ignored: {why}"
+        self._host.report([place.problem(told, "set another value")])
 
     def _take(self, value: ParameterValue) -> None:
         if not self._closed:
             self._reading.take((self._convert(value),))
 
     def close(self) -> None:
-        """Show nothing any more."""
+        """Stop updating."""
         self._closed = True
 
 
 def _alike(value: ParameterValue, declaration: Declaration) -> ParameterValue:
-    """A whole number for a number: roslaunch and rosparam read ``1`` so."""
+    """Accept an integer for a floating-point number: roslaunch and rosparam read ``1`` as one."""
     if isinstance(declaration.default, float) and isinstance(value, int) and not isinstance(value, bool):
         return float(value)
     wanted = declaration.default
@@ -155,13 +155,13 @@ def _alike(value: ParameterValue, declaration: Declaration) -> ParameterValue:
 
 
 def parameter_converter(conversion: Conversion, name: str) -> Convert:
-    """A function that converts the value of a parameter, of a list each element.
+    """Return a function that converts the value of a parameter; of a list, each element.
 
     Args:
         conversion: names, units, rounding.
-        name: of the parameter, for people.
+        name: name of the parameter, for messages.
 
-    The function raises `Unshowable` for what is no number where one is needed.
+    The function raises `Unshowable` if a number is expected and the value is not one.
     """
     convert: Convert = _as_atom if conversion.kind == "atom" else converted(conversion)
     unrounded = converted(dataclasses.replace(conversion, digits=None))
@@ -173,9 +173,9 @@ def parameter_converter(conversion: Conversion, name: str) -> Convert:
     def element(value: ParameterValue) -> object:
         is_number = isinstance(value, int | float) and not isinstance(value, bool)
         if wants_number and not is_number and not (isinstance(value, str | bool) and value in named):
-            told = f"parameter {name} is {text(value, quoted=True)}, no number"
+            told = f"parameter `{name}`: expected a number, found {text(value, quoted=True)}"
             raise Unshowable(name, told, "leave out its unit, scale, offset and round", "wrong_value")
-        # Infinity is no whole number; who takes the value refuses it.
+        # Infinity has no integer; the receiver of the value refuses it.
         endless = isinstance(value, float) and not math.isfinite(value)
         return unrounded(value) if endless else convert(value)
 
@@ -191,15 +191,15 @@ RETRY = 1.0
 
 
 PATIENT = 2
-"""So many attempts at a node that is not there are nothing to tell of: it may be starting."""
+"""Number of attempts at a missing node that are not logged: it may be starting."""
 
 
 class NodeParameter:
-    """A property from a parameter; it is there while the node tells it.
+    """A property from a parameter; it exists while the node reports it.
 
     Args:
         host: the artifact.
-        part: what the mapping says.
+        part: its declaration.
     """
 
     def __init__(self, host: Host, part: ParameterPart) -> None:
@@ -220,7 +220,7 @@ class NodeParameter:
         host.start(host.run_process, self._follow)
 
     async def _follow(self) -> None:
-        """Ask until the node has answered, and where nobody tells of changes for ever."""
+        """Request the value until the node answers, and forever if changes are not reported."""
         host, part = self._host, self._part
         while not self._closed:
             try:
@@ -247,8 +247,8 @@ class NodeParameter:
         except Unshowable as error:
             self._withdraw()
             part = self._part
-            told = f"{part.name} is not shown: {error}"
-            self._host.tell_once((part.name, error.functor), part.place, told, error.help)
+            told = f"`{part.name}` is not shown: {error}"
+            self._host.report_once((part.name, error.functor), part.place, told, error.help)
 
     def _withdraw(self) -> None:
         if self._reading.newest is not None:
@@ -258,19 +258,19 @@ class NodeParameter:
         self._withdraw()
         part = self._part
         if isinstance(error, ParameterUnknown):
-            self._host.tell_once(
-                part.name, part.place, f"{part.name} is not known: {error}", "write another name"
+            self._host.report_once(
+                part.name, part.place, f"`{part.name}` is unknown: {error}", "write another name"
             )
         if isinstance(error, ServiceUnavailable):
             self._vain += 1
         if self._vain == PATIENT:
-            self._host.tell_once(
+            self._host.report_once(
                 (part.name, "node"),
                 part.place,
-                f"{part.name} is not known so far: nobody answers for node {self._node}; still trying",
-                "is that node running, and is this its name?",
+                f"`{part.name}` is not known yet: node {self._node} does not answer; still trying",
+                "is the node running, and is this its name?",
             )
 
     def close(self) -> None:
-        """Ask no more."""
+        """Stop the requests."""
         self._closed = True

@@ -12,20 +12,20 @@ from jacaros.ros.fields import FieldType
 ALL = "*"
 """Stands for all elements of an array."""
 HERE = "i"
-"""Stands for the place of the current element, where there is one property for each."""
+"""Stands for the index of the current element, where there is one property for each."""
 
 _PART = re.compile(r"(?P<name>[A-Za-z][A-Za-z0-9_]*)(?P<indices>(\[(-?\d+|\*|i)\])*)")
 _INDEX = re.compile(r"\[(-?\d+|\*|i)\]")
 
 Step = str | int
-"""A field's name; or the number of an element, ``"*"`` or ``"[i]"``."""
+"""The name of a field, or the index of an element, ``"*"`` or ``"[i]"``."""
 
 Fields = Callable[[str], Mapping[str, FieldType]]
-"""Gives the fields of a message type in full form."""
+"""Returns the fields of a message type, given in full form."""
 
 
 class WrongPath(ValueError):
-    """A path that cannot be, with what to write."""
+    """Raised for an invalid path, with what to write."""
 
     def __init__(self, message: str, help: str = "") -> None:
         super().__init__(message)
@@ -34,12 +34,12 @@ class WrongPath(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class Path:
-    """A path as it was written.
+    """A path.
 
     Attributes:
         text: as written.
-        steps: names, numbers, `ALL` and `HERE`; names are prefixed by a dot so that ``"*"`` is no name.
-        of_message: it begins at the message although its neighbours begin at an element.
+        steps: names, numbers, `ALL` and `HERE`; names have a dot in front so that ``"*"`` is not a name.
+        of_message: whether it begins at the message although its neighbours begin at an element.
     """
 
     text: str
@@ -48,7 +48,7 @@ class Path:
 
     @property
     def lists(self) -> int:
-        """How many lists are in each other because of `ALL`."""
+        """Nesting depth of lists caused by `ALL`."""
         return self.steps.count(ALL)
 
 
@@ -59,20 +59,21 @@ def read_path(text: str) -> Path:
     """Read a path.
 
     Raises:
-        WrongPath: it is none.
+        WrongPath: it is invalid.
     """
     of_message = text.startswith("/")
     rest = text.removeprefix("/")
     if rest in (".", ""):
         if not text:
-            raise WrongPath("a path is empty", "write the path of a field, or . for the whole message")
+            raise WrongPath("empty path", "write the path of a field, or . for the whole message")
         return Path(text, (), of_message)
     steps: list[Step] = []
     for part in rest.split("."):
         found = _PART.fullmatch(part)
         if found is None:
             raise WrongPath(
-                f"'{text}' is no path: '{part}' is no field", "write it like pose.position.x or ranges[0]"
+                f"`{text}` is not a path: `{part}` is not a field",
+                "write it like pose.position.x or ranges[0]",
             )
         steps.append(f".{found['name']}")
         for index in _INDEX.findall(found["indices"]):
@@ -81,11 +82,11 @@ def read_path(text: str) -> Path:
 
 
 def follow(path: Path, root: FieldType, fields: Fields) -> FieldType:
-    """The type that a path leads to.
+    """Return the type that a path leads to.
 
     Raises:
-        WrongPath: there is no such field.
-        UnknownInterface: a type on the way is not known.
+        WrongPath: a field does not exist.
+        UnknownInterface: a type on the way is unknown.
     """
     here = root
     shown = ""
@@ -96,12 +97,12 @@ def follow(path: Path, root: FieldType, fields: Fields) -> FieldType:
             continue
         if not here.array:
             raise WrongPath(
-                f"'{path.text}': {shown or 'the message'} is {here}, and no array", f"write {shown}"
+                f"`{path.text}`: {shown or 'the message'} is {here}, not an array", f"write {shown}"
             )
         if isinstance(step, int) and here.length and not -here.length <= step < here.length:
             at_most = "" if here.fixed else "at most "
             raise WrongPath(
-                f"'{path.text}': {shown} has {at_most}{here.length} elements",
+                f"`{path.text}`: {shown} has {at_most}{here.length} elements",
                 f"elements are {shown}[0] to {shown}[{here.length - 1}]",
             )
         here = here.element
@@ -113,26 +114,26 @@ def _field(path: Path, name: str, here: FieldType, shown: str, fields: Fields) -
     where = shown or "the message"
     if here.array:
         raise WrongPath(
-            f"'{path.text}': {where} is an array, {here}",
+            f"`{path.text}`: {where} is an array, {here}",
             f"write {shown}[0].{name}, or {shown}[*].{name} for all",
         )
     if not here.is_message:
-        raise WrongPath(f"'{path.text}': {where} is {here} and has no fields", f"write {shown}")
+        raise WrongPath(f"`{path.text}`: {where} is {here} and has no fields", f"write {shown}")
     known = fields(here.base)
     if name not in known:
         near = difflib.get_close_matches(name, known, 1)
         listed = ", ".join(f"{field} ({kind})" for field, kind in known.items()) or "none"
-        help = f"did you mean '{near[0]}'? Its fields: {listed}" if near else f"its fields: {listed}"
-        raise WrongPath(f"'{path.text}': {here.base} has no field '{name}'", help)
+        help = f"did you mean `{near[0]}`? Its fields: {listed}" if near else f"its fields: {listed}"
+        raise WrongPath(f"`{path.text}`: {here.base} has no field `{name}`", help)
     return known[name]
 
 
 Getter = Callable[[Any, int], Any]
-"""Takes a message and the place of the current element; gives what stands at a path."""
+"""Takes a message and the index of the current element; returns the value at a path."""
 
 
 def getter(path: Path) -> Getter:
-    """A function that goes a path, written out as one expression: sensors send a thousand messages a second."""
+    """Return a function that follows a path, compiled to one expression: sensors send a thousand messages a second."""
     made: Getter = eval(f"lambda m, i: {_expression(path.steps, 'm', 0)}", {})
     return made
 

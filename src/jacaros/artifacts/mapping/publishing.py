@@ -1,4 +1,4 @@
-"""Operations that publish, once or for a while; a robot that was sent a velocity is always sent zero in the end."""
+"""Operations that publish, once or repeatedly. A robot that was sent a velocity is always sent zero at the end."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -7,7 +7,7 @@ from typing import Any
 from jacaros.artifacts.kit.acting import missing_number
 from jacaros.artifacts.kit.connection import Matching
 from jacaros.artifacts.mapping.declared import OperationPart, Source, ValuePart
-from jacaros.artifacts.mapping.encoding import Fill, WrongValue, filler, fitting
+from jacaros.artifacts.mapping.encoding import Fill, WrongValue, builder, fitting
 from jacaros.artifacts.mapping.host import Host
 from jacaros.artifacts.mapping.type_search import ask_type
 from jacaros.artifacts.robots.motion_claim import GUARD_TRIPPED, Claim, Motions, motions_of
@@ -27,7 +27,7 @@ class Publishing:
 
     Args:
         host: the artifact.
-        part: what the mapping says.
+        part: its declaration.
     """
 
     def __init__(self, host: Host, part: OperationPart) -> None:
@@ -46,12 +46,12 @@ class Publishing:
         host, part = self._host, self._part
         problems: list[Problem] = []
         values = fitting(part, type_name, host.ros)
-        self._fill = filler(values, type_name, host.ros, problems, host.adapted)
+        self._fill = builder(values, type_name, host.ros, problems, host.adapted)
         if (end := self._end_values(type_name, values)) is not None:
-            self._fill_end = filler(end, type_name, host.ros, problems, host.adapted)
+            self._fill_end = builder(end, type_name, host.ros, problems, host.adapted)
         if problems:
-            host.tell(problems)
-            host.fail(f"{part.name} does not fit the type {type_name}", "wrong_mapping", part.name)
+            host.report(problems)
+            host.fail(f"`{part.name}` does not match the type {type_name}", "wrong_mapping", part.name)
         self._publisher = host.publisher(part.target.text, type_name, part.qos or DEFAULT_QOS)
         self._matching = host.matching_of(
             self._publisher, part.match_timeout, part.unmatched, self._warn_unmatched
@@ -64,7 +64,7 @@ class Publishing:
             host.at_dispose(self._halt)
 
     def _end_values(self, type_name: str, values: tuple[ValuePart, ...]) -> tuple[ValuePart, ...] | None:
-        """What the last message says: unless it is written, velocities end with zero."""
+        """Return the values of the last message: velocities end with zero unless the mapping declares it."""
         if self._part.at_end is not None:
             return self._part.at_end
         if type_name not in VELOCITIES:
@@ -72,7 +72,7 @@ class Publishing:
         return tuple(each for each in values if ".header" in each.target.steps)
 
     async def run(self, inputs: Sequence[object], outs: Sequence[Out]) -> None:
-        """Publish, once or for a while."""
+        """Publish, once or repeatedly."""
         await self.ready()
         if self._part.rate is not None:
             await self._repeat(inputs, self._seconds(inputs), 1.0 / self._part.rate)
@@ -82,18 +82,18 @@ class Publishing:
             await self._host.sleep(pause)
             await self._host.pause_point()
             if self._motions.stops != stops:
-                self._host.fail(f"{self._part.name} was aborted", "aborted", 0.0)
+                self._host.fail(f"`{self._part.name}` was aborted", "aborted", 0.0)
         self._send_once(inputs)
 
     def _pauses(self, inputs: Sequence[object]) -> Iterator[float]:
-        """The pauses until the messages arrive; what stops a robot does not wait."""
+        """Yield pauses until messages arrive; a message that stops a robot does not wait."""
         assert self._matching is not None
         if self._matching.exists() or (self._drives and not self._filled(inputs)[1]):
             return iter(())
         return self._matching.pauses(always=self._drives)
 
     async def ready(self) -> None:
-        """Know the type."""
+        """Look up the type."""
         if self._publisher is None:
             self._open(await ask_type(self._host, "topic", self._part.target))
 
@@ -112,12 +112,12 @@ class Publishing:
         value = inputs[duration.parameter] if duration.source is Source.PARAMETER else duration.value
         if isinstance(value, bool) or not isinstance(value, int | float) or not 0 <= value < math.inf:
             self._host.fail(
-                f"the duration is to be a number of seconds, not {value!r}", "wrong_value", "duration"
+                f"expected a number of seconds as duration, found {value!r}", "wrong_value", "duration"
             )
         return float(value)
 
     async def _repeat(self, inputs: Sequence[object], seconds: float, period: float) -> None:
-        """Publish until the time is over; pauses do not count, and one motion of a robot waits for another."""
+        """Publish until the time is over. Pauses do not count, and the motions of one robot take turns."""
         host, motions, execution = self._host, self._motions, self._host.current
         holding = execution.hold((self._use(execution),))
         claims_itself = not holding.entered
@@ -127,7 +127,7 @@ class Publishing:
             claim.wake()
 
         def halt() -> None:
-            if holding.holds:  # else another motion drives the robot, if any
+            if holding.holds:  # otherwise another motion may be driving the robot
                 self._end(inputs)
 
         claim = Claim(halt)
@@ -149,10 +149,10 @@ class Publishing:
                     await host.step(claim.wait(host.clock, min(period, left)))
                     left -= host.clock.elapsed - began
                     if claim.gap is not None and self._drives:
-                        text = f"{self._part.name} was interrupted ({claim.gap}), and goes by time alone"
+                        text = f"the open-loop motion `{self._part.name}` was interrupted ({claim.gap})"
                         host.fail(text, "interrupted", round(seconds - left, 3))
                 if claim.aborted:
-                    host.fail(f"{self._part.name} was aborted", "aborted", round(seconds - left, 3))
+                    host.fail(f"`{self._part.name}` was aborted", "aborted", round(seconds - left, 3))
         finally:
             ignore()
             unwatch()
@@ -162,13 +162,13 @@ class Publishing:
                 holding.leave()
 
     def _use(self, execution: OperationExecution) -> Use:
-        """The wheels, or what two calls of the same operation exclude each other by."""
+        """Return the wheels, or a resource that makes two calls of the same operation exclude each other."""
         if self._drives:
             return Use(WHEELS)
         return Use(f"{execution.request.artifact.path}.{self._part.name}")
 
     def _may_go(self, execution: OperationExecution, holding: Holding, claim: Claim) -> bool:
-        """Whether to publish now; if not, others may have the robot."""
+        """Return whether to publish now; if not, other motions may use the robot."""
         if execution.suspended:
             self._motions.claims.pop(claim, None)
         else:
@@ -178,21 +178,21 @@ class Publishing:
         return not execution.paused
 
     def _warn_unmatched(self, message: str, help: str) -> None:
-        """Warn once of a topic without subscribers: its name or type may be wrong."""
+        """Log once that a topic has no subscribers: its name or type may be wrong."""
         assert self._publisher is not None
-        self._host.tell_once((self._publisher.topic, "unmatched"), self._part.target.place, message, help)
+        self._host.report_once((self._publisher.topic, "unmatched"), self._part.target.place, message, help)
 
     def _filled(self, inputs: Sequence[object]) -> tuple[Any, bool]:
-        """The fields of the message, and whether it sets a robot in motion."""
+        """Return the fields of the message, and whether it moves the robot."""
         assert self._fill is not None
         try:
             fields = self._fill(inputs, self._host.clock.now())
             missing = missing_number(fields)
             if missing is not None:
-                raise WrongValue(f"{missing} is not a number; nothing was sent", missing)
+                raise WrongValue(f"field `{missing}` is not a number; nothing was sent", missing)
             moves = self._fill_end is not None and _is_motion(fields)
             if moves and not _is_finite(fields):
-                raise WrongValue("a velocity is infinite; nothing was sent", "velocity")
+                raise WrongValue("the velocity is infinite; nothing was sent", "velocity")
         except WrongValue as error:
             self._host.fail(str(error), "wrong_value", error.field)
         return fields, moves
@@ -212,7 +212,7 @@ class Publishing:
             self._motions.stops += 1
 
     def _end(self, inputs: Sequence[object]) -> None:
-        """Publish the last message, if there is to be one."""
+        """Publish the last message, if any."""
         if self._fill_end is None or self._publisher is None:
             return
         self._moves = False
@@ -224,7 +224,8 @@ class Publishing:
             self._end(self._arguments)
 
     def _stand(self) -> None:
-        """Stop a robot that was ever sent a velocity as the process ends; in a thread, perhaps, so it only publishes."""
+        """Stop a robot that was ever sent a velocity when the process ends. This may run in a thread, so it only
+        publishes."""
         if self._moved:
             self._end(self._arguments)
 

@@ -1,4 +1,4 @@
-"""Reads ``derived``: events composed of those of other properties and signals of the file."""
+"""Read ``derived``: events composed of those of other properties and signals of the file."""
 
 from collections.abc import Iterator
 
@@ -22,15 +22,15 @@ from jacaros.yaml_nodes import Node, Problem
 
 _COMMON = ("value", "lateness", "history", "description")
 _EVENTS = frozenset({"count", "absent", "missing", "sequence", "all"})
-"""Operators that look at events alone, so that each element of an array may be one."""
+"""Operators that use only the events, not their values, so each element of an array may be one."""
 _EXAMPLE = "write one, such as {count: bump, within: 5, at_least: 3}"
 
 
 def read_derived(name: Node, node: Node) -> DerivedPart:
-    """One derived property or signal."""
+    """Read one derived property or signal."""
     place = place_of(name)
     if not isinstance(node.value, dict):
-        node.wrong(f"`{name.value}` names no operator", _EXAMPLE)
+        node.wrong(f"`{name.value}` has no operator", _EXAMPLE)
         return DerivedPart(belief_name(name), place, None, ())
     entries = node.mapping()
     operator = _operator(name, node, entries)
@@ -46,7 +46,7 @@ def read_derived(name: Node, node: Node) -> DerivedPart:
         sources += (Written(after.text(), place_of(after)),)
         options.pop("after")
     if "value" in entries and operator not in VALUED:
-        entries["value"].wrong(f"`{operator}` does not look at values", "leave `value` out")
+        entries["value"].wrong(f"`{operator}` does not use values", "leave `value` out")
     spec = Spec(
         operator,
         tuple(each.text for each in sources),
@@ -60,7 +60,7 @@ def read_derived(name: Node, node: Node) -> DerivedPart:
 
 
 def _history(node: Node, spec: Spec) -> float | None:
-    """The seconds for which past values are kept; events that are no property have none."""
+    """Read the seconds for which past values are kept; events that are not properties have none."""
     if spec.gives == OCCURRENCE:
         node.wrong(f"`{spec.operator}` is an event and has no history", "leave `history` out")
         return None
@@ -74,21 +74,21 @@ def _lateness(entries: dict[str, Node], operator: str) -> float:
 
 
 def _operator(name: Node, node: Node, entries: dict[str, Node]) -> str | None:
-    """The operator that an entry names; None after a mistake, which is reported."""
+    """Return the operator of an entry; None after reporting a mistake."""
     named = [key for key in entries if key in OPERATORS]
     if len(named) == 1:
         return named[0]
     if len(named) > 1:
         entries[named[1]].wrong(
-            f"`{named[1]}` stands beside `{named[0]}`", "derive one name for each operator"
+            f"`{named[0]}` and `{named[1]}` are alternatives", "derive one name for each operator"
         )
     elif entries:
         first = next(iter(entries))
         fault = unknown(first)
         help_ = fault.help if fault.help.startswith("did") else f"{_EXAMPLE}; {fault.help}"
-        _at_key(node, first).wrong(f"`{name.value}` names no operator", help_)
+        _at_key(node, first).wrong(f"`{name.value}` has no operator", help_)
     else:
-        name.wrong(f"`{name.value}` names no operator", _EXAMPLE)
+        name.wrong(f"`{name.value}` has no operator", _EXAMPLE)
     return None
 
 
@@ -101,7 +101,7 @@ def _sources(node: Node, several: bool) -> tuple[Written, ...]:
 
 
 def _option(key: str, node: Node) -> object:
-    """The value of an option, as the schema checks it."""
+    """Read the value of an option in the form that the schema checks."""
     if key == "equals":
         return plain_constant(node)
     if isinstance(node.value, list):
@@ -117,12 +117,12 @@ def _report(fault: Fault, entries: dict[str, Node], node: Node) -> None:
 
 
 def _at_key(node: Node, key: str) -> Node:
-    """A key of a mapping, as a place."""
+    """Return the position of a key of a mapping."""
     return next((name for name, _ in node.entries() if str(name.value) == key), node)
 
 
 def derived_problems(part: ArtifactPart) -> Iterator[Problem]:
-    """Streams that the artifact does not have, or that an operator cannot use."""
+    """Yield streams that the artifact does not have, or that an operator cannot use."""
     topics: dict[str, TopicPart] = {each.name: each for each in part.topics}
     known = [*topics, *(each.name for each in part.frames)]
     for derived in part.derived:
@@ -135,7 +135,7 @@ def derived_problems(part: ArtifactPart) -> Iterator[Problem]:
 
 
 def _unknown_stream(source: Written, known: list[str]) -> Problem:
-    import difflib  # here: only for mistakes
+    import difflib  # imported here: only needed after a mistake
 
     near = difflib.get_close_matches(source.text, known, 1)
     listed = ", ".join(known) or "none"
@@ -150,11 +150,11 @@ def _unknown_stream(source: Written, known: list[str]) -> Problem:
 def _unfit(spec: Spec, topic: TopicPart, place: Place) -> Iterator[Problem]:
     if topic.each is not None and spec.operator not in _EVENTS:
         yield place.problem(
-            f"`{topic.name}` is one property for each element, and `{spec.operator}` needs one state",
+            f"`{topic.name}` is one property for each element, but `{spec.operator}` needs a single one",
             f"use one of {', '.join(sorted(_EVENTS))}, or a property without `each`",
         )
     needed = spec.place + (2 if spec.operator == "inside" else 1)
     if spec.operator in VALUED and topic.fields is not None:
         count = sum(field.count for field in topic.fields)
         if count < needed:
-            yield place.problem(f"`{topic.name}` has {count} values, not {needed}", "give a smaller `value`")
+            yield place.problem(f"`{topic.name}` has {count} values, not {needed}", "write a smaller `value`")

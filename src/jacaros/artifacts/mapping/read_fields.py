@@ -1,4 +1,4 @@
-"""Reads ``fields``: what of a message an agent sees, and how it is converted."""
+"""Read ``fields``: the parts of a message that an agent perceives, and their conversion."""
 
 from typing import Any
 
@@ -12,20 +12,20 @@ LISTS = ("count", "min", "max", "mean")
 KINDS = (*ANGLES, "name", "atom", "object", *LISTS)
 CONVERSION = ("as", "prefix", "names", "unit", "message_unit", "scale", "offset")
 DOWN = "down"
-"""As in ``round: down``: the whole number below, so that a battery at 99.7 % is not told to be full."""
+"""Value of ``round: down``, the next lower integer, so that a battery at 99.7 % does not count as full."""
 FIELD = ("path", *CONVERSION, "sample", "round", "otherwise", "dead_band", "name")
 
 
 def place_of(node: Node) -> Place:
-    """Where a value stands."""
+    """Return the position of a value."""
     return Place(node.line, node.column)
 
 
 def path_of(node: Node, help: str = "") -> Path:
-    """A path; the whole message after a mistake."""
+    """Read a path; the whole message after a mistake."""
     if not isinstance(node.value, str):
         node.wrong(
-            f"{node.what} must be a path, not {shown(node.value)}",
+            f"{node.what} must be a path, found {shown(node.value)}",
             help or "write the path of a field, as in pose.x",
         )
         return WHOLE
@@ -37,7 +37,7 @@ def path_of(node: Node, help: str = "") -> Path:
 
 
 def shown(value: Any) -> str:
-    """A value of a file in a message."""
+    """Format a value of a file for a message."""
     if isinstance(value, dict):
         return "a mapping"
     if isinstance(value, list):
@@ -46,22 +46,22 @@ def shown(value: Any) -> str:
 
 
 def read_fields(node: Node) -> tuple[FieldPart, ...]:
-    """A list of fields; a single one may stand without brackets."""
+    """Read a list of fields; a single one needs no brackets."""
     if isinstance(node.value, list):
         return tuple(read_field(item) for item in node.sequence())
     return (read_field(node),)
 
 
 def read_field(node: Node) -> FieldPart:
-    """One field."""
+    """Read one field."""
     place = place_of(node)
     if not isinstance(node.value, dict):
         path = path_of(node, "write a path, or a mapping such as {path: pose.orientation, as: yaw}")
         return FieldPart(path, place, name=_name(path))
     if node.value and not any(key in FIELD for key in node.value):
         node.wrong(
-            f"{node.what} has no 'path', and '{next(iter(node.value))}' is no key",
-            "fields are a list of paths, or of mappings such as {path: pose.position.x, name: x}",
+            f"{node.what} has no `path`, and `{next(iter(node.value))}` is not a key",
+            "write a list of paths, or of mappings such as {path: pose.position.x, name: x}",
         )
         return FieldPart(WHOLE, place)
     entries = node.mapping(*FIELD, required=("path",))
@@ -79,7 +79,7 @@ def read_field(node: Node) -> FieldPart:
 
 
 def _name(path: Path, entries: dict[str, Node] | None = None) -> str:
-    """A word for a value, for the manual."""
+    """Return a word for a value, for the manual."""
     kind = entries["as"].value if entries is not None and "as" in entries else ""
     if kind in (*ANGLES, "count", "object"):
         return str(kind)
@@ -88,11 +88,11 @@ def _name(path: Path, entries: dict[str, Node] | None = None) -> str:
 
 
 def read_conversion(entries: dict[str, Node]) -> Conversion:
-    """The keys that are the same for fields of properties and for values of operations."""
+    """Read the keys that fields of properties and values of operations share."""
     kind = entries["as"].choice(*KINDS) if "as" in entries else ""
     digits, unit = entries.get("round"), entries.get("unit")
     if "prefix" in entries and kind != "name":
-        entries["prefix"].wrong("'prefix' goes with 'as: name'", "add 'as: name'")
+        entries["prefix"].wrong("`prefix` needs `as: name`", "add `as: name`")
     return Conversion(
         kind,
         entries["prefix"].text() if "prefix" in entries else "",
@@ -113,7 +113,9 @@ def _names(node: Node) -> tuple[tuple[object, str], ...]:
     found = []
     for key, value in node.entries():
         if not isinstance(value.value, str):
-            value.wrong(f"the name of {key.value!r} must be a word, not {shown(value.value)}", "write a word")
+            value.wrong(
+                f"the name of {key.value!r} must be a word, found {shown(value.value)}", "write a word"
+            )
             continue
         found.append((key.value, str(value.value)))
     return tuple(found)
@@ -137,7 +139,7 @@ def _line(entries: dict[str, Node], kind: str) -> Line | None:
 def _factor(node: Node) -> float:
     factor = node.number(default=1.0)
     if factor == 0.0:
-        node.wrong("'scale' is 0, so that nothing is left of the value", "write another figure")
+        node.wrong("`scale` is 0, which removes the value", "write another number")
         return 1.0
     return factor
 
@@ -146,7 +148,7 @@ def _units(entries: dict[str, Node], kind: str) -> Line | None:
     there, here = entries.get("unit"), entries.get("message_unit")
     if there is None:
         if here is not None:
-            here.wrong("'message_unit' goes with 'unit'", "say which unit the agent is to get: unit: metres")
+            here.wrong("`message_unit` needs `unit`", "write the agent's unit: unit: metres")
         return None
     wanted = _unit(there)
     if wanted is None:
@@ -156,10 +158,10 @@ def _units(entries: dict[str, Node], kind: str) -> Line | None:
         return None
     asked, of_message = UNITS[wanted].kind, UNITS[given].kind
     if asked != of_message:
-        (here or there).wrong(f"{given} is a unit of {of_message}, {wanted} one of {asked}", _of_kind(asked))
+        (here or there).wrong(f"{given} is a unit of {of_message}, but {wanted} of {asked}", _of_kind(asked))
         return None
     if kind in ANGLES and asked != "angle":
-        there.wrong(f"'as: {kind}' gives an angle, and {wanted} is a unit of {asked}", _of_kind("angle"))
+        there.wrong(f"`as: {kind}` makes an angle, but {wanted} is a unit of {asked}", _of_kind("angle"))
         return None
     return conversion(given, wanted)
 
@@ -171,13 +173,13 @@ def _of_kind(kind: str) -> str:
 def _unit(node: Node) -> str | None:
     if isinstance(node.value, str) and node.value in UNITS:
         return str(node.value)
-    import difflib  # here: only for mistakes
+    import difflib  # imported here: only needed after a mistake
 
     near = difflib.get_close_matches(str(node.value), UNITS, 1)
     listed = ", ".join(UNITS)
     node.wrong(
-        f"there is no unit {shown(node.value)}",
-        f"did you mean '{near[0]}'? Units: {listed}" if near else f"units: {listed}",
+        f"unknown unit {shown(node.value)}",
+        f"did you mean `{near[0]}`? Units: {listed}" if near else f"units: {listed}",
     )
     return None
 
@@ -186,7 +188,7 @@ def _shares(node: Node) -> tuple[float, ...]:
     if isinstance(node.value, list):
         found = tuple(item.number(0.0, 1.0) for item in node.sequence())
         if not found:
-            node.wrong("'sample' is empty", "write how many elements, or their places: [0, 0.5, 1]")
+            node.wrong("`sample` is empty", "write the number of elements, or their positions: [0, 0.5, 1]")
         return found or (0.0,)
     count = node.whole(1, 1)
     return tuple(place / (count - 1) for place in range(count)) if count > 1 else (0.0,)

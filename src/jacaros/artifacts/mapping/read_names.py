@@ -1,4 +1,4 @@
-"""Reads names: of beliefs, of ROS topics and nodes, of types."""
+"""Read names: of beliefs, of ROS topics and nodes, of types."""
 
 import re
 
@@ -9,10 +9,10 @@ from jacaros.ros.names import action_type, message_type, service_type
 from jacaros.yaml_nodes import Node
 
 UNNAMED = "unnamed"
-"""Stands for a name that is wrong."""
+"""Replaces an invalid name."""
 
 RESERVED = ("true", "false", "not", "div", "mod", "if", "else", "elif", "for", "while")
-"""Words that agents write for something else."""
+"""Words with another meaning in agent programs."""
 
 _BELIEF = re.compile(r"[a-z][A-Za-z0-9_]*")
 _ROS = re.compile(r"[~/]?[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*")
@@ -28,36 +28,39 @@ _EXAMPLES = {
 
 
 def belief_name(node: Node) -> str:
-    """The name of a property, signal or operation, as agents write it."""
+    """Read the name of a property, signal or operation."""
     if not isinstance(node.value, str) or not _BELIEF.fullmatch(node.value):
         if isinstance(node.value, bool):
-            node.wrong(f"{str(node.value).lower()} is no name that agents can write", "write another name")
+            node.wrong(
+                f"{str(node.value).lower()} is not a valid name in agent programs", "write another name"
+            )
             return UNNAMED
         near = re.sub(r"\W", "_", str(node.value)).lstrip("_0123456789")
         help = f"write {near[0].lower()}{near[1:]}" if near else "begin with a lower-case letter"
-        node.wrong(f"{shown(node.value)} is no name that agents can write", help)
+        node.wrong(f"{shown(node.value)} is not a valid name in agent programs", help)
         return UNNAMED
     if node.value in RESERVED:
         node.wrong(
-            f"agents cannot write '{node.value}' as a name", f"write {node.value}_value or another name"
+            f"`{node.value}` is a reserved word in agent programs",
+            f"write {node.value}_value or another name",
         )
         return UNNAMED
     return str(node.value)
 
 
 def ros_name(node: Node) -> Written:
-    """The name of a topic, service, action or node."""
+    """Read the name of a topic, service, action or node."""
     value = node.value
     if not isinstance(value, str) or not _ROS.fullmatch(value):
         glued = _GLUED.fullmatch(value) if isinstance(value, str) else None
-        help = f"write a space behind the colon: {glued[1]}: {glued[2]}" if glued else ""
-        node.wrong(f"{shown(value)} is no ROS name", help or "write it like cmd_vel or /robot/cmd_vel")
+        help = f"write a space after the colon: {glued[1]}: {glued[2]}" if glued else ""
+        node.wrong(f"{shown(value)} is not a ROS name", help or "write it like cmd_vel or /robot/cmd_vel")
         return Written("unnamed", place_of(node))
     return Written(str(value), place_of(node))
 
 
 def namespace(node: Node) -> str:
-    """A namespace; empty for none."""
+    """Read a namespace; empty if none exists."""
     value = node.value
     if value in (None, "", "/"):
         return ""
@@ -68,7 +71,7 @@ def namespace(node: Node) -> str:
 
 
 def type_written(node: Node, kind: str) -> Written | None:
-    """A type in full form; *kind* is ``msg``, ``srv`` or ``action``.  None after a mistake."""
+    """Read a type in full form; *kind* is ``msg``, ``srv`` or ``action``. None after a mistake."""
     full = _full_type(node.value, kind)
     if full is None:
         node.wrong(*_wrong_type(node.value, kind))
@@ -88,18 +91,18 @@ _OF = {"msg": "messages", "srv": "a service", "action": "an action"}
 
 
 def _wrong_type(value: object, kind: str) -> tuple[str, str]:
-    """What is wrong with a type, and what to write."""
+    """Return the problem with a type, and what to write."""
     for other, of in _OF.items():
         if other != kind and isinstance(value, str) and value.count("/") == 2 and _full_type(value, other):
             return (
                 f"{value} is the type of {of}, not of {_OF[kind]}",
-                f"here a type is like {_EXAMPLES[kind]}",
+                f"write a type such as {_EXAMPLES[kind]}",
             )
     slashed = value.replace(".", "/").replace("::", "/") if isinstance(value, str) else ""
     near = slashed if slashed and _full_type(slashed, kind) else f"it like {_EXAMPLES[kind]}"
-    return f"{shown(value)} is no type of {_OF[kind]}", f"write {near}"
+    return f"{shown(value)} is not a type of {_OF[kind]}", f"write {near}"
 
 
 def is_type(value: object) -> bool:
-    """Whether a value is written like the type of messages, and like no topic that anybody has."""
+    """Return whether a value has the form of a message type, and not that of a usual topic."""
     return isinstance(value, str) and _TYPE.fullmatch(value) is not None

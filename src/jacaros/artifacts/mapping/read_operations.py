@@ -1,4 +1,4 @@
-"""Reads ``operations``, and the values that they put into messages: parameters, the time, constants, lists of messages."""
+"""Read ``operations``, and the values of their messages: parameters, the time, constants, lists of messages."""
 
 import dataclasses
 import difflib
@@ -41,7 +41,7 @@ KEYS: dict[str, tuple[str, ...]] = {
     "refresh": (),
     "read": (),
 }
-"""What goes with each kind of operation."""
+"""The keys of each kind of operation."""
 _ALL_KEYS = tuple(dict.fromkeys((*_COMMON, *(key for keys in KEYS.values() for key in keys))))
 
 _SUSPEND = ("go_on", "cancel")
@@ -49,23 +49,23 @@ _UNMATCHED = ("warn", "fail")
 
 _PARAMETER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 CALL_TIMEOUT = 10.0
-"""Seconds that a service may take unless the mapping says otherwise."""
+"""Default number of seconds that a service may take."""
 
 Reader = Callable[[OperationPart, dict[str, Node]], OperationPart]
 
 
 def read_operation(name: Node, node: Node) -> OperationPart:
-    """One operation."""
+    """Read one operation."""
     part = OperationPart(belief_name(name), place_of(name), OperationKind.REFRESH)
     if is_misplaced(name, node, _ALL_KEYS, "an operation"):
         return dataclasses.replace(part, name=UNNAMED)
     kinds = [kind for kind in KEYS if isinstance(node.value, dict) and kind in node.value]
     if len(kinds) != 1:
-        found = f"has {' and '.join(kinds)}" if kinds else "does not say what it does"
+        found = f"has {' and '.join(kinds)}" if kinds else "does not name what it does"
         unknown = [] if kinds else [key for key in _keys(node) if key not in _ALL_KEYS]
         near = [each for key in unknown for each in difflib.get_close_matches(key, KEYS, 1)]
-        help = f"did you mean '{near[0]}'?" if near else f"write one of {', '.join(KEYS)}"
-        name.wrong(f"the operation '{part.name}' {found}", help)
+        help = f"did you mean `{near[0]}`?" if near else f"write one of {', '.join(KEYS)}"
+        name.wrong(f"the operation `{part.name}` {found}", help)
         return part
     kind = OperationKind(kinds[0])
     entries = node.mapping(kind.value, *_COMMON, *KEYS[kind.value], required=_required(kind))
@@ -82,12 +82,12 @@ def read_operation(name: Node, node: Node) -> OperationPart:
 
 
 def _uses(node: Node) -> tuple[Use, ...]:
-    """The resources that an operation holds."""
+    """Read the resources that an operation holds."""
     found: dict[str, Use] = {}
     for item in node.sequence() if isinstance(node.value, list) else (node,):
         if not isinstance(item.value, str):
             item.wrong(
-                f"{item.what} must be the name of a resource, not {item.value!r}", "write uses: wheels"
+                f"{item.what} must be the name of a resource, found {item.value!r}", "write uses: wheels"
             )
             continue
         try:
@@ -102,7 +102,7 @@ def _uses(node: Node) -> tuple[Use, ...]:
 
 
 def _forgotten(part: OperationPart) -> Iterator[Problem]:
-    """Constants that are called like a parameter of which no use is made."""
+    """Yield constants with the name of a parameter that is not used."""
     ends = () if part.at_end is None else part.at_end
     spell = () if part.duration is None else (part.duration,)
     values = [*part.values, *(each for other in part.other_values for each in other), *ends, *spell]
@@ -114,7 +114,7 @@ def _forgotten(part: OperationPart) -> Iterator[Problem]:
     for each in values:
         if each.source is Source.CONSTANT and each.value in part.parameters and each.value not in used:
             yield each.place.problem(
-                f"'{each.value}' is a text here, not the parameter", f"write ${each.value}"
+                f"`{each.value}` is a text here, not the parameter", f"write ${each.value}"
             )
 
 
@@ -131,16 +131,16 @@ def _parameters(node: Node) -> tuple[str, ...]:
     for item in node.sequence():
         name = item.value
         if not isinstance(name, str) or not _PARAMETER.fullmatch(name):
-            item.wrong(f"{item.what} must be a name, not {name!r}", "write parameters: [x, y]")
+            item.wrong(f"{item.what} must be a name, found {name!r}", "write parameters: [x, y]")
         elif name in names:
-            item.wrong(f"duplicate parameter '{name}'", "rename one of them")
+            item.wrong(f"duplicate parameter `{name}`", "rename one of them")
         else:
             names.append(str(name))
     return tuple(names)
 
 
 def _filled(node: Node | None, parameters: tuple[str, ...]) -> dict[str, Any]:
-    """What fills a message: fields, or a list of them for several versions of its type."""
+    """Read the content of a message: fields, or a list of them for several versions of its type."""
     if node is None:
         return {}
     if not isinstance(node.value, list):
@@ -152,13 +152,13 @@ def _filled(node: Node | None, parameters: tuple[str, ...]) -> dict[str, Any]:
 def _publish(part: OperationPart, entries: dict[str, Node]) -> OperationPart:
     rate, duration = entries.get("rate"), entries.get("duration")
     if rate is None and duration is not None:
-        duration.wrong("'duration' goes with 'rate'", "say how often: rate: 10")
+        duration.wrong("`duration` needs `rate`", "write messages per second: rate: 10")
     if rate is not None and duration is None:
-        rate.wrong("'rate' goes with 'duration'", "say how long: duration: 2, or duration: $seconds")
+        rate.wrong("`rate` needs `duration`", "write seconds: duration: 2, or duration: $seconds")
     spell = whole(duration, part.parameters) if duration is not None else None
     if spell is not None and spell.source is Source.CONSTANT and not _is_positive(spell.value):
         assert duration is not None
-        duration.wrong("'duration' must be a number of seconds above zero", "write duration: 2")
+        duration.wrong("`duration` must be a number of seconds above zero", "write duration: 2")
     return dataclasses.replace(
         part,
         target=ros_name(entries["publish"]),
@@ -176,7 +176,10 @@ def _publish(part: OperationPart, entries: dict[str, Node]) -> OperationPart:
 def _unmatched(node: Node) -> str | None:
     if node.value in _UNMATCHED:
         return str(node.value)
-    node.wrong(f"'unmatched' is {node.value!r}", f"write {' or '.join(_UNMATCHED)}")
+    node.wrong(
+        f"`unmatched` must be {' or '.join(_UNMATCHED)}, found {node.value!r}",
+        f"write {' or '.join(_UNMATCHED)}",
+    )
     return None
 
 
@@ -206,7 +209,7 @@ def _action(part: OperationPart, entries: dict[str, Node]) -> OperationPart:
 
 
 def _suspend(node: Node | None) -> dict[str, Any]:
-    """What a suspended intention means for a goal."""
+    """Read the effect of suspending the intention on a goal."""
     if node is None:
         return {}
     if node.value == "pause":
@@ -218,7 +221,7 @@ def _suspend(node: Node | None) -> dict[str, Any]:
     if not isinstance(node.value, dict):
         if node.value not in _SUSPEND:
             node.wrong(
-                f"'suspend' is {node.value!r}",
+                f"invalid `suspend`: {node.value!r}",
                 f"write {' or '.join(_SUSPEND)}, or operations that pause and resume the server: "
                 "{pause: hold, resume: go_on}",
             )
@@ -231,7 +234,9 @@ def _suspend(node: Node | None) -> dict[str, Any]:
 
 def _code(node: Node) -> FieldPart:
     if isinstance(node.value, list):
-        node.wrong("'code' is one field", "write code: error_code, or code: {path: error_code, as: name}")
+        node.wrong(
+            "`code` must be one field", "write code: error_code, or code: {path: error_code, as: name}"
+        )
         return FieldPart(WHOLE, place_of(node))
     return _outputs(node)[0]
 
@@ -252,7 +257,7 @@ def _outputs(node: Node) -> tuple[FieldPart, ...]:
     for field in fields:
         if field.path.of_message or "i" in field.path.steps or field.dead_band is not None:
             node.problems.append(
-                field.place.problem("an output is a path and a conversion alone", "leave the rest out")
+                field.place.problem("an output has only a path and a conversion", "leave the rest out")
             )
     return fields
 
@@ -281,7 +286,7 @@ def _get(part: OperationPart, entries: dict[str, Node]) -> OperationPart:
     if outputs is not None:
         listed = list(outputs.sequence()) if isinstance(outputs.value, list) else [outputs]
         if len(listed) != 1:
-            outputs.wrong("a parameter has one value, so there is one output", "write outputs: [value]")
+            outputs.wrong("a parameter has one value, so it has one output", "write outputs: [value]")
         elif isinstance(listed[0].value, str):
             field = dataclasses.replace(field, name=str(listed[0].value))
         else:
@@ -302,10 +307,10 @@ def _of_node(part: OperationPart, entries: dict[str, Node], key: str) -> Operati
 def _of_properties(part: OperationPart, entries: dict[str, Node]) -> OperationPart:
     node = entries[part.kind.value]
     if "parameters" in entries:
-        entries["parameters"].wrong(f"'{part.kind}' takes no parameters", "leave 'parameters' out")
+        entries["parameters"].wrong(f"`{part.kind}` takes no parameters", "leave `parameters` out")
     items = list(node.sequence()) if isinstance(node.value, list) else [node]
     if part.kind is OperationKind.READ and len(items) != 1:
-        node.wrong("'read' gives one property", "write an operation for each")
+        node.wrong("`read` reads one property", "write an operation for each")
     named = tuple(Written(item.text(), place_of(item)) for item in items)
     return dataclasses.replace(part, parameters=(), target=Written("", place_of(node)), properties=named)
 
@@ -344,25 +349,27 @@ def _is_positive(value: object) -> bool:
 _VALUE = ("value", *CONVERSION)
 _LIST = ("each", "fields")
 _WRITTEN = ("", *ANGLES, "name")
-"""What ``as`` can be on the way to a message."""
+"""Values of ``as`` on the way to a message."""
 
 ALL_OF_IT = -1
-"""Number of the part of an element that is all of it."""
+"""Number of the part of an element that means the whole element."""
 
 
 def read_values(node: Node, parameters: tuple[str, ...], within_list: bool = False) -> tuple[ValuePart, ...]:
-    """The fields of a message by their paths."""
+    """Read the fields of a message by their paths."""
     found = []
     for key, value in node.entries():
         target = path_of(key)
         if target.of_message or ALL in target.steps or HERE in target.steps or not target.steps:
-            key.wrong(f"'{target.text}' is no single field", "write a path like pose.position.x or poses[0]")
+            key.wrong(
+                f"`{target.text}` is not a single field", "write a path like pose.position.x or poses[0]"
+            )
         found.append(read_value(value, target, parameters, within_list))
     return tuple(found)
 
 
 def read_value(node: Node, target: Path, parameters: tuple[str, ...], within_list: bool = False) -> ValuePart:
-    """One value for *target*."""
+    """Read one value for *target*."""
     place = place_of(node)
     if not isinstance(node.value, dict):
         source, value, parameter = _source(node, parameters, within_list)
@@ -372,14 +379,14 @@ def read_value(node: Node, target: Path, parameters: tuple[str, ...], within_lis
     if node.value and not set(node.value) & {*_VALUE, *_LIST}:
         inner = next(iter(node.value))
         node.wrong(
-            f"'{target.text}' has no fields of its own here", f"write their paths: {target.text}.{inner}: ..."
+            f"`{target.text}` has no fields of its own here", f"write their paths: {target.text}.{inner}: ..."
         )
         return ValuePart(target, place)
     entries = node.mapping(*_VALUE, required=("value",))
     conversion = read_conversion(entries)
     if conversion.kind not in _WRITTEN:
         entries["as"].wrong(
-            f"'as: {conversion.kind}' is for fields that an agent reads", f"here: {', '.join(_WRITTEN[1:])}"
+            f"`as: {conversion.kind}` is for fields that an agent reads", f"here: {', '.join(_WRITTEN[1:])}"
         )
         conversion = Conversion()
     if "value" not in entries:
@@ -389,13 +396,13 @@ def read_value(node: Node, target: Path, parameters: tuple[str, ...], within_lis
 
 
 def _list(node: Node, target: Path, parameters: tuple[str, ...]) -> ValuePart:
-    """A list of messages, one for each element of a parameter."""
+    """Read a list of messages, one for each element of a parameter."""
     entries = node.mapping(*_LIST, required=_LIST)
     parameter = 0
     if "each" in entries:
         source, _, parameter = _source(entries["each"], parameters, within_list=False)
         if source is not Source.PARAMETER:
-            entries["each"].wrong("'each' must be a parameter that is a list", "write each: $poses")
+            entries["each"].wrong("`each` must be a parameter that is a list", "write each: $poses")
     elements = read_values(entries["fields"], parameters, within_list=True) if "fields" in entries else ()
     return ValuePart(target, place_of(node), Source.ELEMENTS, None, parameter, elements=elements)
 
@@ -410,27 +417,28 @@ def _source(node: Node, parameters: tuple[str, ...], within_list: bool) -> tuple
 
 
 def _parameter(node: Node, name: str, parameters: tuple[str, ...], within_list: bool) -> int:
-    """The number of a parameter; those of an element's parts are $1, $2 and so on, all of it is $0."""
+    """Return the number of a parameter. The parts of an element are $1, $2 and so on, the whole element is $0."""
     if within_list:
         if name.isdecimal():
             return int(name) - 1
         node.wrong(
-            f"there is no ${name} in an element", "write $1, $2 and so on for its parts, $0 for all of it"
+            f"an element has no part ${name}",
+            "write $1, $2 and so on for its parts, $0 for the whole element",
         )
         return ALL_OF_IT
     if name in parameters:
         return parameters.index(name)
-    import difflib  # here: only for mistakes
+    import difflib  # imported here: only needed after a mistake
 
     near = difflib.get_close_matches(name, parameters, 1)
     listed = ", ".join((*parameters, name))
-    help = f"did you mean ${near[0]}?" if near else f"write it into 'parameters': [{listed}]"
-    node.wrong(f"the operation has no parameter '{name}'", help)
+    help = f"did you mean ${near[0]}?" if near else f"add it to `parameters`: [{listed}]"
+    node.wrong(f"the operation has no parameter `{name}`", help)
     return 0
 
 
 def constant(node: Node) -> object:
-    """A constant: a number, truth value, text, or a list of them."""
+    """Read a constant: a number, truth value, text, or a list of them."""
     value = node.value
     if isinstance(value, list):
         return [constant(item) for item in node.sequence()]
@@ -440,12 +448,12 @@ def constant(node: Node) -> object:
         if isinstance(value, kind):
             return kind(value)
     node.wrong(
-        f"{node.what} must be a number, a text, $parameter or now, not {shown(value)}",
-        "for a field of a field write its path, as in linear.x: 0.5",
+        f"{node.what} must be a number, a text, $parameter or now, found {shown(value)}",
+        "for a nested field write its path, as in linear.x: 0.5",
     )
     return 0
 
 
 def whole(node: Node, parameters: tuple[str, ...]) -> ValuePart:
-    """The value of a node's parameter, or a duration."""
+    """Read the value of a node's parameter, or a duration."""
     return read_value(node, WHOLE, parameters)

@@ -1,4 +1,4 @@
-"""Reads ``parameters``: of other nodes, and of our own."""
+"""Read ``parameters``: of other nodes, and of our own."""
 
 import dataclasses
 
@@ -21,16 +21,16 @@ OWN = ("default", *_SHOWN, "minimum", "maximum", "read_only")
 
 
 def read_parameter(name: Node, node: Node) -> ParameterPart:
-    """A property from a parameter, of another node or of our own."""
+    """Read a property from a parameter, of another node or of our own."""
     if not isinstance(node.value, dict):
-        # Short for {default: ...}
+        # Short for {default: ...}.
         return ParameterPart(belief_name(name), place_of(name), "", str(name.value), _declaration(node, {}))
     own = not {"node", "rate"} & {str(key) for key in node.value}
     entries = node.mapping(*(OWN if own else OTHER), required=() if own else ("node",))
     if own and "default" not in entries:
         node.wrong(
-            f"nobody says whose parameter '{name.value}' is",
-            "write the node that has it, node: controller_server, or of one of our own its value, default: 0.5",
+            f"the parameter `{name.value}` has neither a node nor a default",
+            "write the node that has it, node: controller_server, or its value if it is our own, default: 0.5",
         )
     field = _field(entries["fields"]) if "fields" in entries else None
     declaration = _declaration(entries["default"], entries) if "default" in entries else None
@@ -38,7 +38,7 @@ def read_parameter(name: Node, node: Node) -> ParameterPart:
         _require_shown(entries["default"], field, declaration.default)
     shown = (field,) if field is not None else None
     policy = read_policy({key: value for key, value in entries.items() if key != "rate"}, shown)
-    policy = dataclasses.replace(policy, finite=True)  # no field says what to show instead
+    policy = dataclasses.replace(policy, finite=True)  # no field has a replacement
     rate = entries.get("rate")
     return ParameterPart(
         belief_name(name),
@@ -54,20 +54,22 @@ def read_parameter(name: Node, node: Node) -> ParameterPart:
 
 
 def _field(node: Node) -> FieldPart | None:
-    """What becomes of the value."""
+    """Read the conversion of the value."""
     fields = read_fields(node)
     if len(fields) != 1 or fields[0].path.steps:
         node.wrong("a parameter has one value and no fields", "write fields: {path: ., unit: degrees}")
         return None
     kind = fields[0].conversion.kind
     if kind not in ("", "atom") or fields[0].shares is not None or fields[0].otherwise is not None:
-        told = "'otherwise'" if fields[0].otherwise is not None else f"'as: {kind}'" if kind else "'sample'"
-        node.wrong(f"{told} is for messages", "of a parameter: as: atom, names, unit, scale, offset, round")
+        told = "`otherwise`" if fields[0].otherwise is not None else f"`as: {kind}`" if kind else "`sample`"
+        node.wrong(
+            f"{told} is for messages", "a parameter can have: as: atom, names, unit, scale, offset, round"
+        )
     return dataclasses.replace(fields[0], path=WHOLE)
 
 
 def _require_shown(node: Node, field: FieldPart, default: ParameterValue) -> None:
-    """A parameter of our own keeps its type: what becomes of the default becomes of every value."""
+    """Check the default of a parameter of our own: as it keeps its type, its conversion works for every value."""
     unnamed = dataclasses.replace(field.conversion, names=())  # other values may have no names
     try:
         parameter_converter(unnamed, node.what.strip("'"))([""] if default == [] else default)
@@ -76,12 +78,12 @@ def _require_shown(node: Node, field: FieldPart, default: ParameterValue) -> Non
 
 
 def _declaration(node: Node, entries: dict[str, Node]) -> Declaration:
-    """A parameter of our own; *node* is its default."""
+    """Read the declaration of a parameter of our own; *node* is its default."""
     default = _value(node)
     limits = {key: entries[key].number() for key in ("minimum", "maximum") if key in entries}
     if limits and (isinstance(default, bool) or not isinstance(default, int | float)):
         entries[next(iter(limits))].wrong(
-            f"only a number has a range, and the default is {default!r}", "leave minimum and maximum out"
+            f"only numbers have a range, but the default is {default!r}", "leave minimum and maximum out"
         )
         limits = {}
     declaration = Declaration(
@@ -93,7 +95,7 @@ def _declaration(node: Node, entries: dict[str, Node]) -> Declaration:
     )
     if (fault := fault_of(default, declaration)) is not None:
         node.wrong(
-            f"the default is not in its range: it is {fault}", "write another default, or another range"
+            f"the default is outside its range: it is {fault}", "write another default, or another range"
         )
     return declaration
 
@@ -105,5 +107,5 @@ def _value(node: Node) -> ParameterValue:
     try:
         return checked_value(constant(node))
     except ParameterRefused as refused:
-        node.wrong(str(refused), "write numbers of a list alike: [1.0, 2.5]")
+        node.wrong(str(refused), "write numbers of one type in a list: [1.0, 2.5]")
         return 0

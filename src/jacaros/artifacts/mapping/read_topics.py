@@ -1,4 +1,4 @@
-"""Reads ``properties``, ``signals`` and ``frames``, and ``qos``: a profile, or what it consists of."""
+"""Read ``properties``, ``signals`` and ``frames``, and ``qos``: a profile, or its parts."""
 
 import dataclasses
 from collections.abc import Iterator
@@ -28,11 +28,11 @@ SIGNAL = (*_MESSAGE, "rate", "when_changed")
 FEEDBACK = ("fields", "annotations", "description", "rate", "dead_band", "latest_only")
 FRAME = ("target", "source", "fields", "annotations", "description", "history", *_POLICY)
 PLACES = ("x", "y", "z", "roll", "pitch", "yaw", "stamp")
-"""What of a transform can be shown."""
+"""The parts of a transform that can be shown."""
 
 
 def read_property(name: Node, node: Node) -> TopicPart:
-    """One property from a topic."""
+    """Read one property from a topic."""
     place = place_of(name)
     if is_misplaced(name, node, PROPERTY, "a property"):
         return TopicPart(UNNAMED, place, Written("unnamed", place))
@@ -43,7 +43,7 @@ def read_property(name: Node, node: Node) -> TopicPart:
     fields, policy = part.fields, read_policy(entries, part.fields)
     initial = entries.get("initial")
     if policy.on_demand and part.each is not None:
-        entries["mode"].wrong("a property for each element is always told", "leave 'mode' out")
+        entries["mode"].wrong("a property for each element is always up to date", "leave `mode` out")
     return dataclasses.replace(
         part,
         policy=policy,
@@ -54,7 +54,7 @@ def read_property(name: Node, node: Node) -> TopicPart:
 
 
 def read_signal(name: Node, node: Node) -> TopicPart:
-    """One signal."""
+    """Read one signal."""
     if is_misplaced(name, node, SIGNAL, "a signal"):
         return TopicPart(UNNAMED, place_of(name), Written("unnamed", place_of(name)), signal=True)
     if isinstance(node.value, str):
@@ -62,7 +62,7 @@ def read_signal(name: Node, node: Node) -> TopicPart:
     entries = node.mapping(*SIGNAL, required=("topic",))
     part = _topic_part(belief_name(name), place_of(name), entries)
     if "annotations" in entries:
-        entries["annotations"].wrong("signals have no annotations", "write the field into 'fields'")
+        entries["annotations"].wrong("signals have no annotations", "write the field in `fields`")
     changed = entries.get("when_changed")
     return dataclasses.replace(
         part,
@@ -73,19 +73,19 @@ def read_signal(name: Node, node: Node) -> TopicPart:
 
 
 def is_misplaced(name: Node, node: Node, keys: tuple[str, ...], what: str) -> bool:
-    """Whether a key of a property (*what*) stands where the name of a property is wanted, which is told."""
+    """Report a key of a property (*what*) used where the name of a property is expected. Return whether it was."""
     if name.value not in keys or isinstance(node.value, dict):
         return False
     if isinstance(node.value, str) and not is_type(node.value):
-        return False  # a property may be called so, and this be its topic
+        return False  # a property may have this name, and this be its topic
     name.wrong(
-        f"'{name.value}' stands here like the name of {what}", "indent it, below that to which it belongs"
+        f"`{name.value}` is used like the name of {what}", "indent it, below the name that it belongs to"
     )
     return True
 
 
 def read_feedback(name: Node, node: Node) -> TopicPart:
-    """A property from the feedback of an action."""
+    """Read a property from the feedback of an action."""
     place = place_of(name)
     if node.value is None or isinstance(node.value, str | list):
         fields = read_fields(node) if node.value is not None else None
@@ -103,15 +103,15 @@ def _topic_part(name: str, place: Place, entries: dict[str, Node]) -> TopicPart:
     each = entries.get("each")
     key = entries.get("key")
     if key is not None and each is None:
-        key.wrong("'key' goes with 'each'", "say which array has the elements: each: detections")
+        key.wrong("`key` needs `each`", "write the array with the elements: each: detections")
     fields = read_fields(entries["fields"]) if "fields" in entries else None
     if fields == ():
-        entries["fields"].wrong("'fields' is empty", "name a field, or leave 'fields' out for all of them")
+        entries["fields"].wrong("`fields` is empty", "name a field, or leave `fields` out for all of them")
     for field in fields or ():
         if each is None and (field.path.of_message or "i" in field.path.steps):
             entries["fields"].problems.append(
                 field.place.problem(
-                    f"'{field.path.text}' goes with 'each'", "without 'each' write the path alone"
+                    f"`{field.path.text}` needs `each`", "without `each` write the path alone"
                 )
             )
     return TopicPart(
@@ -132,7 +132,7 @@ def _topic_part(name: str, place: Place, entries: dict[str, Node]) -> TopicPart:
 
 
 def read_annotations(node: Node) -> tuple[FieldPart, ...]:
-    """Annotations by name; the name of the annotation is that of the field."""
+    """Read annotations by name; the name of the annotation is that of the field."""
     return tuple(
         dataclasses.replace(read_field(value), name=belief_name(name)) for name, value in node.entries()
     )
@@ -141,7 +141,7 @@ def read_annotations(node: Node) -> tuple[FieldPart, ...]:
 def read_policy(
     entries: dict[str, Node], fields: tuple[FieldPart, ...] | None, latest_only: bool = True
 ) -> ReadingPolicy:
-    """When to tell."""
+    """Read when to update."""
     mode = entries["mode"].choice("verbose", "on_demand") if "mode" in entries else "verbose"
     rate, expire = entries.get("rate"), entries.get("expire")
     latest = entries.get("latest_only")
@@ -151,7 +151,7 @@ def read_policy(
         dead_band=_bands(entries.get("dead_band"), fields),
         latest_only=latest.truth() if latest is not None else latest_only,
         expire=positive(expire) if expire is not None else None,
-        finite=False,  # fields say themselves what is to become of such numbers
+        finite=False,  # fields have their own replacements for such numbers
     )
 
 
@@ -159,22 +159,22 @@ def positive(node: Node) -> float:
     value = node.number(default=1.0)
     if value <= 0.0:
         node.wrong(
-            f"{node.what} is {value:g}, but must be above zero", f"leave {node.what} out, or write a figure"
+            f"{node.what} is {value:g}, but must be above zero", f"leave {node.what} out, or write a number"
         )
         return 1.0
     return value
 
 
 def read_window(node: Node) -> float:
-    """Seconds for which past values are kept: above zero, and at most a day."""
+    """Read the seconds for which past values are kept: above zero, and at most a day."""
     seconds = positive(node)
     if seconds > LONGEST:
-        node.wrong(f"{node.what} is longer than a day", "give at most 86400 s: memory is bounded by it")
+        node.wrong(f"{node.what} is longer than a day", "write at most 86400 s: it limits memory")
     return min(seconds, LONGEST)
 
 
 def _bands(node: Node | None, fields: tuple[FieldPart, ...] | None) -> float | tuple[float, ...]:
-    """A figure for all values, or one for each value."""
+    """Read one number for all values, or one for each value."""
     own = any(field.dead_band is not None for field in fields or ())
     if node is None:
         return _each_band(fields or (), 0.0) if own else 0.0
@@ -184,8 +184,8 @@ def _bands(node: Node | None, fields: tuple[FieldPart, ...] | None) -> float | t
     given = tuple(item.number(0.0) for item in node.sequence())
     if fields is not None and len(given) != (count := sum(field.count for field in fields)):
         node.wrong(
-            f"'dead_band' has {len(given)} figures, and the property {count} values",
-            "write one figure for all, or one for each value",
+            f"`dead_band` has {len(given)} numbers, but the property has {count} values",
+            "write one number for all, or one for each value",
         )
     return given
 
@@ -198,7 +198,7 @@ def _each_band(fields: tuple[FieldPart, ...], usual: float) -> tuple[float, ...]
 
 def _initial(node: Node, fields: tuple[FieldPart, ...] | None, each: bool) -> tuple[object, ...]:
     if each:
-        node.wrong("a property for each element has no initial values", "leave 'initial' out")
+        node.wrong("a property for each element has no initial values", "leave `initial` out")
     values = (
         tuple(map(plain_constant, node.sequence()))
         if isinstance(node.value, list)
@@ -206,13 +206,13 @@ def _initial(node: Node, fields: tuple[FieldPart, ...] | None, each: bool) -> tu
     )
     if fields is not None and len(values) != (count := sum(field.count for field in fields)):
         node.wrong(
-            f"'initial' has {len(values)} values, and the property {count}", "write one for each value"
+            f"`initial` has {len(values)} values, but the property has {count}", "write one for each value"
         )
     return values
 
 
 def plain_constant(node: Node) -> object:
-    """A constant that an agent sees: a number, truth value, text or list; plain words in lower case are atoms."""
+    """Read a constant that an agent perceives: a number, truth value, text or list; lower-case words are atoms."""
     value = node.value
     if isinstance(value, list):
         return [plain_constant(item) for item in node.sequence()]
@@ -222,7 +222,7 @@ def plain_constant(node: Node) -> object:
         )
     if isinstance(value, float):
         return float(value)
-    node.wrong(f"{node.what} must be a number, a text or a list, not {shown(value)}")
+    node.wrong(f"{node.what} must be a number, a text or a list, found {shown(value)}")
     return 0
 
 
@@ -230,16 +230,16 @@ def _view(node: Node, each: bool) -> RangeOfView:
     entries = node.mapping("metres", "distance", "at", "from", required=("metres",))
     place = place_of(node)
     if not isinstance(node.value, dict):
-        return RangeOfView(1.0, place)  # told already
+        return RangeOfView(1.0, place)  # already reported
     if "distance" in entries and ("at" in entries or "from" in entries):
-        node.wrong("'distance' and 'at' are alternatives", "remove one of them")
+        node.wrong("`distance` and `at` are alternatives", "remove one of them")
     if "distance" not in entries and "at" not in entries:
         node.wrong(
-            "'range_of_view' needs a place", "add 'at: [position.x, position.y]', or 'distance: range'"
+            "`range_of_view` needs a position", "add `at: [position.x, position.y]`, or `distance: range`"
         )
     at = tuple(path_of(item) for item in entries["at"].sequence()) if "at" in entries else ()
     if "at" in entries and len(at) != 2:
-        entries["at"].wrong("'at' must be the paths of two coordinates", "write [position.x, position.y]")
+        entries["at"].wrong("`at` must be the paths of two coordinates", "write [position.x, position.y]")
         at = ()
     origin = entries.get("from")
     return RangeOfView(
@@ -252,7 +252,7 @@ def _view(node: Node, each: bool) -> RangeOfView:
 
 
 def read_frame(name: Node, node: Node) -> FramePart:
-    """A property from tf."""
+    """Read a property from tf."""
     entries = node.mapping(*FRAME, required=("target", "source"))
     place = place_of(name)
     fields = read_fields(entries["fields"]) if "fields" in entries else _pose(place)
@@ -260,13 +260,13 @@ def read_frame(name: Node, node: Node) -> FramePart:
     for field in (*fields, *annotations):
         if field.path.text not in PLACES:
             node.problems.append(
-                field.place.problem(f"a transform has no '{field.path.text}'", f"it has {', '.join(PLACES)}")
+                field.place.problem(f"a transform has no `{field.path.text}`", f"it has {', '.join(PLACES)}")
             )
         else:
             node.problems += _of_transform(field)
     for key in ("target", "source"):
         if key in entries and entries[key].value == "":
-            entries[key].wrong(f"'{key}' is empty", "write the name of a frame, such as base_link")
+            entries[key].wrong(f"`{key}` is empty", "write the name of a frame, such as base_link")
     policy = read_policy(entries, fields)
     return FramePart(
         belief_name(name),
@@ -284,19 +284,20 @@ def read_frame(name: Node, node: Node) -> FramePart:
 
 
 _KINDS = {**dict.fromkeys(("x", "y", "z"), "length"), **dict.fromkeys(ANGLES, "angle"), "stamp": "time"}
-"""Kinds of what of a transform can be shown."""
+"""Kinds of the parts of a transform."""
 
 
 def _of_transform(field: FieldPart) -> Iterator[Problem]:
-    """What is wrong with a conversion of a part of a transform."""
+    """Yield mistakes in the conversion of a part of a transform."""
     place, conversion = field.path.text, field.conversion
     if conversion.kind or conversion.names or field.shares is not None:
         yield field.place.problem(
-            f"{place} of a transform is a number", "a unit, scale, offset and round are all it can have"
+            f"{place} of a transform is a number", "it can only have a unit, scale, offset and round"
         )
     elif conversion.unit and UNITS[conversion.unit].kind != _KINDS[place]:
         listed = ", ".join(name for name, each in UNITS.items() if each.kind == _KINDS[place])
-        told = f"{place} of a transform is a {_KINDS[place]}, and {conversion.unit} a unit of {UNITS[conversion.unit].kind}"
+        kind, unit = UNITS[conversion.unit].kind, conversion.unit
+        told = f"{place} of a transform is a {_KINDS[place]}, but {unit} is a unit of {kind}"
         yield field.place.problem(told, f"units of {_KINDS[place]} are {listed}")
 
 
@@ -313,21 +314,21 @@ _PARTS = {
     **{each: f"write qos: {{reliability: {each}}}" for each in ("reliable", "best_effort")},
     **{each: f"write qos: {{durability: {each}}}" for each in ("volatile", "transient_local")},
 }
-"""What to write for a part of a quality of service that stands alone."""
+"""What to write for a part of a quality of service that is given alone."""
 
 
 def read_qos(node: Node) -> QoS:
-    """A quality of service; the default one after a mistake."""
+    """Read a quality of service; the default one after a mistake."""
     if not isinstance(node.value, dict):
         if node.value not in PROFILES:
             listed = f"write {', '.join(PROFILES)}, or {{reliability: ..., durability: ..., depth: ..., deadline: ...}}"
-            node.wrong(f"there is no QoS profile {shown(node.value)}", _PARTS.get(str(node.value), listed))
+            node.wrong(f"unknown QoS profile {shown(node.value)}", _PARTS.get(str(node.value), listed))
         return PROFILES.get(node.value, DEFAULT_QOS)
     entries = node.mapping("reliability", "durability", "depth", "deadline")
     usual = DEFAULT_QOS
     deadline = entries["deadline"].number(0.0, default=1.0) if "deadline" in entries else None
     if deadline == 0.0:
-        entries["deadline"].wrong("'deadline' is 0, but must be above zero", "write seconds")
+        entries["deadline"].wrong("`deadline` is 0, but must be above zero", "write seconds")
         deadline = None
     return QoS(
         cast(Reliability, entries["reliability"].choice("reliable", "best_effort"))

@@ -1,4 +1,4 @@
-"""From a message to what of it becomes properties or signals: one row, or one for each element of an array."""
+"""From a message to properties or signals: one row of values, or one for each element of an array."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from jacaros.artifacts.mapping.declared import FieldPart, RangeOfView, TopicPart, Written
-from jacaros.artifacts.mapping.decoding import Take, taker
+from jacaros.artifacts.mapping.decoding import Read, reader
 from jacaros.artifacts.mapping.interfaces import Interfaces
 from jacaros.artifacts.mapping.paths import WHOLE, Getter, Path, WrongPath, follow, getter, read_path
 from jacaros.env.values import Structure
@@ -20,10 +20,10 @@ class Row:
     """The values of one property or signal.
 
     Attributes:
-        key: tells an element from others; None where there is one row.
+        key: identifies an element; None if there is one row.
         values: in the order of the fields.
-        annotations: of the belief.
-        place: where the element is, for the range of view.
+        annotations: annotations of the belief.
+        place: position of the element, for the range of view.
     """
 
     key: object
@@ -33,17 +33,17 @@ class Row:
 
 
 FRAME = read_path("header.frame_id")
-"""Where a message says in which frame it is given."""
+"""Path of the frame of a message."""
 
 Extract = Callable[[Any], list[Row]]
 """Takes a message; raises `Unshowable`."""
 
 
 def fields_of(part: TopicPart, root: FieldType, interfaces: Interfaces) -> tuple[FieldPart, ...]:
-    """The fields of a property or signal: unless the mapping says which, all of the message or element *root*.
+    """Return the fields of a property or signal: those of the mapping, or else the whole message or element *root*.
 
     Raises:
-        UnknownInterface: its type is not known.
+        UnknownInterface: its type is unknown.
     """
     if part.fields is not None:
         return part.fields
@@ -56,13 +56,13 @@ def fields_of(part: TopicPart, root: FieldType, interfaces: Interfaces) -> tuple
 def extractor(
     part: TopicPart, type_name: str, interfaces: Interfaces, problems: list[Problem]
 ) -> Extract | None:
-    """A function that takes the rows of a property or signal out of messages.
+    """Return a function that reads the rows of a property or signal from messages.
 
     Args:
-        part: what is wanted.
-        type_name: of the messages.
+        part: the property or signal.
+        type_name: message type.
         interfaces: knows the types.
-        problems: takes what is wrong; the result is None then.
+        problems: receives mistakes; the result is then None.
     """
     maker = _Maker(part, type_name, interfaces, problems)
     made = maker.make()
@@ -88,23 +88,23 @@ class _Maker:
             self.wrong(self.part.each_place, error)
             return FieldType(self.message.base)
         if not leaf.array or each.lists:
-            self.wrong(self.part.each_place, WrongPath(f"'each' is for arrays, and {each.text} is {leaf}"))
+            self.wrong(self.part.each_place, WrongPath(f"`each` is for arrays, but `{each.text}` is {leaf}"))
         return FieldType(leaf.base)
 
     def wrong(self, place: Any, error: Exception) -> None:
-        """Note what is wrong."""
+        """Report a mistake."""
         self.good = False
         self.problems.append(place.problem(str(error), getattr(error, "help", "")))
 
     def make(self) -> Extract:
-        """The function; of no use if something is wrong."""
+        """Return the function; unusable after a mistake."""
         before = len(self.problems)
         if self.part.frame is not None:
             self._require_frame(self.part.frame)
         fields = self._fields()
-        takes = [take for field in fields if (take := self._taker(field)) is not None]
+        takes = [take for field in fields if (take := self._reader(field)) is not None]
         notes = [
-            (field.name, take) for field in self.part.annotations if (take := self._taker(field)) is not None
+            (field.name, take) for field in self.part.annotations if (take := self._reader(field)) is not None
         ]
         view = self._view() if self.part.view is not None else None
         key = self._key(fields)
@@ -117,7 +117,7 @@ class _Maker:
         try:
             follow(FRAME, self.message, self.interfaces.fields)
         except (WrongPath, UnknownInterface):
-            text = f"'frame' is for messages with a header, and {self.message} has none"
+            text = f"`frame` is for messages with a header, but {self.message} has none"
             self.wrong(frame.place, WrongPath(text, "leave it out"))
 
     def _fields(self) -> Sequence[FieldPart]:
@@ -127,27 +127,27 @@ class _Maker:
             self.wrong(self.part.place, error)
             return ()
 
-    def _taker(self, field: FieldPart) -> Take | None:
+    def _reader(self, field: FieldPart) -> Read | None:
         try:
-            return taker(field, self.message, self.element, self.interfaces)
+            return reader(field, self.message, self.element, self.interfaces)
         except (WrongPath, UnknownInterface) as error:
             self.wrong(field.place, error)
             return None
 
-    def _key(self, fields: Sequence[FieldPart]) -> Take | None:
+    def _key(self, fields: Sequence[FieldPart]) -> Read | None:
         if self.part.each is None:
             return None
         field = self.part.key or (fields[0] if fields else None)
-        return self._taker(field) if field is not None else None
+        return self._reader(field) if field is not None else None
 
     def _view(self) -> Callable[[Any, Any, int], tuple[float, float] | None]:
-        """Where an element is; None when it is certainly out of view."""
+        """Return a function that gives the position of an element; None if it is certainly out of view."""
         view = self.part.view
         assert view is not None
         if view.distance is not None:
             far = self._number(view.distance, view)
             return lambda whole, part, i: (0.0, 0.0) if far(whole, part, i) <= view.metres else None
-        if len(view.at) != 2:  # told by the reader
+        if len(view.at) != 2:  # the reader has reported it
             return lambda whole, part, i: None
         across, along = (self._number(path, view) for path in view.at)
         return lambda whole, part, i: (across(whole, part, i), along(whole, part, i))
@@ -157,7 +157,7 @@ class _Maker:
         try:
             leaf = follow(path, root, self.interfaces.fields)
             if leaf.array or path.lists or leaf.base not in (*FLOATS, *INTEGER_RANGES):
-                raise WrongPath(f"'range_of_view' needs numbers, and {path.text} is {leaf}")
+                raise WrongPath(f"`range_of_view` needs numbers, but `{path.text}` is {leaf}")
         except (WrongPath, UnknownInterface) as error:
             self.wrong(view.place, error)
         get: Getter = getter(path)
@@ -166,12 +166,12 @@ class _Maker:
         def number(whole: Any, part: Any, i: int) -> float:
             try:
                 return float(get(whole if from_message else part, i))
-            except IndexError:  # nothing is there, so nothing is near
+            except IndexError:  # no element there, so none is near
                 return math.nan
 
         return number
 
-    def _single(self, takes: list[Take], notes: list[tuple[str, Take]], view: Any) -> Extract:
+    def _single(self, takes: list[Read], notes: list[tuple[str, Read]], view: Any) -> Extract:
         def rows(message: Any) -> list[Row]:
             place = view(message, message, 0) if view is not None else (0.0, 0.0)
             if place is None or not all(map(math.isfinite, place)):
@@ -181,7 +181,7 @@ class _Maker:
         return rows
 
     def _several(
-        self, get: Getter, takes: list[Take], notes: list[tuple[str, Take]], view: Any, key: Take | None
+        self, get: Getter, takes: list[Read], notes: list[tuple[str, Read]], view: Any, key: Read | None
     ) -> Extract:
         def rows(message: Any) -> list[Row]:
             found = []
@@ -197,20 +197,20 @@ class _Maker:
         return rows
 
 
-def _values(takes: list[Take], message: Any, element: Any, place: int) -> tuple[object, ...]:
+def _values(takes: list[Read], message: Any, element: Any, place: int) -> tuple[object, ...]:
     if len(takes) == 1:
         return takes[0](message, element, place)
     return tuple([value for take in takes for value in take(message, element, place)])
 
 
-def _noted(notes: list[tuple[str, Take]], message: Any, element: Any, place: int) -> tuple[object, ...]:
+def _noted(notes: list[tuple[str, Read]], message: Any, element: Any, place: int) -> tuple[object, ...]:
     if not notes:
         return ()
     return tuple([Structure(name, tuple(take(message, element, place))) for name, take in notes])
 
 
 def _hashable(key: tuple[object, ...]) -> object:
-    """A key that can be looked up: one with lists in it is written out."""
+    """Return a hashable key: one that contains lists is converted to text."""
     try:
         hash(key)
     except TypeError:

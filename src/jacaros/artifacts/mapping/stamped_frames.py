@@ -13,7 +13,8 @@ from jacaros.ros.waiting import MISSING_AFTER
 from jacaros.trace import Cause
 
 Found = Callable[[float, Values, dict[int, Values], Cause | None], None]
-"""Takes the time of a message, its values, those of each frame at that time, by the number of its stream, and the cause."""
+"""Called with the time of a message, its values, those of each frame at that time by the number of its stream, and
+the cause."""
 
 
 class _Message(NamedTuple):
@@ -24,16 +25,16 @@ class _Message(NamedTuple):
 
 
 class StampedFrames:
-    """Looks frames up at the stamps of messages, in the order of their arrival.
+    """Look up frames at the stamps of messages, in the order of their arrival.
 
-    A message waits until tf knows all frames at its stamp; one for which this takes longer than *patience* is dropped.
+    A message waits until tf knows all frames at its stamp; after *patience* it is dropped.
 
     Args:
         host: the artifact.
         part: the derived entry.
         frames: by the numbers of their streams.
         patience: seconds.
-        found: takes what has been found.
+        found: called with the result.
     """
 
     def __init__(
@@ -50,18 +51,18 @@ class StampedFrames:
         self._dropped = 0
 
     def add(self, time: float, values: Values, cause: Cause | None) -> None:
-        """Look the frames up at the time of a message."""
+        """Look up the frames at the time of a message."""
         self._messages.append(_Message(time, values, cause, self._host.clock.elapsed + self._patience))
         if not self._is_waiting and not self._find_all():
             self._is_waiting = True
             self._host.start(self._host.run_process, self._wait)
 
     def clear(self) -> None:
-        """Forget the messages that wait."""
+        """Forget the waiting messages."""
         self._messages.clear()
 
     def _find_all(self) -> bool:
-        """Look up what tf knows already; whether no message is left."""
+        """Look up what tf already knows. Return whether no message is left."""
         lookup = self._host.ros.tf_lookup
         while self._messages:
             message = self._messages[0]
@@ -80,7 +81,7 @@ class StampedFrames:
         return True
 
     async def _wait(self) -> None:
-        """Wait until tf knows the frames, or no longer."""
+        """Wait until tf knows the frames, or the time is over."""
         try:
             while not self._find_all():
                 message = self._messages[0]
@@ -89,7 +90,7 @@ class StampedFrames:
                     try:
                         await self._host.ros.tf_wait(target, source, message.time, left)
                     except TransformUnavailable:
-                        break  # it is dropped by the next look
+                        break  # the next look-up drops it
         finally:
             self._is_waiting = False
 
@@ -100,9 +101,7 @@ class StampedFrames:
         self._dropped += 1
         if self._dropped in (1, 10, 100):
             part, count = self._part, self._dropped
-            message = (
-                f"{part.name}: {count} message{'s' if count > 1 else ''} without a transform dropped: {error}"
-            )
-            self._host.tell_once(
-                (part.name, "frames", count), part.place, message, "give it more time: lateness: 1"
+            message = f"`{part.name}`: dropped {count} message{'s' if count > 1 else ''} without a transform: {error}"
+            self._host.report_once(
+                (part.name, "frames", count), part.place, message, "allow more time: lateness: 1"
             )

@@ -1,4 +1,4 @@
-"""Types that the mapping leaves out are asked of the graph, as soon as somebody is at the topic."""
+"""Look up the types that a mapping omits, as soon as another node uses the topic."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -10,14 +10,14 @@ from jacaros.ros.graph import GraphContents
 from jacaros.ros.waiting import MISSING_AFTER
 
 LOOK = 0.5
-"""Seconds between two looks at the graph."""
+"""Seconds between two queries of the graph."""
 
 _EXAMPLES = {"topic": "msg/Type", "service": "srv/Type", "action": "action/Type"}
 
 
 @dataclass(frozen=True, slots=True)
 class Wanted:
-    """A topic whose type is wanted; *found* takes it."""
+    """A topic whose type is needed; *found* receives it."""
 
     written: Written
     name: str
@@ -25,7 +25,7 @@ class Wanted:
 
 
 def type_in(contents: GraphContents, kind: str, name: str) -> str:
-    """The type of a topic, service or action by its absolute name; empty when it is not there."""
+    """Return the type of a topic, service or action by its absolute name; empty if it does not exist."""
     if kind == "service":
         return contents.services.get(name, "")
     if kind == "action":
@@ -35,7 +35,7 @@ def type_in(contents: GraphContents, kind: str, name: str) -> str:
 
 
 class TypeSearch:
-    """Looks at the graph until all types are known.
+    """Query the graph until all types are known.
 
     Args:
         host: the artifact.
@@ -46,12 +46,12 @@ class TypeSearch:
         self._wanted: list[Wanted] = []
 
     def want(self, written: Written, found: Callable[[str], None]) -> None:
-        """Have *found* called with the type of a topic."""
+        """Call *found* with the type of a topic when it is known."""
         name = self._host.ros.resolve(self._host.robot_topic(written.text))
         self._wanted.append(Wanted(written, name, found))
 
     def begin(self) -> None:
-        """Look until everything is known; a process of the artifact."""
+        """Query until everything is known; a process of the artifact."""
         if self._wanted:
             self._host.start(self._host.run_process, self._search)
 
@@ -66,7 +66,7 @@ class TypeSearch:
             if self._wanted and not told:
                 told = True
                 for each in self._wanted:
-                    host.log(f"waiting for the topic {each.name}, to learn its type")
+                    host.log(f"waiting for topic {each.name}, to find its type")
             if self._wanted and not missed and host.clock.elapsed - began >= MISSING_AFTER:
                 missed = True
                 for each in self._wanted:
@@ -75,12 +75,12 @@ class TypeSearch:
                 await host.sleep(LOOK)
 
     async def _contents(self) -> GraphContents | None:
-        """What is in the graph; empty while it cannot be asked, None when it never can."""
+        """Return the contents of the graph; empty while it cannot be queried, None if it never can."""
         try:
             return await self._host.step(self._host.ros.contents())
         except CapabilityMissing as error:
             for each in self._wanted:
-                self._host.tell_once(
+                self._host.report_once(
                     each, each.written.place, str(error), "write the type: type: package/msg/Type"
                 )
             return None
@@ -94,16 +94,16 @@ class TypeSearch:
                 each.found(found)
 
     def _miss(self, wanted: Wanted) -> None:
-        self._host.tell_once(
+        self._host.report_once(
             wanted,
             wanted.written.place,
-            f"the topic {wanted.name} is missing, and without it its type is not known; still waiting",
+            f"no node uses topic {wanted.name}, so its type is unknown; still waiting",
             "start the node that publishes it, or write its type: type: package/msg/Type",
         )
 
 
 async def ask_type(host: Host, kind: str, written: Written) -> str:
-    """The type of a topic, service or action that an operation uses; a step boundary.
+    """Return the type of a topic, service or action that an operation uses; a step boundary.
 
     Raises:
         OperationFailed: ``type_unknown(Name)``.
@@ -111,7 +111,7 @@ async def ask_type(host: Host, kind: str, written: Written) -> str:
     name = host.ros.resolve(host.robot_topic(written.text))
     patience = host.clock.elapsed + MISSING_AFTER
     try:
-        # A node that has just come takes a while to know its graph.
+        # A node that has just joined needs some time to discover its graph.
         while not (found := type_in(await host.step(host.ros.contents()), kind, name)):
             if host.clock.elapsed >= patience:
                 break
@@ -120,6 +120,6 @@ async def ask_type(host: Host, kind: str, written: Written) -> str:
         host.fail(str(error), "type_unknown", name)
     if not found:
         where = host.mapping.where(written.place)
-        help = f"start the node that has it, or write its type in {where}: type: package/{_EXAMPLES[kind]}"
-        host.fail(f"there is no {kind} {name}, so that its type is not known; {help}", "type_unknown", name)
+        help = f"start the node that offers it, or write its type in {where}: type: package/{_EXAMPLES[kind]}"
+        host.fail(f"unknown {kind} {name}, so its type is unknown; {help}", "type_unknown", name)
     return found

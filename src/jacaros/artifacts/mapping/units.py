@@ -1,4 +1,4 @@
-"""Units of values: what messages have (REP 103), and what agents want to see."""
+"""Units of values: those of messages (REP 103), and those that agents want."""
 
 from dataclasses import dataclass
 
@@ -7,7 +7,7 @@ _DEGREE = 3.141592653589793 / 180.0
 
 @dataclass(frozen=True, slots=True)
 class Unit:
-    """A unit: so many of the usual one of its kind, and where it counts from."""
+    """A unit: its factor to the usual unit of its kind, and its zero."""
 
     kind: str
     size: float
@@ -30,7 +30,7 @@ UNITS: dict[str, Unit] = {
     "share": Unit("share", 1.0),
     "percent": Unit("share", 0.01),
 }
-"""All units by name; the first of a kind is what messages usually have."""
+"""All units by name; the first of a kind is the usual one in messages."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,25 +41,25 @@ class Line:
     shift: float = 0.0
 
     def there(self, value: float) -> float:
-        """The agent's number."""
+        """Convert to the agent's number."""
         return self.factor * value + self.shift
 
     def back(self, value: float) -> float:
-        """The message's number."""
+        """Convert to the message's number."""
         return (value - self.shift) / self.factor
 
     def then(self, other: "Line") -> "Line":
-        """This conversion and then *other*."""
+        """Return this conversion followed by *other*."""
         return Line(self.factor * other.factor, self.shift * other.factor + other.shift)
 
 
 def usual(unit: str) -> str:
-    """The unit that messages usually have where an agent wants *unit*."""
+    """Return the usual unit of messages for the kind of *unit*."""
     kind = UNITS[unit].kind
     return next(name for name, each in UNITS.items() if each.kind == kind)
 
 
 def conversion(of_message: str, of_agent: str) -> Line:
-    """From one unit to another of the same kind."""
+    """Return the conversion from one unit to another of the same kind."""
     here, there = UNITS[of_message], UNITS[of_agent]
     return Line(here.size / there.size, (here.zero - there.zero) / there.size)

@@ -1,5 +1,5 @@
-"""Artifacts for robots: odometry, laser, battery, the connection to ROS, and the motions of wheels.
+"""Artifacts for robots: odometry, laser, battery, the connection to ROS, and motions of wheels.
 
-`velocity` has the motion operations, `motion` one of them from its request to its end, `motion_claim` lets one of them
-drive at a time, and `control`, `maneuver`, `journey` compute: pose and goal in, velocity out.
+`velocity` has the motion operations, `motion` runs one of them, `motion_claim` lets one drive at a time. `control`,
+`maneuver` and `journey` are pure computation: pose and goal in, velocity out.
 """

@@ -1,4 +1,4 @@
-"""``ArtSimBattery``: a battery that a timer drains, as in the thesis, or the robot's own battery."""
+"""``ArtSimBattery``: a battery drained by a timer, as in the thesis, or the robot's own battery."""
 
 import math
 from functools import partial
@@ -13,51 +13,52 @@ from jacaros.ros.message import constant
 from jacaros.ros.qos import SENSOR_DATA
 
 FULL, MEDIUM, LOW = 100, 50, 20
-"""Percent: charged; from here on down medium; from here on down low."""
+"""Percent: charged; medium from here down; low from here down."""
 
 CHARGE_STEP, CHARGE_PERIOD = 10, 0.5
-"""A timer battery gains so many percent, each so many seconds, as in the thesis."""
+"""A timer battery gains this percentage each period in seconds, as in the thesis."""
 
 MORE_THAN_FULL = 1.5
-"""A driver that tells more than this counts in percent: the message type wants a share of 1, but not all obey."""
+"""A driver that reports more than this uses percent: the message type defines a fraction of 1, but some drivers
+ignore that."""
 
 AS_GOOD_AS_FULL = 0.995
-"""A share of 1 from which on a charge that rises no more is the end: old batteries never tell 1."""
+"""Fraction from which a charge that no longer rises counts as full: old batteries never report 1."""
 
 _ALMOST = 1e-4
-"""So many percent are lost in the 32 bits of a message."""
+"""Percentage lost in the 32 bits of a message."""
 
 UNKNOWN = -1
-"""Percent before the robot told its battery."""
+"""Percentage before the robot's first message."""
 
 
 def diagnosis(percent: float) -> str:
-    """The thesis's words for a charge: "Low Battery" up to 20 %, "Medium Battery" up to 50 %."""
+    """Return the thesis's words for a charge: "Low Battery" up to 20 %, "Medium Battery" up to 50 %."""
     if percent <= LOW:
         return "Low Battery"
     return "Medium Battery" if percent <= MEDIUM else "Full Battery"
 
 
 class ArtSimBattery(RosArtifact):
-    """Shows how full the battery is.
+    """Shows the charge of the battery.
 
-    Made without arguments it is the thesis's simulation: a timer drains one percent a second, recharging
-    adds ten percent each half second wherever the robot is.  Made with a robot's name or one of the options
-    ``source(robot)``, ``topic(T)`` and ``namespace(N)`` it follows that robot's ``/battery_state``, and
-    charges only in a dock.
+    Made without arguments, it is the thesis's simulation: a timer drains one percent per second, and recharging adds
+    ten percent every half second wherever the robot is. Made with a robot's name or one of the options
+    ``source(robot)``, ``topic(T)`` and ``namespace(N)``, it follows that robot's ``/battery_state``, and charges only
+    in a dock.
 
     Options:
-        drain(P): percent a second of the timer (1); 0: it never drains.
-        level(N): percent at the beginning (100), of the timer.
+        drain(P): percent per second of the timer (1); 0: it never drains.
+        level(N): initial percentage (100) of the timer battery.
         source(S): ``timer`` or ``robot``.
         topic(T): another topic than ``battery_state``.
-        expire(S): the robot's charge is unknown again when it says nothing for so long.
-        dock_timeout(S): how long `operation_recharge` waits for the dock's current (5 s).
+        expire(S): seconds without a message after which the robot's charge is unknown again.
+        dock_timeout(S): seconds that `operation_recharge` waits for the dock's current (5).
 
     Properties:
-        battery(N): whole percent, 0 to 100; what a robot tells is rounded down, so that 100 is full.
-        diagnostics(Text): "Full Battery", "Medium Battery" (50 % and less) or "Low Battery" (20 % and less).
-            A robot's battery is unknown until its first message: then neither is there.
+        battery(N): whole percent, 0 to 100; a robot's charge is rounded down, so that 100 means full.
+        diagnostics(Text): "Full Battery", "Medium Battery" (50 % and less) or "Low Battery" (20 % and less). Before a
+            robot's first message neither property exists.
     """
 
     known_options: ClassVar = {
@@ -70,7 +71,7 @@ class ArtSimBattery(RosArtifact):
     }
 
     def open(self) -> None:
-        """Start the timer, or listen to the robot."""
+        """Start the timer, or subscribe to the robot's battery."""
         self._level: int = UNKNOWN
         self._charging = False
         self._draining = False
@@ -81,7 +82,7 @@ class ArtSimBattery(RosArtifact):
         expire = self.options.get("expire")
         assert expire is None or isinstance(expire, float)
         policy = ReadingPolicy(on_demand=True, expire=expire)
-        self._told = self.kept(
+        self._reported = self.kept(
             Reading(policy, self.clock, None, Outlet(withdraw=partial(self.start, self.forget_battery)))
         )
         self.follows_robot = self._follows_robot()
@@ -105,7 +106,7 @@ class ArtSimBattery(RosArtifact):
         return value
 
     def _show(self, level: int) -> None:
-        """Show a charge; the diagnosis only when it changes."""
+        """Show a charge; update the diagnosis only if it changes."""
         if self._level == UNKNOWN:
             self.define_property("battery", level)
             self.define_property("diagnostics", diagnosis(level))
@@ -124,7 +125,7 @@ class ArtSimBattery(RosArtifact):
 
     @internal_operation
     async def drain(self) -> None:
-        """Lose one percent after the other until the battery is empty; not while it is charged."""
+        """Drain one percent at a time until the battery is empty; pause while it is charged."""
         try:
             while self._level > 0:
                 await self.sleep(1.0 / self._option("drain", 1.0))
@@ -154,7 +155,7 @@ class ArtSimBattery(RosArtifact):
         full = status == constant(state, "POWER_SUPPLY_STATUS_FULL")
         told = self._charge(float(state.percentage))
         share = self._share if told is None else told
-        # Many drivers know no status: there, a charge that rises tells of the current.
+        # Many drivers report no status; a rising charge then shows that there is current.
         rises = share > self._share
         if charging or full or rises:
             self._fed_at = self.clock.elapsed
@@ -166,10 +167,10 @@ class ArtSimBattery(RosArtifact):
             elif self._full_since == math.inf or (rises and level < FULL):
                 self._full_since = self.clock.elapsed
             self.start(self.show_battery, level, charging, cause=sample.cause)
-            self._told.take((level,))
+            self._reported.take((level,))
 
     def _charge(self, told: float) -> float | None:
-        """The charge as a share of 1; None when the message tells none."""
+        """Return the charge as a fraction of 1; None if the message has none."""
         if not math.isfinite(told):
             self._faulty.not_finite("percentage", told)
             return None
@@ -178,18 +179,18 @@ class ArtSimBattery(RosArtifact):
             return None
         if told > MORE_THAN_FULL and not self._in_percent:
             self._in_percent = True
-            self.log(f"the robot tells a charge of {told:g}: it is taken for percent, though 1 is to be full")
+            self.log(f"the robot reports a charge of {told:g}; expected 0 to 1, assuming percent")
         return told / 100.0 if self._in_percent else told
 
     @internal_operation
     def show_battery(self, level: int, charging: bool) -> None:
-        """Show what the robot says of its battery."""
+        """Show the robot's charge."""
         self._charging = charging
         self._show(level)
 
     @internal_operation
     def forget_battery(self) -> None:
-        """Show nothing: what the robot said has expired."""
+        """Show nothing: the robot's last message has expired."""
         if self._level != UNKNOWN:
             self._level = UNKNOWN
             self.remove_property("battery")
@@ -200,11 +201,11 @@ class ArtSimBattery(RosArtifact):
         begin = self.clock.elapsed
         while not self._is_full(patience):
             if self._level < FULL and self.clock.elapsed - max(begin, self._fed_at) > patience:
-                self.fail("the robot's battery gets no current: it does not stand in a dock", "not_docked")
+                self.fail("the robot's battery is not charging: the robot is not in a dock", "not_docked")
             await self.sleep(CHARGE_PERIOD)
 
     def _is_full(self, patience: float) -> bool:
-        """Whether the robot stopped to charge at the end, or goes on charging there for long without getting fuller."""
+        """Return whether the robot has finished charging, or has been charging for long without a rising charge."""
         if self._level == FULL and not self._charging:
             return True
         return self.clock.elapsed - self._full_since > patience
@@ -215,7 +216,7 @@ class ArtSimBattery(RosArtifact):
     async def operation_recharge(self) -> None:
         """Charge the battery and wait until it is full.
 
-        Following a robot it fails with ``not_docked`` when the battery gets no current for `dock_timeout`.
+        With a robot's battery, fails with ``not_docked`` if it does not start charging within `dock_timeout`.
         """
         if self.follows_robot:
             await self._charge_in_dock()
@@ -224,7 +225,7 @@ class ArtSimBattery(RosArtifact):
 
     @operation(name="getCurrentBattery")
     async def get_current_battery(self, level: Out) -> None:
-        """Give the charge in percent; ``no_battery(5)`` when a robot does not tell it within 5 s."""
+        """Give the charge in percent; fails with ``no_battery(5)`` if the robot does not report it within 5 s."""
         if self._level == UNKNOWN:
-            await self.newest(self._told, "no_battery")
+            await self.newest(self._reported, "no_battery")
         level.set(self._level)

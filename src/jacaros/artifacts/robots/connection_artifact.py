@@ -1,4 +1,4 @@
-"""``ArtRos``: the connection to the robot's middleware itself, for agents that look around in the graph."""
+"""``ArtRos``: the connection to the middleware, for agents that inspect the graph."""
 
 import math
 from collections.abc import Awaitable
@@ -23,35 +23,35 @@ from jacaros.ros.ros_clock import RosClock
 T = TypeVar("T")
 
 PATIENCE = 5.0
-"""Seconds that an operation waits for an answer, unless the option ``timeout`` says otherwise."""
+"""Default of the option ``timeout``, in seconds."""
 
 LEVELS = ("debug", "info", "warn", "error", "fatal")
 
 
 class ArtRos(RosArtifact):
-    """Shows the connection to ROS, and gives agents what else there is in the graph.
+    """Shows the connection to ROS, and lets agents query the graph.
 
-    Names of nodes are below the robot's name, if the artifact was made with one; with a slash in front they are
-    absolute.  An operation that reaches nobody fails with ``service_unavailable(Name)``, ``service_timeout(Seconds)`` or
+    Names of nodes are below the robot's name, if the artifact was made with one; with a leading slash they are
+    absolute.  An operation that gets no answer fails with ``service_unavailable(Name)``, ``service_timeout(Seconds)`` or
     ``service_failed(Name)``.
 
     Options:
-        timeout(S): seconds that operations wait for an answer, 5 unless given.
+        timeout(S): seconds that operations wait for an answer (5).
 
     Properties:
         middleware(Kind): ``memory``, ``ros1``, ``ros2`` or ``rosbridge``.
         node(Name): the name of our own node, as text.
-        connected: the graph (on ROS 1: the master) can be reached; it is not there while it cannot.
+        connected: the graph (on ROS 1: the master) can be reached; the property does not exist while it cannot.
 
     Signals:
-        clock_jumped(S): with ``--clock ros``: the simulator's time jumped back by S seconds.
+        clock_jumped(S): with ``--clock ros``: the simulator's time went back by S seconds.
         clock_jumped_ahead(S): with ``--clock ros``: it went S seconds ahead, more than 5, in one step.
     """
 
     known_options: ClassVar = {"timeout": positive}
 
     def open(self) -> None:
-        """Show the connection, and follow it."""
+        """Show the connection, and track it."""
         self._closed = False
         self.define_property("middleware", Atom(self.ros.name))
         self.define_property("node", self.ros.node_name)
@@ -60,7 +60,7 @@ class ArtRos(RosArtifact):
         self.ros.on_connection(self._connection_changed)
         self.at_dispose(self._close)
         if isinstance(self.clock, RosClock):
-            self.at_dispose(self.clock.on_jump(lambda by: self.start(self.tell_jump, by)))
+            self.at_dispose(self.clock.on_jump(lambda by: self.start(self.report_jump, by)))
 
     def _close(self) -> None:
         self._closed = True
@@ -71,15 +71,15 @@ class ArtRos(RosArtifact):
 
     @internal_operation
     def show_connected(self, connected: bool) -> None:
-        """Have the property ``connected``, or have it no more."""
+        """Define the property ``connected``, or remove it."""
         if connected and not self.has_property("connected"):
             self.define_property("connected")
         elif not connected and self.has_property("connected"):
             self.remove_property("connected")
 
     @internal_operation
-    def tell_jump(self, by: float) -> None:
-        """Signal that time jumped, back if *by* is below zero."""
+    def report_jump(self, by: float) -> None:
+        """Signal a jump of the clock, back if *by* is negative."""
         self.signal("clock_jumped" if by < 0 else "clock_jumped_ahead", abs(by))
 
     # ---- parameters
@@ -88,21 +88,25 @@ class ArtRos(RosArtifact):
     async def get_parameter(self, node: str, name: str, value: Out) -> None:
         """Give the value of a node's parameter: a number, text, truth value, or a list of them.
 
-        Fails with ``parameter_unknown(Name)`` when the node has none of that name.
+        Fails with ``parameter_unknown(Name)`` if the node has no such parameter.
         """
         found = await self._asked(self.ros.parameters(self._node(node)).get(name, self._patience), node, name)
         value.set(list(found) if isinstance(found, bytes) else found)
 
     @operation
     async def set_parameter(self, node: str, name: str, value: object) -> None:
-        """Change a node's parameter; a whole number is taken for a parameter that has a number with a fraction.
+        """Change a node's parameter; an integer is accepted for a floating-point parameter.
 
-        Fails with ``parameter_unknown(Name)``, or with ``parameter_refused(Name)`` when the node does not take the value.
+        Fails with ``parameter_unknown(Name)``, or with ``parameter_refused(Name)`` if the node refuses the value.
         """
         parameters = self.ros.parameters(self._node(node))
         wanted = _parameter_value(value)
         if wanted is None:
-            self.fail(f"{value!r} cannot be the value of a parameter", "parameter_refused", name)
+            self.fail(
+                f"expected a number, text, truth value or list of them, found {value!r}",
+                "parameter_refused",
+                name,
+            )
         if isinstance(wanted, int) and not isinstance(wanted, bool):
             wanted = await self._asked(_as_before(parameters.get(name, self._patience), wanted), node, name)
         await self._asked(parameters.set(name, wanted, self._patience), node, name)
@@ -123,7 +127,7 @@ class ArtRos(RosArtifact):
 
     @operation
     async def list_services(self, services: Out) -> None:
-        """Give all services, as a list of ``service(Name, Type)``; Type is "" where it is not told."""
+        """Give all services, as a list of ``service(Name, Type)``; Type is "" if it is unknown."""
         contents = await self._asked(self.ros.contents(self._patience), "graph")
         services.set([Structure("service", each) for each in sorted(contents.services.items())])
 
@@ -142,17 +146,17 @@ class ArtRos(RosArtifact):
     def rosout(self, level: str, text: str) -> None:
         """Write a line to the graph's log under our node's name; *level* is debug, info, warn, error or fatal."""
         if level not in LEVELS:
-            self.fail(f"there is no level {level}; there are {', '.join(LEVELS)}", "unknown_level", level)
+            self.fail(f"unknown level `{level}`: expected one of {', '.join(LEVELS)}", "unknown_level", level)
         self.ros.rosout(str(level), text)
 
     # ---- frames
 
     @operation
     async def lookup_transform(self, target: str, source: str, x: Out, y: Out, yaw: Out) -> None:
-        """Give the place of frame *source* in frame *target* by the newest transforms, as tf2 does.
+        """Give the pose of frame *source* in frame *target* by the newest transforms, as tf2 does.
 
-        X and Y are metres, Yaw is in degrees, counter-clockwise, in (-180, 180].  It waits for a transform; when none
-        comes it fails with ``transform_unavailable(Reason)``: ``unknown_frame``, ``not_connected``, ``too_old`` or
+        X and Y are in metres, Yaw in degrees, counter-clockwise, in (-180, 180]. Waits for a transform; if none
+        arrives, it fails with ``transform_unavailable(Reason)``: ``unknown_frame``, ``not_connected``, ``too_old`` or
         ``too_new``.
         """
         waiting = self.ros.tf_wait(target.lstrip("/"), source.lstrip("/"), timeout=self._patience)
@@ -161,7 +165,7 @@ class ArtRos(RosArtifact):
         y.set(found.translation[1])
         yaw.set(math.degrees(found.yaw))
 
-    # ---- what they have in common
+    # ---- shared by the operations
 
     @property
     def _patience(self) -> float:
@@ -197,12 +201,12 @@ class ArtRos(RosArtifact):
 
 
 async def _as_before(present: Awaitable[ParameterValue], wanted: int) -> int | float:
-    """A whole number in the kind that the parameter has now: agents do not tell 1 from 1.0."""
+    """Convert an integer to the parameter's present type: agents do not distinguish 1 from 1.0."""
     return float(wanted) if isinstance(await present, float) else wanted
 
 
 def _parameter_value(value: object) -> ParameterValue | None:
-    """A value of the agents as parameters have it; None when they have none such."""
+    """Convert a value of an agent to a parameter value, None if that is not possible."""
     if isinstance(value, bool | int | float):
         return value
     if isinstance(value, str):

@@ -1,7 +1,7 @@
-"""Pure control: pose and goal in, velocity command out.
+"""Motion control: pose and goal in, velocity command out.
 
-Nothing here waits, publishes or knows the time of day; a controller is called once per period with the
-newest pose and says what to command.  Lengths are metres, angles radians, counter-clockwise positive.
+Nothing here waits, publishes or reads a clock. A controller is called once per period with the newest pose and
+returns the next command. Lengths are in metres, angles in radians, positive counter-clockwise.
 """
 
 import math
@@ -9,28 +9,28 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 DISTANCE_TOLERANCE = 0.005
-"""A drive is at its end when so few metres remain."""
+"""Remaining metres at which a drive is at its goal."""
 
 ANGLE_TOLERANCE = math.radians(0.3)
-"""A turn is at its end when so few radians remain."""
+"""Remaining radians at which a turn is at its goal."""
 
 LEAST_SPEED = 0.02
-"""No drive creeps slower than this, metres per second: real wheels stick below it."""
+"""Minimum speed of a drive, metres per second: real wheels stick below it."""
 
 LEAST_TURN_SPEED = 0.05
-"""No turn creeps slower than this, radians per second."""
+"""Minimum speed of a turn, radians per second."""
 
 LATENCY = 0.1
-"""Seconds from a pose being measured to its command taking effect; the controller looks so far ahead."""
+"""Seconds from the measurement of a pose until its command takes effect; the controller predicts by this time."""
 
 BRAKING_SHARE = 0.6
-"""Share of the robot's acceleration planned for slowing down; the rest is a reserve for disturbances."""
+"""Fraction of the robot's acceleration used for slowing down; the rest is a reserve for disturbances."""
 
 GAIN = 4.0
-"""Speed per remaining way, 1/s, in the last centimetres; stable up to 0.3 s of latency."""
+"""Speed per remaining distance, 1/s, in the last centimetres; stable up to 0.3 s of latency."""
 
 HOLDING_GAIN = 8.0
-"""The same within the tolerances, where the least speeds do not count: wheels may stick there."""
+"""The same within the tolerances, where the minimum speeds do not apply: wheels may stick there."""
 
 
 class Pose(NamedTuple):
@@ -54,7 +54,7 @@ STANDSTILL = Velocity()
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """What a robot can do, by default a TurtleBot 2.
+    """What a robot can do; the defaults are those of a TurtleBot 2.
 
     Attributes:
         speed: metres per second.
@@ -69,7 +69,7 @@ class Limits:
     turn_acceleration: float = 5.0
 
     def clip(self, velocity: Velocity) -> Velocity:
-        """The nearest velocity that the robot can drive."""
+        """Return the nearest velocity that the robot can drive."""
         return Velocity(
             clamp(velocity.linear, self.speed),
             clamp(velocity.angular, self.turn_speed),
@@ -78,63 +78,63 @@ class Limits:
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """A straight way: from *start*, along the start's heading, *length* metres (negative: in reverse)."""
+    """A straight line: from *start*, along its heading, *length* metres (negative: in reverse)."""
 
     start: Pose
     length: float
 
     def along(self, pose: Pose) -> float:
-        """Metres that *pose* lies ahead of the start."""
+        """Return how many metres *pose* is ahead of the start."""
         dx, dy = pose.x - self.start.x, pose.y - self.start.y
         return dx * math.cos(self.start.heading) + dy * math.sin(self.start.heading)
 
     def aside(self, pose: Pose) -> float:
-        """Metres that *pose* lies to the left of the way."""
+        """Return how many metres *pose* is to the left of the line."""
         dx, dy = pose.x - self.start.x, pose.y - self.start.y
         return dy * math.cos(self.start.heading) - dx * math.sin(self.start.heading)
 
     def remaining(self, pose: Pose) -> float:
-        """Signed metres still to drive from *pose*."""
+        """Return the remaining distance from *pose*, in signed metres."""
         return self.length - self.along(pose)
 
 
 def clamp(value: float, limit: float) -> float:
-    """*value*, or the nearer end of [-limit, limit]."""
+    """Return *value*, limited to [-limit, limit]."""
     return max(-limit, min(limit, value))
 
 
 def unwrapped(angle: float) -> float:
-    """The same direction in (-pi, pi]."""
+    """Return the same direction in (-pi, pi]."""
     turned = math.remainder(angle, math.tau)
     return math.pi if turned == -math.pi else turned
 
 
 def heading_of(x: float, y: float, z: float, w: float) -> float:
-    """Heading of a robot whose orientation is the quaternion x, y, z, w, in (-pi, pi]."""
+    """Return the heading of a robot with the orientation x, y, z, w (a quaternion), in (-pi, pi]."""
     return math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
 
 
 def distance(a: Pose, b: Pose) -> float:
-    """Euclidean distance of two poses."""
+    """Return the Euclidean distance of two poses."""
     return math.hypot(b.x - a.x, b.y - a.y)
 
 
 def bearing(origin: Pose, x: float, y: float) -> float:
-    """Direction from *origin* to the point x, y."""
+    """Return the direction from *origin* to the point x, y."""
     return math.atan2(y - origin.y, x - origin.x)
 
 
 def approach(
     remaining: float, speed: float, *, cruise: float, acceleration: float, least: float, period: float
 ) -> float:
-    """Next speed of a trapezoid that ends exactly where nothing remains.
+    """Return the next speed of a trapezoidal profile that ends exactly at the goal.
 
     Args:
-        remaining: signed way still to go (metres or radians).
-        speed: signed speed commanded before.
-        cruise: highest speed.
-        acceleration: what the robot can do; speeding up uses all of it, slowing down `BRAKING_SHARE`.
-        least: lowest speed while something remains.
+        remaining: signed remaining distance (metres or radians).
+        speed: the previous signed speed.
+        cruise: maximum speed.
+        acceleration: limit of the robot; speeding up uses all of it, slowing down `BRAKING_SHARE`.
+        least: minimum speed while the goal is not reached.
         period: seconds between two commands.
     """
     towards = math.copysign(1.0, remaining)
@@ -146,10 +146,10 @@ def approach(
 
 
 def drive_command(line: Line, pose: Pose, before: Velocity, limits: Limits, period: float) -> Velocity:
-    """Command that follows *line*: the speed of `approach`, the heading pulled back to the line.
+    """Return the command that follows *line*: the speed of `approach`, the heading steered back to the line.
 
-    The pull is a look-ahead: the robot aims at the point of the line 0.4 m on.  Close to the goal it only
-    keeps its heading, as there is no way left on which to come back.
+    The robot aims at the point of the line 0.4 m ahead (look-ahead). Close to the goal it only keeps its heading,
+    because there is no distance left for returning to the line.
     """
     remaining = line.remaining(pose)
     linear = approach(
@@ -167,7 +167,7 @@ def drive_command(line: Line, pose: Pose, before: Velocity, limits: Limits, peri
 
 
 def turn_command(remaining: float, before: Velocity, limits: Limits, period: float) -> Velocity:
-    """Command that turns on the spot until nothing of the signed angle *remaining* is left."""
+    """Return the command that turns on the spot until the signed angle *remaining* is zero."""
     angular = approach(
         remaining,
         before.angular,
@@ -180,7 +180,7 @@ def turn_command(remaining: float, before: Velocity, limits: Limits, period: flo
 
 
 def hold_command(way: float, angle: float) -> Velocity:
-    """Command that makes up for the little that remains within the tolerances: metres and radians."""
+    """Return the command that corrects the rest within the tolerances: metres and radians."""
     return Velocity(
         clamp(HOLDING_GAIN * way, LEAST_SPEED),
         clamp(HOLDING_GAIN * angle, LEAST_TURN_SPEED),

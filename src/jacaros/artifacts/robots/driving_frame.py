@@ -1,4 +1,4 @@
-"""The frame in which a robot drives: odometry's own, or one that localisation keeps true, such as ``map``."""
+"""The frame in which a robot drives: odometry's own, or one that localisation corrects, such as ``map``."""
 
 from dataclasses import replace
 
@@ -9,18 +9,18 @@ from jacaros.ros.errors import TransformUnavailable
 from jacaros.ros.message import to_seconds
 
 OUTDATED = 2.0
-"""Seconds by which a transform may be older than odometry; localisation gives one with every scan."""
+"""Seconds by which a transform may be older than odometry; localisation publishes one with every scan."""
 
 
 class DrivingFrame:
-    """Gives odometry in another frame (REP 105), by the newest transform of tf between the two.
+    """Convert odometry to another frame (REP 105), by the newest transform between the two.
 
-    Odometry drifts, and a point of its frame is another place after a while; localisation tells on tf where that frame
-    is in ``map`` now.
+    Odometry drifts, so a point of its frame moves over time; localisation publishes on tf the pose of that frame in
+    ``map``.
 
     Args:
-        ros: the graph; listens to its tf from now on.
-        name: of the frame.
+        ros: the graph; its tf is subscribed to from now on.
+        name: name of the frame.
 
     Raises:
         CapabilityMissing: the graph has no tf.
@@ -31,14 +31,14 @@ class DrivingFrame:
         ros.tf_listen()
 
     def placed(self, odometry: Odometry) -> Odometry | None:
-        """The same with the pose in this frame; None while localisation does not tell where that is."""
+        """Return the odometry with the pose in this frame; None while the transform is unknown."""
         header = odometry.sample.message.header
         try:
             transform = self._ros.tf_lookup(self.name, header.frame_id)
         except TransformUnavailable:
             return None
         told = to_seconds(header.stamp)
-        # The robot stamps both: its clock may be wrong, but it is one.
+        # Both stamps are from the robot's clock, which may be wrong but is the same for both.
         if told and transform.stamp and told - transform.stamp > OUTDATED:
             return None
         position = transform.apply(odometry.position)

@@ -1,6 +1,6 @@
-"""Journeys: maneuvers towards places and headings of the odometry frame, put together of lines and turns.
+"""Journeys: maneuvers towards points and headings of the odometry frame, composed of lines and turns.
 
-Their goals are absolute, so after a rest they simply go on from wherever the robot is.
+Their goals are absolute, so after a rest they continue from wherever the robot is.
 """
 
 import math
@@ -17,14 +17,14 @@ from jacaros.artifacts.robots.control import (
 from jacaros.artifacts.robots.maneuver import PERIOD, Maneuver, Straight, Turn
 
 ARRIVED = 0.015
-"""`DriveTo` is at its point within so many metres."""
+"""Metres within which `DriveTo` is at its point."""
 
 AIMED = math.radians(2.0)
-"""Within so many radians `DriveTo` corrects its heading on the way, instead of turning first."""
+"""Radians within which `DriveTo` corrects its heading while driving instead of turning first."""
 
 
 class TurnTo:
-    """Turn the short way round to an absolute heading; after a rest, from wherever the robot looks."""
+    """Turn the short way round to an absolute heading; after a rest, from the robot's present heading."""
 
     activity = "turning"
     period = PERIOD
@@ -95,19 +95,19 @@ class DriveTo:
         return self._driven + (self._part.covered if isinstance(self._part, Straight) else 0.0)
 
     def seconds(self, limits: Limits) -> float:
-        """Half a turn and the straight way."""
+        """Half a turn and the straight line."""
         return Straight(self._way).seconds(limits) + Turn(math.pi).seconds(limits)
 
     def progress(self, pose: Pose) -> float:
-        """Of the present part; 0 between two parts."""
+        """That of the present part; 0 between two parts."""
         return 0.0 if self._part is None else self._part.progress(pose)
 
     def begin(self, pose: Pose) -> None:
-        """Measure the way."""
+        """Measure the distance."""
         self._way = distance(pose, self._goal)
 
     def command(self, pose: Pose, before: Velocity, limits: Limits, period: float) -> Velocity | None:
-        """The command of the present part; a part at its end makes way for the next."""
+        """Return the command of the present part; when a part ends, the next begins."""
         if self._part is None:
             return self._next_part(pose, limits, period)
         command = self._part.command(pose, before, limits, period)
@@ -117,7 +117,7 @@ class DriveTo:
         return command
 
     def hold(self, pose: Pose) -> Velocity:
-        """Stand: any way to drive would begin with a turn."""
+        """Stand still: any correction would begin with a turn."""
         return STANDSTILL
 
     def _next_part(self, pose: Pose, limits: Limits, period: float) -> Velocity | None:
@@ -125,7 +125,7 @@ class DriveTo:
         if way <= ARRIVED:
             return None
         aside = unwrapped(bearing(pose, self._goal.x, self._goal.y) - pose.heading)
-        # What would end half a centimetre aside is as good as straight ahead.
+        # If the line would end within half a centimetre of the point, the robot counts as facing it.
         aimed = abs(aside) <= AIMED or abs(aside) * way <= 0.005
         self._part = Straight(way, pose.heading + aside) if aimed else Turn(aside)
         self._part.begin(pose)
@@ -136,17 +136,17 @@ class DriveTo:
         self._part = None
 
     def rest(self, pose: Pose) -> None:
-        """Forget the present part; the next one is chosen when the robot goes on."""
+        """Forget the present part; the next one is chosen when the robot continues."""
         if self._part is not None:
             self._part.rest(pose)
             self._finish_part()
 
     def go_on(self, pose: Pose) -> None:
-        """Nothing: the next command starts from where the robot is."""
+        """Do nothing: the next command starts from the robot's present pose."""
 
 
 class Sequence:
-    """One maneuver after the other; all have absolute goals, so that after a rest they can be done again."""
+    """Several maneuvers in turn; all have absolute goals, so they can be repeated after a rest."""
 
     period = PERIOD
     needs_odometry = True
@@ -161,7 +161,7 @@ class Sequence:
 
     @property
     def activity(self) -> str:
-        """That of the present part."""
+        """The activity of the present part."""
         return self._part.activity
 
     @property
@@ -170,11 +170,11 @@ class Sequence:
         return self._parts[0].covered
 
     def seconds(self, limits: Limits) -> float:
-        """All parts together."""
+        """The sum of all parts."""
         return sum(part.seconds(limits) for part in self._parts)
 
     def progress(self, pose: Pose) -> float:
-        """Of the present part."""
+        """That of the present part."""
         return self._part.progress(pose)
 
     def begin(self, pose: Pose) -> None:
@@ -182,7 +182,7 @@ class Sequence:
         self._part.begin(pose)
 
     def command(self, pose: Pose, before: Velocity, limits: Limits, period: float) -> Velocity | None:
-        """The command of the present part; None after the last."""
+        """Return the command of the present part; None after the last."""
         command = self._part.command(pose, before, limits, period)
         if command is None and self._index + 1 < len(self._parts):
             self._index += 1
@@ -191,7 +191,7 @@ class Sequence:
         return command
 
     def hold(self, pose: Pose) -> Velocity:
-        """As the last part."""
+        """As the last part does."""
         return self._part.hold(pose)
 
     def rest(self, pose: Pose) -> None:
@@ -199,7 +199,7 @@ class Sequence:
         self._part.rest(pose)
 
     def go_on(self, pose: Pose) -> None:
-        """Begin with the first part again: a part that is done already is over at once."""
+        """Begin with the first part again: a part that is already done ends immediately."""
         self._index = 0
         self._part.go_on(pose)
 

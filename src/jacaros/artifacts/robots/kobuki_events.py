@@ -1,4 +1,4 @@
-"""``ArtBumper`` and ``ArtCliff``: the events of a Kobuki base (TurtleBot 2)."""
+"""``ArtBumper`` and ``ArtCliff``: the bumper and cliff events of a Kobuki base (TurtleBot 2)."""
 
 from typing import ClassVar
 
@@ -13,7 +13,7 @@ SIDES: tuple[str, ...] = ("left", "center", "right")
 
 
 class KobukiEvents(RosArtifact):
-    """Three sensors that send an event when one of them changes; the state 1 is the one to react to."""
+    """Three sensors that publish an event when they change; state 1 is signalled."""
 
     known_options: ClassVar = {"topic": text}
     event_topic: ClassVar[str]
@@ -23,7 +23,7 @@ class KobukiEvents(RosArtifact):
     states: ClassVar[tuple[str, str]]
 
     def open(self) -> None:
-        """Define the property of each side and listen."""
+        """Define the property of each side and subscribe."""
         self._shown = dict.fromkeys(SIDES, self.states[0])
         for side in SIDES:
             self.define_property(self.property_name, Atom(side), Atom(self.states[0]))
@@ -42,7 +42,7 @@ class KobukiEvents(RosArtifact):
 
     @internal_operation
     def show_event(self, side: str, state: str) -> None:
-        """Show the new state of a side, and signal the one to react to."""
+        """Show the new state of a side, and signal state 1."""
         if self._shown[side] != state:
             self.remove_property(self.property_name, Atom(side), Atom(self._shown[side]))
             self.define_property(self.property_name, Atom(side), Atom(state))
@@ -52,7 +52,7 @@ class KobukiEvents(RosArtifact):
 
 
 class ArtBumper(KobukiEvents):
-    """Shows the bumpers of a Kobuki by ``/mobile_base/events/bumper`` (``kobuki_msgs/msg/BumperEvent``).
+    """Shows the bumpers of a Kobuki from ``/mobile_base/events/bumper`` (``kobuki_msgs/msg/BumperEvent``).
 
     Options:
         topic(T): another topic.
@@ -74,21 +74,22 @@ class ArtBumper(KobukiEvents):
 
     @operation(name="getCurrentBumper")
     def get_current_bumper(self) -> None:
-        """Signal ``tick_Bumper``; the properties are current at any time."""
+        """Signal ``tick_Bumper``; the properties are always current."""
         self.signal("tick_Bumper")
 
 
 class ArtCliff(KobukiEvents):
-    """Shows the cliff sensors of a Kobuki by ``/mobile_base/events/cliff`` (``kobuki_msgs/msg/CliffEvent``).
+    """Shows the cliff sensors of a Kobuki from ``/mobile_base/events/cliff`` (``kobuki_msgs/msg/CliffEvent``).
 
     Options:
         topic(T): another topic.
 
     Properties:
-        cliff(Side, State): one for each side, ``left``, ``center`` and ``right``; the state is ``floor`` or ``cliff``.
+        cliff(Side, State): one for each side, ``left``, ``center`` and ``right``; the state is ``floor`` or
+            ``cliff``.
 
     Signals:
-        tick_Cliff_LEFT, tick_Cliff_CENTER, tick_Cliff_RIGHT: that sensor sees no floor.
+        tick_Cliff_LEFT, tick_Cliff_CENTER, tick_Cliff_RIGHT: that sensor no longer detects the floor.
         tick_Cliff: `getCurrentCliff` was called.
     """
 
@@ -100,5 +101,5 @@ class ArtCliff(KobukiEvents):
 
     @operation(name="getCurrentCliff")
     def get_current_cliff(self) -> None:
-        """Signal ``tick_Cliff``; the properties are current at any time."""
+        """Signal ``tick_Cliff``; the properties are always current."""
         self.signal("tick_Cliff")

@@ -14,23 +14,24 @@ from jacaros.ros.backend import Sample
 from jacaros.ros.qos import SENSOR_DATA
 
 SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)
-"""Where in the scan the ranges are sampled: from its first beam to its last."""
+"""Positions of the sampled ranges in the scan: from its first beam to its last."""
 
 
 class ArtBaseScan(RosArtifact):
     """Shows five ranges of ``/scan``, evenly spread from the first beam to the last.
 
-    The number of beams may be any.  A beam without an echo (NaN, infinite, or beyond the sensor's range) has
-    the sensor's greatest range, one whose echo is too near to be measured (minus infinity, REP 117) the least.
+    The number of beams does not matter. A beam without an echo (NaN, infinite, or beyond the sensor's range) has the
+    sensor's maximum range; a beam whose echo is too close to measure (minus infinity, REP 117) has its minimum range.
 
     Options:
         mode, rate, dead_band, latest_only, expire: see `ReadingPolicy`.
         topic(T): another topic, such as ``base_scan``.
-        max(R): range of a beam without an echo, in metres, and greatest range shown.
-        frame(F): the only frame in which scans are believed; that of the first scan by default.
+        max(R): range of a beam without an echo, in metres, and the maximum range shown.
+        frame(F): the only frame in which scans are accepted; default: that of the first scan.
 
     Properties:
-        laserrange(R0, R25, R50, R75, R100): metres; all 0 before the first scan.  With `expire` it is not there then.
+        laserrange(R0, R25, R50, R75, R100): metres; all 0 before the first scan. With `expire` the property does not
+            exist then.
     """
 
     known_options: ClassVar = {**READING_OPTIONS, "topic": text, "max": positive, "frame": text}
@@ -38,7 +39,7 @@ class ArtBaseScan(RosArtifact):
     _ranges: Reading
 
     def open(self) -> None:
-        """Define the property and listen."""
+        """Define the property and subscribe."""
         topic = str(self.options.get("topic", "scan"))
         policy = ReadingPolicy.from_options(self.options)
         self._ranges = self.reading("laserrange", policy, *[0] * len(SHARES), topic=topic)
@@ -54,7 +55,7 @@ class ArtBaseScan(RosArtifact):
 
     @operation(name="getCurrentBaseScan")
     async def get_current_base_scan(self) -> None:
-        """Give the property the newest ranges; ``no_scan(5)`` when there is none for 5 s."""
+        """Update the property to the newest ranges; fails with ``no_scan(5)`` if none arrive for 5 s."""
         await self.refresh("laserrange", self._ranges, "no_scan")
 
     @operation(name="getCurrentBaseScan")
@@ -65,18 +66,19 @@ class ArtBaseScan(RosArtifact):
 
 
 class ArtScan(ArtBaseScan):
-    """The same under the name that the thesis's architecture chapter uses."""
+    """`ArtBaseScan` under its name in the thesis's chapter on architecture."""
 
 
 def sampled(ranges: Sequence[float], longest: float, shortest: float = 0.0) -> tuple[float, ...]:
-    """Five ranges, evenly spread over the scan; what is no range becomes *longest*, what is too near *shortest*."""
+    """Return five ranges, evenly spread over the scan; an invalid range becomes *longest*, one that is too close
+    *shortest*."""
     least = shortest if 0.0 <= shortest < longest else 0.0
     return tuple([_echo(float(ranges[place]), longest, least) for place in _places(len(ranges))])
 
 
 @lru_cache(16)
 def _places(beams: int) -> tuple[int, ...]:
-    """Which beams of so many are sampled; the others are never touched."""
+    """Return which beams are sampled; the others are never read."""
     return tuple(round(share * (beams - 1)) for share in SHARES)
 
 

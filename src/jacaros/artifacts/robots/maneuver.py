@@ -1,8 +1,8 @@
-"""Maneuvers: what one motion operation has to do, advanced pose by pose, without time or middleware.
+"""Maneuvers: the task of one motion operation, advanced pose by pose, without time or middleware.
 
-A maneuver begins at a pose, gives a command for every later pose, and None where it is at its end.  It can
-rest (the robot stands, the agent suspended it) and go on: on the same line when nobody moved the robot in
-between, otherwise from where the robot is, with the distance or angle that remained.
+A maneuver begins at a pose, returns a command for every later pose, and None at its end. It can rest (the robot
+stands because its agent suspended it) and continue: on the same line if the robot was not moved in between, otherwise
+from the robot's pose with the remaining distance or angle.
 """
 
 import math
@@ -24,21 +24,21 @@ from jacaros.artifacts.robots.control import (
 )
 
 DISPLACED_DISTANCE = 0.02
-"""A resting robot that was moved farther than so many metres goes on from where it is."""
+"""Metres by which a resting robot must be moved to continue from its new position."""
 
 DISPLACED_ANGLE = math.radians(2.0)
-"""The same for a robot that was turned, in radians."""
+"""Radians by which a resting robot must be turned to continue from its new heading."""
 
 PERIOD = 0.05
 """Seconds between two commands of a closed loop."""
 
 
 class Maneuver(Protocol):
-    """One thing to do with the wheels.
+    """A task of the wheels.
 
     Attributes:
         period: seconds between two commands.
-        needs_odometry: False for what is done by time alone; its poses may be made up.
+        needs_odometry: False for open-loop motions; their poses may be made up.
     """
 
     period: float
@@ -46,36 +46,36 @@ class Maneuver(Protocol):
 
     @property
     def activity(self) -> str:
-        """``driving`` or ``turning``: what the robot does now."""
+        """``driving`` or ``turning``: the present activity."""
 
     @property
     def covered(self) -> float:
         """How much is done: metres for drives, degrees for turns."""
 
     def seconds(self, limits: Limits) -> float:
-        """How long it takes when nothing is in the way; known after `begin`."""
+        """Return how many seconds it takes without obstacles; known after `begin`."""
 
     def progress(self, pose: Pose) -> float:
-        """A figure that falls while the maneuver gets on: metres or radians still to do."""
+        """Return a number that decreases as the maneuver makes progress: remaining metres or radians."""
 
     def begin(self, pose: Pose) -> None:
         """Start at *pose*."""
 
     def command(self, pose: Pose, before: Velocity, limits: Limits, period: float) -> Velocity | None:
-        """The next command, seen from *pose* after the command *before*; None at the end."""
+        """Return the next command for *pose* after the command *before*; None at the end."""
 
     def hold(self, pose: Pose) -> Velocity:
-        """The command that keeps the robot at the end while it settles there."""
+        """Return the command that keeps the robot at the goal while it settles."""
 
     def rest(self, pose: Pose) -> None:
-        """Note where the robot stands, suspended or at an early end; only after `begin`."""
+        """Store the pose of a robot that was suspended or stopped early; only after `begin`."""
 
     def go_on(self, pose: Pose) -> None:
         """Continue at *pose* after `rest`."""
 
 
 class Straight:
-    """Drive a signed length along *heading*, by default the one that the robot has at the beginning."""
+    """Drive a signed length along *heading*, by default the robot's initial heading."""
 
     activity = "driving"
     period = PERIOD
@@ -91,15 +91,15 @@ class Straight:
 
     @property
     def covered(self) -> float:
-        """Metres driven along the line, positive in reverse too."""
+        """Metres driven along the line, also positive in reverse."""
         return abs(self._before + self._along)
 
     def seconds(self, limits: Limits) -> float:
-        """Length over speed, and the ramps."""
+        """Length divided by speed, plus the ramps."""
         return abs(self._length) / limits.speed + 2.0 * limits.speed / limits.acceleration
 
     def progress(self, pose: Pose) -> float:
-        """Metres still to drive."""
+        """Remaining metres."""
         return abs(self._line.remaining(pose))
 
     def begin(self, pose: Pose) -> None:
@@ -115,16 +115,16 @@ class Straight:
         return drive_command(self._line, pose, before, limits, period)
 
     def hold(self, pose: Pose) -> Velocity:
-        """Make up for the last millimetres."""
+        """Correct the last millimetres."""
         return hold_command(self._line.remaining(pose), unwrapped(self._line.start.heading - pose.heading))
 
     def rest(self, pose: Pose) -> None:
-        """Note how much of the line remains."""
+        """Store the rest of the line."""
         self._resting = pose
         self._along = self._line.along(pose)
 
     def go_on(self, pose: Pose) -> None:
-        """Keep the line, or lay the rest of it through *pose* when the robot was moved meanwhile."""
+        """Keep the line, or lay the rest of it through *pose* if the robot was moved meanwhile."""
         if is_displaced(self._resting, pose):
             self._before += self._along
             self._line = Line(pose, self._length - self._before)
@@ -132,7 +132,7 @@ class Straight:
 
 
 class Turn:
-    """Turn on the spot by a signed angle; more than a whole turn is possible."""
+    """Turn on the spot by a signed angle; more than a full turn is possible."""
 
     activity = "turning"
     period = PERIOD
@@ -146,15 +146,15 @@ class Turn:
 
     @property
     def covered(self) -> float:
-        """Degrees turned, positive to both sides."""
+        """Degrees turned, positive in both directions."""
         return math.degrees(abs(self._turned))
 
     def seconds(self, limits: Limits) -> float:
-        """Angle over turn speed, and the ramps."""
+        """Angle divided by turn speed, plus the ramps."""
         return abs(self._angle) / limits.turn_speed + 2.0 * limits.turn_speed / limits.turn_acceleration
 
     def progress(self, pose: Pose) -> float:
-        """Radians still to turn."""
+        """Remaining radians."""
         return abs(self._angle - self._turned - unwrapped(pose.heading - self._heading))
 
     def begin(self, pose: Pose) -> None:
@@ -163,7 +163,7 @@ class Turn:
         self._turned = 0.0
 
     def command(self, pose: Pose, before: Velocity, limits: Limits, period: float) -> Velocity | None:
-        """Turn on, counting the angle over the jump at 180 degrees."""
+        """Continue turning, adding up the angle across the jump at 180 degrees."""
         self._count(pose)
         remaining = self._angle - self._turned
         if abs(remaining) <= ANGLE_TOLERANCE:
@@ -171,7 +171,7 @@ class Turn:
         return turn_command(remaining, before, limits, period)
 
     def hold(self, pose: Pose) -> Velocity:
-        """Make up for the last fractions of a degree."""
+        """Correct the last fractions of a degree."""
         self._count(pose)
         return hold_command(0.0, self._angle - self._turned)
 
@@ -180,18 +180,18 @@ class Turn:
         self._heading = pose.heading
 
     def rest(self, pose: Pose) -> None:
-        """Note the angle turned so far."""
+        """Store the angle turned so far."""
         self._count(pose)
         self._resting = pose
 
     def go_on(self, pose: Pose) -> None:
-        """Turn what remained; what others turned the robot meanwhile does not count."""
+        """Turn the rest; turns by others in between do not count."""
         if is_displaced(self._resting, pose):
             self._heading = pose.heading
 
 
 class Timed:
-    """Command one velocity a number of times, ten times a second: driving by time, blind."""
+    """Repeat one velocity a number of times, ten times a second: open-loop driving."""
 
     period = 0.1
     needs_odometry = False
@@ -209,23 +209,23 @@ class Timed:
 
     @property
     def covered(self) -> float:
-        """Metres from the start, as far as odometry tells."""
+        """Metres from the start, as far as odometry shows."""
         return distance(self._start, self._now)
 
     def seconds(self, limits: Limits) -> float:
-        """A tenth of a second for each command."""
+        """A tenth of a second per command."""
         return self._times * self.period
 
     def progress(self, pose: Pose) -> float:
-        """Commands still to give: time always gets on."""
+        """The number of remaining commands: time always makes progress."""
         return float(self._times - self._given)
 
     def begin(self, pose: Pose) -> None:
-        """Note the start."""
+        """Store the start."""
         self._start = self._now = pose
 
     def command(self, pose: Pose, before: Velocity, limits: Limits, period: float) -> Velocity | None:
-        """The same velocity until the number is given."""
+        """Return the same velocity until the number of commands is reached."""
         self._now = pose
         if self._given >= self._times:
             return None
@@ -233,7 +233,7 @@ class Timed:
         return limits.clip(self._velocity)
 
     def hold(self, pose: Pose) -> Velocity:
-        """Stand."""
+        """Stand still."""
         return STANDSTILL
 
     def rest(self, pose: Pose) -> None:
@@ -245,6 +245,6 @@ class Timed:
 
 
 def is_displaced(resting: Pose, pose: Pose) -> bool:
-    """Whether the robot was moved or turned since it came to rest."""
+    """Return whether the robot was moved or turned while it rested."""
     turned = abs(unwrapped(pose.heading - resting.heading))
     return distance(resting, pose) > DISPLACED_DISTANCE or turned > DISPLACED_ANGLE

@@ -1,6 +1,6 @@
 """One motion operation from its request to its end: the loop around a maneuver.
 
-Every end publishes zero velocity: done, failed, dropped, suspended, odometry lost, artifact disposed.
+Every end publishes zero velocity: success, failure, drop, suspension, loss of odometry, disposal of the artifact.
 """
 
 import math
@@ -17,31 +17,32 @@ from jacaros.env.resources.resource import WHEELS, Use
 from jacaros.env.values import Atom, Structure
 
 STALE = 0.5
-"""Seconds after which the newest odometry is too old to drive by; the robot stands until more comes."""
+"""Seconds after which the newest odometry is too old to drive by; the robot stops until more arrives."""
 
 SETTLED = 3
-"""So many odometry messages in a row must say "at the goal" before a motion is done."""
+"""Number of consecutive odometry messages at the goal that end a motion."""
 
 STUCK = 2.0
-"""A motion that is commanded but does not get on for so many seconds is blocked."""
+"""Seconds without progress after which a commanded motion is blocked."""
 
 LEAST_PROGRESS = 0.01
-"""Metres or radians that count as getting on."""
+"""Metres or radians that count as progress."""
 
 FRESH = 2
-"""Odometry messages after a gap until a motion continues: the first one may be from before."""
+"""Odometry messages that must arrive after a gap before a motion continues: the first one may predate it."""
 
 LEAP = 1.0
-"""Metres that odometry may move during a gap; more means that it was reset, and places in it have another meaning."""
+"""Metres that odometry may move during a gap. More means that it was reset, so its coordinates have changed their
+meaning."""
 
 LONGEST_BRAKING = 3.0
-"""Seconds after which a robot that should stand is taken for standing: its twist may only be noise."""
+"""Seconds after which a braking robot counts as standing: its twist may only be noise."""
 
 UNKNOWN_POSE = Pose(0.0, 0.0, 0.0)
 
 
 class MotionFailed(Exception):
-    """A motion came to an early end.
+    """Raised when a motion ends early.
 
     Attributes:
         functor, argument: the failure reason, such as ``aborted(0.42)``.
@@ -59,7 +60,7 @@ class MotionSettings:
     Attributes:
         limits: cruise speeds and accelerations of closed loops.
         odometry_timeout: seconds without odometry until a motion fails.
-        timeout: seconds of driving until a motion fails; None: four times what it needs, and half a minute.
+        timeout: seconds of driving until a motion fails; None: four times the time needed plus 30 s.
     """
 
     limits: Limits
@@ -68,7 +69,7 @@ class MotionSettings:
 
 
 class Wheels(Protocol):
-    """The artifact that drives, as a motion sees it."""
+    """The artifact that drives, as used by a motion."""
 
     clock: Any
     motions: Motions
@@ -84,24 +85,24 @@ class Wheels(Protocol):
         """Publish a velocity command."""
 
     def on_interruption(self, callback: Callable[[], None]) -> Callable[[], None]:
-        """Call *callback* when a guard has stopped the robot; the result ends that."""
+        """Call *callback* when a guard has stopped the robot. Return a function that removes it."""
 
     def interrupted(self, why: Structure | Atom) -> None:
         """Signal that the robot was not watched for a while."""
 
     def show(self, motion: "Motion", state: str | None) -> None:
-        """Tell observers what the motion does; None: it is over."""
+        """Show the state of the motion to observers; None: it has ended."""
 
     async def step(self, awaitable: Any) -> Any:
-        """Leave the artifact while waiting."""
+        """Release the artifact while waiting."""
 
 
 class Motion:
-    """The life of one motion operation.
+    """Run one motion operation.
 
     Args:
-        wheels: the artifact whose operation it is.
-        maneuver: what to do.
+        wheels: the artifact of the operation.
+        maneuver: the task.
     """
 
     def __init__(self, wheels: Wheels, maneuver: Maneuver) -> None:
@@ -123,13 +124,13 @@ class Motion:
         self._progress = Progress()
 
     def halt(self) -> None:
-        """Command zero velocity here and now, if it is this motion that drives."""
+        """Command zero velocity immediately if this motion is driving."""
         self._before = STANDSTILL
         if self._holding.holds:
             self._wheels.command(STANDSTILL)
 
     def end(self) -> None:
-        """Stop, and let the next motion have the robot; again is harmless."""
+        """Stop, and let the next motion drive; calling it again has no effect."""
         self.halt()
         self._wheels.motions.claims.pop(self._claim, None)
         if self._claims_itself:
@@ -146,7 +147,7 @@ class Motion:
         unwatch = self._holding.watch(self._claim.wake)
         ignore = self._wheels.on_interruption(lambda: self._claim.interrupt(GUARD_TRIPPED))
         try:
-            await self._enter_lane()
+            await self._claim_wheels()
             await self._drive()
         finally:
             forget()
@@ -172,14 +173,14 @@ class Motion:
             ended = await self._follow()
 
     async def _get_ready(self) -> None:
-        """Have the robot to ourselves and standing: it may still roll from before."""
+        """Claim the robot and wait until it stands: it may still roll from an earlier motion."""
         ready = False
         while not ready:
-            await self._enter_lane()
+            await self._claim_wheels()
             ready = await self._stand()
 
-    async def _enter_lane(self) -> None:
-        """Have the wheels; a motion that is suspended meanwhile is not among those that `Motions.abort` ends."""
+    async def _claim_wheels(self) -> None:
+        """Claim the wheels. A motion that is suspended meanwhile is not ended by `Motions.abort`."""
         execution, claims = self._execution, self._wheels.motions.claims
         self._holding.enter()
         claims[self._claim] = None
@@ -196,7 +197,7 @@ class Motion:
         claims[self._claim] = None
 
     async def _stand(self) -> bool:
-        """Bring a robot that receives commands to a stand; False when the agent suspends the motion meanwhile."""
+        """Bring a robot that receives commands to a stop. Return False if the agent suspends the motion meanwhile."""
         braking = 0.0
         blind = not self._maneuver.needs_odometry
         pauses = self._wheels.matching.pauses(always=blind)
@@ -212,7 +213,7 @@ class Motion:
         return False
 
     async def _follow(self) -> bool:
-        """Follow the maneuver: True at its end, False when the agent suspended it and the robot stands."""
+        """Follow the maneuver. Return True at its end, False if the agent suspended it and the robot stands."""
         maneuver, odometer = self._maneuver, self._wheels.odometer
         blind = not maneuver.needs_odometry
         settled = 0
@@ -242,7 +243,7 @@ class Motion:
         return True
 
     async def _command(self, velocity: Velocity, seconds: float | None = None) -> None:
-        """Give one command and wait for the next moment to give one; None: the period of the maneuver."""
+        """Send one command and wait until the next is due; None: the period of the maneuver."""
         period = self._maneuver.period if seconds is None else seconds
         self._wheels.show(self, self._maneuver.activity)
         self._wheels.command(velocity)
@@ -251,9 +252,9 @@ class Motion:
         self._active += period
 
     def _until_due(self, period: float) -> float:
-        """Seconds until the next command, counted from the moment when this one was due.
+        """Return the seconds until the next command, counted from the time at which this one was due.
 
-        So a turn that comes late makes a motion by time no longer.  A closed loop has nothing to make up for.
+        A late turn of the loop therefore does not extend an open-loop motion. A closed loop does not catch up.
         """
         now: float = self._wheels.clock.elapsed
         self._due += period
@@ -269,15 +270,15 @@ class Motion:
             raise MotionFailed("the motion was aborted", "aborted", self._maneuver.covered)
 
     async def _brake(self) -> bool:
-        """Stand before somebody else may drive: braking is a part of the way, and counts.
+        """Stop before another motion may drive: braking is part of the motion, and counts.
 
-        False when the agent resumes the motion before the robot stands.
+        Return False if the agent resumes the motion before the robot stands.
         """
         self._wheels.show(self, "paused")
         odometer = self._wheels.odometer
         seen, braking = odometer.count, 0.0
         while self._execution.paused:
-            # The newest message may be from before the command that moved the robot.
+            # The newest message may predate the command that moved the robot.
             if (self._stands() and odometer.count >= seen + 2) or braking >= LONGEST_BRAKING:
                 return True
             self._wheels.command(STANDSTILL)
@@ -294,7 +295,7 @@ class Motion:
         return newest is None or newest.standing
 
     def _heed_gap(self) -> None:
-        """After a gap: tell the agent, and continue by fresh odometry only; a motion by time alone fails.
+        """After a gap, signal it, and continue only with new odometry; an open-loop motion fails.
 
         Raises:
             MotionFailed: ``interrupted``.
@@ -313,7 +314,7 @@ class Motion:
         self._fresh = self._wheels.odometer.count + FRESH
         if self._begun and not self._maneuver.needs_odometry:
             raise MotionFailed(
-                f"the motion was interrupted ({why}), and goes by time alone",
+                f"the open-loop motion was interrupted ({why})",
                 "interrupted",
                 self._maneuver.covered,
             )
@@ -323,13 +324,13 @@ class Motion:
         return Structure("no_odometry", (round(age or 0.0, 3),))
 
     def _sees(self) -> bool:
-        """Whether the newest odometry is of now."""
+        """Return whether the newest odometry is current."""
         age = self._wheels.odometer.age(self._wheels.clock.now())
-        # By a clock that was set back the newest odometry is from the future: then too it tells nothing of now.
+        # If the clock was set back, the newest odometry is from the future and equally out of date.
         return age is not None and abs(age) <= STALE
 
     def _has_odometry(self) -> bool:
-        """Whether there is odometry to drive by; fails when there was none for too long."""
+        """Return whether there is odometry to drive by. Fail if it was missing for too long."""
         odometer = self._wheels.odometer
         if odometer.trusted and odometer.count >= self._fresh and self._sees():
             self._stay_in(odometer.frame)
@@ -346,21 +347,21 @@ class Motion:
         return False
 
     def _check_leap(self) -> None:
-        """Fail when odometry was reset during a gap: the robot was started anew, and nobody knows where the goal is."""
+        """Fail if odometry was reset during a gap: the robot was restarted, so the goal's position is unknown."""
         left_at, self._left_at = self._left_at, None
         if left_at is not None and distance(left_at, self._pose()) > LEAP:
             raise MotionFailed("odometry was reset", "interrupted", self._maneuver.covered)
 
     def _stay_in(self, frame: str) -> None:
-        """Fail when poses are given in another frame than at the beginning: the goal is a place in the first one."""
+        """Fail if poses arrive in another frame than at the beginning: the goal is a point in the first one."""
         self._frame = self._frame or frame
         if frame != self._frame:
             since = self._active if self._blind_since is None else self._blind_since
-            text = f"odometry is given in the frame {frame} now, no more in {self._frame}"
+            text = f"odometry changed its frame from {self._frame} to {frame}"
             raise MotionFailed(text, "no_odometry", round(self._active - since, 1))
 
     def _check(self, command: Velocity | None) -> None:
-        """Fail when the motion takes too long or does not get on."""
+        """Fail if the motion takes too long or makes no progress."""
         settings, maneuver = self._wheels.settings, self._maneuver
         allowed = settings.timeout or 30.0 + 4.0 * maneuver.seconds(settings.limits)
         if self._active >= allowed:
@@ -368,34 +369,35 @@ class Motion:
         if command is None or command == STANDSTILL:
             self._progress.reset()
         elif self._progress.is_stuck(maneuver.progress(self._pose()), self._active, self._patience()):
-            raise MotionFailed("the robot does not get on", "blocked", maneuver.covered)
+            raise MotionFailed("the robot is stuck", "blocked", maneuver.covered)
 
     def _patience(self) -> float:
-        """Seconds without progress that are too long; slow cruising needs more of them."""
+        """Return the seconds without progress that are too long; slow cruising needs more."""
         limits = self._wheels.settings.limits
         return max(STUCK, 4.0 * LEAST_PROGRESS / min(limits.speed, limits.turn_speed))
 
 
 def _lack(odometer: Odometer) -> str:
     if odometer.lacking == NO_TRANSFORM:
-        return "tf did not tell where odometry's frame is in the frame to drive in; is the robot localised?"
+        return "no transform from the frame of odometry to the driving frame; is the robot localised?"
     bad = f" ({odometer.faults} messages were bad)" if odometer.faults else ""
-    return f"no odometry came{bad}"
+    return f"no odometry{bad}"
 
 
 class Progress:
-    """Notices a motion that does not get on."""
+    """Detects a motion that makes no progress."""
 
     def __init__(self) -> None:
         self.reset()
 
     def reset(self) -> None:
-        """Begin anew: the robot is not meant to move, or moves to another end."""
+        """Reset: the robot is not supposed to move, or has a new goal."""
         self._least = math.inf
         self._since = 0.0
 
     def is_stuck(self, remaining: float, now: float, patience: float) -> bool:
-        """Take note of what remains at *now* (seconds of driving); True when it fell too little for too long."""
+        """Record the remaining distance at *now* (seconds of driving). Return True if it decreased too little for too
+        long."""
         if remaining < self._least - LEAST_PROGRESS:
             self._least, self._since = remaining, now
         return now - self._since >= patience

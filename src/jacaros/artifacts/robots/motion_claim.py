@@ -1,6 +1,6 @@
-"""The motions of a robot, to abort them, and to wake the one that waits or drives.
+"""The motions of a robot: to abort them, and to wake the one that waits or drives.
 
-Which of them drives is decided by the arbiter of resources (`jacaros.env.resources.arbiter`): all use ``wheels``.
+The arbiter of resources (`jacaros.env.resources.arbiter`) decides which of them drives: all use ``wheels``.
 """
 
 import asyncio
@@ -12,22 +12,22 @@ from jacaros.env.values import Atom, Structure
 from jacaros.ros.backend import Backend
 
 GAP = 0.5
-"""Seconds by which a motion's next moment may be late, or the time of day be set; more is a gap: for longer than a base
-waits for commands nobody watched the robot."""
+"""Seconds by which a motion may be late, or the clock be set. More is a gap: the robot was not watched for longer
+than a base waits for commands."""
 
 GUARD_TRIPPED = Atom("guard_tripped")
-"""The gap of a robot that a guard has stopped."""
+"""Reason of the gap of a robot that a guard has stopped."""
 
 
 class Claim:
-    """One motion, as long as it waits or drives.
+    """One motion, from its request to its end.
 
     Args:
-        stop: commands zero velocity at once.
+        stop: commands zero velocity immediately.
 
     Attributes:
-        aborted: somebody wants this motion to end.
-        gap: why nobody has watched the robot for a while, for the motion to take; None otherwise.
+        aborted: the motion was aborted.
+        gap: why the robot was not watched for a while; the motion clears it. None otherwise.
     """
 
     def __init__(self, stop: Callable[[], None]) -> None:
@@ -38,26 +38,26 @@ class Claim:
         self._woken = False
 
     def abort(self) -> None:
-        """End the motion: the robot is stopped here and now, the operation fails as soon as it runs."""
+        """Abort the motion: stop the robot immediately; the operation fails when it runs next."""
         self.aborted = True
         self.stop()
         self.wake()
 
     def interrupt(self, why: Structure | Atom) -> None:
-        """Stop the robot here and now; the motion decides whether it continues."""
+        """Stop the robot immediately; the motion decides whether it continues."""
         self.gap = why
         self.stop()
         self.wake()
 
     def wake(self) -> None:
-        """End the present wait, or the next one if there is none."""
+        """End the present wait, or the next one if none exists."""
         if self._waiting is None:
             self._woken = True
         elif not self._waiting.done():
             self._waiting.set_result(None)
 
     async def wait(self, clock: Clock, seconds: float | None) -> None:
-        """Wait until somebody wakes this motion, or the time is over."""
+        """Wait until this motion is woken or the time is over."""
         if self._woken:
             self._woken = False
             return
@@ -74,7 +74,7 @@ class Claim:
             self._look_for_gap(clock.elapsed - began - seconds, clock.now() - clock.elapsed - set_to)
 
     def _look_for_gap(self, late: float, moved: float) -> None:
-        """Notice that the process was frozen or stuck, or that the clock was set."""
+        """Detect that the process was frozen or stuck, or that the clock was set."""
         if late > GAP:
             self.gap = Structure("delayed", (round(late, 3),))
         elif abs(moved) > GAP:
@@ -85,11 +85,11 @@ class Claim:
 
 
 class Motions:
-    """The motions of one robot that drive or wait to drive, whichever artifact they belong to.
+    """The motions of one robot that drive or wait to drive, of all artifacts.
 
     Attributes:
-        stops: how often the robot was told to stop, for a command that waits to be sent and must not follow.
-        claims: of those that are neither suspended nor over.
+        stops: how often the robot was stopped; a command that is still waiting to be sent must not follow.
+        claims: motions that are neither suspended nor finished.
     """
 
     def __init__(self) -> None:
@@ -97,7 +97,7 @@ class Motions:
         self.claims: dict[Claim, None] = {}
 
     def abort(self) -> None:
-        """Abort the motion that drives and all that wait; those that are suspended are not concerned."""
+        """Abort the motion that drives and all that wait, except suspended ones."""
         self.stops += 1
         for claim in list(self.claims):
             claim.abort()
@@ -107,5 +107,5 @@ _motions: WeakKeyDictionary[Backend, dict[str, Motions]] = WeakKeyDictionary()
 
 
 def motions_of(backend: Backend, robot: str) -> Motions:
-    """The motions of the robot with the topic prefix *robot*: always the same for the same backend."""
+    """Return the motions of the robot with the topic prefix *robot*: the same object for the same backend."""
     return _motions.setdefault(backend, {}).setdefault(robot, Motions())

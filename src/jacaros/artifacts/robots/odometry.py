@@ -1,4 +1,4 @@
-"""``ArtOdometry``: where a robot is, by its odometry, told by itself or on demand."""
+"""``ArtOdometry``: the pose of a robot according to odometry, continuously or on demand."""
 
 import math
 from collections.abc import Callable
@@ -26,13 +26,13 @@ STANDING = Velocity(0.02, 0.05)
 
 @dataclass(slots=True)
 class Odometry:
-    """One odometry message; nobody changes it.
+    """One odometry message; immutable.
 
     Attributes:
         position: x, y, z in metres.
         pose: x, y and heading.
-        velocity: ahead and turning.
-        sample: the message it was taken from.
+        velocity: forward and angular.
+        sample: the original message.
     """
 
     position: tuple[float, float, float]
@@ -48,7 +48,7 @@ class Odometry:
 
 
 def read_odometry(sample: Sample) -> Odometry:
-    """Take the fields that matter out of a ``nav_msgs/msg/Odometry``."""
+    """Read the relevant fields of a ``nav_msgs/msg/Odometry``."""
     pose: Any = sample.message.pose.pose
     twist: Any = sample.message.twist.twist
     position = (float(pose.position.x), float(pose.position.y), float(pose.position.z))
@@ -62,11 +62,11 @@ def read_odometry(sample: Sample) -> Odometry:
 
 
 def not_finite(sample: Sample) -> tuple[str, float] | None:
-    """The first number of an odometry message that is NaN or infinite, with its field; None when there is none."""
+    """Return the first NaN or infinite number of an odometry message with its field; None if none exists."""
     pose: Any = sample.message.pose.pose
     twist: Any = sample.message.twist.twist
     p, q = pose.position, pose.orientation
-    # A sum is finite only if all that it is made of is: one test for nearly all messages.
+    # A sum is finite only if all its terms are: one test for nearly all messages.
     if math.isfinite(p.x + p.y + p.z + q.x + q.y + q.z + q.w + twist.linear.x + twist.angular.z):
         return None
     fields = [(f"pose.pose.position.{name}", getattr(p, name)) for name in "xyz"]
@@ -76,23 +76,23 @@ def not_finite(sample: Sample) -> tuple[str, float] | None:
 
 
 class Odometer:
-    """The newest odometry of one robot; what is wrong with a message is noted, and the message not used.
+    """The newest odometry of one robot; bad messages are counted and not used.
 
     Args:
-        faults: where bad messages are noted.
+        faults: counts bad messages.
         clock: measures how late messages are.
-        on_reading: told of every good message.
+        on_reading: called with every good message.
         frame: see `Header`.
-        placed: gives odometry in the frame in which the robot drives, None while that is not known; see
+        placed: converts odometry to the driving frame, None while that is unknown; see
             `jacaros.artifacts.robots.driving_frame`.
 
     Attributes:
         newest: None until the first message.
-        count: good messages so far.
-        trusted: False when the newest message was no odometry at all, or nobody knows where its frame is: where the
-            robot is now is not known.
-        lacking: the failure reason for want of good odometry: ``no_odometry``, or ``no_transform`` while messages come
-            and only the frame is not known.
+        count: number of good messages.
+        trusted: False if the newest message was unusable or its frame has no transform: the robot's present pose is
+            unknown.
+        lacking: the failure reason for missing odometry: ``no_odometry``, or ``no_transform`` if messages arrive and
+            only the frame is unknown.
     """
 
     def __init__(
@@ -114,16 +114,16 @@ class Odometer:
 
     @property
     def faults(self) -> int:
-        """How many messages were bad."""
+        """Number of bad messages."""
         return self._faults.total
 
     @property
     def frame(self) -> str:
-        """The frame of the newest poses; empty while it is not known."""
+        """The frame of the newest poses; empty while it is unknown."""
         return self._header.frame
 
     def take(self, sample: Sample) -> None:
-        """Take a message; the callback of the subscription."""
+        """Handle a message; the callback of the subscription."""
         wrong = not_finite(sample)
         if wrong is not None:
             self.trusted, self.lacking = False, NO_ODOMETRY
@@ -144,26 +144,27 @@ class Odometer:
             self._on_reading(self.newest)
 
     def age(self, now: float) -> float | None:
-        """Seconds since the newest message should have come; None when none did."""
+        """Return the age of the newest message in seconds, corrected by its delay; None before the first."""
         return None if self.newest is None else now - self.newest.sample.stamp + self._header.late
 
 
 class ArtOdometry(RosArtifact):
     """Shows the odometry of ``/odom``.
 
-    A robot's name stands before the topic only, as in the thesis.  No signal goes with an update: the
-    property's own event is the one event of a message.  Operations that ask for odometry wait for the first
-    message and fail with ``no_odometry(5)`` when none comes in 5 s.
+    The robot's name is the prefix of the topic only, as in the thesis. No signal is sent with an update: the event of
+    the property is the only event of a message. Operations that ask for odometry wait for the first message and fail
+    with ``no_odometry(5)`` if none arrives within 5 s.
 
     Options:
         mode(verbose) or mode(on_demand), rate(Hz), dead_band(D), latest_only(false), expire(S): see `ReadingPolicy`;
-            the fields of a dead band are those of each property.
+            a dead band has one number for each field of the property.
         topic(T): another topic.
-        frame(F): the only frame in which odometry is believed; that of the first message by default.
+        frame(F): the only frame in which odometry is accepted; default: that of the first message.
 
     Properties:
-        odom(X, Y, Z): position in metres; 0, 0, 0 before the first message.  With `expire` it is not there then.
-        pose(X, Y, Heading): metres and degrees in (-180, 180].
+        odom(X, Y, Z): position in metres; 0, 0, 0 before the first message. With `expire` the property does not exist
+            then.
+        pose(X, Y, Heading): metres, and degrees in (-180, 180].
     """
 
     known_options: ClassVar = {**READING_OPTIONS, "topic": text, "frame": text}
@@ -173,7 +174,7 @@ class ArtOdometry(RosArtifact):
     _pose: Reading
 
     def open(self) -> None:
-        """Define the properties and listen."""
+        """Define the properties and subscribe."""
         policy = ReadingPolicy.from_options(self.options, self.on_demand)
         self._position = self.reading("odom", policy, 0, 0, 0)
         self._pose = self.reading("pose", policy, 0, 0, 0)
@@ -187,7 +188,7 @@ class ArtOdometry(RosArtifact):
 
     @operation(name="getCurrentOdom")
     async def get_current_odom(self) -> None:
-        """Give the properties the newest values, whatever mode, rate and dead band say."""
+        """Update the properties to the newest values, whatever mode, rate and dead band are."""
         await self.refresh("odom", self._position, NO_ODOMETRY)
         await self.refresh("pose", self._pose, NO_ODOMETRY)
 
@@ -207,7 +208,7 @@ class ArtOdometry(RosArtifact):
 
 
 class ArtOdometryOnDemand(ArtOdometry):
-    """Shows odometry only when an agent asks by ``getCurrentOdom``."""
+    """Shows odometry only when an agent requests it with ``getCurrentOdom``."""
 
     on_demand = True
 

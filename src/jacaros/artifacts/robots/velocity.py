@@ -1,7 +1,7 @@
-"""Artifacts that drive wheels: ``ArtCmdVel`` and its relatives of the thesis, and what they share.
+"""Artifacts that drive wheels: ``ArtCmdVel`` and its relatives in the thesis, and their common parent.
 
-They differ in the topic of their commands and in whether they show odometry; their operations are the
-same, and those of one robot exclude each other whatever the artifact.
+They differ in their command topic and in whether they show odometry. Their operations are the same, and those of one
+robot exclude each other, whichever artifact they belong to.
 """
 
 import math
@@ -32,49 +32,49 @@ TWIST = "geometry_msgs/msg/Twist"
 TURTLEBOT = Limits()
 
 BLIND_TURN = Velocity(0.0, 0.5)
-"""How fast `rotateD` turns (rad/s), as in the original system."""
+"""Turn rate of `rotateD` (rad/s), as in the original system."""
 BLIND_TURN_PERIOD = 0.5
-"""Seconds for which it turns by each of its commands."""
+"""Seconds of turning per command of `rotateD`."""
 
 STATES = ("driving", "turning", "waiting", "paused")
-"""What a motion does, the most important first: the property ``moving`` shows one of them."""
+"""States of a motion, by precedence: the property ``moving`` shows one of them."""
 
 
 class WheeledArtifact(RosArtifact):
-    """An artifact whose operations drive a robot by `perform`.
+    """An artifact whose operations drive a robot with `perform`.
 
     Options:
-        speed(V), turn_speed(D): cruise speeds, metres and degrees per second (1 m/s and 57 degrees/s as in
-            the thesis, cut to what the robot can do).  A number among the arguments is the speed too, as in
+        speed(V), turn_speed(D): cruise speeds, metres and degrees per second (1 m/s and 57 degrees/s as in the
+            thesis, limited to what the robot can do). A number among the arguments is the speed too, as in
             ``makeArtifact("wheels", "ArtVelocity", [0.4], Id)``.
-        max_speed(V), max_turn_speed(D), acceleration(A), turn_acceleration(D): what the robot can do; a
-            TurtleBot by default.
-        timeout(S): longest time of driving for one motion; four times the time needed plus half a minute by
-            default.
+        max_speed(V), max_turn_speed(D), acceleration(A), turn_acceleration(D): limits of the robot; default: a
+            TurtleBot.
+        timeout(S): maximum driving time of a motion; default: four times the time needed plus 30 s.
         odometry_timeout(S): how long a motion stands and waits for odometry before it fails (5 s).
         command_topic(T), odometry_topic(T): other topics.
-        match_timeout(S): how long a motion stands and waits until the robot's base is connected to the command
-            topic (3 s); without that its first commands would be lost.
-        unmatched(W): what happens when no base is connected by then: ``warn`` (the default; the motion begins) or
+        match_timeout(S): how long a motion stands and waits until the robot's base subscribes to the command topic (3
+            s); otherwise its first commands would be lost.
+        unmatched(W): effect of a base that has not subscribed by then: ``warn`` (default; the motion begins) or
             ``fail``, with ``unmatched(Topic)``.
-        odometry_frame(F): the only frame in which odometry is believed; that of the first message by default.
-        frame(F): the frame of all poses, such as ``map``: motions follow odometry as localisation puts it right on tf,
-            so that wheels that slip do not add up; odometry's own frame by default.
+        odometry_frame(F): the only frame in which odometry is accepted; default: that of the first message.
+        frame(F): the frame of all poses, such as ``map``: motions use odometry corrected by localisation on tf, so
+            that errors of slipping wheels do not add up; default: odometry's own frame.
 
     Properties:
         moving(State): ``stopped``, ``driving``, ``turning``, ``waiting`` or ``paused``.
 
     Signals:
-        motion_interrupted(Why): the robot was not watched for a while and has been stopped.  Why is ``delayed(Seconds)``
-            (the process was frozen or stuck), ``no_odometry(Seconds)``, ``clock_jumped(Seconds)`` or ``guard_tripped``.
+        motion_interrupted(Why): the robot was not watched for a while and has been stopped. Why is
+            ``delayed(Seconds)`` (the process was frozen or stuck), ``no_odometry(Seconds)``,
+            ``clock_jumped(Seconds)`` or ``guard_tripped``.
 
     Attributes:
-        further_uses: what the motions use.
-        motions: those that drive the robot or wait for it; shared with all artifacts of the same robot.
+        further_uses: resources that the motions use.
+        motions: motions that drive the robot or wait for it; shared with all artifacts of the same robot.
         matching: lets motions wait until the robot's base receives commands.
         odometer: the newest odometry.
         settings: speeds and time-outs.
-        newest_pose: x, y and heading in degrees, for operations that give them.
+        newest_pose: x, y and heading in degrees, for operations that return them.
     """
 
     known_options: ClassVar = {
@@ -103,7 +103,7 @@ class WheeledArtifact(RosArtifact):
     newest_pose: Reading
 
     def init(self, *arguments: object) -> None:
-        """Take the robot's name, a speed in m/s, and options; all of them may be left out."""
+        """Read the robot's name, a speed in m/s, and options; all are optional."""
         super().init(*(_speed(argument) for argument in arguments))
 
     def open(self) -> None:
@@ -130,7 +130,7 @@ class WheeledArtifact(RosArtifact):
         self.at_dispose(self._halt)
 
     def _placed(self) -> Callable[[Odometry], Odometry | None] | None:
-        """What gives odometry in the frame of the option; None without it."""
+        """Return the conversion of odometry to the frame of the option; None without it."""
         if "frame" not in self.options:
             return None
         name = frame_name(str(self.options["frame"]), self.frame_prefix)
@@ -140,7 +140,7 @@ class WheeledArtifact(RosArtifact):
             self.fail(f"frame({name}): {error}", "ros_error", name)
 
     def on_odometry(self, odometry: Odometry) -> None:
-        """Take every odometry message."""
+        """Handle every odometry message."""
         self.newest_pose.take(pose_values(odometry))
 
     def _option(self, name: str, default: float) -> float:
@@ -168,10 +168,10 @@ class WheeledArtifact(RosArtifact):
             None if timeout == math.inf else timeout,
         )
 
-    # What a motion needs of its artifact.
+    # The interface that a motion uses.
 
     def on_interruption(self, callback: Callable[[], None]) -> Callable[[], None]:
-        """Call *callback* when a guard has stopped the robot; the result ends that."""
+        """Call *callback* when a guard has stopped the robot. Return a function that removes it."""
         return guarded_by(self.ros).on_interruption(callback)
 
     def interrupted(self, why: Structure | Atom) -> None:
@@ -187,7 +187,7 @@ class WheeledArtifact(RosArtifact):
         self._commands.publish(twist)
 
     def show(self, motion: Motion, state: str | None) -> None:
-        """Show in ``moving`` what *motion* does; None: it is over."""
+        """Show in ``moving`` the state of *motion*; None: it has ended."""
         if state is None:
             self._motions.pop(motion, None)
         else:
@@ -203,10 +203,10 @@ class WheeledArtifact(RosArtifact):
             motion.halt()
 
     def _stand(self) -> None:
-        """Stop as the process ends; in a thread, perhaps, so it only publishes.
+        """Stop when the process ends. This may run in a thread, so it only publishes.
 
-        A robot that was driven is sent zero even if its last motion has ended: whether that one's own zero was still
-        admitted, nobody can say here.
+        A robot that was ever driven is sent zero velocity even if its last motion has ended: whether that motion's
+        own zero was still sent is unknown here.
         """
         if self._drove:
             self.command(STANDSTILL)
@@ -222,7 +222,7 @@ class WheeledArtifact(RosArtifact):
         try:
             await motion.run()
         except MotionFailed as failed:
-            self.commit()  # that the robot stands is true although the operation failed
+            self.commit()  # the robot has stopped, even though the operation failed
             self.fail(str(failed), failed.functor, failed.argument)
         except Exception:
             self.commit()
@@ -230,7 +230,7 @@ class WheeledArtifact(RosArtifact):
 
 
 def _speed(argument: object) -> object:
-    """A plain number as the option that it stands for."""
+    """Convert a plain number to the option that it stands for."""
     if isinstance(argument, int | float) and not isinstance(argument, bool):
         return Structure("speed", (argument,))
     return argument
@@ -239,12 +239,12 @@ def _speed(argument: object) -> object:
 class ArtCmdVel(WheeledArtifact):
     """Drives by velocity commands on ``/cmd_vel``; closed loops follow ``/odom``.
 
-    Lengths are metres, angles degrees (counter-clockwise positive), poses those of odometry, or of the frame
-    that the option ``frame(F)`` names.  Every motion waits until no other motion drives the robot, stops with
-    zero velocity whatever its end, stops while its intention is suspended and then goes on with what remained,
-    and fails with one of the reasons ``aborted(Covered)``, ``blocked(Covered)``, ``interrupted(Covered)``,
-    ``no_odometry(Seconds)``, ``no_transform(Seconds)`` (with ``frame(F)``: localisation tells nothing) and
-    ``timeout(Seconds)``; Covered is what was driven (metres) or turned (degrees).
+    Lengths are in metres, angles in degrees (positive counter-clockwise), poses in odometry's frame, or in the frame
+    of the option ``frame(F)``. Every motion waits until no other motion drives the robot, and always ends with zero
+    velocity. It stops while its intention is suspended, and then continues with the rest. It fails with one of the
+    reasons ``aborted(Covered)``, ``blocked(Covered)``, ``interrupted(Covered)``, ``no_odometry(Seconds)``,
+    ``no_transform(Seconds)`` (with ``frame(F)``: localisation publishes nothing) and ``timeout(Seconds)``; Covered is
+    the distance driven (metres) or the angle turned (degrees).
 
     Options and the property ``moving``: those of `WheeledArtifact`.
     """
@@ -252,7 +252,7 @@ class ArtCmdVel(WheeledArtifact):
     @operation(pausable=True)
     @operation(name="moveF", pausable=True)
     async def move(self, duration: int) -> None:
-        """Drive ahead by time: *duration* + 1 commands, ten a second, then zero velocity."""
+        """Drive ahead by time: *duration* + 1 commands, ten per second, then zero velocity."""
         await self.perform(Timed(Velocity(self._blind_speed(), 0.0), duration + 1))
 
     def _blind_speed(self) -> float:
@@ -260,7 +260,7 @@ class ArtCmdVel(WheeledArtifact):
 
     @operation(name="moveForward", pausable=True)
     async def move_forward(self, length: float) -> None:
-        """Drive *length* metres straight ahead; backwards when it is negative."""
+        """Drive *length* metres straight ahead; backwards if negative."""
         self._finite(length)
         await self.perform(Straight(length))
 
@@ -283,7 +283,7 @@ class ArtCmdVel(WheeledArtifact):
     @operation(pausable=True)
     @operation(name="rotateLeft", pausable=True)
     async def rotate(self, degrees: float) -> None:
-        """Turn on the spot by *degrees*, to the right when negative; more than a whole turn is possible."""
+        """Turn on the spot by *degrees*, to the right if negative; more than a full turn is possible."""
         self._finite(degrees)
         await self.perform(Turn(math.radians(degrees)))
 
@@ -305,7 +305,7 @@ class ArtCmdVel(WheeledArtifact):
 
     @operation(name="rotateD", pausable=True)
     async def rotate_by_time(self, duration: int) -> None:
-        """Turn left by time: 0.5 rad/s for *duration* half seconds, some 14 degrees each; to the right when negative."""
+        """Turn left by time: 0.5 rad/s for *duration* half seconds, about 14 degrees each; to the right if negative."""
         turn = math.copysign(self.settings.limits.clip(BLIND_TURN).angular, duration)
         await self.perform(
             Timed(Velocity(0.0, turn), round(abs(duration) * BLIND_TURN_PERIOD / Timed.period))
@@ -313,7 +313,7 @@ class ArtCmdVel(WheeledArtifact):
 
     @operation(name="turnTo", pausable=True)
     async def turn_to(self, heading: float) -> None:
-        """Turn the short way round to *heading*, degrees from the x axis of odometry."""
+        """Turn the short way round to *heading*, in degrees from the x axis of odometry."""
         self._finite(heading)
         await self.perform(TurnTo(math.radians(heading)))
 
@@ -332,15 +332,16 @@ class ArtCmdVel(WheeledArtifact):
 
     @operation(name="abortMoving")
     def abort_moving(self) -> None:
-        """Stop the robot here and now: the motion that drives it and those that wait fail as aborted.
+        """Stop the robot immediately: the motion that drives it and those that wait fail as aborted.
 
-        Suspended motions are not concerned.  Without a motion it does nothing.
+        Suspended motions are not affected. Without a motion it has no effect.
         """
         self.motions.abort()
 
     @operation(name="getCurrentPose")
     async def get_current_pose(self, x: Out, y: Out, heading: Out) -> None:
-        """Give the pose of odometry: metres, metres, degrees; ``no_odometry(5)`` if none comes in 5 s."""
+        """Give the pose in odometry: metres, metres, degrees; fails with ``no_odometry(5)`` if none arrives within 5
+        s."""
         for out, value in zip(
             (x, y, heading), await self.newest(self.newest_pose, self.odometer.lacking), strict=True
         ):
@@ -349,7 +350,7 @@ class ArtCmdVel(WheeledArtifact):
     def _finite(self, *numbers: float) -> None:
         for number in numbers:
             if not math.isfinite(number):
-                self.fail(f"a motion needs finite numbers, not {number}", "wrong_number", number)
+                self.fail(f"expected a finite number, found {number}", "wrong_number", number)
 
 
 class ArtCmdVelMux(ArtCmdVel):
@@ -367,8 +368,7 @@ class ArtVelocity(ArtCmdVel):
 class ArtCmdVelAndOdometry(ArtCmdVel):
     """`ArtCmdVel` that also shows odometry, on demand unless ``mode(verbose)`` is given.
 
-    Options:
-        those of `ArtCmdVel`, and those of `ReadingPolicy`.
+    Options: those of `ArtCmdVel`, and those of `ReadingPolicy`.
 
     Properties:
         odom_cmd_vel(X, Y, Z): position in metres; 0, 0, 0 before the first message.
@@ -380,19 +380,20 @@ class ArtCmdVelAndOdometry(ArtCmdVel):
     _position: Reading
 
     def open(self) -> None:
-        """Define the odometry property too."""
+        """Also define the odometry property."""
         name = self.robot_property(self.odometry_property)
         self._position = self.reading(name, ReadingPolicy.from_options(self.options, on_demand=True), 0, 0, 0)
         super().open()
 
     def on_odometry(self, odometry: Odometry) -> None:
-        """Take a position for the property too."""
+        """Also update the odometry property."""
         super().on_odometry(odometry)
         self._position.take(odometry.position, odometry.sample.cause)
 
     @operation(name="getCurrentOdom")
     async def get_current_odom(self) -> None:
-        """Give the odometry property the newest position; ``no_odometry(5)`` if none comes in 5 s."""
+        """Update the odometry property to the newest position; fails with ``no_odometry(5)`` if none arrives within 5
+        s."""
         await self.refresh(self.robot_property(self.odometry_property), self._position, self.odometer.lacking)
 
 

@@ -1,4 +1,4 @@
-"""``ArtCleaning``: the household of the thesis, which says what is to be done in which room."""
+"""``ArtCleaning``: the household of the thesis, with the tasks of each room."""
 
 from typing import ClassVar
 
@@ -12,19 +12,20 @@ ROOMS = ("hallway", "living Room", "kitchen", "bathroom")
 """The rooms by number, in the thesis's words: programs compare and print them."""
 
 CARPET, FLOOR, TUB = "Carpet", "Floor", "Tub"
-"""What is cleaned.  The thesis writes "Flor"; its programs only print the word, so ours is the right one."""
+"""Objects to clean. The thesis writes "Flor", a typing error; as programs only print the word, it is corrected
+here."""
 
 BETWEEN_TASKS = 1.0
 """Seconds between two tasks in one room, as in the thesis."""
 
 CLEANING = 2.5
-"""Seconds that the cleaning of a room takes, as in the thesis."""
+"""Seconds that cleaning a room takes, as in the thesis."""
 
 KINDS = ("vacuum", "mop", "scrub")
 """The kinds of tasks."""
 
 Task = tuple[str, str]
-"""Kind of a task, and what is cleaned."""
+"""Kind of a task, and its object."""
 
 TASKS: tuple[tuple[Task, ...], ...] = (
     (),
@@ -36,7 +37,7 @@ TASKS: tuple[tuple[Task, ...], ...] = (
 
 
 def more_rooms(value: object) -> tuple[tuple[str, tuple[Task, ...]], ...]:
-    """A list such as ``[room("study", [vacuum("Carpet")])]``: names of rooms, each with its tasks."""
+    """Read a list such as ``[room("study", [vacuum("Carpet")])]``: names of rooms with their tasks."""
     try:
         return tuple(_room(each) for each in value)  # type: ignore[attr-defined]  # TypeError if it is not a list
     except TypeError:
@@ -47,35 +48,35 @@ def _room(value: object) -> tuple[str, tuple[Task, ...]]:
     match value:
         case Structure("room", (str(name), list(tasks))):
             return str(name), tuple(_task(each) for each in tasks)
-    raise ValueError(f"""rooms such as room("study", [vacuum("Carpet")]), not {value}""")
+    raise ValueError(f"""rooms such as room("study", [vacuum("Carpet")]), found {value}""")
 
 
 def _task(value: object) -> Task:
     match value:
         case Structure(kind, (str(thing),)) if kind in KINDS:
             return kind, str(thing)
-    raise ValueError(f"""tasks such as vacuum("Carpet"), of the kinds {", ".join(KINDS)}, not {value}""")
+    raise ValueError(f"""tasks such as vacuum("Carpet"), of the kinds {", ".join(KINDS)}, found {value}""")
 
 
 class ArtCleaning(RosArtifact):
-    """Tells the tasks of a room and what room comes next.
+    """Shows the tasks of a room and the next room.
 
-    Every task is also published as text, such as ``vacuum carpet living_room``, on ``/cleaning/task`` when
-    the system has ROS: the embedded world logs it with the robot's true place, and a robot with a tool of the first
-    word's name starts it.  An empty text on ``/cleaning/tool`` stops it at the
-    end and at the moment of a pause, and its name starts it again when the pause ends.
+    Every task is also published as text, such as ``vacuum carpet living_room``, on ``/cleaning/task`` if the system
+    has ROS: the embedded world logs it with the robot's true position, and a robot with a tool named after the first
+    word starts it. An empty text on ``/cleaning/tool`` stops the tool at the end and when a pause begins; its name
+    starts it again when the pause ends.
 
     Options:
-        more_rooms(R): rooms after the thesis's four, with their tasks, such as
-            ``[room("study", [vacuum("Carpet")])]``; their numbers are 4, 5, and so on.
+        more_rooms(R): rooms in addition to the thesis's four, with their tasks, such as ``[room("study",
+            [vacuum("Carpet")])]``; their numbers are 4, 5, and so on.
         match_timeout(S): how long the first task waits for a subscriber of ``/cleaning/task`` (3 s).
-        unmatched(W): what happens when there is none by then: ``warn`` (the default; the task is published all the
-            same) or ``fail``, with ``unmatched(Topic)``.
+        unmatched(W): effect of a missing subscriber: ``warn`` (default; the task is published anyway) or ``fail``,
+            with ``unmatched(Topic)``.
 
     Properties:
         atRoom(N): number of the room, 0 (hallway) to 3 (bathroom) or that of the last of `more_rooms`.
-        vacuum(Object, Room), mop(Object, Room), scrub(Object, Room): the newest task of a kind; texts, empty
-            before the first.
+        vacuum(Object, Room), mop(Object, Room), scrub(Object, Room): the newest task of a kind; texts, empty before
+            the first.
     """
 
     known_options: ClassVar = {"more_rooms": more_rooms, **MATCH_OPTIONS}
@@ -97,7 +98,7 @@ class ArtCleaning(RosArtifact):
 
     @operation(name="whereAmI")
     def where_am_i(self) -> None:
-        """Tell ``atRoom`` anew, though it has not changed."""
+        """Show ``atRoom`` again, even if it has not changed."""
         self.update_property("atRoom", self.value("atRoom"))
 
     @operation(name="whereAmI")
@@ -108,18 +109,18 @@ class ArtCleaning(RosArtifact):
 
     @operation(name="updateWhereAmI")
     def update_where_am_i(self) -> None:
-        """Go on to the next room; after the last comes the first."""
+        """Move on to the next room; after the last comes the first."""
         self.update_property("atRoom", (self.value("atRoom") + 1) % len(self._rooms))
 
     @operation(pausable=True)
     async def clean(self, room: int) -> None:
-        """Tell the tasks of *room* one after the other, and take the time they need.
+        """Show the tasks of *room* in turn, and take the time that they need.
 
-        While the intention is suspended the work rests: a robot that has left to recharge mops no floor.
-        Fails with ``unknown_room(N)``.
+        The work pauses while the intention is suspended: a robot that has left to recharge mops no floor. Fails with
+        ``unknown_room(N)``.
         """
         if not 0 <= room < len(self._rooms):
-            self.fail(f"there is no room {room}; rooms are 0 to {len(self._rooms) - 1}", "unknown_room", room)
+            self.fail(f"unknown room {room}: expected 0 to {len(self._rooms) - 1}", "unknown_room", room)
         if self._tasks is not None and self._tasks_of[room]:
             await self.matched(self._tasks)
         tool = ""
@@ -137,12 +138,12 @@ class ArtCleaning(RosArtifact):
             self._use("")
 
     async def _work(self, seconds: float) -> None:
-        """Take so many seconds, pauses not counted."""
+        """Wait for some seconds, not counting pauses."""
         while seconds > 0.0:
             await self.sleep(seconds)
             over = self.clock.elapsed
             paused = await self.pause_point()
-            # What was paused while the sleep went on is still to be done.
+            # The time that was paused during the sleep is added.
             seconds = round(paused - (self.clock.elapsed - over), 6)
 
     def _publish(self, task: str) -> None:

@@ -12,11 +12,11 @@ from jacaros.ros.backend import Sample
 class ArtPerception(RosArtifact):
     """Shows the texts of ``/jason/perception`` (``perception_msgs/msg/perception``, a list of texts).
 
-    Each message replaces the percepts of the one before; a text that stays gives no event.
+    Each message replaces the percepts of the previous one; an unchanged text causes no event.
 
     Options:
         topic(T): another topic.
-        split(true): show the parts between commas, numbers as numbers.
+        split(true): show the parts between commas, with numbers as numbers.
 
     Properties:
         perception(Text): one for each text of the newest message, such as ``"box1,1.0,2.0,3.1"``; with `split`
@@ -29,7 +29,7 @@ class ArtPerception(RosArtifact):
     known_options: ClassVar = {"topic": text, "split": yes_or_no}
 
     def open(self) -> None:
-        """Listen; there are no percepts before the first message."""
+        """Subscribe; there are no percepts before the first message."""
         self._texts: list[str] = []
         self.subscription(
             str(self.options.get("topic", "jason/perception")), "perception_msgs/msg/perception", self._take
@@ -43,7 +43,7 @@ class ArtPerception(RosArtifact):
 
     @operation(name="getPerception")
     def get_perception(self) -> None:
-        """Signal ``tick_perception``; the properties are current at any time."""
+        """Signal ``tick_perception``; the properties are always current."""
         self.signal("tick_perception")
 
     @operation(name="getPerception")
@@ -53,7 +53,7 @@ class ArtPerception(RosArtifact):
 
 
 def _value(part: str) -> str | float:
-    """A number where the text is a finite one."""
+    """Return a number if the text is a finite one."""
     try:
         number = float(part)
     except ValueError:

@@ -10,12 +10,12 @@ from jacaros.ros.backend import Client, Sample
 
 
 class ArtTutorial(RosArtifact):
-    """Hears ``/chatter`` and adds by the service ``add_two_ints``.
+    """Shows the messages of ``/chatter`` and adds numbers with the service ``add_two_ints``.
 
-    A robot's name stands before topic and properties, not before the service: as in the thesis.
+    The robot's name is the prefix of the topic and the properties, not of the service, as in the thesis.
 
     Options:
-        mode, rate, expire: see `ReadingPolicy`; `latest_only` is false here, as each message counts.
+        mode, rate, expire: see `ReadingPolicy`; `latest_only` is false here because every message counts.
         service(Name): another name of the service.
         timeout(S): how long an addition may take (10 s).
 
@@ -31,7 +31,7 @@ class ArtTutorial(RosArtifact):
     _adder: Client
 
     def open(self) -> None:
-        """Define the properties, listen, and look for the service without waiting for it."""
+        """Define the properties, subscribe, and look for the service without waiting for it."""
         name = self.robot_property("chatter")
         self.define_property(self.robot_property("twoIntsSum"), 0)
         self._chatter = self.reading(name, ReadingPolicy.from_options(self.options, latest_only=False), "")
@@ -44,12 +44,13 @@ class ArtTutorial(RosArtifact):
 
     @operation(name="getCurrentMessage")
     async def get_current_message(self) -> None:
-        """Give the property ``chatter`` the newest message; ``no_message(5)`` when there is none for 5 s."""
+        """Update the property ``chatter`` to the newest message; fails with ``no_message(5)`` if none exists for 5
+        s."""
         await self.refresh(self.robot_property("chatter"), self._chatter, "no_message")
 
     @operation
     async def sum(self, a: int, b: int) -> None:
-        """Add by the service and show the result in ``twoIntsSum``.
+        """Add with the service and show the result in ``twoIntsSum``.
 
         Fails with ``service_unavailable(Name)``, ``service_timeout(Seconds)`` or ``service_failed(Name)``.
         """
@@ -57,7 +58,7 @@ class ArtTutorial(RosArtifact):
 
     @operation(name="sum")
     async def give_sum(self, a: int, b: int, result: Out) -> None:
-        """Add by the service, show the result and give it to the caller."""
+        """Add with the service, show the result and give it to the caller."""
         total = await self._added(a, b)
         self.update_property(self.robot_property("twoIntsSum"), total)
         result.set(total)

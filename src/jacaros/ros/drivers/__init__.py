@@ -1,1 +1,1 @@
-"""Middlewares: each folder joins one kind of ROS graph, and is imported only when that is asked for."""
+"""Middlewares: each folder joins one kind of ROS graph, and is imported on demand only."""

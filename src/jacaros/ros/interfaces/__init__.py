@@ -1,8 +1,8 @@
-"""Interface definitions that JaCaROS brings along, and those of the user's own folders.
+"""Interface definitions: those that come with JaCaROS, and those of the user's own folders.
 
 Definitions are the usual text files, ``<root>/<package>/msg/<Type>.msg``, ``<root>/<package>/srv/<Type>.srv`` and
-``<root>/<package>/action/<Type>.action``.  The folder ``jacaros_interfaces`` beside this file is also a complete
-ROS 2 interface package, built for installations that lack ``example_interfaces``.
+``<root>/<package>/action/<Type>.action``. The folder ``jacaros_interfaces`` next to this file is also a complete ROS
+2 interface package, built for installations that lack ``example_interfaces``.
 """
 
 import os
@@ -14,7 +14,7 @@ BUILT_IN = Path(__file__).parent
 
 
 def definition(type_name: str, roots: Sequence[Path] = ()) -> str | None:
-    """Give the text that defines a type in full form, the user's *roots* first; None when there is none."""
+    """Return the definition of a type in full form, searching the user's *roots* first; None if none exists."""
     package, kind, name = type_name.split("/")
     for root in (*roots, BUILT_IN):
         path = root / package / kind / f"{name}.{kind}"
@@ -24,10 +24,10 @@ def definition(type_name: str, roots: Sequence[Path] = ()) -> str | None:
 
 
 def installed() -> tuple[Path, ...]:
-    """Folders with the definitions of the ROS packages that are installed here.
+    """Return the folders with the definitions of the installed ROS packages.
 
-    ``share`` of each prefix of ROS 2 (``AMENT_PREFIX_PATH``), of ROS 1 (``CMAKE_PREFIX_PATH``), of Python and of the
-    system (Debian's packages); and the workspaces of ROS 1 (``ROS_PACKAGE_PATH``).
+    These are ``share`` of each prefix of ROS 2 (``AMENT_PREFIX_PATH``), of ROS 1 (``CMAKE_PREFIX_PATH``), of Python
+    and of the system (Debian's packages), and the workspaces of ROS 1 (``ROS_PACKAGE_PATH``).
     """
     prefixes = [*_listed("AMENT_PREFIX_PATH"), *_listed("CMAKE_PREFIX_PATH"), Path(sys.prefix), Path("/usr")]
     workspaces = (root for entry in _listed("ROS_PACKAGE_PATH") for root in _package_roots(entry))
@@ -40,7 +40,8 @@ def _listed(variable: str) -> list[Path]:
 
 
 def _package_roots(entry: Path) -> list[Path]:
-    """The folders that hold packages: an entry is a package, or holds packages and repositories of packages."""
+    """Return the folders that contain packages: an entry is a package, or contains packages and repositories of
+    packages."""
     if (entry / "package.xml").is_file():
         return [entry.parent]
     try:
@@ -54,7 +55,7 @@ def split_service(text: str) -> tuple[str, str]:
     """Split a service definition at its line ``---`` into request and response."""
     parts = _split(text)
     if len(parts) != 2:
-        raise ValueError("a service definition has a line --- between request and response")
+        raise ValueError("expected a service definition with a line --- between request and response")
     return parts[0], parts[1]
 
 
@@ -62,7 +63,9 @@ def split_action(text: str) -> tuple[str, str, str]:
     """Split an action definition at its two lines ``---`` into goal, result and feedback."""
     parts = _split(text)
     if len(parts) != 3:
-        raise ValueError("an action definition has two lines ---: after the goal and after the result")
+        raise ValueError(
+            "expected an action definition with two lines ---, after the goal and after the result"
+        )
     return parts[0], parts[1], parts[2]
 
 

@@ -1,12 +1,13 @@
-"""ROS 2 packages made of the definitions in this folder, for installations that lack the genuine packages.
+"""ROS 2 packages made from the definitions in this folder, for installations that lack the original packages.
 
     python -m jacaros.ros.interfaces.ros2_package FOLDER
 
-writes ``FOLDER/jacaros_interfaces``, ready for ``colcon build``.  That one package holds a look-alike of every type here
-that ROS 2 has, whatever its package: ``nav2_msgs/action/NavigateToPose`` becomes
-``jacaros_interfaces/action/NavigateToPose``.  One package instead of one per robot builds in a fraction of the time, and
-it cannot hide or break a genuine one that is installed later.  With ``tf2_msgs`` as a second argument that package is
-written instead, under its own name: the topic ``/tf`` is of use only with the very type that everybody else has.
+writes ``FOLDER/jacaros_interfaces``, ready for ``colcon build``. That one package contains a substitute for every
+type here that ROS 2 has, whatever its package: ``nav2_msgs/action/NavigateToPose`` becomes
+``jacaros_interfaces/action/NavigateToPose``. One package instead of one per robot builds in a fraction of the time,
+and it cannot hide or break an original one that is installed later. With ``tf2_msgs`` as a second argument that
+package is written instead, under its own name: the topic ``/tf`` is only useful with the type that all other nodes
+use.
 """
 
 import argparse
@@ -18,7 +19,7 @@ from functools import cache
 from pathlib import Path
 
 PACKAGE = "jacaros_interfaces"
-"""The package of the look-alikes."""
+"""The package of the substitutes."""
 BUILT_IN = Path(__file__).parent
 COMMON = frozenset(
     {
@@ -37,7 +38,7 @@ COMMON = frozenset(
 )
 """Packages that every ROS 2 has; their definitions are here for the backends that have no packages."""
 ROS1_ONLY = frozenset({"kobuki_msgs", "move_base_msgs", "perception_msgs"})
-"""Packages of robots and stacks that stayed with ROS 1: nobody in a ROS 2 graph has these types."""
+"""Packages of robots and stacks that stayed with ROS 1: no node in a ROS 2 graph uses these types."""
 OWN_NAME = frozenset({"tf2_msgs"})
 """Packages that are built under their own name."""
 KINDS = ("msg", "srv", "action")
@@ -63,20 +64,20 @@ class Definition:
 
     @property
     def relative(self) -> str:
-        """Its place in its package."""
+        """Its path in its package."""
         return f"{self.kind}/{self.path.name}"
 
 
 def definitions(root: Path = BUILT_IN) -> Iterator[Definition]:
-    """All definitions below *root*, sorted by name."""
+    """Yield all definitions below *root*, sorted by name."""
     for path in sorted(root.glob("*/*/*.*")):
         kind = path.parent.name
         if kind in KINDS and path.suffix == f".{kind}":
             yield Definition(path.parent.parent.name, kind, path.stem, path)
 
 
-def look_alikes(root: Path = BUILT_IN) -> dict[str, Definition]:
-    """What goes into `PACKAGE`, by place in it.
+def similar_types(root: Path = BUILT_IN) -> dict[str, Definition]:
+    """Return the definitions in `PACKAGE`, by their paths in it.
 
     Raises:
         ValueError: two packages have different types of one name.
@@ -93,19 +94,21 @@ def look_alikes(root: Path = BUILT_IN) -> dict[str, Definition]:
 
 @cache
 def origin(kind: str, name: str) -> str | None:
-    """Give the package that a type of `PACKAGE` looks like; None when it is our own, or there is none."""
-    packages = [found.package for found in look_alikes().values() if (found.kind, found.name) == (kind, name)]
+    """Return the package of the type that a type of `PACKAGE` substitutes; None if it is our own, or does not exist."""
+    packages = [
+        found.package for found in similar_types().values() if (found.kind, found.name) == (kind, name)
+    ]
     return packages[0] if packages and packages[0] != PACKAGE else None
 
 
 def write_package(folder: Path, package: str = PACKAGE, root: Path = BUILT_IN) -> Path:
-    """Write a package below *folder*, in place of what was there of it, and give its path."""
+    """Write a package below *folder*, replacing an earlier one, and return its path."""
     if package == PACKAGE:
-        chosen = look_alikes(root)
+        chosen = similar_types(root)
     else:
         chosen = {found.relative: found for found in definitions(root) if found.package == package}
     if not chosen:
-        raise ValueError(f"there are no definitions of {package} in {root}")
+        raise ValueError(f"no definitions of {package} in {root}")
     ours = {found.package for found in chosen.values()}
     target = folder / package
     shutil.rmtree(target, ignore_errors=True)
@@ -128,13 +131,13 @@ def _write(file: Path, text: str) -> None:
 
 
 def _meaning(definition: Definition) -> list[str]:
-    """What a definition says, without comments."""
+    """Return the lines of a definition, without comments."""
     lines = definition.path.read_text(encoding="utf-8").splitlines()
     return [line for line in (line.split("#")[0].strip() for line in lines) if line]
 
 
 def _with_own_references(text: str, ours: set[str]) -> str:
-    """Have references between the packages that are put together stay inside the one package."""
+    """Make references between the combined packages refer to the one package."""
 
     def own(match: re.Match[str]) -> str:
         return match["name"] if match["package"] in ours else match[0]
@@ -143,9 +146,9 @@ def _with_own_references(text: str, ours: set[str]) -> str:
 
 
 def _without_repeated_constants(text: str) -> str:
-    """Leave out constants that stand in an earlier part of the definition: rosidl_parser gives both to one part.
+    """Remove constants that also appear in an earlier part of the definition: rosidl_parser assigns both to one part.
 
-    Two types fit each other whatever constants they have, so a look-alike may do without.
+    Two types match whatever their constants are, so a substitute can omit them.
     """
     parts: list[list[str]] = [[]]
     seen: set[str] = set()
@@ -208,7 +211,7 @@ def _manifest(package: str, depends: list[str]) -> str:
 
 
 def main() -> None:
-    """Write a package where the command line says."""
+    """Write a package to the folder on the command line."""
     parser = argparse.ArgumentParser(description="Write a ROS 2 package of interfaces, ready to be built.")
     parser.add_argument("folder", type=Path, help="where to put the package, such as the src of a workspace")
     parser.add_argument("package", nargs="?", default=PACKAGE, choices=(PACKAGE, *sorted(OWN_NAME)))

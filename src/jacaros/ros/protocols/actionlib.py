@@ -1,7 +1,7 @@
-"""ROS 1's actions, without input and output: the states of a goal, and what a client makes of what the server says.
+"""ROS 1's actions, without input and output: the states of a goal, and how a client interprets status messages.
 
-The protocol is actionlib's (ROS wiki, "actionlib/DetailedDescription"; ``actionlib_msgs/GoalStatus``): five topics below
-the action's name.  It needs nothing but topics, so every backend that reaches a ROS 1 graph can use it.
+The protocol is actionlib's (ROS wiki, "actionlib/DetailedDescription"; ``actionlib_msgs/GoalStatus``): five topics
+below the action's name. It needs only topics, so every backend that reaches a ROS 1 graph can use it.
 """
 
 import itertools
@@ -14,24 +14,26 @@ from jacaros.ros.action import GoalStatus
 from jacaros.ros.qos import QoS
 
 STATUS_PERIOD = 0.2
-"""Seconds between two messages of a server about its goals, as actionlib's servers have it."""
+"""Seconds between two status messages of a server, as in actionlib's servers."""
 STATUS_KEPT = 5.0
-"""Seconds for which a server goes on to tell how a goal ended."""
+"""Seconds for which a server keeps reporting how a goal ended."""
 ENOUGH_NEWS = 5
-"""After so many messages about a server's goals, what they do not say is not so: one alone may have overtaken others."""
+"""Number of status messages after which missing information counts as absent: a single one may have overtaken
+others."""
 
 SENT_AGAIN_AFTER = 1.0
-"""Seconds in which a server that runs mentions a goal that it was sent; one that does not has not got it.  Between the two
-topics being connected and the first message, a goal can get lost: rospy's publishers, and a bridge's, know a subscriber
-before it hears them.  A server that has got it after all ignores the second, for it has the same id."""
-OVERTAKEN = "it was lost on its way to the server, which has accepted a newer goal"
+"""Seconds within which a running server mentions a goal that it received; otherwise the goal is sent again. Between
+the connection of the two topics and the first message a goal can get lost: rospy's publishers, and a bridge's, know a
+subscriber before it receives from them. A server that did receive the goal ignores the second one, which has the same
+id."""
+OVERTAKEN = "the goal was lost on its way to the server, which has accepted a newer one"
 REFUSED_AFTER = 1.0
-"""Seconds in which a request for cancelling must show in the goal's state: actionlib's servers do not say no."""
+"""Seconds within which a request to cancel must show in the goal's state: actionlib's servers send no refusal."""
 
 STATUS_TYPE, ID_TYPE = "actionlib_msgs/msg/GoalStatusArray", "actionlib_msgs/msg/GoalID"
 GOAL_STATUS_TYPE = "actionlib_msgs/msg/GoalStatus"
 COMMANDS = QoS(depth=100)
-"""For goals and requests for cancelling."""
+"""For goals and requests to cancel."""
 NEWS = QoS(depth=100)
 """For feedback and results."""
 STATUS = QoS(durability="transient_local", depth=1)
@@ -59,19 +61,20 @@ ENDS = {
     State.ABORTED: GoalStatus.ABORTED,
     State.LOST: GoalStatus.ABORTED,
 }
-"""What the last states of accepted goals are called in the port."""
+"""Statuses in the port of the final states of accepted goals."""
 UNDER_WAY = frozenset({State.PENDING, State.ACTIVE, State.PREEMPTING, State.RECALLING})
 CANCELLING = frozenset({State.PREEMPTING, State.RECALLING, State.PREEMPTED, State.RECALLED})
-"""States that tell that a request for cancelling was agreed to."""
+"""States that show that a request to cancel was accepted."""
 
 
 def part_type(action: str, part: str) -> str:
-    """Name one of the messages that actionlib makes of an action: ``ActionGoal``, ``ActionResult``, ``ActionFeedback``."""
+    """Return the name of one of actionlib's messages of an action: ``ActionGoal``, ``ActionResult``,
+    ``ActionFeedback``."""
     return f"{action}_{part}"
 
 
 def time_of(stamp: Any) -> tuple[int, int]:
-    """Seconds and nanoseconds of a time, comparable; (0, 0) stands for none."""
+    """Return seconds and nanoseconds of a time, comparable; (0, 0) stands for none."""
     if hasattr(stamp, "nsecs"):
         return (stamp.secs, stamp.nsecs)
     return (stamp.sec, stamp.nanosec)
@@ -79,18 +82,18 @@ def time_of(stamp: Any) -> tuple[int, int]:
 
 @dataclass(slots=True)
 class SentGoal:
-    """What is known of a goal under way.
+    """The state of an active goal.
 
     Attributes:
-        message: what was sent; None for a goal of an earlier run.
-        sent: when it was, for the last time.
-        heard_of: the server has mentioned it.
-        accepted: by the server.
-        overtaken: the server has accepted a newer one, and had not heard of this one.
-        missing: messages about the server's goals, one after the other, in which it was not mentioned.
-        ended: such messages that called it ended, while its result has not come.
-        cancelling: when cancelling was asked for, until it is answered.
-        unmoved: such messages since then that called it active.
+        message: the message that was sent; None for a goal of an earlier run.
+        sent: when it was last sent.
+        heard_of: whether the server has mentioned it.
+        accepted: whether the server has accepted it.
+        overtaken: whether the server has accepted a newer goal without mentioning this one.
+        missing: number of consecutive status messages that did not mention it.
+        ended: number of such messages that reported it as ended, while its result has not arrived.
+        cancelling: when cancelling was requested, until the answer.
+        unmoved: number of such messages since then that reported it as active.
     """
 
     message: Any
@@ -105,38 +108,38 @@ class SentGoal:
 
 
 class Listener(Protocol):
-    """Whom `SentGoals` tells what has become of goals, and asks to send."""
+    """Receives the events of goals from `SentGoals`, and sends messages for it."""
 
     def accepted(self, goal_id: str) -> None:
-        """The server has accepted a goal."""
+        """Note that the server has accepted a goal."""
 
     def rejected(self, goal_id: str, reason: str) -> None:
-        """The server has refused a goal."""
+        """Note that the server has rejected a goal."""
 
     def ended(self, goal_id: str, status: GoalStatus, result: Any, text: str) -> None:
-        """A goal is over; *result* is None where the message with it was lost."""
+        """Note the outcome of a goal; *result* is None if the message with it was lost."""
 
     def lost(self, goal_id: str, how: str) -> None:
-        """The server does not know a goal; *how* goes between "the server" and "goal"."""
+        """Note that the server does not know a goal; *how* goes between "the server" and "goal"."""
 
     def cancel_answered(self, goal_id: str, agreed: bool) -> None:
-        """A request for cancelling was agreed to, or not."""
+        """Note the answer to a request to cancel."""
 
     def wants(self, goal_id: str) -> bool:
-        """Whether anybody still wants a goal to begin."""
+        """Return whether a caller still needs a goal to begin."""
 
     def send_again(self, message: Any) -> None:
         """Send a goal once more."""
 
     def send_cancel(self, goal_id: str) -> None:
-        """Ask for cancelling a goal."""
+        """Send a request to cancel a goal."""
 
 
 class SentGoals(dict[str, SentGoal]):
-    """The goals of a client, the oldest first, by what their server says of them.
+    """The goals of a client, the oldest first, tracked by the status messages of their server.
 
     Args:
-        listener: is told, and asked.
+        listener: receives the events.
     """
 
     def __init__(self, listener: Listener) -> None:
@@ -144,20 +147,20 @@ class SentGoals(dict[str, SentGoal]):
         self._listener = listener
 
     def ask_to_cancel(self, goal_id: str, now: float) -> None:
-        """Send a request for cancelling; what comes of it shows in the goal's state."""
+        """Send a request to cancel; the answer shows in the goal's state."""
         goal = self.get(goal_id)
         if goal is not None and goal.cancelling is None:
             goal.cancelling, goal.unmoved = now, 0
         self._listener.send_cancel(goal_id)
 
     def lose_unanswered(self) -> None:
-        """A server is there after none was: it has never heard of the goals that were not accepted."""
+        """Lose the goals that were not accepted: a new server has never received them."""
         for goal_id, goal in list(self.items()):
             if not goal.accepted:
                 self._listener.lost(goal_id, "went away before it accepted")
 
     def take_status(self, told: Iterable[tuple[str, int, str]], now: float) -> None:
-        """Take what the server says of all its goals: id, state and text of each; *now* in seconds of a steady clock."""
+        """Handle a status message: id, state and text of each goal; *now* in seconds of a monotonic clock."""
         known = {goal_id: (State(state), text) for goal_id, state, text in told if goal_id in self}
         for goal_id, goal in list(self.items()):
             if goal_id in known:
@@ -169,19 +172,19 @@ class SentGoals(dict[str, SentGoal]):
             if goal.missing < ENOUGH_NEWS:
                 continue
             if goal.accepted:
-                self._listener.lost(goal_id, "has been started again and does not know")
+                self._listener.lost(goal_id, "was restarted and does not know")
             elif not goal.heard_of:
                 self._see_lost(goal_id, goal, now)
 
     def take_feedback(self, goal_id: str) -> bool:
-        """Note that feedback has come; True when it is of a goal of ours."""
+        """Note that feedback has arrived. Return whether it is for one of our goals."""
         goal = self.get(goal_id)
         if goal is not None:
             self._accept(goal_id, goal)
         return goal is not None
 
     def take_result(self, goal_id: str, state: State, result: Any, text: str) -> None:
-        """Take the message that tells the end of a goal."""
+        """Handle the result message of a goal."""
         goal = self.get(goal_id)
         if goal is None:
             return
@@ -192,10 +195,10 @@ class SentGoals(dict[str, SentGoal]):
             self._listener.ended(goal_id, ENDS[state], result, text)
 
     def _see_lost(self, goal_id: str, goal: SentGoal, now: float) -> None:
-        """A goal seems to be lost on its way: send it again, unless a newer one has taken its place."""
+        """Handle a goal that seems to be lost on its way: send it again, unless a newer one has replaced it."""
         if now - goal.sent < SENT_AGAIN_AFTER or not self._listener.wants(goal_id):
             return
-        # A server that pursues one goal at a time would leave the newer one for the older, or begin it after that.
+        # A server with a single goal would replace the newer goal by the older, or begin the older after it.
         if goal.overtaken:
             self.ask_to_cancel(goal_id, now)
             self._listener.ended(goal_id, GoalStatus.CANCELED, None, OVERTAKEN)
@@ -216,7 +219,7 @@ class SentGoals(dict[str, SentGoal]):
             self._see_cancelling(goal_id, goal, goal.cancelling, state, now)
         if state in ENDS:
             goal.ended += 1
-            if goal.ended >= ENOUGH_NEWS:  # the result was lost: there is none to wait for
+            if goal.ended >= ENOUGH_NEWS:  # the result was lost, so do not wait for it
                 self._listener.ended(goal_id, ENDS[state], None, text)
 
     def _accept(self, goal_id: str, goal: SentGoal) -> None:

@@ -1,7 +1,7 @@
-"""ROS 2's actions, without input and output: what they are made of, and whether the server of a goal is still alive.
+"""ROS 2's actions, without input and output: their services and topics, and the liveness of a goal's server.
 
-An action is three services and two topics below ``<name>/_action``, as the design article "Actions" says (design.ros2.org),
-and ``action_msgs``.
+An action consists of three services and two topics below ``<name>/_action``, as defined in the design article
+"Actions" (design.ros2.org) and ``action_msgs``.
 """
 
 import time
@@ -12,53 +12,56 @@ from jacaros.ros.action import GoalStatus
 from jacaros.ros.qos import QoS
 
 ACTION = "/_action/"
-"""Stands in the names of the topics and services that an action is made of."""
+"""Part of the names of an action's topics and services."""
 SEND_GOAL, GET_RESULT, CANCEL_GOAL = f"{ACTION}send_goal", f"{ACTION}get_result", f"{ACTION}cancel_goal"
 FEEDBACK, STATUS = f"{ACTION}feedback", f"{ACTION}status"
 FEEDBACK_QUALITY, STATUS_QUALITY = QoS(), QoS(durability="transient_local", depth=1)
 """ROS 2's profiles of these topics."""
 RESULT_KEPT = 10.0
-"""Seconds for which a server remembers a goal that is over, as rcl does."""
+"""Seconds for which a server stores an ended goal, as rcl does."""
 
 ENDS = {4: GoalStatus.SUCCEEDED, 5: GoalStatus.CANCELED, 6: GoalStatus.ABORTED}
-"""What the numbers of ``action_msgs/msg/GoalStatus`` for goals that are over are called in the port."""
+"""Statuses in the port for the numbers of ``action_msgs/msg/GoalStatus`` of ended goals."""
 NUMBERS = {ours: number for number, ours in ENDS.items()}
 UNKNOWN, ACCEPTED, EXECUTING, CANCELING = 0, 1, 2, 3
 UNDER_WAY = (ACCEPTED, EXECUTING, CANCELING)
-"""Those of goals that are not over."""
+"""The statuses of active goals."""
 
 
 def new_goal_id() -> str:
-    """Make up the id of a goal, as 32 hexadecimal digits."""
+    """Return the id of a new goal, as 32 hexadecimal digits."""
     return uuid.uuid4().hex
 
 
 SILENCE = 1.0
-"""Seconds without a sign after which the server is asked for one, and for an answer to that."""
+"""Seconds of silence after which the server is probed, and then for the answer."""
 GETTING_GOING = 0.3
-"""Seconds that a goal is under way before it is tried whether the server answers meanwhile."""
+"""Seconds from the beginning of a goal until the first probe, which tests whether the server answers during goals."""
 LOOKED = 30.0
-"""Seconds for which it is believed that a silent server is alive that was found in the graph with fresh eyes."""
+"""Seconds for which a silent server counts as alive after a liveness check has found it."""
 
 
-class SignsOfLife:
-    """Watches over the server of an action while a goal is under way.
+class FailureDetector:
+    """Monitors the server of an action while a goal is active.
 
-    Not every living server answers: one whose code blocks its only thread does not, until the goal is over.  So silence
-    counts only where a probe was answered in the middle of a goal, and not any more once it was misread.  Where it does
-    not count, and the server was never seen to answer yet, the graph is looked at with fresh eyes.
+    Not every living server answers: one whose code blocks its only thread is silent until the goal has ended. So
+    silence counts only if a probe was answered in the middle of a goal, and no longer after a false suspicion. Where
+    it does not count, and the server has never answered, a liveness check of the graph decides.
 
     Args:
-        probe: asks the server for a sign; `probe_answered` tells of it.
-        tell: is told that the server seems to be gone (False) and that it is not (True).
-        look: looks whether the server is in the graph that a newcomer finds; `looked` tells of it.
+        probe: sends a probe to the server; the answer is reported to `probe_answered`.
+        report: called with False if the server is suspected to be gone, and with True if it is not.
+        look: starts a liveness check of the graph; the result is reported to `looked`.
     """
 
     def __init__(
-        self, probe: Callable[[], None], tell: Callable[[bool], None], look: Callable[[], None] = lambda: None
+        self,
+        probe: Callable[[], None],
+        report: Callable[[bool], None],
+        look: Callable[[], None] = lambda: None,
     ) -> None:
         self._probe = probe
-        self._tell = tell
+        self._report = report
         self._look = look
         self._heard = 0.0
         self._goal_began = 0.0
@@ -71,50 +74,50 @@ class SignsOfLife:
         self._suspected = False
 
     def heard(self) -> None:
-        """Something came from the server."""
+        """Note that a message of the server has arrived."""
         self._heard = time.monotonic()
         if self._suspected:
             self._suspected = False
             self._misleading = True
-            self._tell(True)
+            self._report(True)
 
     def probe_answered(self) -> None:
-        """The server has answered a probe."""
+        """Note that the server has answered a probe."""
         if self._probed is not None and self._probed >= self._goal_began + GETTING_GOING:
             self._answered = time.monotonic()
         self._probed = None
 
     def looked(self, found: bool) -> None:
-        """The server was found by a newcomer, or not."""
+        """Note whether the liveness check has found the server."""
         if found:
             if self._suspected:
                 self.heard()
         elif self._look_began is not None and self._heard < self._look_began and not self._suspected:
             self._suspected = True
-            self._tell(False)
+            self._report(False)
 
     def goal_begins(self) -> None:
-        """The server has accepted a goal."""
+        """Note that the server has accepted a goal."""
         self._goal_began = time.monotonic()
         self._probed = self._answered = None
 
-    def stranger(self) -> None:
-        """Another server is there: what was learnt about the former does not count."""
+    def reset(self) -> None:
+        """Forget what is known of the previous server: another one is there."""
         self._answers = self._misleading = self._suspected = False
         self._probed = self._answered = self._look_began = None
 
     def rest(self) -> None:
-        """No goal is under way."""
+        """Stop monitoring: no goal is active."""
         self._probed = self._answered = self._look_began = self._waiting_since = None
         self._suspected = False
 
     def check(self, now: float, under_way: bool, waiting: bool = False) -> None:
-        """Look whether the server is silent for too long.
+        """Check whether the server has been silent for too long.
 
         Args:
-            now: as of `time.monotonic`.
-            under_way: it is carrying out a goal.
-            waiting: it has not said yet whether it accepts a goal.
+            now: time of `time.monotonic`.
+            under_way: whether it is executing a goal.
+            waiting: whether it has neither accepted nor rejected a goal yet.
         """
         if not waiting:
             self._waiting_since = None
@@ -123,13 +126,13 @@ class SignsOfLife:
         if under_way and not self._misleading:
             self._check_answers(now)
         if under_way and (self._misleading or not self._answers):
-            self._doubt(now, self._goal_began + GETTING_GOING)
+            self._suspect(now, self._goal_began + GETTING_GOING)
         elif self._waiting_since is not None:
-            self._doubt(now, self._waiting_since)
+            self._suspect(now, self._waiting_since)
 
     def _check_answers(self, now: float) -> None:
         if self._answered is not None and now > self._answered + GETTING_GOING:
-            # The goal goes on after the answer, so the answer did not have to wait for its end.
+            # The goal continued after the answer, so the answer did not wait for its end.
             self._answers = True
         if not self._answers:
             if self._probed is None and self._answered is None and now > self._goal_began + GETTING_GOING:
@@ -140,15 +143,15 @@ class SignsOfLife:
             elif now > self._probed + SILENCE:
                 if not self._suspected:
                     self._suspected = True
-                    self._tell(False)
-                    self._look_anew(now)
+                    self._report(False)
+                    self._check_again(now)
                 self._ask(now)
 
-    def _doubt(self, now: float, since: float) -> None:
+    def _suspect(self, now: float, since: float) -> None:
         if now > max(self._heard, since) + SILENCE:
-            self._look_anew(now)
+            self._check_again(now)
 
-    def _look_anew(self, now: float) -> None:
+    def _check_again(self, now: float) -> None:
         if self._look_began is None or now > self._look_began + LOOKED:
             self._look_began = now
             self._look()

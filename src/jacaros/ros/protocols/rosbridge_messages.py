@@ -1,12 +1,12 @@
-"""Messages as the rosbridge protocol writes them, from and to the message objects of `DefinitionSchema`.
+"""Messages in the notation of the rosbridge protocol, from and to the message objects of `DefinitionSchema`.
 
-The notation is that of ``rosbridge_library.internal.message_conversion``: arrays of octets in base64, times as ``secs`` and
-``nsecs`` on ROS 1 and ``sec`` and ``nanosec`` on ROS 2, and ``null`` for the floating-point numbers that JSON cannot write
-(NaN and both infinities, so that all three arrive as NaN).
+The notation is that of ``rosbridge_library.internal.message_conversion``: arrays of octets in base64, times as
+``secs`` and ``nsecs`` on ROS 1 and ``sec`` and ``nanosec`` on ROS 2, and ``null`` for the floating-point numbers that
+JSON cannot represent (NaN and both infinities, so all three arrive as NaN).
 
-A subscription may ask the server for CBOR (RFC 8949) in place of JSON.  Arrays of numbers are octets then, in typed arrays
-(RFC 8746), so that images and scans cost a fraction; and infinite numbers and NaN arrive as they are.  Servers cannot pack
-every type: at arrays of a fixed length, for instance, they lose the message.
+A subscription may request CBOR (RFC 8949) instead of JSON. Arrays of numbers are then typed arrays (RFC 8746), so
+images and scans cost a fraction, and infinite numbers and NaN arrive unchanged. Servers cannot encode every type: a
+message with an array of fixed length, for instance, is lost.
 """
 
 import base64
@@ -28,20 +28,20 @@ _ONE_OCTET = (*_OCTETS, "byte", "int8", "bool")
 _ROS1_FIELDS: Mapping[str, Mapping[str, str]] = {
     "sensor_msgs/msg/CameraInfo": {"d": "D", "k": "K", "r": "R", "p": "P"}
 }
-"""Fields that have other names in ROS 1's definitions."""
+"""Fields with other names in ROS 1's definitions."""
 
 Encoder = Callable[[Any], Any]
 Decoder = Callable[[Any], Any]
 
 
 class Translator:
-    """Turns messages into JSON values and back.
+    """Converts messages to JSON values and back.
 
     Args:
         schema: the message classes.
 
     Attributes:
-        ros_version: 1 or 2: in whose notation to write; reading understands both.
+        ros_version: 1 or 2: the notation for writing; reading accepts both.
     """
 
     def __init__(self, schema: DefinitionSchema) -> None:
@@ -53,7 +53,7 @@ class Translator:
 
     @property
     def ros_version(self) -> int:
-        """Whose notation is written."""
+        """The notation for writing."""
         return self._version
 
     @ros_version.setter
@@ -63,24 +63,24 @@ class Translator:
             self._encoders.clear()
 
     def packs(self, type_name: str) -> bool:
-        """Whether messages of a type are to come as CBOR."""
+        """Return whether messages of a type should be requested as CBOR."""
         packed = self._packed.get(type_name)
         if packed is None:
             packed = self._packed[type_name] = worth_packing(self._schema, type_name)
         return packed
 
     def encode(self, type_name: str, message: Any) -> Any:
-        """Give *message* as a JSON value."""
+        """Return *message* as a JSON value."""
         encoder = self._encoders.get(type_name)
         if encoder is None:
             encoder = self._encoders[type_name] = self._message_encoder(type_name)
         return encoder(message)
 
     def decode(self, type_name: str, value: Any) -> Any:
-        """Make a message from a JSON value; fields that are missing there have their defaults.
+        """Make a message from a JSON value; missing fields get their defaults.
 
         Raises:
-            ValueError: the value is not one of this type; the text names the field.
+            ValueError: the value does not match the type; the text names the field.
         """
         decoder = self._decoders.get(type_name)
         if decoder is None:
@@ -129,7 +129,7 @@ class Translator:
 
         def decode(value: Any) -> Any:
             if not isinstance(value, dict):
-                raise ValueError(f"{value!r:.60} is given for a {type_name}")
+                raise ValueError(f"expected a {type_name}, found {value!r:.60}")
             message = new(type_name)
             for name, other, decoder in fields:
                 if name in value:
@@ -174,7 +174,7 @@ class Translator:
 
         def decode(value: Any) -> Any:
             if not isinstance(value, dict):
-                raise ValueError(f"{value!r:.60} is given for a {type_name}")
+                raise ValueError(f"expected a {type_name}, found {value!r:.60}")
             time = new(type_name)
             time.sec = int(value.get("sec") or value.get("secs") or 0)
             time.nanosec = int(value.get("nanosec") or value.get("nsecs") or 0)
@@ -211,7 +211,7 @@ def _sequence(values: Any) -> list[Any]:
 
 
 def _numbers(field: FieldType) -> Decoder:
-    """Reads an array of numbers: a list, octets in base64, or what CBOR makes of it."""
+    """Read an array of numbers: a list, octets in base64, or what CBOR makes of it."""
 
     unbounded = replace(field, length=0, fixed=False)
 
@@ -247,21 +247,21 @@ _LITTLE = {
     86: "d",
 }
 _BIG = {65: "H", 66: "I", 67: "Q", 73: "h", 74: "i", 75: "q", 80: "e", 81: "f", 82: "d"}
-"""Tags of typed arrays, and their elements as the module `struct` writes them."""
+"""Tags of typed arrays, and the `struct` codes of their elements."""
 
 
 def unpacked(value: Any) -> "array[Any] | None":
-    """Give a typed array of CBOR as Python's; None when *value* is none that is known.
+    """Convert a typed array of CBOR to a Python array; return None if *value* is not a known one.
 
     Raises:
-        ValueError: its octets are no whole number of elements.
+        ValueError: its octets are not a whole number of elements.
     """
     tag = getattr(value, "tag", -1)
     kind = _LITTLE.get(tag) or _BIG.get(tag)
     if kind is None or not isinstance(value.value, bytes):
         return None
     order = "big" if tag in _BIG else "little"
-    if kind == "e":  # of 16 bits, which arrays of Python do not have
+    if kind == "e":  # 16 bits, a type that Python arrays lack
         if len(value.value) % 2:
             raise ValueError(f"{len(value.value)} octets of numbers with 2 are given")
         sign = ">" if order == "big" else "<"
@@ -273,7 +273,7 @@ def unpacked(value: Any) -> "array[Any] | None":
 
 
 def worth_packing(schema: DefinitionSchema, type_name: str) -> bool:
-    """Whether CBOR pays for a type, and servers can write all of its fields."""
+    """Return whether CBOR is worthwhile for a type, and servers can encode all its fields."""
     fields = list(_all_fields(schema, type_name, set()))
     return all(_can_be_packed(field) for field in fields) and any(
         field.array and field.is_numeric for field in fields

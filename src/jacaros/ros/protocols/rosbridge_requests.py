@@ -1,4 +1,4 @@
-"""Service calls through the bridge: numbered requests, their answers, and what the bridge itself is asked (rosapi)."""
+"""Service calls through the bridge: numbered requests, their answers, and requests to the bridge itself (rosapi)."""
 
 import itertools
 import time
@@ -12,30 +12,29 @@ from jacaros.ros.errors import CallFailed, ServiceError, ServiceUnavailable
 T = TypeVar("T")
 
 _ABSENT = ("does not exist", "unavailable", "absent from")
-"""What servers say of a service that nobody offers."""
+"""Parts of the server's error for a missing service."""
 
 Done = Callable[[dict[str, Any] | None, ServiceError | None], None]
-"""Takes the fields of a response, or why there is none."""
+"""Takes the fields of a response, or the error."""
 
 LOOK_AGAIN, LOOK_STEADILY = 0.25, 1.0
-"""Seconds after which what was seen of the graph is asked for again, when somebody wants to know: while there is nothing to
-be seen, and when there is."""
+"""Seconds after which a polled value is requested again: while it is empty, and otherwise."""
 PATIENCE = 3.0
 """Seconds for one answer of rosapi."""
 ATTEMPTS, PAUSE = 6, 0.5
-"""How often rosapi is asked whose graph it is, and seconds between: it may start after the server."""
+"""Number of requests for the version of ROS, and seconds between them: rosapi may start after the server."""
 FIRST_SIGN_OF_2 = "/msg/"
-"""What the names of types have on ROS 2 alone."""
+"""Part of the names of types on ROS 2 only."""
 UNANSWERED = 10.0
-"""Seconds after which a question that nobody answers is asked again."""
+"""Seconds after which an unanswered request is repeated."""
 
 
 class Requests:
-    """Calls under way.
+    """Pending calls.
 
     Args:
-        send: hands an operation to the link; False when it is lost.
-        ask: sends one and blocks until the answer is there, as `Link.ask` does.
+        send: passes an operation to the link. Returns False if it is lost.
+        ask: sends one and blocks until the answer arrives, as `Link.ask` does.
     """
 
     def __init__(
@@ -48,7 +47,7 @@ class Requests:
         self._numbers = itertools.count(1)
         self._pending: dict[str, tuple[str, Done]] = {}
         self.interruptions = 0
-        """How often the connection was lost: what was answered before the last time may not be so any more."""
+        """Number of lost connections: earlier answers may no longer be valid."""
 
     def begin(self, service: str, arguments: Any, done: Done, timeout: float | None = None) -> str:
         """Call *service*; *done* is called once, possibly immediately.
@@ -56,11 +55,11 @@ class Requests:
         Args:
             service: absolute name.
             arguments: fields of the request as JSON values.
-            done: takes the answer.
-            timeout: seconds after which a newer server may give the call up.
+            done: called with the answer.
+            timeout: seconds after which a newer server may drop the call.
 
         Returns:
-            the number under which the call can be given up.
+            The number with which the call can be dropped.
         """
         operation = self._operation(service, arguments)
         number: str = operation["id"]
@@ -68,17 +67,15 @@ class Requests:
         if timeout is not None:
             operation["timeout"] = timeout
         if not self._send(operation):
-            self._end(
-                number, None, CallFailed(f"service {service}: there is no connection to the rosbridge server")
-            )
+            self._end(number, None, CallFailed(f"service {service}: no connection to the rosbridge server"))
         return number
 
     def forget(self, number: str) -> None:
-        """Give a call up: nobody wants its answer any more."""
+        """Drop a call: its answer is no longer needed."""
         self._pending.pop(number, None)
 
     def answered(self, message: dict[str, Any]) -> None:
-        """Take an answer of the server."""
+        """Handle an answer of the server."""
         number, values = message.get("id"), message.get("values")
         if not isinstance(number, str):
             return
@@ -88,7 +85,7 @@ class Requests:
             self._end(number, None, _failure(message.get("service", ""), values))
 
     def fail_all(self) -> None:
-        """End all calls: the connection is lost, and answers with it."""
+        """Fail all calls: the connection is lost, and their answers with it."""
         self.interruptions += 1
         for number, (service, _) in list(self._pending.items()):
             text = f"service {service}: the connection to the rosbridge server was lost during the call"
@@ -100,7 +97,7 @@ class Requests:
             done(values, problem)
 
     def call_blocking(self, service: str, arguments: Any, seconds: float) -> dict[str, Any] | None:
-        """Call *service* and block until the answer is there, in any thread; None when it is a failure.
+        """Call *service* and block until the answer arrives, in any thread; None if it is a failure.
 
         Raises:
             TimeoutError: there is no answer within *seconds*.
@@ -117,24 +114,25 @@ class Requests:
 
 
 def _failure(service: str, text: object) -> ServiceError:
-    """Translate the server's words; it has no other way to tell."""
+    """Classify an error of the server, which consists of text only."""
     words = str(text)
     if any(sign in words for sign in _ABSENT):
-        return ServiceUnavailable(f"nobody offers service {service}: {words}")
+        return ServiceUnavailable(f"no node offers service {service}: {words}")
     return CallFailed(f"service {service}: {words}")
 
 
-class Sight(Generic[T]):
-    """Something of the graph that rosapi can tell, as it was seen a short time ago.
+class Polled(Generic[T]):
+    """A value of the graph that rosapi reports, polled on demand.
 
-    Nothing is asked while nobody wants to know: reading the value asks again, and gives what is known.  What was seen over
-    a connection that was lost is forgotten: the server may be another, and others too have to tell it again what they have.
+    Nothing is requested unless the value is read: reading it returns the last known value and requests a new one if
+    necessary. Values of a lost connection are forgotten: the server may be another one, and other nodes must register
+    with it again.
 
     Args:
-        requests: to ask with.
-        service: of rosapi, such as ``/rosapi/subscribers``.
-        arguments: of its request.
-        read: takes the fields of the response.
+        requests: sends the requests.
+        service: service of rosapi, such as ``/rosapi/subscribers``.
+        arguments: fields of its request.
+        read: reads the fields of the response.
         unknown: the value before the first answer, and after a failure.
     """
 
@@ -158,7 +156,7 @@ class Sight(Generic[T]):
 
     @property
     def value(self) -> T:
-        """What was seen last; asks again when that is some time ago."""
+        """The last known value; requests a new one if it is old."""
         now = time.monotonic()
         if self._interruptions != self._requests.interruptions:
             self._interruptions = self._requests.interruptions
@@ -174,18 +172,18 @@ class Sight(Generic[T]):
         self.asking = False
         try:
             self._value = self._unknown if values is None else self._read(values)
-        except (KeyError, TypeError):  # another server's idea of rosapi
+        except (KeyError, TypeError):  # another version of rosapi
             self._value = self._unknown
 
 
 @dataclass(frozen=True, slots=True)
 class Greeting:
-    """What was found out.
+    """The properties of a server.
 
     Attributes:
         ros_version: 1 or 2.
-        packs: the server can write CBOR; of ROS 2, the first ones lost messages over it.
-        told: rosapi has answered; else ROS 2 is assumed.
+        packs: whether the server can send CBOR; early servers of ROS 2 lost messages with it.
+        told: whether rosapi has answered; otherwise ROS 2 is assumed.
     """
 
     ros_version: int
@@ -196,19 +194,19 @@ class Greeting:
 async def greet(
     ask: Callable[[str, dict[str, Any], float], Awaitable[Any]], clock: Clock, is_up: Callable[[], bool]
 ) -> Greeting | None:
-    """Ask rosapi; None when the connection is lost meanwhile.
+    """Ask rosapi for the version of ROS; None if the connection is lost meanwhile.
 
     Args:
         ask: calls a service of rosapi, with a time-out.
         clock: measures the pauses.
-        is_up: tells whether there is a connection.
+        is_up: returns whether there is a connection.
     """
     for _ in range(ATTEMPTS):
         try:
             answer = await ask("get_ros_version", {}, PATIENCE)
             return Greeting(int(answer["version"]), packs=True)
         except (ServiceError, KeyError, TypeError, ValueError):
-            pass  # ROS 1 does not have it, nor ROS 2 in its first years
+            pass  # neither ROS 1 nor early ROS 2 has this service
         try:
             types = (await ask("topics", {}, PATIENCE))["types"]
             version = 2 if any(FIRST_SIGN_OF_2 in kind for kind in types) else 1

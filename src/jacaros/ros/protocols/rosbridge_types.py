@@ -1,4 +1,4 @@
-"""Interface definitions: those of the package and of files, and what neither knows from the server's rosapi."""
+"""Interface definitions: those of the package and of files, and otherwise those of the server's rosapi."""
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -10,15 +10,15 @@ from jacaros.ros.names import message_type
 from jacaros.ros.typestore import DefinitionSchema, is_stored
 
 Ask = Callable[[str, dict[str, Any]], dict[str, Any] | None]
-"""Calls a service of rosapi and waits for the fields of its response; None when there is none, `TimeoutError` when there is
-no answer."""
+"""Calls a service of rosapi and waits for the fields of its response; None if it fails, `TimeoutError` if there is no
+answer."""
 
 _DETAILS = {
     "msg": ("message_details",),
     "srv": ("service_request_details", "service_response_details"),
     "action": ("action_goal_details", "action_result_details", "action_feedback_details"),
 }
-"""Services of rosapi that tell the parts of a definition, in the order of the file."""
+"""Services of rosapi that return the parts of a definition, in the order of the file."""
 _BASES = {"double": "float64", "float": "float32", "boolean": "bool", "octet": "byte"}
 _ROS1_BASES = {
     "char": "uint8",
@@ -30,20 +30,20 @@ _ROS1_ONLY = {
     "rosgraph_msgs/msg/Log": "std_msgs/Header header\nbyte level\nstring name\nstring msg\nstring file\n"
     "string function\nuint32 line\nstring[] topics\n"
 }
-"""Definitions of ROS 1 that we need ourselves."""
+"""Definitions of ROS 1 that the backend itself needs."""
 _PARAMETER_SERVICES = {
     "rcl_interfaces/srv/GetParameters": "string[] names\n---\nParameterValue[] values\n",
     "rcl_interfaces/srv/GetParameterTypes": "string[] names\n---\nuint8[] types\n",
     "rcl_interfaces/srv/SetParameters": "Parameter[] parameters\n---\nSetParametersResult[] results\n",
     "rcl_interfaces/srv/ListParameters": "string[] prefixes\nuint64 depth\n---\nListParametersResult result\n",
 }
-"""Services of ROS 2's nodes that we call ourselves."""
+"""Services of ROS 2's nodes that the backend itself calls."""
 _ACTIONLIB = {
     "ActionGoal": "std_msgs/Header header\nactionlib_msgs/GoalID goal_id\n{action}_Goal goal\n",
     "ActionResult": "std_msgs/Header header\nactionlib_msgs/GoalStatus status\n{action}_Result result\n",
     "ActionFeedback": "std_msgs/Header header\nactionlib_msgs/GoalStatus status\n{action}_Feedback feedback\n",
 }
-"""What actionlib wraps around the three parts of an action."""
+"""The wrappers that actionlib adds to the three parts of an action."""
 _NO_FIELD = "structure_needs_at_least_one_member"
 _SEQUENCE = re.compile(r"sequence<(?P<base>.+?)(?:,\s*\d+)?>")
 _INTEGER = re.compile(r"-?\d+")
@@ -51,19 +51,19 @@ _CONSTANT = re.compile(r"[A-Z][A-Z0-9_]*")
 
 
 class BridgeSchema(DefinitionSchema):
-    """Message classes of `DefinitionSchema` that also knows what the server can tell.
+    """Message classes of `DefinitionSchema`, plus those whose definitions the server knows.
 
     Args:
         roots: the user's own definition folders.
-        ask: asks the server; it waits, in the calling thread, but once for each type that nobody else knows.
-        describe: tells in words why the server cannot be asked, None when it can.
+        ask: asks the server; it blocks the calling thread, but once per otherwise unknown type.
+        describe: returns why the server cannot be asked, None if it can.
     """
 
     def __init__(self, roots: Sequence[Path], ask: Ask, describe: Callable[[], str | None]) -> None:
         super().__init__(roots)
         self._ask = ask
         self._describe = describe
-        self._told: dict[str, str] = {}
+        self._reported: dict[str, str] = {}
 
     def _require(self, type_name: str) -> None:
         action, _, part = type_name.rpartition("_")
@@ -79,8 +79,8 @@ class BridgeSchema(DefinitionSchema):
             for ours in (_ROS1_ONLY, _PARAMETER_SERVICES):
                 if type_name in ours:
                     return ours[type_name]
-            if type_name in self._told:  # part of a type that the server has told
-                return self._told[type_name]
+            if type_name in self._reported:  # part of a type that the server has described
+                return self._reported[type_name]
             reason = self._describe()
             if reason is not None:
                 raise UnknownInterface(f"{unknown} ({reason})") from None
@@ -88,14 +88,14 @@ class BridgeSchema(DefinitionSchema):
                 text = self._fetch(type_name, ending)
             except TimeoutError:
                 raise UnknownInterface(
-                    f"{unknown} (the rosbridge server was asked for it, and has not answered yet)"
+                    f"{unknown} (the rosbridge server was asked for it, but has not answered yet)"
                 ) from None
             if text is None:
                 raise UnknownInterface(f"{unknown} (the rosbridge server does not know it either)") from None
             return text
 
     def _fetch(self, type_name: str, ending: str) -> str | None:
-        """Give the definition of a type as a file would have it, and remember those of its parts."""
+        """Return the definition of a type in the form of a file, and store those of its parts."""
         parts = []
         for service in _DETAILS[ending]:
             answer = self._ask(f"/rosapi/{service}", {"type": type_name})
@@ -105,23 +105,23 @@ class BridgeSchema(DefinitionSchema):
             whole, *others = typedefs
             parts.append(definition_text(whole))
             for other in others:
-                self._told.setdefault(message_type(other["type"]), definition_text(other))
+                self._reported.setdefault(message_type(other["type"]), definition_text(other))
         return "---\n".join(parts)
 
 
 def written_on_ros1(type_name: str) -> str:
-    """A type in full form as ROS 1 writes it: ``std_msgs/String``, ``nav2_msgs/NavigateToPoseActionGoal``."""
+    """Return a type in ROS 1's form: ``std_msgs/String``, ``nav2_msgs/NavigateToPoseActionGoal``."""
     package, kind, name = type_name.split("/")
-    if kind == "action":  # one of the messages that an action is made of
+    if kind == "action":  # one of the messages of an action
         name = "".join(name.rsplit("_", 1))
     return f"{package}/{name}"
 
 
 def definition_text(typedef: Mapping[str, Any]) -> str:
-    """Write a ``rosapi_msgs/msg/TypeDef`` as the text of a definition.
+    """Convert a ``rosapi_msgs/msg/TypeDef`` to the text of a definition.
 
     Args:
-        typedef: its fields; the length of an array is -1 for a single value and 0 without a limit.
+        typedef: its fields; the length of an array is -1 for a single value and 0 for no limit.
     """
     ros1 = "/msg/" not in "".join(typedef["fieldtypes"]) and not _BASES.keys() & set(typedef["fieldtypes"])
     lines = list(_constants(typedef))
@@ -129,7 +129,7 @@ def definition_text(typedef: Mapping[str, Any]) -> str:
     for name, kind, length in zip(typedef["fieldnames"], typedef["fieldtypes"], lengths, strict=True):
         if name != _NO_FIELD:
             sequence = _SEQUENCE.fullmatch(kind)
-            if sequence is not None:  # so it is told of bounded ones of bounded texts
+            if sequence is not None:  # this is how bounded sequences of bounded strings are described
                 kind, length = sequence["base"], 0
             array = "" if length < 0 else f"[{length or ''}]"
             lines.append(f"{_base(kind, ros1)}{array} {name}")
@@ -137,7 +137,7 @@ def definition_text(typedef: Mapping[str, Any]) -> str:
 
 
 def _base(kind: str, ros1: bool) -> str:
-    kind = re.sub(r",\s*\d+$", "", kind)  # so it is told of bounded sequences
+    kind = re.sub(r",\s*\d+$", "", kind)  # this is how bounded sequences are described
     kind = re.sub(r"^(w?string)<\d+>$", "string", kind).replace("/msg/", "/")
     if ros1 and kind in _ROS1_BASES:
         return _ROS1_BASES[kind]
@@ -145,7 +145,7 @@ def _base(kind: str, ros1: bool) -> str:
 
 
 def _constants(typedef: Mapping[str, Any]) -> Iterator[str]:
-    # rosapi tells their values as texts, and beside them attributes of the class that are no constants.
+    # rosapi reports their values as texts, together with class attributes that are not constants.
     pairs = zip(typedef.get("constnames") or (), typedef.get("constvalues") or (), strict=False)
     for name, value in pairs:
         if _CONSTANT.fullmatch(name) and name != "SLOT_TYPES" and _INTEGER.fullmatch(str(value)):

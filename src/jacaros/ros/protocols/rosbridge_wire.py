@@ -1,6 +1,6 @@
 """The bytes of one connection to a rosbridge server: a WebSocket, TLS below it for ``wss``, and fragments above it.
 
-Both layers are ``websockets``'s and ``ssl``'s own state machines.  Nothing here may run on two threads at a time.
+Both layers are the state machines of ``websockets`` and ``ssl``. Nothing here may run on two threads at a time.
 """
 
 import itertools
@@ -26,17 +26,17 @@ def address(url: str) -> tuple[str, int]:
 
 
 class Wire:
-    """What a client reads and writes on its connection.
+    """The client's input and output on its connection.
 
     Args:
         url: address of the server, with its port.
-        context: certificates to trust for ``wss``; those of the system by default.
+        context: trusted certificates for ``wss``; default: those of the system.
     """
 
     def __init__(self, url: str, context: ssl.SSLContext | None = None) -> None:
         uri = parse_uri(url)
-        # No extension: compressing costs more time than it saves in a local network.  No limit of a message's size: only
-        # the topics that we asked for come.
+        # No extension: compression costs more time than it saves in a local network. No limit of the message size:
+        # only requested topics arrive.
         self._protocol = ClientProtocol(uri, max_size=None)
         self._tls = _Tls(context or _system_context(), uri.host) if uri.secure else None
         self._parts: list[bytes] = []
@@ -50,14 +50,14 @@ class Wire:
 
     @property
     def failure(self) -> Exception | None:
-        """Why the server's answer to the request for a WebSocket is not one."""
+        """The error in the server's handshake."""
         return self._protocol.handshake_exc
 
     def feed(self, data: bytes) -> list[tuple[bytes, bool]]:
-        """Take bytes of the server; return the messages that are complete now, each with whether it is binary.
+        """Process bytes of the server. Return the messages that are now complete, each with whether it is binary.
 
         Raises:
-            ssl.SSLError: the server is not the one of the address, or breaks the rules of TLS.
+            ssl.SSLError: the server's certificate does not match its address, or it violates TLS.
         """
         if self._tls is not None:
             data = self._tls.decrypted(data)
@@ -78,17 +78,17 @@ class Wire:
         return messages
 
     def send(self, text: bytes) -> None:
-        """Write a message; it is lost when the connection is being closed."""
+        """Write a message; it is lost if the connection is being closed."""
         if self.opened:
             self._protocol.send_text(text)
 
     def ping(self) -> None:
-        """Ask the server for a sign of life."""
+        """Send a ping."""
         if self.opened:
             self._protocol.send_ping(b"")
 
     def close(self) -> None:
-        """Say goodbye; the server closes the connection then."""
+        """Send a close frame; the server then closes the connection."""
         if self.opened:
             self._protocol.send_close(1000)
 
@@ -140,19 +140,19 @@ def _system_context() -> ssl.SSLContext:
 
 
 LONGEST = 4_000_000
-"""Characters of a piece.
+"""Maximum number of characters of a fragment.
 
-Servers take no message of more than 10 MB (the parameter ``max_message_size``) and close the connection over one.  With
-each character escaped, a piece is still below this limit.  Servers send larger messages in fragments, too.
+Servers accept no message of more than 10 MB (the parameter ``max_message_size``) and close the connection otherwise.
+Even with each character escaped, a fragment is below this limit. Servers send larger messages in fragments, too.
 """
 OPEN_AT_ONCE = 20
-"""Operations that may be incomplete at the same time; the oldest is given up first."""
+"""Number of incomplete operations; the oldest is dropped first."""
 
 _numbers = itertools.count(1)
 
 
 def frames(operation: dict[str, Any]) -> Iterator[bytes]:
-    """Write an operation as one frame or, when it is too long, as several."""
+    """Convert an operation to one frame or, if it is too long, to several."""
     text = json.dumps(operation, separators=(",", ":"))
     if len(text) <= LONGEST:
         yield text.encode()
@@ -165,20 +165,20 @@ def frames(operation: dict[str, Any]) -> Iterator[bytes]:
 
 
 class Fragments:
-    """Puts the server's fragments together."""
+    """Joins the server's fragments."""
 
     def __init__(self) -> None:
         self._open: OrderedDict[str, dict[int, str]] = OrderedDict()
 
     def add(self, fragment: dict[str, Any]) -> dict[str, Any] | None:
-        """Take a fragment; give the operation when it was the last one.
+        """Add a fragment. Return the operation if it was the last one.
 
         Raises:
-            KeyError, TypeError, ValueError: it is none, or the pieces make no operation.
+            KeyError, TypeError, ValueError: the fragment is invalid, or the fragments are not an operation.
         """
         number, total, index = str(fragment["id"]), int(fragment["total"]), int(fragment["num"])
         if not isinstance(fragment["data"], str) or not 0 <= index < total:
-            raise ValueError("a fragment has a text and a number below the total")
+            raise ValueError("expected a fragment with a text, and a number below the total")
         pieces = self._open.setdefault(number, {})
         pieces[index] = fragment["data"]
         if len(pieces) < total:
@@ -188,9 +188,9 @@ class Fragments:
         del self._open[number]
         operation = json.loads("".join(pieces[each] for each in range(total)))
         if not isinstance(operation, dict):
-            raise ValueError("fragments of something that is no operation")
+            raise ValueError("the fragments are not an operation")
         return operation
 
     def clear(self) -> None:
-        """Forget what is incomplete."""
+        """Forget incomplete operations."""
         self._open.clear()

@@ -1,7 +1,7 @@
-"""What is known of the frames' positions: ten seconds of each, and what follows from them for other pairs of frames.
+"""Known transforms: ten seconds for each frame, and the resulting transforms between any two frames.
 
-The rules are tf2's: every frame hangs on one parent, a look-up goes up from both frames to where the ways meet, times
-between two known ones are interpolated, times outside of what is known are refused.
+The rules are tf2's: every frame has one parent, a look-up goes up from both frames to their common ancestor, times
+between two known ones are interpolated, times outside the known interval are refused.
 """
 
 import difflib
@@ -15,16 +15,16 @@ from jacaros.ros.protocols.transform import Transform, interpolate
 HISTORY = 10.0
 """Seconds for which moving transforms are kept, as in tf2."""
 OLD_IN_A_ROW = 3
-"""So many outdated transforms of a frame, one after the other, mean that time has begun again."""
+"""Number of consecutive outdated transforms of a frame that mean that time has restarted."""
 _UNIT = 0.01
-"""How far the square of a quaternion's length may be from 1."""
+"""Tolerance of the square of a quaternion's length."""
 
 
 class TransformBuffer:
     """Transforms by frame and time.
 
     Args:
-        log: takes one line when the buffer is emptied.
+        log: called with one line when the buffer is cleared.
         history: seconds for which moving transforms are kept.
     """
 
@@ -37,19 +37,19 @@ class TransformBuffer:
 
     @property
     def frames(self) -> list[str]:
-        """All frames that are known, sorted."""
+        """Return all known frames, sorted."""
         return sorted(self._parents | set(self._links))
 
     def insert(self, parent: str, child: str, transform: Transform, static: bool = False) -> str | None:
-        """Note where *child* is in *parent*.
+        """Add the transform from *child* to *parent*.
 
         Args:
-            parent, child: frames; a slash in front, as ROS 1's tf wrote, is dropped.
+            parent, child: frames; a leading slash, as in ROS 1's tf, is dropped.
             transform: takes points of *child* to *parent*; its stamp is the time for which it holds.
-            static: it holds always.
+            static: it always holds.
 
         Returns:
-            why it was not taken, or None.
+            Why it was refused, or None.
         """
         parent, child = parent.lstrip("/"), child.lstrip("/")
         fault = _fault(parent, child, transform)
@@ -70,14 +70,14 @@ class TransformBuffer:
         return None
 
     def clear(self, why: str) -> None:
-        """Forget all that moves and say so; what is static stays."""
+        """Forget all moving transforms and log it; static ones stay."""
         self._links = {child: link for child, link in self._links.items() if link.static}
         self._parents = {parent for link in self._links.values() for parent in link.parents}
         self._old.clear()
-        self._log(f"{why}: the transforms known so far are forgotten")
+        self._log(f"{why}; the transforms known so far are forgotten")
 
     def lookup(self, target: str, source: str, stamp: float | None = None) -> Transform:
-        """Give the transform that takes points in *source* to *target*; see `Backend.tf_lookup`."""
+        """Return the transform from *source* to *target*; see `Backend.tf_lookup`."""
         target, source = target.lstrip("/"), source.lstrip("/")
         what = f"no transform from {source} to {target}"
         for frame in (target, source):
@@ -101,15 +101,15 @@ class TransformBuffer:
         return result
 
     def _ways(self, what: str, target: str, source: str, stamp: float | None) -> tuple[list[str], list[str]]:
-        """The frames from *source* up to where both ways meet, and those from *target* up to there."""
+        """Return the frames from *source* up to the common ancestor, and those from *target* up to it."""
         from_source, from_target = self._ancestors(what, source, stamp), self._ancestors(what, target, stamp)
         shared = set(from_target)
         for steps, frame in enumerate(from_source):
             if frame in shared:
                 return from_source[:steps], from_target[: from_target.index(frame)]
         raise TransformUnavailable(
-            f"{what}: they are not connected; {source} hangs below {from_source[-1]}, "
-            f"{target} below {from_target[-1]}",
+            f"{what}: they are not connected; the root of {source} is {from_source[-1]}, "
+            f"the root of {target} is {from_target[-1]}",
             "not_connected",
         )
 
@@ -119,7 +119,7 @@ class TransformBuffer:
             frame = link.parent_near(stamp)
             if frame in found:
                 raise TransformUnavailable(
-                    f"{what}: the frames {', '.join(found)} hang on each other in a circle", "not_connected"
+                    f"{what}: the frames {', '.join(found)} form a cycle", "not_connected"
                 )
             found.append(frame)
         return found
@@ -127,13 +127,13 @@ class TransformBuffer:
     def _unknown(self, frame: str) -> str:
         known = self.frames
         if not known:
-            return "no transforms have come so far"
+            return "no transforms have arrived"
         close = difflib.get_close_matches(frame, known, 1)
         help = f"; did you mean {close[0]}?" if close else ""
-        return f"no frame {frame} is known{help or '.'} Known: {', '.join(known)}"
+        return f"unknown frame {frame}{help or '.'} Known: {', '.join(known)}"
 
     def _outdated(self, parent: str, child: str, transform: Transform) -> None:
-        """Leave out what is older than anything kept; when nothing else comes any more, begin again with it."""
+        """Drop a transform older than all others; if only such ones arrive, begin again with them."""
         self._old[child] = self._old.get(child, 0) + 1
         if self._old[child] < OLD_IN_A_ROW:
             return
@@ -144,7 +144,7 @@ class TransformBuffer:
 
 
 class _Link:
-    """How one frame hangs on its parent, over time."""
+    """The transforms of one frame to its parent, over time."""
 
     __slots__ = ("parents", "stamps", "static", "transforms")
 
@@ -162,7 +162,7 @@ class _Link:
         stamps = self.stamps
         place = bisect_left(stamps, transform.stamp) if transform.stamp <= stamps[-1] else len(stamps)
         if place < len(stamps) and stamps[place] == transform.stamp:
-            return  # said twice: the first word counts
+            return  # a duplicate: the first one counts
         stamps.insert(place, transform.stamp)
         self.parents.insert(place, parent)
         self.transforms.insert(place, transform)
@@ -176,7 +176,7 @@ class _Link:
         return self.at(max(stamp, self.stamps[0]))[0]
 
     def require(self, what: str, child: str, stamp: float) -> None:
-        """Refuse a time outside of what is known."""
+        """Refuse a time outside the known interval."""
         oldest, newest = self.stamps[0], self.newest
         if oldest <= stamp <= newest:
             return
@@ -188,7 +188,7 @@ class _Link:
         )
 
     def at(self, stamp: float) -> tuple[str, Transform]:
-        """Parent and transform at a time that is known."""
+        """Return parent and transform at a known time."""
         if self.static:
             return self.parents[0], self.transforms[0]
         place = bisect_left(self.stamps, stamp)
@@ -196,20 +196,20 @@ class _Link:
             return self.parents[place], self.transforms[place]
         before, after = self.transforms[place - 1], self.transforms[place]
         if self.parents[place - 1] != self.parents[place]:
-            return self.parents[place - 1], before  # it changed hands meanwhile: the old hands held it
+            return self.parents[place - 1], before  # the parent changed meanwhile: the old one was valid
         ratio = (stamp - before.stamp) / (after.stamp - before.stamp)
         return self.parents[place], interpolate(before, after, ratio)
 
 
 def _fault(parent: str, child: str, transform: Transform) -> str | None:
     if not child or not parent:
-        return "a frame has no name"
+        return "a frame has an empty name"
     if child == parent:
-        return f"frame {child} hangs on itself"
+        return f"frame {child} is its own parent"
     numbers = (*transform.translation, *transform.rotation, transform.stamp)
     if not all(map(math.isfinite, numbers)):
-        return f"the transform of frame {child} has a number that is none (NaN or infinite)"
+        return f"transform of frame {child} contains NaN or infinity"
     length = sum(part * part for part in transform.rotation)
     if abs(length - 1.0) > _UNIT:
-        return f"the rotation of frame {child} is no unit quaternion: {transform.rotation}"
+        return f"rotation of frame {child} is not a unit quaternion: {transform.rotation}"
     return None

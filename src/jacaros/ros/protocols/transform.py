@@ -9,12 +9,12 @@ Quaternion = tuple[float, float, float, float]
 
 @dataclass(frozen=True, slots=True)
 class Transform:
-    """Takes points in one frame to another: first turned, then shifted (REP 105's frames, tf2's convention).
+    """Takes points from one frame to another: rotation, then translation (REP 105's frames, tf2's convention).
 
     Attributes:
         translation: x, y, z in metres.
         rotation: unit quaternion x, y, z, w.
-        stamp: the time for which it holds, in seconds since the epoch; 0 when it holds always (static).
+        stamp: the time for which it holds, in seconds since the epoch; 0 if it always holds (static).
     """
 
     translation: Vector = (0.0, 0.0, 0.0)
@@ -23,25 +23,25 @@ class Transform:
 
     @property
     def yaw(self) -> float:
-        """Heading of the turned x axis in the plane, in radians, counter-clockwise."""
+        """Heading of the rotated x axis in the plane, in radians, counter-clockwise."""
         x, y, z, w = self.rotation
         return math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
 
     def apply(self, point: Vector) -> Vector:
-        """Give *point* of the source frame in the target frame."""
+        """Convert *point* from the source frame to the target frame."""
         x, y, z = rotate(self.rotation, point)
         dx, dy, dz = self.translation
         return (x + dx, y + dy, z + dz)
 
     def after(self, first: "Transform") -> "Transform":
-        """The transform that applies *first* and then this one; it holds for the older of both times."""
+        """Return the transform that applies *first* and then this one; it holds for the older of the two times."""
         stamps = [stamp for stamp in (self.stamp, first.stamp) if stamp > 0.0]
         return Transform(
             self.apply(first.translation), multiply(self.rotation, first.rotation), min(stamps, default=0.0)
         )
 
     def inverse(self) -> "Transform":
-        """The way back."""
+        """Return the inverse transform."""
         x, y, z, w = self.rotation
         back = (-x, -y, -z, w)
         dx, dy, dz = rotate(back, self.translation)
@@ -49,7 +49,7 @@ class Transform:
 
 
 def multiply(a: Quaternion, b: Quaternion) -> Quaternion:
-    """The rotation *b* followed by *a*."""
+    """Return the rotation *b* followed by *a*."""
     ax, ay, az, aw = a
     bx, by, bz, bw = b
     return (
@@ -61,7 +61,7 @@ def multiply(a: Quaternion, b: Quaternion) -> Quaternion:
 
 
 def rotate(q: Quaternion, v: Vector) -> Vector:
-    """Turn a vector."""
+    """Rotate a vector."""
     x, y, z, w = q
     # v + 2 w (u x v) + 2 u x (u x v), with u the quaternion's vector part
     tx, ty, tz = (
@@ -77,10 +77,10 @@ def rotate(q: Quaternion, v: Vector) -> Vector:
 
 
 def interpolate(first: Transform, second: Transform, ratio: float) -> Transform:
-    """The transform between two: shifted evenly, turned evenly the short way (slerp).
+    """Interpolate between two transforms: linear translation, rotation the short way (slerp).
 
     Args:
-        first, second: where it begins and ends.
+        first, second: the two ends.
         ratio: from 0 (*first*) to 1 (*second*).
     """
     ax, ay, az = first.translation
@@ -96,7 +96,7 @@ def _slerp(a: Quaternion, b: Quaternion, ratio: float) -> Quaternion:
     cosine = sum(p * q for p, q in zip(a, b, strict=True))
     if cosine < 0.0:  # q and -q are the same rotation; one of them is the short way
         b, cosine = (-b[0], -b[1], -b[2], -b[3]), -cosine
-    if cosine > 0.9995:  # so close that the sine below loses its digits
+    if cosine > 0.9995:  # so close that the sine below loses precision
         weight_a, weight_b = 1.0 - ratio, ratio
     else:
         angle = math.acos(cosine)

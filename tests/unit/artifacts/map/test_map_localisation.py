@@ -31,7 +31,7 @@ def test_a_correction_holds_for_the_poses_that_follow() -> None:
     assert where.pose == pytest.approx((5.0, 7.0, math.pi / 2.0))
 
 
-def test_a_clock_that_was_set_back_begins_anew() -> None:
+def test_a_clock_that_was_set_back_starts_again() -> None:
     where = Localisation()
     where.take_odometry(100.0, Pose(0.0, 0.0, 0.0))
     where.take_odometry(5.0, Pose(1.0, 0.0, 0.0))

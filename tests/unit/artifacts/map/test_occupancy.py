@@ -41,7 +41,7 @@ def test_a_cell_with_an_echo_is_not_cleared_by_another_beam_of_the_scan() -> Non
     assert cells.label((3, 0)) == FREE
 
 
-def test_what_most_scans_say_holds_and_what_changed_is_noticed() -> None:
+def test_the_majority_of_scans_counts_and_changes_are_noticed() -> None:
     cells = grid()
     for _ in range(20):
         cells.add_scan((0.0, 0.0), [(2.0, 0.0)], [])

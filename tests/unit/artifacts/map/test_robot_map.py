@@ -84,7 +84,7 @@ def test_things_that_are_recognised_are_on_the_map_where_they_were_seen_last() -
     in_lab(body, WALLED + "objects:\n  - {name: cup, x: 1.5, y: 0.3}\n")
 
 
-def test_percepts_of_another_form_are_left_out() -> None:
+def test_percepts_in_another_format_are_ignored() -> None:
     async def body(lab: Lab) -> None:
         watcher = lab.watch(await lab.make(ArtMap, option("things", True)))
         publisher = lab.backend.publisher("/jason/perception", "perception_msgs/msg/perception")
@@ -238,7 +238,7 @@ def test_the_map_of_the_world_is_used_with_the_pose_of_its_localisation() -> Non
     in_lab(body, "house")
 
 
-def test_a_loaded_map_tells_where_the_robot_is(tmp_path: Path) -> None:
+def test_a_loaded_map_localises_the_robot(tmp_path: Path) -> None:
     file = str(tmp_path / "saved.yaml")
 
     async def body(lab: Lab) -> None:
@@ -261,7 +261,7 @@ def test_a_loaded_map_tells_where_the_robot_is(tmp_path: Path) -> None:
 )
 def test_options_that_cannot_be_are_refused(wrong: tuple[str, object]) -> None:
     async def body(lab: Lab) -> None:
-        with pytest.raises(Exception, match="wants"):
+        with pytest.raises(Exception, match="expected"):
             await lab.make(ArtMap, option(*wrong))
 
     in_lab(body, None)

@@ -73,7 +73,7 @@ def test_some_points_of_something_new_do_not_move_the_pose() -> None:
     assert math.dist(found[:2], truth[:2]) < 0.015
 
 
-def test_poses_can_be_put_one_after_the_other_and_taken_apart() -> None:
+def test_poses_can_be_composed_and_separated() -> None:
     pose = Pose(1.0, -2.0, 2.5)
     back = followed_by(pose, inverse(pose))
     assert (back.x, back.y, back.heading) == pytest.approx((0.0, 0.0, 0.0), abs=1e-12)

@@ -27,7 +27,7 @@ async def label(lab: Lab, artifact: ArtifactId, rows: list[str]) -> None:
                 await lab.do(artifact, "updateSlamData", x, y, words[sign])
 
 
-def test_a_range_of_view_tells_all_its_cells() -> None:
+def test_a_range_of_view_shows_all_its_cells() -> None:
     """Defect 10: one property took all cells in turn, so a belief base ended with the last one alone."""
 
     async def body(lab: Lab) -> None:
@@ -43,7 +43,7 @@ def test_a_range_of_view_tells_all_its_cells() -> None:
     in_lab(body, None)
 
 
-def test_the_next_range_replaces_the_cells_and_tells_only_what_is_new() -> None:
+def test_the_next_range_replaces_the_cells_and_reports_only_new_ones() -> None:
     async def body(lab: Lab) -> None:
         artifact = await lab.make(ArtSlamData)
         watcher = lab.watch(artifact)
@@ -199,7 +199,7 @@ def test_the_map_is_printed_north_at_the_top() -> None:
     in_lab(body, None)
 
 
-def test_a_route_leads_round_obstacles_to_the_goal_and_tells_the_direction() -> None:
+def test_a_route_leads_round_obstacles_to_the_goal_and_shows_the_direction() -> None:
     async def body(lab: Lab) -> None:
         artifact = await lab.make(ArtSlamData)
         watcher = lab.watch(artifact)
@@ -232,7 +232,7 @@ def test_a_goal_that_cannot_be_reached_fails_and_leaves_the_route() -> None:
     in_lab(body, None)
 
 
-def test_the_word_for_obstacles_is_an_option() -> None:
+def test_the_label_of_obstacles_is_an_option() -> None:
     async def body(lab: Lab) -> None:
         artifact = await lab.make(ArtSlamData, Structure("obstacle", ("wall",)))
         for x, word in enumerate(["free", "wall", "goal"]):

@@ -25,7 +25,7 @@ signals:
 
 
 class Sender:
-    """A mapped artifact that somebody watches, and publishers beside it."""
+    """An observed mapped artifact, and publishers."""
 
     def __init__(self, lab: Lab, watcher: Watcher) -> None:
         self.lab, self.watcher = lab, watcher
@@ -270,7 +270,7 @@ def test_a_message_without_a_transform_is_dropped_and_logged() -> None:
         assert not any("without a transform" in line for line in lab.logged)
         await lab.sleep(0.1)
         assert any(
-            "scene: 1 message without a transform dropped: no transform" in line for line in lab.logged
+            "`scene`: dropped 1 message without a transform: no transform" in line for line in lab.logged
         )
         await s.send("a", 3.0)
         await s.send("b", 4.0)
@@ -318,15 +318,18 @@ def _problems(entry: str) -> list[str]:
             "27: `within` is unbounded | give a finite time: memory is bounded by",
         ),
         ("x: {count: hit}", "6: `count` needs `within` | give the length of the window"),
-        ("x: {cuont: hit, within: 1}", "7: `x` names no operator | did you mean `count`?"),
-        ("x: {mean: a, count: a, within: 1}", "23: `count` stands beside `mean` | derive one name"),
-        ("x: {mean: a, within: 1, value: 2}", "13: `a` has 1 values, not 2 | give a smaller `value`"),
+        ("x: {cuont: hit, within: 1}", "7: `x` has no operator | did you mean `count`?"),
+        ("x: {mean: a, count: a, within: 1}", "23: `mean` and `count` are alternatives | derive one name"),
+        ("x: {mean: a, within: 1, value: 2}", "13: `a` has 1 values, not 2 | write a smaller `value`"),
         ("x: {absent: hit, for: 1, wait: 2}", "28: `absent` has no option `wait` | options: for"),
         ("x: {inside: a, circle: [0, 0, 1]}", "15: `a` has 1 values, not 2"),
         ("x: {all: [a], within: 1}", "6: `all` needs two streams or more | write them as a list"),
-        ("x: hit", "6: `x` names no operator | write one, such as"),
-        ("a: {count: hit, within: 1}", "3: the derived entry 'a' has the name of the property of line 3"),
+        ("x: hit", "6: `x` has no operator | write one, such as"),
+        (
+            "a: {count: hit, within: 1}",
+            "3: the derived entry `a` has the same name as the property on line 3",
+        ),
     ],
 )
-def test_what_is_wrong_is_told_with_its_place_and_help(entry: str, told: str) -> None:
+def test_mistakes_are_reported_with_location_and_help(entry: str, told: str) -> None:
     assert any(each.startswith(told) for each in _problems(entry)), _problems(entry)

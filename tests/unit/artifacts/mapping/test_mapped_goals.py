@@ -134,7 +134,7 @@ def test_a_suspended_goal_is_cancelled_and_sent_again() -> None:
     with_mapped(COUNT.replace("MORE", "suspend: cancel"), body)
 
 
-def test_a_goal_is_cancelled_while_suspended_unless_the_mapping_says_otherwise() -> None:
+def test_a_goal_is_cancelled_while_suspended_by_default() -> None:
     async def suspended(lab: Lab, artifact: ArtifactId) -> list[str]:
         events = offer(lab)
         run = lab.begin(artifact, "count", 3, 1, Out())
@@ -211,7 +211,7 @@ operations:
         ("aborted: [num_retries, success]", 'aborted(902,"no dock",3,true)'),
     ],
 )
-def test_an_aborted_goal_tells_the_code_and_the_fields_that_the_mapping_names(more: str, reason: str) -> None:
+def test_an_aborted_goal_has_the_code_and_the_fields_of_the_mapping(more: str, reason: str) -> None:
     async def body(lab: Lab, artifact: ArtifactId) -> None:
         async def execute(goal: ServerGoal) -> Any:
             raise Abort("no dock", {"error_code": 902, "num_retries": 3})

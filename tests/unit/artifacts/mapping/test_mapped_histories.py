@@ -58,7 +58,7 @@ def test_a_namespace_has_histories_of_its_own(tmp_path: Path) -> None:
     assert run(tmp_path, f"!start. +!start <- {ECHOES}; {ask}.", "focus: front::main.sonar") == ["4"]
 
 
-def test_a_clone_takes_the_history_over(tmp_path: Path) -> None:
+def test_a_clone_inherits_the_history(tmp_path: Path) -> None:
     program = f"!start. +!start <- {ECHOES}; .clone(b); .send(b, achieve, ask). +!ask <- {ASK}."
     assert run(tmp_path, program) == ["[b] 4"]
 
@@ -86,7 +86,7 @@ def test_check_reports_the_past_of_a_property_without_a_history(tmp_path: Path) 
         ("properties: {a: {topic: a, history: -2}}", "'history' is -2, but must be above zero | leave"),
         (
             "properties: {a: {topic: a, history: 86401}}",
-            "'history' is longer than a day | give at most 86400 s",
+            "'history' is longer than a day | write at most 86400 s",
         ),
         (
             "properties: {a: {topic: a, history: .inf}}",

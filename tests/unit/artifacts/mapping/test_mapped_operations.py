@@ -188,7 +188,7 @@ def test_a_value_that_does_not_fit_fails_and_sends_nothing(
     with_mapped(DRIVE, body)
 
 
-def test_a_type_that_is_left_out_is_that_of_the_listener() -> None:
+def test_a_missing_type_is_taken_from_the_subscriber() -> None:
     text = "operations: {go: {parameters: [v], publish: cmd_vel, fields: {linear.x: $v}}}"
 
     async def body(lab: Lab, artifact: ArtifactId) -> None:
@@ -277,12 +277,12 @@ def test_a_message_without_subscribers_is_delayed_and_warned_about_once() -> Non
         await lab.do(artifact, "say", "second")
         assert lab.clock.elapsed == pytest.approx(3.0)
         assert len(lab.logged) == 1
-        assert "m.yaml:3:38: no subscriber on /speech after 3 s; publishing anyway" in lab.logged[0]
+        assert "m.yaml:3:38: no subscriber on topic /speech after 3 s; publishing anyway" in lab.logged[0]
 
     on_a_graph(SAY, body)
 
 
-def test_a_message_without_subscribers_fails_if_the_mapping_says_so() -> None:
+def test_a_message_without_subscribers_fails_if_the_mapping_requires_it() -> None:
     async def body(lab: Lab, artifact: ArtifactId) -> None:
         for _ in range(2):
             assert (await lab.call(artifact, "must_say", "first")).reason == 'unmatched("/speech")'
@@ -292,7 +292,7 @@ def test_a_message_without_subscribers_fails_if_the_mapping_says_so() -> None:
     on_a_graph(SAY, body)
 
 
-def test_what_the_mapping_does_not_say_is_an_option_of_the_artifact() -> None:
+def test_settings_missing_in_the_mapping_are_options_of_the_artifact() -> None:
     async def body(lab: Lab, artifact: ArtifactId) -> None:
         assert (await lab.call(artifact, "say", "first")).reason == 'unmatched("/speech")'
         assert lab.clock.elapsed == pytest.approx(0.5)
@@ -474,7 +474,7 @@ def test_parameters_of_nodes_are_set_and_given() -> None:
     with_mapped(PARAMETERS, body)
 
 
-def test_a_parameter_that_is_no_number_has_no_unit() -> None:
+def test_a_parameter_that_is_not_a_number_has_no_unit() -> None:
     text = """
 operations:
   turn: {get_parameter: turn, node: lab, outputs: [{path: ., unit: degrees, round: 0, names: {none: nowhere}}]}
@@ -486,7 +486,9 @@ operations:
         failed = await lab.call(artifact, "turn", out)
         assert failed.reason == 'wrong_value("turn")'
         assert failed.outcome is not None
-        assert 'parameter turn is "left", no number: leave out its unit' in failed.outcome.message
+        assert (
+            'parameter `turn`: expected a number, found "left": leave out its unit' in failed.outcome.message
+        )
         await own.set("turn", "none")
         await lab.do(artifact, "turn", out)
         assert out.value == Atom("nowhere")
@@ -526,7 +528,7 @@ def test_operations_have_their_arities_and_names_of_parameters() -> None:
     with_mapped(ADD, body)
 
 
-def test_a_term_that_does_not_fit_is_told_as_agents_write_it() -> None:
+def test_a_mismatched_term_is_reported_in_the_notation_of_agents() -> None:
     text = "operations: {say: {parameters: [a], publish: s, type: std_msgs/msg/String, fields: {data: $a}}}"
 
     async def body(lab: Lab, artifact: ArtifactId) -> None:
@@ -564,5 +566,7 @@ def test_operations_of_one_name_with_as_many_arguments_are_refused() -> None:
     text = (
         "operations:\n  say:\n    - {parameters: [a], publish: s}\n    - {service: t, outputs: [message]}\n"
     )
-    with pytest.raises(MappingError, match=r"4:7: error: 'say' with 1 arguments is in line 3 already"):
+    with pytest.raises(
+        MappingError, match=r"4:7: error: duplicate operation `say` with 1 arguments; the first is on line 3"
+    ):
         read_mapping(text, "m.yaml")

@@ -17,7 +17,7 @@ POINT = "geometry_msgs/msg/Point"
 
 
 class Talk:
-    """A mapped artifact that somebody watches, and a publisher beside it."""
+    """An observed mapped artifact, and a publisher."""
 
     def __init__(self, lab: Lab, artifact: ArtifactId, watcher: Watcher) -> None:
         self.lab, self.artifact, self.watcher = lab, artifact, watcher
@@ -90,7 +90,7 @@ def test_rate_dead_band_and_on_demand() -> None:
     talk(points("dead_band: 0.5"), band)
 
 
-def test_on_demand_only_operations_tell() -> None:
+def test_on_demand_values_are_shown_by_operations_only() -> None:
     text = points("mode: on_demand") + "\noperations: {look: {refresh: a}, get: {read: a}}"
 
     async def body(t: Talk) -> None:
@@ -162,13 +162,13 @@ properties:
     talk(text, body)
 
 
-def test_a_number_that_is_not_finite_is_told_once_with_the_line() -> None:
+def test_a_number_that_is_not_finite_is_logged_once_with_the_line() -> None:
     async def body(t: Talk) -> None:
         await t.points(1, math.nan, math.nan)
         assert t.held == [(1,)]
         [line] = t.lab.logged
-        assert "m.yaml:1:14: a is not shown: x is nan" in line
-        assert "  = help: say what to show instead: {path: x, otherwise: 0}" in line
+        assert "m.yaml:1:14: `a` is not shown: `x` is nan" in line
+        assert "  = help: write a replacement: {path: x, otherwise: 0}" in line
         assert t.watcher.signals == [("bad_message", ("/p", Structure("not_finite", ("x",))))]
 
     talk(points(""), body)
@@ -339,11 +339,11 @@ properties:
     assert talk(text, body, Structure("namespace", ("r1",))).logged[-1] == "[(2.0,)]"
 
 
-def test_a_type_that_is_left_out_is_found_when_somebody_publishes() -> None:
+def test_a_missing_type_is_found_when_a_node_publishes() -> None:
     async def body(t: Talk) -> None:
         await t.lab.sleep(4)
-        assert any("waiting for the topic /p, to learn its type" in line for line in t.lab.logged)
-        assert any("m.yaml:1:25: the topic /p is missing" in line for line in t.lab.logged)
+        assert any("waiting for topic /p, to find its type" in line for line in t.lab.logged)
+        assert any("m.yaml:1:25: no node uses topic /p" in line for line in t.lab.logged)
         assert any("write its type: type: package/msg/Type" in line for line in t.lab.logged)
         await t.points(1)
         await t.lab.sleep(1)
@@ -353,18 +353,18 @@ def test_a_type_that_is_left_out_is_found_when_somebody_publishes() -> None:
     talk("properties: {a: {topic: p, fields: x}}", body)
 
 
-def test_a_type_that_was_found_and_does_not_fit_is_told_with_the_line() -> None:
+def test_a_found_type_that_does_not_match_is_reported_with_the_line() -> None:
     async def body(t: Talk) -> None:
         await t.say("p", "std_msgs/msg/String")
         await t.lab.sleep(1)
         [line] = [line for line in t.lab.logged if "no field" in line]
-        assert "m.yaml:1:36: 'x': std_msgs/msg/String has no field 'x'" in line
+        assert "m.yaml:1:36: `x`: std_msgs/msg/String has no field `x`" in line
         assert "  = help: its fields: data (string)" in line
 
     talk("properties: {a: {topic: p, fields: x}}", body)
 
 
-def test_another_type_at_the_topic_is_told_once_with_the_line() -> None:
+def test_another_type_at_the_topic_is_logged_once_with_the_line() -> None:
     async def body(t: Talk) -> None:
         for _ in range(3):
             await t.say("p", "std_msgs/msg/String", data="x")
@@ -375,7 +375,7 @@ def test_another_type_at_the_topic_is_told_once_with_the_line() -> None:
     talk(points(""), body)
 
 
-def test_a_quality_of_service_that_does_not_suit_is_told_once_with_the_line() -> None:
+def test_an_incompatible_qos_is_logged_once_with_the_line() -> None:
     async def body(t: Talk) -> None:
         for _ in range(3):
             await t.say("p", POINT, x=1)
@@ -429,8 +429,8 @@ def test_a_wrong_mapping_cannot_be_made_into_an_artifact() -> None:
             lab.logged.append(failure.message)
 
     [message] = in_lab(body, None).logged
-    assert f"m.yaml:1:68: error: 'u': {POINT} has no field 'u'" in message
-    assert "'v'" in message
+    assert f"m.yaml:1:68: error: `u`: {POINT} has no field `u`" in message
+    assert "`v`" in message
 
 
 def test_connected_topics_are_shown() -> None:
@@ -478,7 +478,7 @@ def test_frames_get_the_prefix_of_the_robot() -> None:
         await transform(t.lab, "odom", "other/base_link", 2)
         await t.lab.sleep(4)
         assert t.watcher.holds("b") == []
-        assert any("m.yaml:1:47: b is not known: " in line for line in t.lab.logged)
+        assert any("m.yaml:1:47: `b` is unknown: " in line for line in t.lab.logged)
 
     talk(text, body, "r1")
 
@@ -490,20 +490,20 @@ def test_stamps_of_latched_messages_may_be_old(qos: str, told: int) -> None:
         await t.say("p", "geometry_msgs/msg/PointStamped", LATCHED, point={"x": 2}, header=old)
         await settle()
         assert t.held == [(2.0,)]
-        assert sum("s off our clock" in line for line in t.lab.logged) == told
+        assert sum("differs from our clock" in line for line in t.lab.logged) == told
 
     talk(f"properties: {{a: {{topic: p, type: {POINT}Stamped, fields: [point.x], qos: {qos}}}}}", body)
 
 
-def test_parameters_of_a_node_that_is_not_there_are_told_of_once() -> None:
+def test_parameters_of_a_missing_node_are_logged_once() -> None:
     async def body(t: Talk) -> None:
         await t.lab.sleep(25)
         [told] = t.lab.logged
         assert told.endswith(
-            "m.yaml:1:14: a is not known so far: nobody answers for node /lob; still trying\n"
+            "m.yaml:1:14: `a` is not known yet: node /lob does not answer; still trying\n"
             "    1 | parameters: {a: {node: lob, parameter: speed}}\n"
             "                     ^\n"
-            "  = help: is that node running, and is this its name?"
+            "  = help: is the node running, and is this its name?"
         )
 
     talk("parameters: {a: {node: lob, parameter: speed}}", body)
@@ -529,13 +529,13 @@ def test_parameters_of_nodes_are_properties_that_follow() -> None:
         await t.lab.sleep(2)
         assert t.held == []
         told = "\n".join(t.lab.logged)
-        assert 'a is not shown: parameter speed is "fast", no number' in told
+        assert '`a` is not shown: parameter `speed`: expected a number, found "fast"' in told
         assert "Traceback" not in told
 
     talk(text, body)
 
 
-def test_otherwise_stands_for_an_element_that_is_not_there() -> None:
+def test_otherwise_replaces_a_missing_element() -> None:
     field = '{path: "ranges[2]", otherwise: range_max}'
     text = f"properties: {{a: {{topic: s, type: sensor_msgs/msg/LaserScan, fields: [{field}]}}}}"
 
@@ -547,7 +547,7 @@ def test_otherwise_stands_for_an_element_that_is_not_there() -> None:
     talk(text, body)
 
 
-def test_an_element_that_is_not_there_is_told_with_a_cure() -> None:
+def test_a_missing_element_is_reported_with_help() -> None:
     text = (
         "properties:\n"
         '  a: {topic: s, type: sensor_msgs/msg/LaserScan, fields: ["ranges[0]"]}\n'
@@ -558,20 +558,20 @@ def test_an_element_that_is_not_there_is_told_with_a_cure() -> None:
         await t.say("s", "sensor_msgs/msg/LaserScan")
         await t.say("h", "nav_msgs/msg/Path")
         told = "\n".join(t.lab.logged)
-        assert '  = help: say what to show instead: {path: "ranges[0]", otherwise: 0}' in told
-        assert "  = help: ask for the list, or for an element that is always there" in told
+        assert '  = help: write a replacement: {path: "ranges[0]", otherwise: 0}' in told
+        assert "  = help: read the list, or an element that always exists" in told
 
     talk(text, body)
 
 
-def test_a_weak_publisher_is_told_with_what_to_write() -> None:
+def test_a_weak_publisher_is_reported_with_help() -> None:
     text = "properties: {a: {topic: s, type: std_msgs/msg/String, qos: latched}}"
 
     async def body(t: Talk) -> None:
         await t.say("s", "std_msgs/msg/String", data="x")
         told = "\n".join(t.lab.logged)
-        assert "asks for transient_local, the publisher offers volatile" in told
-        assert "  = help: write qos: sensor_data, which hears any publisher" in told
+        assert "requests transient_local, the publisher offers volatile" in told
+        assert "  = help: write qos: sensor_data, which is compatible with any publisher" in told
 
     talk(text, body)
 
@@ -590,7 +590,7 @@ def test_what_has_no_place_is_out_of_view() -> None:
     talk(text, body)
 
 
-def test_a_property_does_not_go_back_in_time_and_signals_are_told_all_the_same() -> None:
+def test_a_property_does_not_go_back_in_time_but_signals_are_sent() -> None:
     text = """
 properties:
   range: {topic: range, type: sensor_msgs/msg/Range, fields: [range]}

@@ -58,7 +58,7 @@ def test_the_check_knows_them(store: Path, capsys: pytest.CaptureFixture[str]) -
     assert call(["check", "--strict", str(store)]) == 0
     store.write_text(SHELF.replace("[label,", "[lable,"))
     assert call(["check", str(store)]) == 1
-    assert "did you mean 'label'" in capsys.readouterr().out
+    assert "did you mean `label`" in capsys.readouterr().out
 
 
 def test_they_count_for_all_artifacts_of_a_file(store: Path) -> None:
@@ -73,6 +73,6 @@ def test_a_folder_that_is_not_there(store: Path) -> None:
     with pytest.raises(MappingError) as caught:
         load_mapping(store)
     assert [(each.line, each.message) for each in caught.value.problems] == [
-        (1, "there is no folder typos"),
+        (1, "folder not found: `typos`"),
         (1, "item 3 of 'interfaces' must be a text, not 5"),
     ]

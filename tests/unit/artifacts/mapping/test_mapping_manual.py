@@ -19,7 +19,7 @@ def told(text: str, name: str) -> str:
     return next(each.text for each in (*shown.properties, *shown.signals) if each.name == name)
 
 
-def test_values_of_a_property_are_told_with_kind_unit_and_rounding() -> None:
+def test_values_of_a_property_are_described_with_kind_unit_and_rounding() -> None:
     text = """
 properties:
   odom:
@@ -35,7 +35,7 @@ properties:
     expire: 2
 """
     assert told(text, "odom") == (
-        "from topic odom (nav_msgs/msg/Odometry), at most 5 times a second, gone after 2 s without a message. "
+        "from topic odom (nav_msgs/msg/Odometry), at most 5 times a second, removed after 2 s without a message. "
         "X: number in metres, 2 decimals; Turn: number in degrees per second; Yaw: whole number in degrees; "
         "Stamp: number in seconds; Y: number."
     )
@@ -105,7 +105,7 @@ def test_fields_that_the_mapping_leaves_out_are_those_of_the_type() -> None:
     assert scan.text.endswith("X: number in metres; Y: number in metres; Z: number in metres.")
 
 
-def test_elements_frames_and_feedback_are_told() -> None:
+def test_elements_frames_and_feedback_are_described() -> None:
     text = """
 properties:
   joint: {topic: j, type: sensor_msgs/msg/JointState, each: name, fields: [., {path: "/position[i]", round: 2}]}
@@ -142,7 +142,7 @@ operations:
     )
 
 
-def test_parameters_of_operations_are_told() -> None:
+def test_parameters_of_operations_are_described() -> None:
     text = """
 operations:
   drive:
@@ -178,7 +178,7 @@ operations:
     assert "other(v: any value)" in usages
 
 
-def test_agents_are_told_the_same() -> None:
+def test_agents_receive_the_same() -> None:
     text = str(
         manual_term(
             manual(
@@ -189,7 +189,7 @@ def test_agents_are_told_the_same() -> None:
     assert 'input(x,"text")' in text
 
 
-def test_definitions_are_not_looked_up_before_somebody_asks(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_definitions_are_looked_up_on_demand(monkeypatch: pytest.MonkeyPatch) -> None:
     def refuse(*_: object) -> object:
         raise AssertionError("definitions were looked up")
 

@@ -7,7 +7,7 @@ import pytest
 
 from jacaros.artifacts.mapping.declared import FieldPart, TopicPart
 from jacaros.artifacts.mapping.decoding import MessageHandle, Unshowable
-from jacaros.artifacts.mapping.encoding import WrongValue, filler
+from jacaros.artifacts.mapping.encoding import WrongValue, builder
 from jacaros.artifacts.mapping.file import read_mapping
 from jacaros.artifacts.mapping.interfaces import stored_interfaces
 from jacaros.artifacts.mapping.rows import extractor
@@ -170,12 +170,12 @@ def test_a_number_that_is_not_finite_is_not_shown(
 
 
 def test_a_nested_number_that_is_not_finite_is_not_shown() -> None:
-    with pytest.raises(Unshowable, match=r"position\.x is nan"):
+    with pytest.raises(Unshowable, match=r"`position\.x` is nan"):
         taken("geometry_msgs/msg/Pose", "position", position={"x": math.nan})
 
 
 @pytest.mark.parametrize("fields", ["'ranges[3]'", "{path: ranges, sample: 2}"])
-def test_an_element_that_is_not_there_is_not_shown(fields: str) -> None:
+def test_a_missing_element_is_not_shown(fields: str) -> None:
     with pytest.raises(Unshowable) as caught:
         taken(SCAN, fields)
     assert caught.value.functor == "no_element"
@@ -208,7 +208,7 @@ def test_one_row_for_each_element_with_parallel_arrays() -> None:
     assert [row.values for row in extract(message)] == [("left", 1.0, "base"), ("right", 2.0, "base")]
 
 
-def test_elements_may_be_told_apart_by_a_list() -> None:
+def test_a_list_may_identify_elements() -> None:
     part = topic("[header.frame_id]", "each: markers, key: points")
     extract = extractor(part, "visualization_msgs/msg/MarkerArray", stored_interfaces(), [])
     assert extract is not None
@@ -230,7 +230,7 @@ def filled(type_name: str, fields: str, *arguments: object, parameters: str = "[
     text = f"operations: {{go: {{publish: t, parameters: {parameters}, fields: {fields}}}}}"
     part = read_mapping(text).artifacts["mapping"].operations[0]
     problems: list[Any] = []
-    fill = filler(part.values, type_name, stored_interfaces(), problems)
+    fill = builder(part.values, type_name, stored_interfaces(), problems)
     assert problems == []
     assert fill is not None
     return stored_interfaces().message(type_name, **fill(arguments, 100.5))
@@ -297,10 +297,10 @@ def test_elements_by_number() -> None:
 @pytest.mark.parametrize(
     ("fields", "argument", "message"),
     [
-        ("{angular.z: {value: $a, unit: degrees}}", "left", 'cannot be "left": a number is wanted'),
-        ("{linear: $a}", [1, 2], "has the 3 fields x, y, z"),
+        ("{angular.z: {value: $a, unit: degrees}}", "left", 'cannot be "left": expected a number'),
+        ("{linear: $a}", [1, 2], "has 3 fields: x, y, z"),
     ],
 )
-def test_a_wrong_argument_is_told(fields: str, argument: object, message: str) -> None:
+def test_a_wrong_argument_is_reported(fields: str, argument: object, message: str) -> None:
     with pytest.raises(WrongValue, match=message):
         filled("geometry_msgs/msg/Twist", fields, argument)

@@ -25,7 +25,7 @@ operations:
 
 
 def held(lab: Lab, artifact: ArtifactId, name: str) -> list[tuple[object, ...]]:
-    """The values of a property for somebody who looks now."""
+    """The present values of a property."""
     return lab.watch(artifact).holds(name)
 
 
@@ -114,13 +114,13 @@ def test_infinity_is_not_shown() -> None:
     in_lab(body, None)
 
 
-def test_one_that_is_declared_already_is_told_with_its_line() -> None:
+def test_a_duplicate_declaration_is_reported_with_its_line() -> None:
     async def body(lab: Lab) -> None:
         lab.backend.parameters().declare("speed", Declaration(1))
         with pytest.raises(OperationFailed) as failed:
             await lab.make(mapped(TUNED))
         told = failed.value.message
-        assert "m.yaml:3:3: error: parameter speed of /lab is declared already" in told
+        assert "m.yaml:3:3: error: parameter speed of /lab is already declared" in told
         assert "  = help: give it another name: parameter: NAME" in told
         assert await lab.backend.parameters().names() == ["speed"]
 

@@ -182,7 +182,7 @@ def test_errors_are_raised_at_the_call(tmp_path: Path) -> None:
     run(test, folder=tmp_path)
     with pytest.raises(ProjectError, match=r"nothing.jcm"):
         Mas(tmp_path / "nothing.jcm")
-    with pytest.raises(UsageError, match="there is no ROS backend 'ros3'"):
+    with pytest.raises(UsageError, match="unknown ROS backend 'ros3'"):
         Mas(ros="ros3")
 
 

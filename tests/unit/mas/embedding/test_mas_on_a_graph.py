@@ -48,11 +48,11 @@ def test_a_mapping_and_other_names_are_given_as_on_the_command_line(tmp_path: Pa
 @pytest.mark.parametrize(
     ("options", "text"),
     [
-        ({"domain_id": 3}, "--domain-id goes with --ros ros2"),
-        ({"ros": "ros2", "domain_id": 1000}, "--domain-id is a whole number"),
-        ({"master": "http://robot.lab.example:11311"}, "--master goes with --ros ros1"),
-        ({"ros": "ros1", "master": "robot"}, "--master is an address"),
-        ({"bridge": "ws://robot.lab.example:9090"}, "--bridge goes with --ros rosbridge"),
+        ({"domain_id": 3}, "--domain-id needs --ros ros2"),
+        ({"ros": "ros2", "domain_id": 1000}, "--domain-id: expected an integer"),
+        ({"master": "http://robot.lab.example:11311"}, "--master needs --ros ros1"),
+        ({"ros": "ros1", "master": "robot"}, "--master: expected an address"),
+        ({"bridge": "ws://robot.lab.example:9090"}, "--bridge needs --ros rosbridge"),
         ({"ros_clock": True}, "--clock ros needs"),
         ({"node_name": "my node"}, "my node"),
         ({"remap": {"a b": "c"}}, "a b"),

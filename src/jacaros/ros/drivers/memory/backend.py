@@ -1,8 +1,8 @@
-"""A ROS graph inside the process: nothing to install, deterministic, as fast as the loop.
+"""A ROS graph inside the process: needs no installation, deterministic, as fast as the loop.
 
-Topics, services, actions, parameters and quality of service behave as on ROS 2; the message classes have the
-genuine definitions.  A published message is handed over by reference, one turn of the loop per message, in the
-order of publishing; so messages are read-only from `publish` on.
+Topics, services, actions, parameters and quality of service behave as on ROS 2; the message classes have the original
+definitions. A published message is passed by reference, one turn of the loop per message, in the
+order of publishing; therefore messages are read-only from `publish` on.
 """
 
 from jacaros.ros.backend import (
@@ -37,11 +37,11 @@ __all__ = ["BACKEND", "MemoryBackend", "MemoryGraph", "MemoryPublisher", "Memory
 
 
 class MemoryBackend(MemoryNode):
-    """A node in a graph inside the process.
+    """A node in an in-process graph.
 
     Args:
-        settings: names, clock and reports.
-        graph: the graph to join; a new one without it.
+        settings: names, clock and log.
+        graph: the graph to join; default: a new one.
     """
 
     name = "memory"
@@ -88,7 +88,7 @@ class MemoryBackend(MemoryNode):
         self.lifetime.left()
 
     def vanish(self) -> None:
-        """Be gone without a word, as a killed process is; see `MemoryGraph.vanish`."""
+        """Disappear without notice, as a killed process does; see `MemoryGraph.vanish`."""
         self.vanished = True
         for member in list(self.members):
             getattr(member, "vanish", member.close)()
@@ -96,11 +96,11 @@ class MemoryBackend(MemoryNode):
         self.graph.leave(self)
 
     def parameters(self, node: str | None = None) -> MemoryParameters:
-        """Give the parameters of our own node, or of another."""
+        """Return the parameters of our own node, or of another."""
         return MemoryParameters(self, self.node_name if node is None else self.resolve(node))
 
     async def contents(self, timeout: float = 5.0) -> GraphContents:
-        """Look at the graph."""
+        """Return the contents of the graph."""
         if not self.graph.up:
             raise ServiceUnavailable("the graph is interrupted")
         return self.graph.contents()

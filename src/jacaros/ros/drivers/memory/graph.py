@@ -1,6 +1,6 @@
-"""What the nodes of one process share: who is at which topic, who offers what, and whether they reach each other.
+"""The shared state of the nodes of one process: topics, services, actions, and whether they reach each other.
 
-Tests make it misbehave: `MemoryGraph.disturb`, `vanish`, `interrupt` and `restore`.
+Tests inject faults: `MemoryGraph.disturb`, `vanish`, `interrupt` and `restore`.
 """
 
 import asyncio
@@ -17,15 +17,15 @@ from jacaros.ros.parameter_store import DeclaredParameters
 from jacaros.ros.qos import QoS
 
 
-class Vanishing(Protocol):
-    """Something that can be gone without a word."""
+class GraphEntity(Protocol):
+    """An entity that can disappear without notice."""
 
     def vanish(self) -> None:
-        """Be gone without a word."""
+        """Disappear without notice."""
         ...
 
 
-class GraphNode(Vanishing, Protocol):
+class GraphNode(GraphEntity, Protocol):
     """A node."""
 
     declared: DeclaredParameters
@@ -41,7 +41,7 @@ class GraphNode(Vanishing, Protocol):
         ...
 
     def set_connected(self, connected: bool) -> None:
-        """Learn that the graph was found or lost."""
+        """Note that the graph was found or lost."""
         ...
 
 
@@ -66,15 +66,15 @@ class GraphSubscription(TopicEnd, Protocol):
         ...
 
     def meet(self, publisher: "GraphPublisher") -> None:
-        """Be connected to a publisher, or say why not."""
+        """Connect to a publisher, or report why that is impossible."""
         ...
 
     def fits(self, publisher: "GraphPublisher") -> bool:
-        """Whether messages of a publisher come."""
+        """Return whether messages of a publisher arrive."""
         ...
 
     def choose_way(self) -> None:
-        """Let messages come in as the topic's faults want it."""
+        """Select the delivery path for the topic's faults."""
         ...
 
 
@@ -86,19 +86,19 @@ class GraphPublisher(TopicEnd, Protocol):
         ...
 
     def disconnect(self, subscription: GraphSubscription) -> None:
-        """Send to a subscription no more."""
+        """Stop sending to a subscription."""
         ...
 
     def disconnect_all(self) -> None:
-        """Send to nobody."""
+        """Stop sending to all subscriptions."""
         ...
 
     def refused(self, subscription: GraphSubscription) -> None:
-        """Say that a subscription takes the topic for something else."""
+        """Report that a subscription expects another type."""
         ...
 
 
-class GraphService(Vanishing, Protocol):
+class GraphService(GraphEntity, Protocol):
     """A service."""
 
     name: str
@@ -110,7 +110,7 @@ class GraphService(Vanishing, Protocol):
 
 
 class GoalLine(Protocol):
-    """An action client's line to the servers."""
+    """An action client's connection to the servers."""
 
     name: str
     sender: GoalSender
@@ -121,15 +121,15 @@ class GoalLine(Protocol):
         ...
 
     def server_came(self) -> None:
-        """A server is there."""
+        """Note that there is a server."""
         ...
 
     def server_went(self) -> None:
-        """There is no server any more."""
+        """Note that there is no server."""
         ...
 
 
-class GraphActionServer(Vanishing, Protocol):
+class GraphActionServer(GraphEntity, Protocol):
     """An action server."""
 
     name: str
@@ -137,70 +137,70 @@ class GraphActionServer(Vanishing, Protocol):
     vanished: bool
 
     def take(self, goal_id: str, request: Any, wire: GoalLine) -> None:
-        """Judge a goal and begin with it."""
+        """Accept a goal and begin it, or reject it."""
         ...
 
     def cancel(self, goal_id: str, wire: GoalLine) -> None:
-        """Handle a request for cancelling."""
+        """Handle a request to cancel."""
         ...
 
 
 Disturbance = Callable[[Any], Sequence[float]]
-"""Takes a message; gives the delays in seconds after which copies of it arrive: none when it is lost."""
+"""Takes a message; returns the delays in seconds after which copies of it arrive: none if it is lost."""
 
 
 def delayed(seconds: float, jitter: float = 0.0, seed: int = 0) -> Disturbance:
-    """Let every message come late.
+    """Delay every message.
 
     Args:
-        seconds: by so much.
-        jitter: and by up to so much more, at random, so that messages overtake each other.
-        seed: of the jitter.
+        seconds: minimum delay.
+        jitter: maximum of a random additional delay, so that messages overtake each other.
+        seed: seed of the jitter.
     """
     chance = random.Random(seed)
     return lambda message: (seconds + chance.uniform(0.0, jitter) if jitter else seconds,)
 
 
 def dropped(share: float = 1.0, seed: int = 0) -> Disturbance:
-    """Lose messages.
+    """Drop messages.
 
     Args:
-        share: of the messages, from 0 to 1; 1 loses all.
-        seed: of the choice.
+        share: fraction of the messages, from 0 to 1; 1 drops all.
+        seed: seed of the choice.
     """
     chance = random.Random(seed)
     return lambda message: () if chance.random() < share else (0.0,)
 
 
 def duplicated(copies: int = 2, apart: float = 0.0) -> Disturbance:
-    """Let every message come several times.
+    """Deliver every message several times.
 
     Args:
-        copies: how often.
+        copies: number of copies.
         apart: seconds between two copies.
     """
     return lambda message: [number * apart for number in range(copies)]
 
 
 def both(first: Disturbance, second: Disturbance) -> Disturbance:
-    """Let two things happen to each message: each copy that *first* lets through suffers *second*."""
+    """Combine two disturbances: *second* applies to each copy that *first* lets through."""
     return lambda message: [late + later for late in first(message) for later in second(message)]
 
 
 HIDDEN = ("/rosout", "/parameter_events")
-"""Topics that every graph has; `GraphContents` leaves them out."""
+"""Topics of every graph, which `GraphContents` omits."""
 
 
 @dataclass
 class Topic:
-    """Who is at a topic, and what happens to its messages on the way (None: nothing)."""
+    """The entities of a topic, and the disturbance of its messages (None: none)."""
 
     publishers: list[GraphPublisher] = field(default_factory=list)
     subscriptions: list[GraphSubscription] = field(default_factory=list)
     disturbance: Disturbance | None = None
 
     def info(self, name: str) -> TopicInfo:
-        """What others are told of it."""
+        """Return the description of the topic for `GraphContents`."""
         types = {publisher.type_name for publisher in self.publishers}
         types |= {subscription.type_name for subscription in self.subscriptions}
         return TopicInfo(
@@ -230,22 +230,22 @@ class MemoryGraph:
     # Nodes
 
     def join(self, node: GraphNode) -> None:
-        """Make *node* known; a newer one of the same name takes over."""
+        """Add *node*; a newer node of the same name replaces it."""
         self._loop = node.loop
         self._nodes[node.node_name] = node
         self._arrived(f"node {node.node_name}")
 
     def leave(self, node: GraphNode) -> None:
-        """Forget *node*."""
+        """Remove *node*."""
         if self._nodes.get(node.node_name) is node:
             del self._nodes[node.node_name]
 
     def node(self, name: str) -> GraphNode | None:
-        """The node called *name*, if it can be reached."""
+        """Return the node *name*, if it can be reached."""
         return self._nodes.get(name) if self.up else None
 
     def contents(self) -> GraphContents:
-        """All that is here now."""
+        """Return everything in the graph."""
         return GraphContents(
             {
                 name: topic.info(name)
@@ -260,18 +260,18 @@ class MemoryGraph:
     # Topics
 
     def topic(self, name: str) -> Topic:
-        """Give the topic called *name*."""
+        """Return the topic *name*."""
         return self._topics.setdefault(name, Topic())
 
     def watch_publishers(self, watcher: Callable[[GraphPublisher], None]) -> None:
-        """Have *watcher* called with each publisher that is there, and with each that comes, before it publishes."""
+        """Call *watcher* with each present publisher, and with each new one before it publishes."""
         self._publisher_watchers.append(watcher)
         for topic in list(self._topics.values()):
             for publisher in list(topic.publishers):
                 watcher(publisher)
 
     def published_by(self, publisher: GraphPublisher) -> None:
-        """Tell those who watch of a new publisher."""
+        """Report a new publisher to the watchers."""
         for watcher in self._publisher_watchers:
             watcher(publisher)
 
@@ -282,44 +282,44 @@ class MemoryGraph:
     # Services
 
     def offer(self, service: GraphService) -> None:
-        """Make *service* reachable; a newer one of the same name takes over, as on ROS 1."""
+        """Make *service* reachable; a newer one of the same name replaces it, as on ROS 1."""
         self._services[service.name] = service
         self._arrived(f"service {service.name}")
 
     def withdraw(self, service: GraphService) -> None:
-        """Take *service* out again."""
+        """Remove *service*."""
         if self._services.get(service.name) is service:
             del self._services[service.name]
 
     def server(self, name: str) -> GraphService | None:
-        """The service called *name*, if it is offered."""
+        """Return the service *name*, if it is offered."""
         return self._services.get(name) if self.up else None
 
     # Actions
 
     def offer_action(self, server: GraphActionServer) -> None:
-        """Make an action reachable; a newer server of the same name takes over."""
+        """Make an action reachable; a newer server of the same name replaces it."""
         self._actions[server.name] = server
         for wire in self._wires.get(server.name, []):
             wire.server_came()
 
     def withdraw_action(self, server: GraphActionServer) -> None:
-        """Take an action out again."""
+        """Remove an action."""
         if self._actions.get(server.name) is server:
             del self._actions[server.name]
             for wire in list(self._wires.get(server.name, [])):
                 wire.server_went()
 
     def action_server(self, name: str) -> GraphActionServer | None:
-        """The action called *name*, if it is offered."""
+        """Return the action *name*, if it is offered."""
         return self._actions.get(name) if self.up else None
 
     def connect(self, wire: GoalLine) -> None:
-        """Tell an action client when servers come and go."""
+        """Report to an action client when servers come and go."""
         self._wires.setdefault(wire.name, []).append(wire)
 
     def disconnect(self, wire: GoalLine) -> None:
-        """Tell it no more."""
+        """Stop reporting to an action client."""
         if wire in self._wires.get(wire.name, []):
             self._wires[wire.name].remove(wire)
 
@@ -328,27 +328,27 @@ class MemoryGraph:
     def listen_to_parameters(
         self, node: str, callback: Callable[[Mapping[str, ParameterValue]], None]
     ) -> Callable[[], None]:
-        """Tell *callback* of the changed parameters of *node*; the result ends that."""
+        """Call *callback* with the changed parameters of *node*. Return a function that removes it."""
         listeners = self._parameter_listeners.setdefault(node, [])
         listeners.append(callback)
         return lambda: listeners.remove(callback) if callback in listeners else None
 
     def parameters_changed(self, node: str, changed: Mapping[str, ParameterValue]) -> None:
-        """Tell those who listen, in a later turn of the loop."""
+        """Report changes to the listeners, in a later turn of the loop."""
         if self.up:
             for callback in self._parameter_listeners.get(node, []):
                 self.tell(callback, changed)
 
-    # Waiting and being told
+    # Waiting and callbacks
 
     def arrival(self, what: str) -> asyncio.Future[None]:
-        """A future that is done when something (``service /add``, ``node /sim``) has come."""
+        """Return a future that is done when an entity (``service /add``, ``node /sim``) has appeared."""
         future: asyncio.Future[None] = asyncio.get_running_loop().create_future()
         self._awaited.setdefault(what, []).append(future)
         return future
 
     def tell(self, callback: Callable[..., None], *arguments: Any) -> None:
-        """Call *callback* in a later turn of the loop; while the graph is interrupted, after that."""
+        """Call *callback* in a later turn of the loop; while the graph is interrupted, after the interruption."""
         if self.up and self._loop is not None:
             if not self._loop.is_closed():
                 self._loop.call_soon(callback, *arguments)
@@ -361,7 +361,7 @@ class MemoryGraph:
                 if not future.done():
                     future.set_result(None)
 
-    # Faults, for tests
+    # Fault injection, for tests
 
     def disturb(self, topic: str, disturbance: Disturbance) -> Callable[[], None]:
         """Delay, duplicate or drop the messages of a topic from now on.
@@ -369,10 +369,10 @@ class MemoryGraph:
         Args:
             topic: absolute name.
             disturbance: for each message and subscription, the delays in seconds after which copies arrive; see
-                `jacaros.ros.drivers.memory.faults`.
+                `Disturbance`.
 
         Returns:
-            what ends it.
+            A function that ends it.
         """
         disturbed = self.topic(topic)
 
@@ -385,22 +385,23 @@ class MemoryGraph:
         return lambda: become(None)
 
     def vanish(self, name: str) -> None:
-        """Take away a node, service or action server without a word, as when its process is killed.
+        """Remove a node, service or action server without notice, as when its process is killed.
 
-        Clients of its services and actions get no answer; no exit hooks run; what its code still publishes goes nowhere.
+        Clients of its services and actions get no answer; no exit hooks run; further messages of its code are
+        dropped.
 
         Raises:
-            RosError: there is nothing of that name.
+            RosError: there is no entity of that name.
         """
-        tables: tuple[Mapping[str, Vanishing], ...] = (self._nodes, self._services, self._actions)
+        tables: tuple[Mapping[str, GraphEntity], ...] = (self._nodes, self._services, self._actions)
         found = [table[name] for table in tables if name in table]
         if not found:
-            raise RosError(f"there is no node, service or action {name}")
+            raise RosError(f"unknown node, service or action: {name}")
         for member in found:
             member.vanish()
 
     def interrupt(self) -> None:
-        """Cut all nodes off from each other, as when the network or the master is gone.
+        """Disconnect all nodes from each other, as when the network or the master fails.
 
         Messages are lost, services and actions cannot be reached, `Backend.connected` is false everywhere.
         """
@@ -414,7 +415,7 @@ class MemoryGraph:
             node.set_connected(False)
 
     def restore(self) -> None:
-        """End `interrupt`: all find each other again; answers that were on their way arrive."""
+        """End `interrupt`: all nodes find each other again, and pending answers arrive."""
         self.up = True
         held, self._held = self._held, []
         for callback, arguments in held:

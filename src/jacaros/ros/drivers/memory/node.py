@@ -1,4 +1,4 @@
-"""A node in a graph inside the process, as its publishers, services and actions know it."""
+"""A node in an in-process graph, as seen by its publishers, services and actions."""
 
 import itertools
 
@@ -11,11 +11,11 @@ from jacaros.ros.typestore import DefinitionSchema
 
 
 class MemoryNode(Node):
-    """The part of `jacaros.ros.drivers.memory.backend.MemoryBackend` that its members use.
+    """The part of `jacaros.ros.drivers.memory.backend.MemoryBackend` that its entities use.
 
     Args:
-        settings: names, clock and reports.
-        graph: the graph to join; a new one without it.
+        settings: names, clock and log.
+        graph: the graph to join; default: a new one.
     """
 
     def __init__(self, settings: NodeSettings, graph: MemoryGraph | None) -> None:
@@ -32,12 +32,12 @@ class MemoryNode(Node):
         self._goal_numbers = itertools.count(1)
 
     def keep(self, member: M) -> M:
-        """Close *member* with the node; raises `RosError` when the node is gone."""
+        """Close *member* with the node. Raises `RosError` if the node has vanished."""
         if self.vanished:
             member.close()
             raise RosError(f"node {self.node_name} was taken away from the graph")
         return super().keep(member)
 
     def new_goal_id(self) -> str:
-        """Number the goals that this node sends."""
+        """Return a numbered id for a goal of this node."""
         return f"{self.node_name}-{next(self._goal_numbers)}"

@@ -1,4 +1,4 @@
-"""Services, actions and parameters of `jacaros.ros.drivers.memory.backend`, those who offer them and those who ask."""
+"""Services, actions and parameters of `jacaros.ros.drivers.memory.backend`: servers and clients."""
 
 import asyncio
 from collections.abc import Callable, Mapping
@@ -51,13 +51,13 @@ class MemoryService:
         self._responder.answer(request, done)
 
     def close(self) -> None:
-        """Stop to offer the service."""
+        """Stop offering the service."""
         self._graph.withdraw(self)
         self._responder.close()
         self._node.forget(self)
 
     def vanish(self) -> None:
-        """Be gone without a word: its clients find that out after a while."""
+        """Disappear without notice: its clients detect that after a while."""
         self._vanished = True
         for answer in self._answers:
             self._clock.call_later(SERVER_LOST_AFTER, partial(settle, answer, None, server_gone(self.name)))
@@ -78,7 +78,7 @@ class MemoryClient:
 
     @property
     def ready(self) -> bool:
-        """Whether somebody offers the service."""
+        """Whether a node offers the service."""
         return self._node.graph.server(self.name) is not None
 
     def request(self, **fields: Any) -> Any:
@@ -86,7 +86,7 @@ class MemoryClient:
         return self._node.factory.make(request_type(self._type_name), fields)
 
     async def call(self, request: Any = None, timeout: float | None = None) -> Any:
-        """Call the service and give its response."""
+        """Call the service and return its response."""
         clock = self._node.clock
         message = checked_message(self._node.factory, request_type(self._type_name), request)
         deadline = None if timeout is None else clock.elapsed + timeout
@@ -111,29 +111,29 @@ class MemoryClient:
         return server
 
     def close(self) -> None:
-        """Give the client up."""
+        """Close the client."""
         self._pending.close()
         self._node.forget(self)
 
 
 async def come(node: MemoryNode, thing: str, what: str, timeout: float | None, absence: Absence) -> None:
-    """Wait until something has come to the graph, with a report.
+    """Wait until an entity has appeared in the graph, and log the wait.
 
     Args:
-        node: who waits.
-        thing: what `MemoryGraph.arrival` calls it.
-        what: what people call it.
+        node: the waiting node.
+        thing: its name for `MemoryGraph.arrival`.
+        what: its name for the log.
         timeout: seconds.
-        absence: how often it was awaited before, see `Waiting`.
+        absence: number of earlier waits, see `Waiting`.
 
     Raises:
-        ServiceUnavailable: it has not come in time.
+        ServiceUnavailable: it has not appeared in time.
     """
-    with Waiting(node.clock, node.log, what, "Is the node that offers it running?", absence=absence):
+    with Waiting(node.clock, node.log, what, "is the node that offers it running?", absence=absence):
         try:
             await within(node.clock, node.graph.arrival(thing), timeout)
         except TimeoutError:
-            raise ServiceUnavailable(f"nobody offered {what} within {timeout:g} s") from None
+            raise ServiceUnavailable(f"no node offered {what} within {timeout:g} s") from None
 
 
 class MemoryActionServer:
@@ -153,7 +153,7 @@ class MemoryActionServer:
         node.keep(self)
 
     def take(self, goal_id: str, request: Any, wire: GoalLine) -> None:
-        """Judge a goal and begin with it."""
+        """Accept a goal and begin it, or reject it."""
         if self.vanished:
             return
         refusal = self._goals.judge(request)
@@ -164,17 +164,17 @@ class MemoryActionServer:
         self._goals.begin(goal_id, request, _News(self._graph, wire, goal_id))
 
     def cancel(self, goal_id: str, wire: GoalLine) -> None:
-        """Handle a request for cancelling."""
+        """Handle a request to cancel."""
         if not self.vanished:
             self._graph.tell(wire.sender.cancel_answered, goal_id, self._goals.cancel(goal_id))
 
     def close(self) -> None:
-        """Stop to offer the action."""
+        """Stop offering the action."""
         self._goals.close()
         self._leave()
 
     def vanish(self) -> None:
-        """Be gone without a word: the clients of goals under way learn nothing."""
+        """Disappear without notice: the clients of active goals learn nothing."""
         self.vanished = True
         self._goals.abandon()
         self._leave()
@@ -185,7 +185,7 @@ class MemoryActionServer:
 
 
 class _News:
-    """Brings the news of one goal to its client."""
+    """Sends the events of one goal to its client."""
 
     def __init__(self, graph: MemoryGraph, wire: GoalLine, goal_id: str) -> None:
         self._graph = graph
@@ -193,7 +193,7 @@ class _News:
         self._goal_id = goal_id
 
     def feedback(self, message: Any) -> None:
-        if self._graph.up:  # else it is lost, as messages are
+        if self._graph.up:  # otherwise it is lost, as messages are
             self._graph.tell(self._wire.sender.feedback, self._goal_id, message)
 
     def ended(self, outcome: Outcome) -> None:
@@ -201,7 +201,7 @@ class _News:
 
 
 class MemoryGoalWire:
-    """Carries goals from a `GoalSender` to the servers of the graph."""
+    """Transfers goals from a `GoalSender` to the servers of the graph."""
 
     def __init__(self, node: MemoryNode, name: str, type_name: str) -> None:
         node.schema.action(type_name)
@@ -217,7 +217,7 @@ class MemoryGoalWire:
 
     @classmethod
     def client(cls, node: MemoryNode, name: str, type_name: str) -> GoalSender:
-        """Make an action client, as the port has it, and keep its wire at the node."""
+        """Make an action client for the port, and register its wire at the node."""
         return node.keep(cls(node, name, type_name)).sender
 
     @property
@@ -226,14 +226,14 @@ class MemoryGoalWire:
         return self.graph.action_server(self.name) is not None
 
     def new_id(self) -> str:
-        """Number the node's goals."""
+        """Return a numbered id for a goal."""
         return self._node.new_goal_id()
 
     def send_goal(self, goal_id: str, goal: Any) -> None:
-        """Hand a goal to the server."""
+        """Pass a goal to the server."""
         server = self.graph.action_server(self.name)
         if server is None:
-            raise CallFailed(f"action {self.name} is not offered any more")
+            raise CallFailed(f"action {self.name} is no longer offered")
         if server.type_name != self._type_name:
             raise CallFailed(f"action {self.name} is of type {server.type_name}, not {self._type_name}")
         if not self._node.lifetime.admits():
@@ -248,36 +248,36 @@ class MemoryGoalWire:
             self.graph.tell(server.cancel, goal_id, self)
 
     def adopt_goal(self, goal_id: str) -> None:
-        """Never called: a graph inside the process has no earlier runs."""
+        """Never called: an in-process graph has no earlier runs."""
 
     def forget_goal(self, goal_id: str) -> None:
-        """The goal is over."""
+        """Forget a goal that has ended."""
         self._servers.pop(goal_id, None)
 
     def close(self) -> None:
         """Cancel the goals, and leave."""
-        self.sender.close()  # which calls this again, when they are cancelled
+        self.sender.close()  # which calls this again after they are cancelled
         self._forget_hook()
         self.graph.disconnect(self)
         self._node.forget(self)
 
     def _cancel_all(self) -> None:
-        """Cancel what is under way, as an exit hook."""
+        """Exit hook: cancel the active goals."""
         for goal_id in list(self._servers):
             self.cancel_goal(goal_id)
 
     def server_came(self) -> None:
-        """A server is there."""
+        """Note that there is a server."""
         vanished = any(server.vanished for server in self._servers.values())
         self.sender.server_present(True, same=not vanished)
 
     def server_went(self) -> None:
-        """There is no server any more."""
+        """Note that there is no server."""
         self.sender.server_present(False)
 
 
 class MemoryParameters:
-    """The parameters of a node, seen from another or from itself."""
+    """The parameters of a node, seen from another node or from itself."""
 
     def __init__(self, asker: MemoryNode, node: str) -> None:
         self.node = node
@@ -290,7 +290,7 @@ class MemoryParameters:
         return self._asker.declared.declare(name, declaration)
 
     def withdraw(self, name: str) -> None:
-        """Take a declaration of our own node back."""
+        """Undeclare a parameter of our own node."""
         self._require_own()
         self._asker.declared.withdraw(name)
 
@@ -299,22 +299,22 @@ class MemoryParameters:
         return (await self._store(timeout)).names()
 
     async def get(self, name: str, timeout: float | None = None) -> ParameterValue:
-        """Give a parameter's value."""
+        """Return a parameter's value."""
         return (await self._store(timeout)).get(name)
 
     async def set(self, name: str, value: ParameterValue, timeout: float | None = None) -> None:
         """Change a parameter."""
         (await self._store(timeout)).set(name, value)
-        await asyncio.sleep(0)  # the news of it comes first, as it does on real graphs more often than not
+        await asyncio.sleep(0)  # the change is reported first, as on real graphs in most cases
 
     def on_change(self, callback: Callable[[Mapping[str, ParameterValue]], None]) -> Callable[[], None]:
-        """Have *callback* called with what changed."""
+        """Call *callback* with changed parameters."""
         return self._asker.graph.listen_to_parameters(self.node, callback)
 
     def _require_own(self) -> None:
         if self.node != self._asker.node_name:
             raise CapabilityMissing(
-                f"only {self.node} itself can declare its parameters; {self._asker.node_name} can get and set them"
+                f"only {self.node} itself can declare its parameters; {self._asker.node_name} can only get and set them"
             )
 
     async def _store(self, timeout: float | None) -> DeclaredParameters:

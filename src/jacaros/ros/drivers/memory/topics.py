@@ -1,7 +1,7 @@
 """Publishers and subscriptions of `jacaros.ros.drivers.memory.backend`.
 
-Publishing is the innermost loop of every run on this backend: what is rare (faults, deadlines) replaces
-`MemorySubscription.arrive` instead of being asked for at each message.
+Publishing is the innermost loop of every run on this backend: rare features (faults, deadlines) replace
+`MemorySubscription.arrive` instead of being checked for each message.
 """
 
 from collections import deque
@@ -32,7 +32,7 @@ class MemoryPublisher(TopicPublisher[MemoryNode]):
 
     @property
     def subscription_count(self) -> int:
-        """How many subscriptions are connected now."""
+        """Number of connected subscriptions."""
         return len(self._receivers)
 
     def _send(self, message: Any) -> None:
@@ -41,26 +41,26 @@ class MemoryPublisher(TopicPublisher[MemoryNode]):
             subscription.arrive(message)
 
     def connect(self, subscription: GraphSubscription) -> None:
-        """Send to a new subscription from now on, and what is kept for late ones at once."""
+        """Send to a new subscription from now on, and send it the latched messages immediately."""
         self._receivers.append(subscription)
         if subscription.qos.durability == "transient_local":
             for message in self.kept:
                 subscription.arrive(message)
 
     def disconnect(self, subscription: GraphSubscription) -> None:
-        """Send to a subscription no more."""
+        """Stop sending to a subscription."""
         if subscription in self._receivers:
             self._receivers.remove(subscription)
 
     def disconnect_all(self) -> None:
-        """Send to nobody."""
+        """Stop sending to all subscriptions."""
         self._receivers = []
 
     def refused(self, subscription: GraphSubscription) -> None:
-        """Say that a subscription takes this topic for something else; when it is ours, it says so itself."""
+        """Report that a subscription expects another type; one of our own reports it itself."""
         if subscription.node_name != self.node_name:
             self._node.log(
-                f"topic {self.topic}: {subscription.node_name} takes it for {subscription.type_name} and gets nothing of "
+                f"topic {self.topic}: {subscription.node_name} expects {subscription.type_name} and does not receive "
                 f"what is published here as {self.type_name}"
             )
 
@@ -75,7 +75,7 @@ class MemorySubscription(TopicSubscription[MemoryNode]):
     def __init__(self, node: MemoryNode, wanted: Wanted) -> None:
         super().__init__(node, wanted)
         deadline = wanted.qos.deadline
-        self._deadline = None if deadline is None else _Deadline(node, deadline, self.tell_deadline)
+        self._deadline = None if deadline is None else _Deadline(node, deadline, self.report_deadline)
         self._shared = node.graph.topic(self.topic)
         self.arrive: Callable[[Any], None] = self.put
         """Takes a message from a publisher."""
@@ -86,23 +86,23 @@ class MemorySubscription(TopicSubscription[MemoryNode]):
 
     @property
     def publisher_count(self) -> int:
-        """How many publishers are connected now."""
+        """Number of connected publishers."""
         if not self._node.graph.up:
             return 0
         return sum(1 for publisher in self._shared.publishers if self.fits(publisher))
 
     def meet(self, publisher: GraphPublisher) -> None:
-        """Be connected to a publisher, or say why not."""
+        """Connect to a publisher, or report why that is impossible."""
         if publisher.type_name != self.type_name:
             publisher.refused(self)
-            self.tell_other_type(publisher.node_name, publisher.type_name)
+            self.report_type_mismatch(publisher.node_name, publisher.type_name)
         elif (problem := incompatibility(publisher.qos, self.qos)) is not None:
-            self.tell_qos(problem)
+            self.report_qos(problem)
         elif self._node.graph.up:
             publisher.connect(self)
 
     def choose_way(self) -> None:
-        """Let messages come in with what is to be done to them on the way, and no more."""
+        """Select the delivery path once, so the common case has no checks."""
         put = self.put if self._deadline is None else self._put_in_time
         disturbance = self._shared.disturbance
         if disturbance is None:
@@ -123,7 +123,7 @@ class MemorySubscription(TopicSubscription[MemoryNode]):
         self.arrive = suffer
 
     def fits(self, publisher: GraphPublisher) -> bool:
-        """Whether messages of a publisher come."""
+        """Return whether messages of a publisher arrive."""
         return publisher.type_name == self.type_name and incompatibility(publisher.qos, self.qos) is None
 
     def _put_in_time(self, message: Any) -> None:
@@ -140,12 +140,12 @@ class MemorySubscription(TopicSubscription[MemoryNode]):
 
 
 class _Deadline:
-    """Tells when messages do not come in time; it begins with the first message, as in DDS.
+    """Detects missed deadlines, starting with the first message, as in DDS.
 
     Args:
         node: has the clock.
-        seconds: longest time between two messages.
-        missed: is called at every period without one; with True when it is the first after a message.
+        seconds: maximum time between two messages.
+        missed: called at every period without a message; with True for the first after a message.
     """
 
     def __init__(self, node: MemoryNode, seconds: float, missed: Callable[[bool], None]) -> None:
@@ -157,14 +157,14 @@ class _Deadline:
         self._timer: Timer | None = None
 
     def kept(self) -> None:
-        """A message has come."""
+        """Note that a message has arrived."""
         self._last = self._clock.elapsed
         self._missing = False
         if self._timer is None:
             self._wait(self._seconds)
 
     def stop(self) -> None:
-        """Watch no longer."""
+        """Stop watching."""
         if self._timer is not None:
             self._timer.cancel()
             self._timer = None

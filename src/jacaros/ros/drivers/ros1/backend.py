@@ -1,8 +1,8 @@
-"""ROS 1 through rospy: one node per process, callbacks handed to the loop, registrations looked after.
+"""ROS 1 through rospy: one node per process, callbacks on the loop, registrations kept up to date.
 
 Nothing here waits on the loop: joining, registering and calling services happen in threads, see
-`jacaros.ros.drivers.ros1.master`.  The addresses are rospy's: ``ROS_MASTER_URI``, ``ROS_IP``,
-``ROS_HOSTNAME``; with none given and a master on this machine everything stays on the loopback interface.
+`jacaros.ros.drivers.ros1.master`. The addresses are rospy's: ``ROS_MASTER_URI``, ``ROS_IP``, ``ROS_HOSTNAME``; if
+none is given and the master runs on this machine, all traffic stays on the loopback interface.
 """
 
 import socket
@@ -48,10 +48,10 @@ def _action_client(node: Ros1Node, name: str, type_name: str) -> GoalSender:
 
 
 class Ros1Backend(Ros1Node):
-    """The ROS 1 node of this process, as the port shows it.
+    """The ROS 1 node of this process.
 
     Args:
-        settings: names, clock and reports; the namespace is ``ROS_NAMESPACE`` when none is given.
+        settings: names, clock and log; the default namespace is ``ROS_NAMESPACE``.
     """
 
     capabilities = frozenset(
@@ -82,26 +82,26 @@ class Ros1Backend(Ros1Node):
         give(self)
 
     def types_changed(self, types: Mapping[str, str]) -> None:
-        """Tell subscriptions whose topic has another type."""
+        """Report to subscriptions that their topic has another type."""
         self.types = {topic: message_type(kind) for topic, kind in types.items() if kind != "*"}
-        for topic, feed in self.feeds.items():
-            feed.see_type(self.types.get(topic))
+        for topic, multiplexer in self.multiplexers.items():
+            multiplexer.see_type(self.types.get(topic))
 
     def definition_differs(self, topic: str, kind: str, theirs: str, ours: str) -> None:
-        """Tell subscriptions whose publisher has another definition of the type: another md5 sum."""
-        if topic in self.feeds:
+        """Report to subscriptions that a publisher has another definition of the type: another md5 sum."""
+        if topic in self.multiplexers:
             package, _, name = kind.partition("/")
-            self.feeds[topic].tell(
+            self.multiplexers[topic].report(
                 f"topic {topic}: a publisher has another definition of {package}/msg/{name} (md5 sum {theirs}, here "
                 f"{ours}): nothing will be received from it; install its version of {package} here"
             )
 
     def parameters(self, node: str | None = None) -> Ros1Parameters:
-        """Give the parameters below a node's name."""
+        """Return the parameters below a node's name."""
         return Ros1Parameters(self, node)
 
     async def contents(self, timeout: float = 5.0) -> GraphContents:
-        """Look at the graph."""
+        """Return the contents of the graph."""
         return await graph_contents(self, timeout)
 
 
@@ -111,16 +111,16 @@ LOG_SERVICES = ("/get_loggers", "/set_logger_level")
 _ROS2_TYPES = {f"{package}/{full.rsplit('/', 1)[1]}": full for full, package in ROS1_PACKAGES.items()}
 
 State = list[list[tuple[str, list[str]]]]
-"""The master's answer: publications, subscriptions and services, each with the nodes that have them."""
+"""The master's answer: publications, subscriptions and services, each with their nodes."""
 
 
 async def graph_contents(node: Ros1Node, timeout: float) -> GraphContents:
-    """Look at the graph; see `jacaros.ros.backend.Backend.contents`."""
+    """Return the contents of the graph; see `jacaros.ros.backend.Backend.contents`."""
     work = in_thread(node.loop, lambda: _look(Master(node.master_uri, node.node_name)), "graph")
     try:
         return await within(node.clock, work, timeout)
     except TimeoutError:
-        raise CallTimedOut(f"the ROS graph could not be looked at within {timeout:g} s") from None
+        raise CallTimedOut(f"the ROS graph did not answer within {timeout:g} s") from None
 
 
 def _look(master: Master) -> GraphContents:
@@ -128,7 +128,7 @@ def _look(master: Master) -> GraphContents:
     types: dict[str, str] = dict(master.ask("getTopicTypes"))
     named = _actions(types)
     hidden = LOG_TOPICS | {f"{action}/{part}" for action in named for part in ACTION_TOPICS}
-    # The master remembers the types of topics that nobody has any more; and clients alone are no action.
+    # The master remembers the types of unused topics; and clients alone do not make an action.
     published = {name for name, _ in state[0]}
     actions = {name: kind for name, kind in named.items() if f"{name}/status" in published}
     services = [name for name, _ in state[2] if not name.endswith(LOG_SERVICES)]
@@ -160,13 +160,13 @@ def _endpoints(nodes: Iterable[str]) -> tuple[Endpoint, ...]:
 
 
 def _full(ros1_type: str, kind: str) -> tuple[str, ...]:
-    """``nav_msgs/Odometry`` in full form; nothing for ``*``, which listeners to any type say."""
+    """Convert ``nav_msgs/Odometry`` to full form; nothing for ``*``, which listeners to any type use."""
     package, _, name = ros1_type.partition("/")
     return (f"{package}/{kind}/{name}",) if name else ()
 
 
 def _actions(types: Mapping[str, str]) -> dict[str, str]:
-    """Actions by their five topics, with types in full form."""
+    """Return actions by their five topics, with types in full form."""
     found = {}
     for topic, kind in sorted(types.items()):
         action, _, part = topic.rpartition("/")
@@ -185,7 +185,7 @@ def _actions(types: Mapping[str, str]) -> dict[str, str]:
 
 
 def _service_type(master: Master, name: str) -> str:
-    """Ask the node that offers a service for its type; "" when it does not tell."""
+    """Ask the node that offers a service for its type; "" if it does not answer."""
     try:
         address = rosgraph.network.parse_http_host_and_port(
             master.ask("lookupService", name).replace("rosrpc://", "http://")

@@ -1,6 +1,7 @@
-"""What we change in rospy: its connections, with `Inlet` and `Outbox` inside, and repairs.
+"""Changes to rospy: its connections, which use `Inlet` and `Outbox`, and repairs.
 
-rospy finds the other side of a topic and agrees with it, and then rests.  Each repair says what goes wrong without it.
+rospy finds the other end of a topic and negotiates with it; everything else is done here. Each repair says what goes
+wrong without it.
 """
 
 import asyncio
@@ -27,15 +28,15 @@ from jacaros.ros.drivers.ros1.streams import Inlet, Outbox
 from jacaros.ros.handoff import post
 
 Take = Callable[[list[Any], "dict[str, str]"], None]
-"""Takes messages that came together, on the loop, and what their publisher said of itself at first."""
+"""Takes messages that arrived together, on the loop, and the header of their publisher."""
 
 
-class Takers(dict[str, Take]):
-    """Who takes the messages of which topic, on the loop of the node.
+class MessageHandlers(dict[str, Take]):
+    """The handlers of topics, called on the loop of the node.
 
     Attributes:
-        loop: that of the node.
-        log: takes a line about a message that cannot be read.
+        loop: loop of the node.
+        log: called with one line about an unreadable message.
     """
 
     loop: asyncio.AbstractEventLoop
@@ -46,26 +47,26 @@ class Takers(dict[str, Take]):
 
 
 class InletTransport(TCPROSTransport):  # type: ignore[misc]
-    """Takes the place of rospy's connection; that to a publisher of a topic that has a taker is read on the loop.
+    """Replaces rospy's connection; connections to publishers of handled topics are read on the loop.
 
-    Other topics, such as those that rospy itself listens to, are read by rospy.
+    Other topics, such as those that rospy itself subscribes to, are read by rospy.
     """
 
-    takers: Takers
+    handlers: MessageHandlers
     _over: threading.Event | None = None
 
     def receive_once(self) -> Any:
-        """Let the loop read until the connection ends; on the thread of rospy's that belongs to this connection."""
+        """Let the loop read until the connection ends; runs on rospy's thread of this connection."""
         connection = self.socket
         subscriber = registration.get_topic_manager().get_subscriber_impl(self.name)
-        taker = self.takers.get(self.name)  # the loop may take it away at any moment
-        if taker is None or connection is None or subscriber is None or self.read_buff.tell():
+        handler = self.handlers.get(self.name)  # the loop may remove it at any moment
+        if handler is None or connection is None or subscriber is None or self.read_buff.tell():
             return super().receive_once()
-        loop, over = self.takers.loop, threading.Event()
+        loop, over = self.handlers.loop, threading.Event()
         self._over = over
-        take = partial(self._take, subscriber, taker)
-        with suppress(OSError):  # closed just now
-            # A socket of our own: rospy closes its one in any thread, and its number may then be that of another.
+        take = partial(self._take, subscriber, handler)
+        with suppress(OSError):  # just closed
+            # A duplicate of the socket: rospy closes its own in any thread, and the number may then be reused.
             inlet = Inlet(loop, connection.dup(), take, over.set)
             if not self.done and post(loop, inlet.open):
                 over.wait()
@@ -79,9 +80,9 @@ class InletTransport(TCPROSTransport):  # type: ignore[misc]
         if self.done or not (read := self._deserialized(subscriber, messages)):
             return
         alone = len(subscriber.callbacks) == 1 and subscriber.statistics_logger is None
-        if alone and self.takers.get(self.name) == take:
+        if alone and self.handlers.get(self.name) == take:
             take(read, self.header)
-        else:  # somebody else in this process listens as well, by rospy, or we have just ceased to
+        else:  # another subscriber in this process uses rospy, or ours has just been removed
             subscriber.receive_callback(read, self)
 
     def _deserialized(self, subscriber: Any, messages: list[bytes]) -> list[Any]:
@@ -90,7 +91,7 @@ class InletTransport(TCPROSTransport):  # type: ignore[misc]
             try:
                 message = subscriber.data_class().deserialize(data)
             except DeserializationError as problem:
-                self.takers.log(
+                self.handlers.log(
                     f"topic {self.name}: a message of {self.endpoint_id} cannot be read: {problem}"
                 )
                 continue
@@ -99,17 +100,17 @@ class InletTransport(TCPROSTransport):  # type: ignore[misc]
         return read
 
     def close(self) -> None:
-        """Close the connection; in any thread."""
+        """Close the connection; callable in any thread."""
         super().close()
         if self._over is not None:
             self._over.set()
 
 
 class OutboxConnection:
-    """Takes the place of rospy's ``QueuedConnection``: a connection to a subscriber, and what waits to be sent to it.
+    """Replaces rospy's ``QueuedConnection``: a connection to a subscriber, and the messages that wait to be sent.
 
     Args:
-        connection: that of rospy.
+        connection: rospy's connection.
         size: see `Outbox`.
     """
 
@@ -125,21 +126,21 @@ class OutboxConnection:
 
     @property
     def busy(self) -> bool:
-        """Whether something has still to be sent."""
+        """Whether data remains to be sent."""
         return self._outbox.busy
 
     @property
     def stat_bytes(self) -> int:
-        """How many bytes have been sent, for rospy's statistics."""
+        """Number of bytes sent, for rospy's statistics."""
         return self._outbox.sent_bytes
 
     @property
     def stat_num_msg(self) -> int:
-        """How many messages have been sent."""
+        """Number of messages sent."""
         return self._outbox.sent_messages
 
     def write_data(self, data: bytes) -> bool:
-        """Send *data*; raises ``TransportTerminated`` when the subscriber has gone."""
+        """Send *data*. Raises ``TransportTerminated`` if the subscriber has gone."""
         try:
             self._outbox.send(data)
         except OSError as problem:
@@ -147,35 +148,35 @@ class OutboxConnection:
         return True
 
 
-def connect_streams(takers: Takers) -> None:
-    """Have rospy use these connections; before ``init_node``."""
-    InletTransport.takers = takers
+def connect_streams(handlers: MessageHandlers) -> None:
+    """Make rospy use these connections; before ``init_node``."""
+    InletTransport.handlers = handlers
     rospy.impl.tcpros_pubsub.TCPROSTransport = InletTransport
     rospy.topics.QueuedConnection = OutboxConnection
 
 
-def let_subscribers_hear() -> None:
-    """rospy calls what Python 3.10 deprecated; with warnings as errors its subscribers would stay dumb."""
+def deliver_before_ready() -> None:
+    """Ignore a deprecation of Python 3.10 in rospy: with warnings as errors its subscribers would receive nothing."""
     warnings.filterwarnings("ignore", "notifyAll", DeprecationWarning)
 
 
 def print_to_standard_error() -> None:
-    """Turn what rospy prints to standard error: standard output belongs to the agents.  Before ``init_node``."""
+    """Redirect rospy's output to standard error: standard output belongs to the agents. Before ``init_node``."""
     for module in (rospy.impl.masterslave, registration, rosgraph.xmlrpc):
         module.print = partial(print, file=sys.stderr)  # pyright: ignore[reportAttributeAccessIssue]
 
 
 def log_to_standard_error() -> None:
-    """Turn what rospy logs to standard error as well.  After ``init_node``, which sets the logs up."""
+    """Redirect rospy's log to standard error, too. After ``init_node``, which sets up the log."""
     for handler in logging.getLogger("rosout").handlers:
         if hasattr(handler, "_stdout"):
             handler._stdout = sys.stderr  # pyright: ignore[reportAttributeAccessIssue]
 
 
-def let_parameters_tell(listener: Callable[[str, Any], None]) -> None:
-    """Have *listener* called, on a thread of rospy's, with what the master says of a changed parameter.
+def report_parameter_changes(listener: Callable[[str, Any], None]) -> None:
+    """Call *listener*, on a thread of rospy's, with changed parameters that the master reports.
 
-    rospy itself keeps such news in a cache that nobody can watch, and refuses news of parameters that are not in it.
+    rospy itself stores such changes in a cache without callbacks, and ignores parameters that are not in it.
     """
 
     def parameter_update(_: Any, caller: str, name: str, value: Any) -> tuple[int, str, int]:
@@ -190,15 +191,15 @@ def let_parameters_tell(listener: Callable[[str, Any], None]) -> None:
 class EndingServer(rosgraph.xmlrpc.ThreadingXMLRPCServer):  # type: ignore[misc]
     """The server of a node's XML-RPC interface, whose thread ends when it is closed.
 
-    rospy's own, with its socket closed, asks that socket for connections for ever, at full speed.
+    rospy's own server keeps polling its closed socket forever, at full speed.
     """
 
     def server_close(self) -> Any:
-        """Close the socket and let the serving thread end; not waited for, as that may be this very thread."""
+        """Close the socket and let the serving thread end, without waiting: it may be this very thread."""
         super().server_close()
         threading.Thread(target=self.shutdown, name="XML-RPC server ends", daemon=True).start()
 
 
-def let_closed_nodes_rest() -> None:
+def silence_closed_nodes() -> None:
     """Use `EndingServer` for the node; before ``init_node``."""
     rosgraph.xmlrpc.ThreadingXMLRPCServer = EndingServer

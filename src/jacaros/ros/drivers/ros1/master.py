@@ -1,9 +1,9 @@
-"""The link to the ROS master: a thread that finds it, keeps the node registered and does what blocks.
+"""The link to the ROS master: a thread that finds it, keeps the node registered and makes blocking calls.
 
-A rospy node registers once; when the master is restarted, live nodes are forgotten by it for good.  So this
-thread compares what the master knows about the node with what the node offers, four times a second, and
-registers again what is missing.  And since rospy blocks for ever in registering while the master is away, all
-registering is done here, right after the master was seen alive.
+A rospy node registers once; a restarted master has forgotten all running nodes. So this thread compares the master's
+knowledge of the node with what the node offers, four times a second, and registers again what is missing. Since rospy
+blocks forever in registering while the master is away, all registering is done here, right after the master has
+answered.
 """
 
 import http.client
@@ -23,14 +23,14 @@ from jacaros.ros.errors import CallFailed, MessageMismatch, ServiceError, Servic
 PUBLICATION, SUBSCRIPTION, SERVICE = range(3)
 
 PERIOD = 0.25
-"""Seconds between two looks at the master."""
+"""Seconds between two checks of the master."""
 PATIENCE = 2.0
-"""Seconds after which a master that does not answer is called away."""
+"""Seconds after which a silent master counts as gone."""
 
 UNHEARD = 20
-"""Looks after which a publisher that the master knows, and that is not connected, is asked for again."""
+"""Number of checks after which a known but unconnected publisher is connected again."""
 SELDOM = 240
-"""Looks between two such attempts at most; at first it is tried more often."""
+"""Maximum number of checks between two such attempts; at first it is tried more often."""
 
 Offers = tuple[Iterable[tuple[str, str]], ...]
 """Publications, subscriptions and services of this node: names with types or addresses."""
@@ -41,19 +41,18 @@ _AWAY = (OSError, http.client.HTTPException, xmlrpc.client.Error)
 
 @dataclass(frozen=True)
 class NodeActions:
-    """What the link does with the node; all are called on the link's thread.
+    """The node's callbacks for the link; all are called on the link's thread.
 
     Attributes:
         join: registers the node for the first time.
-        offers: tells what the node offers now.
-        register: registers one name again; the number says which kind: `PUBLICATION`, `SUBSCRIPTION`, `SERVICE`.
-        heard: tells the publishers that are connected to each topic that this node listens to.
-        on_state: is told whether the master is there, at the first look and at every change.
-        on_again: is told the names that were registered again, and whether these are all the node has: then the
+        offers: returns what the node offers now.
+        register: registers one name again; the number is its kind: `PUBLICATION`, `SUBSCRIPTION`, `SERVICE`.
+        heard: returns the connected publishers of each topic that this node subscribes to.
+        on_state: called with whether the master is there, at the first check and at every change.
+        on_again: called with the names that were registered again, and whether these are all the node has: then the
             master was restarted.
-        on_types: is told the types of the topics that somebody publishes, as on ROS 1, whenever publishers have
-            come or gone.
-        on_problem: is told of work that failed.
+        on_types: called with the types of published topics, in ROS 1's form, whenever publishers come or go.
+        on_problem: called with failed work.
     """
 
     join: Callable[[], None]
@@ -67,11 +66,11 @@ class NodeActions:
 
 
 class Master:
-    """Questions to the master, each of which blocks.
+    """Blocking requests to the master.
 
     Args:
         uri: the master's address.
-        caller: absolute name of the node that asks.
+        caller: absolute name of the calling node.
     """
 
     def __init__(self, uri: str, caller: str) -> None:
@@ -79,11 +78,11 @@ class Master:
         self._caller = caller
 
     def ask(self, method: str, *arguments: Any) -> Any:
-        """Call a method of the master's interface (ROS wiki, "Master API") and give its value.
+        """Call a method of the master's interface (ROS wiki, "Master API") and return its value.
 
         Raises:
-            ServiceUnavailable: the master is away.
-            CallFailed: it refused; the text is its own.
+            ServiceUnavailable: the master does not answer.
+            CallFailed: it refused, with this text.
         """
         try:
             with xmlrpc.client.ServerProxy(
@@ -104,7 +103,7 @@ class MasterLink:
     Args:
         uri: the master's address.
         node_name: absolute name of the node.
-        actions: what to do with the node.
+        actions: callbacks of the node.
     """
 
     def __init__(self, uri: str, node_name: str, actions: NodeActions) -> None:
@@ -118,7 +117,7 @@ class MasterLink:
         self._state: bool | None = None
         self._published: Any = None
         self._unheard: dict[tuple[str, str], int] = {}
-        """Topic and publisher → at how many looks in a row it was not connected."""
+        """Topic and publisher → number of consecutive checks without a connection."""
         self.services: frozenset[str] = frozenset()
 
     def start(self) -> None:
@@ -126,12 +125,12 @@ class MasterLink:
         threading.Thread(target=self._run, name="ROS master link", daemon=True).start()
 
     def stop(self) -> None:
-        """End the thread after what it is doing."""
+        """End the thread after its present job."""
         self._stopping = True
         self._wake.set()
 
     def do(self, job: Callable[[], None]) -> None:
-        """Have *job* done on the link's thread while the master is there, in the order of asking."""
+        """Run *job* on the link's thread while the master is there, in the order of the calls."""
         self._jobs.append(job)
         self._wake.set()
 
@@ -140,7 +139,7 @@ class MasterLink:
             self._wake.clear()
             try:
                 self._look()
-            except Exception as problem:  # the link must outlive whatever rospy raises
+            except Exception as problem:  # the link must survive whatever rospy raises
                 self._actions.on_problem(problem)
             self._wake.wait(PERIOD)
 
@@ -161,11 +160,11 @@ class MasterLink:
             job = self._jobs.popleft()
             try:
                 job()
-            except Exception as problem:  # one wrong registration must not keep the others back
+            except Exception as problem:  # one failed registration must not block the others
                 self._actions.on_problem(problem)
 
     def _known(self) -> list[Any] | None:
-        """Ask the master for all it knows: three lists of [name, [nodes]]; None when it is away."""
+        """Return the master's state: three lists of [name, [nodes]]; None if it does not answer."""
         try:
             state: list[Any] = self._master.ask("getSystemState")
         except ServiceError:
@@ -195,7 +194,7 @@ class MasterLink:
             self._actions.on_again(again, kept == 0)
 
     def _ask_for_unheard(self, publishers: Mapping[str, Collection[str]]) -> None:
-        """Have publishers connected that are there and not heard: after a break of the network rospy does not do so."""
+        """Connect to publishers that are known but not connected: rospy does not do so after a network failure."""
         unheard: dict[tuple[str, str], int] = {}
         kinds: dict[str, str] = {}
         for topic, (kind, connected) in self._actions.heard().items():
@@ -215,7 +214,7 @@ class MasterLink:
 
 
 class _ImpatientTransport(xmlrpc.client.Transport):
-    """A master behind a dead network must not hold the link for minutes."""
+    """Times out, so that a master behind a dead network does not block the link for minutes."""
 
     def make_connection(self, host: Any) -> http.client.HTTPConnection:
         connection = super().make_connection(host)
@@ -224,7 +223,7 @@ class _ImpatientTransport(xmlrpc.client.Transport):
 
 
 def stay_local(uri: str) -> None:
-    """Have rospy use the loopback interface alone when the master is here and nothing else is said."""
+    """Make rospy use only the loopback interface if the master is on this machine and no address is set."""
     host = urllib.parse.urlsplit(uri).hostname or ""
     if "ROS_IP" in os.environ or "ROS_HOSTNAME" in os.environ:
         return
@@ -233,13 +232,13 @@ def stay_local(uri: str) -> None:
 
 
 def call_failure(service: str, problem: BaseException | None) -> Exception | None:
-    """Translate what rospy raised in calling *service*; it tells most of its reasons in words only."""
+    """Translate an exception of rospy's service call; most of its reasons are only in the text."""
     if problem is None:
         return None
     text = str(problem)
     missing = "unavailable" in text or "unable to contact master" in text
     if missing or ("unable to connect to service" in text and "md5sum" not in text):
-        return ServiceUnavailable(f"nobody offers service {service}")
+        return ServiceUnavailable(f"no node offers service {service}")
     if type(problem).__name__ == "ROSSerializationException":
         return MessageMismatch(f"service {service}: {text}")
     return CallFailed(f"service {service}: {text}")
@@ -249,23 +248,23 @@ _TEXT = re.compile(
     r"wants topic \[?(?P<topic>/[\w/]+)\]? to have datatype/md5sum \[(?P<ours>[\w/]+)/(?P<our_md5>\w+)\], "
     r"but our version has \[(?P<theirs>[\w/]+)/(?P<their_md5>\w+)\]"
 )
-"""What publishers of rospy and roscpp answer to a subscriber that they refuse."""
+"""The answer of publishers of rospy and roscpp to a subscriber that they refuse."""
 
 
 class MismatchWatch(logging.Handler):
     """Reads rospy's own log for refusals by publishers.
 
     Args:
-        tell: takes topic, type as on ROS 1, the publisher's md5 sum and ours; called on a thread of rospy's.
+        report: called with topic, type in ROS 1's form, the publisher's md5 sum and ours; on a thread of rospy's.
     """
 
-    def __init__(self, tell: Callable[[str, str, str, str], None]) -> None:
+    def __init__(self, report: Callable[[str, str, str, str], None]) -> None:
         super().__init__(logging.ERROR)
-        self._tell = tell
+        self._report = report
 
     def emit(self, record: logging.LogRecord) -> None:
-        """Read one line."""
+        """Handle one line."""
         found = _TEXT.search(record.getMessage())
-        # Other types are told by the master, and earlier; see `TopicFeed.see_type`.
+        # The master reports other types earlier; see `TopicMultiplexer.see_type`.
         if found is not None and found["ours"] == found["theirs"]:
-            self._tell(found["topic"], found["ours"], found["their_md5"], found["our_md5"])
+            self._report(found["topic"], found["ours"], found["their_md5"], found["our_md5"])

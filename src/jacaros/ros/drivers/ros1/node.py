@@ -1,4 +1,4 @@
-"""The ROS 1 node of this process: joined to the graph, kept in it, and left."""
+"""The ROS 1 node of this process: joining the graph, staying in it, leaving it."""
 
 import logging
 import os
@@ -10,13 +10,13 @@ import rospy  # type: ignore[import-not-found]
 import rospy.impl.registration as registration  # type: ignore[import-not-found]
 
 from jacaros.ros.drivers.ros1.connections import (
-    Takers,
+    MessageHandlers,
     connect_streams,
-    let_closed_nodes_rest,
-    let_parameters_tell,
-    let_subscribers_hear,
+    deliver_before_ready,
     log_to_standard_error,
     print_to_standard_error,
+    report_parameter_changes,
+    silence_closed_nodes,
 )
 from jacaros.ros.drivers.ros1.master import Heard, MasterLink, MismatchWatch, NodeActions, Offers, stay_local
 from jacaros.ros.drivers.ros1.types import GenpySchema
@@ -24,17 +24,17 @@ from jacaros.ros.errors import RosError
 from jacaros.ros.handoff import post
 from jacaros.ros.lifetime import Lifetime
 from jacaros.ros.node import Node, NodeSettings
-from jacaros.ros.topics import TopicFeed
+from jacaros.ros.topics import TopicMultiplexer
 
 SENDING = 0.5
-"""Seconds that closing waits for the messages published last to leave."""
+"""Seconds that closing waits for the last messages to be sent."""
 
 
 class Ros1Node(Node):
-    """What topics, services, actions and parameters of ROS 1 stand on.
+    """The base of topics, services, actions and parameters of ROS 1.
 
     Args:
-        settings: names, clock and reports; the namespace is ``ROS_NAMESPACE`` when none is given.
+        settings: names, clock and log; the default namespace is ``ROS_NAMESPACE``.
     """
 
     name = "ros1"
@@ -56,31 +56,31 @@ class Ros1Node(Node):
             self._note_problem,
         )
         self.link = MasterLink(self.master_uri, self.node_name, actions)
-        self.takers = Takers(self.log)
-        self.feeds: dict[str, TopicFeed[Any]] = {}
+        self.handlers = MessageHandlers(self.log)
+        self.multiplexers: dict[str, TopicMultiplexer[Any]] = {}
         self.types: Mapping[str, str] = {}
-        """The types of all topics, as the master has them."""
+        """The types of all topics, from the master."""
         self.unsent: dict[Callable[[], bool], None] = {}
-        """Publishers' tests whether anything waits to be sent."""
+        """Functions of publishers that return whether messages remain to be sent."""
         self.on_return: dict[Callable[[], None], None] = {}
         """Called on the link's thread after the master had forgotten this node."""
         self.on_parameter: dict[Callable[[str, Any], None], None] = {}
-        """Called on the loop with name and value of a parameter that the master says has changed."""
+        """Called on the loop with name and value of a changed parameter."""
         self._refused = ""
 
     async def start(self) -> None:
-        """Join the graph, or say that the master is awaited and go on trying in the background."""
+        """Join the graph, or log that the master is missing and keep trying in the background."""
         if Ros1Node._started:
-            raise RosError("ROS 1 allows one node per process, and this process has had one already")
+            raise RosError("ROS 1 allows one node per process, and this process already had one")
         Ros1Node._started = True
         stay_local(self.master_uri)
         print_to_standard_error()
-        let_subscribers_hear()
-        let_closed_nodes_rest()
-        let_parameters_tell(self._note_parameter)
+        deliver_before_ready()
+        silence_closed_nodes()
+        report_parameter_changes(self._note_parameter)
         looked = self.join()
-        self.takers.loop = self.loop
-        connect_streams(self.takers)
+        self.handlers.loop = self.loop
+        connect_streams(self.handlers)
         self.link.start()
         await looked
 
@@ -92,13 +92,13 @@ class Ros1Node(Node):
         self.left()
 
     def types_changed(self, types: Mapping[str, str]) -> None:
-        """Be told the types of all topics, as on ROS 1; on the loop, when publishers have come or gone."""
+        """Take the types of all topics, in ROS 1's form; on the loop, when publishers have come or gone."""
 
     def definition_differs(self, topic: str, kind: str, theirs: str, ours: str) -> None:
-        """Be told that a publisher of *topic* has another definition of its type; on the loop."""
+        """Note that a publisher of *topic* has another definition of its type; on the loop."""
 
     def _join(self) -> None:
-        # Where init_node takes its namespace from.
+        # init_node reads its namespace from here.
         rospy.names._set_caller_id(f"{self.names.namespace}/unnamed")
         rospy.init_node(self.names.node_name, argv=[], disable_signals=True)
         log_to_standard_error()
@@ -106,11 +106,11 @@ class Ros1Node(Node):
         rospy.on_shutdown(self._note_shutdown)
 
     def _leave(self) -> None:
-        """Wait until the queues are empty, then end rospy: its threads would keep the process alive."""
+        """Wait until the queues are empty, then end rospy, whose threads would keep the process alive."""
         wait_until_sent(list(self.unsent))
         self.link.stop()
         if self._loop is not None:
-            # A signal may come while `start` still waits for the link, which will say nothing more.
+            # A signal may arrive while `start` waits for the link, which no longer answers.
             post(self._loop, self.looked)
         rospy.signal_shutdown("closed")
 
@@ -121,13 +121,13 @@ class Ros1Node(Node):
         if present:
             self.found()
         else:
-            help = "Start it with `roscore`, or set ROS_MASTER_URI to where it runs."
+            help = "start it with `roscore`, or set ROS_MASTER_URI to its address"
             self.missing(f"ROS master at {self.master_uri}", help)
 
     def _note_again(self, names: list[str], all_of_them: bool) -> None:
-        text = f"the ROS master had forgotten {', '.join(sorted(names))}: registered again"
+        text = f"the ROS master had forgotten {', '.join(sorted(names))}; registered again"
         if all_of_them:
-            text += "; the parameters that it kept are lost"
+            text += "; the parameters stored in it are lost"
         post(self.loop, self.log, text)
         for callback in list(self.on_return):
             callback()
@@ -142,29 +142,29 @@ class Ros1Node(Node):
         post(self.loop, self.parameter_changed, name, value)
 
     def parameter_changed(self, name: str, value: Any) -> None:
-        """Pass on that a parameter has a new value; on the loop."""
+        """Pass on a changed parameter; on the loop."""
         for callback in list(self.on_parameter):
             try:
                 callback(name, value)
-            except Exception as problem:  # the others want to know as well
+            except Exception as problem:  # the other callbacks must still run
                 self.log(f"a callback for changed parameters failed: {type(problem).__name__}: {problem}")
 
     def _note_problem(self, problem: Exception) -> None:
         text = f"rospy refused: {type(problem).__name__}: {problem}"
-        if text != self._refused:  # what cannot be done is tried again with each look at the master
+        if text != self._refused:  # failed work is repeated with each check of the master
             self._refused = text
             post(self.loop, self.log, text)
 
     def _note_shutdown(self) -> None:
-        """On rospy's thread: somebody ended our node, most likely a newer node of the same name."""
+        """On rospy's thread: our node was shut down, most likely by a newer node of the same name."""
         if not self.lifetime.leaving:
-            post(self.loop, self.log, f"node {self.node_name} was shut down from outside: is its name taken?")
+            post(self.loop, self.log, f"node {self.node_name} was shut down from outside; is its name taken?")
             post(self.loop, self.set_connected, False)
             self.link.stop()
 
 
 def wait_until_sent(tests: Collection[Callable[[], bool]]) -> None:
-    """Block until publishers have sent what they had, by their *tests*, or until `SENDING` is over."""
+    """Block until publishers have sent everything, according to their *tests*, or until `SENDING` is over."""
     deadline = time.monotonic() + SENDING
     while time.monotonic() < deadline and not all(sent() for sent in tests):
         time.sleep(0.005)
@@ -177,7 +177,7 @@ def _offers() -> Offers:
 
 
 def _heard() -> dict[str, Heard]:
-    """The publishers that are connected, by topic."""
+    """Return the connected publishers, by topic."""
     topics = rospy.topics.get_topic_manager()
     return {
         name: (kind, {each.callerid_pub for each in subscriber.connections})

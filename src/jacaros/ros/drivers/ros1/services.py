@@ -1,4 +1,5 @@
-"""Services of ROS 1, offered and called, and its parameters: values that the master keeps for everybody, as a tree."""
+"""Services of ROS 1, as server and client, and its parameters: a tree of values that the master stores for all
+nodes."""
 
 import asyncio
 from collections.abc import Callable, Iterator, Mapping
@@ -39,7 +40,7 @@ class Ros1Service:
         node.link.do(self._register)
 
     def close(self) -> None:
-        """Stop to offer the service."""
+        """Stop offering the service."""
         if self._closed:
             return
         self._closed = True
@@ -55,7 +56,7 @@ class Ros1Service:
             self._service.shutdown("closed")
 
     def _serve(self, request: Any) -> Any:
-        """Have the loop answer; on rospy's thread of this connection."""
+        """Let the loop answer; on rospy's thread of this connection."""
         node = self._node
         try:
             return ask(
@@ -78,7 +79,7 @@ class Ros1Client(AttemptingClient):
 
     @property
     def ready(self) -> bool:
-        """Whether somebody offers the service, as the master said a quarter of a second ago at most."""
+        """Whether a node offers the service, according to the master at most 0.25 s ago."""
         return self.name in self._node.link.services
 
     def _may_be_called(self) -> bool:
@@ -91,8 +92,8 @@ class Ros1Client(AttemptingClient):
             problem = work.exception()
             settle(answer, None if problem else work.result(), call_failure(self.name, problem))
 
-        # A proxy of its own for each call: rospy's is not made for several calls at a time.  Only one that is called
-        # persistent can be closed from outside, and a server that never answers would keep its thread for ever.
+        # A proxy for each call, because rospy's does not support concurrent calls. Only persistent ones can be closed
+        # from outside, and a server that never answers would block its thread forever.
         proxy = rospy.ServiceProxy(self.name, self._class, persistent=True)
 
         def call() -> Any:
@@ -108,13 +109,13 @@ class Ros1Client(AttemptingClient):
             proxy.close()
 
     def close(self) -> None:
-        """Give the client up."""
+        """Close the client."""
         self._node.forget(self)
         self._pending.close()
 
 
 WHOLE_NUMBERS = range(-(2**31), 2**31)
-"""What XML-RPC can carry."""
+"""The range of XML-RPC."""
 
 
 class Ros1Parameters:
@@ -122,7 +123,7 @@ class Ros1Parameters:
 
     Args:
         node: asks the master.
-        name: whose they are; None for our own, ``/`` for all that the master keeps.
+        name: name of the node; None for our own, ``/`` for all parameters of the master.
     """
 
     def __init__(self, node: Ros1Node, name: str | None) -> None:
@@ -135,14 +136,14 @@ class Ros1Parameters:
         self._master = Master(node.master_uri, node.node_name)
 
     def declare(self, name: str, declaration: Declaration) -> NoReturn:
-        """Refuse: nothing is declared here."""
+        """Refuse: ROS 1 has no declarations."""
         raise CapabilityMissing(
-            f"parameter {name} cannot be declared: on ROS 1 the master keeps the parameters and takes any name and "
-            "value; read it with `get`, and set it where nobody has"
+            f"parameter {name} cannot be declared: on ROS 1 the master stores the parameters and accepts any name and "
+            "value; read it with `get`, and set it if it does not exist"
         )
 
     def withdraw(self, name: str) -> NoReturn:
-        """Refuse: nothing is declared here."""
+        """Refuse: ROS 1 has no declarations."""
         raise CapabilityMissing(f"parameter {name} cannot be withdrawn: on ROS 1 nothing is declared")
 
     async def names(self, timeout: float | None = None) -> list[str]:
@@ -151,17 +152,17 @@ class Ros1Parameters:
         return sorted(name[len(self._prefix) :] for name in everything if name.startswith(self._prefix))
 
     async def get(self, name: str, timeout: float | None = None) -> ParameterValue:
-        """Give a parameter's value."""
+        """Return a parameter's value."""
         key = self._key(name)
         try:
             value = await self._ask(timeout, "getParam", key)
         except CallFailed:
-            raise ParameterUnknown(f"there is no parameter {key} at the ROS master") from None
+            raise ParameterUnknown(f"the ROS master has no parameter {key}") from None
         if isinstance(value, dict):
             if not value:
-                raise ParameterUnknown(f"there is no parameter {key} at the ROS master")
+                raise ParameterUnknown(f"the ROS master has no parameter {key}")
             parts = ", ".join(f"{name}/{part}" for part, _ in _leaves(value))
-            raise ParameterUnknown(f"parameter {key} is a mapping; ask for its parts: {parts}")
+            raise ParameterUnknown(f"parameter {key} is a mapping; read its parts: {parts}")
         given: ParameterValue = _given(value)
         return given
 
@@ -170,11 +171,11 @@ class Ros1Parameters:
         key = self._key(name)
         plain = _plain(key, value)
         await self._ask(timeout, "setParam", key, plain)
-        # The master does not tell those who made the change.
+        # The master does not report a change to the node that made it.
         self._backend.parameter_changed(key, plain)
 
     def on_change(self, callback: Callable[[Mapping[str, ParameterValue]], None]) -> Callable[[], None]:
-        """Have *callback* called with what has changed below the node."""
+        """Call *callback* with changed parameters below the node."""
         backend = self._backend
 
         def told(key: str, value: Any) -> None:
@@ -182,7 +183,7 @@ class Ros1Parameters:
             if not key.startswith(self._prefix) and f"{key}/" != self._prefix:
                 return
             name = key[len(self._prefix) :]
-            # An empty mapping says that the parameter was deleted.
+            # An empty mapping means that the parameter was deleted.
             changed = dict(_leaves(value, name)) if isinstance(value, dict) else {name: _given(value)}
             if changed:
                 callback(changed)
@@ -211,11 +212,11 @@ class Ros1Parameters:
     def _key(self, name: str) -> str:
         key = name if name.startswith("/") else self._prefix + name.removeprefix("~")
         if not key.strip("/") or "//" in key or key.endswith("/"):
-            raise NameInvalid(f"{name!r} is no name of a parameter; write it like wheels/radius")
+            raise NameInvalid(f"{name!r} is not a parameter name; write it like wheels/radius")
         return key
 
     async def _ask(self, timeout: float | None, method: str, *arguments: Any) -> Any:
-        """Ask the master in a thread, again and again while it is away, until the time is over."""
+        """Ask the master in a thread, repeatedly while it is away, until the time is over."""
         backend = self._backend
 
         async def attempt(rest: float | None) -> Any:
@@ -230,16 +231,14 @@ class Ros1Parameters:
 
 
 def give(node: Ros1Node) -> None:
-    """Set parameters of our own node that came from outside, now and after each restart of the master.
+    """Set parameters of our own node from outside, now and after each restart of the master.
 
     Raises:
-        ParameterRefused: the master cannot keep a value.
+        ParameterRefused: the master cannot store a value.
     """
     plain = {}
     for name, value in node.given_parameters.items():
-        node.given_parameters.take(
-            name
-        )  # nothing is declared here: it is there for everybody, as those of rospy are
+        node.given_parameters.take(name)  # nothing is declared on ROS 1: all nodes see it, as with rospy
         key = f"{node.node_name}/{name.removeprefix('~')}"
         plain[key] = _plain(key, value)
     master = Master(node.master_uri, node.node_name)
@@ -266,17 +265,17 @@ def _leaves(value: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, Any
 
 
 def _given(value: Any) -> Any:
-    """A value of the master's in the types of the port: XML-RPC's times become texts (ISO 8601)."""
+    """Convert a value of the master to the types of the port: XML-RPC's times become texts (ISO 8601)."""
     if isinstance(value, datetime):
         return value.isoformat()
     return [_given(each) for each in value] if isinstance(value, list) else value
 
 
 def _plain(key: str, value: Any) -> Any:
-    """Check that the master can keep *value*, and give it in plain types."""
+    """Check that the master can store *value*, and return it in plain types."""
     if isinstance(value, Mapping):
         part = next(iter(value), "a")
-        raise ParameterRefused(f"parameter {key}: a mapping is set by its parts, such as {key}/{part}")
+        raise ParameterRefused(f"parameter {key}: a mapping must be set by its parts, such as {key}/{part}")
     try:
         plain = checked_value(value.tolist() if hasattr(value, "tolist") else value)
     except ParameterRefused as problem:
@@ -284,6 +283,6 @@ def _plain(key: str, value: Any) -> Any:
     for element in plain if isinstance(plain, list) else [plain]:
         if isinstance(element, int) and element not in WHOLE_NUMBERS:
             raise ParameterRefused(
-                f"parameter {key}: the ROS master keeps whole numbers of 32 bits, not {element}; write {element}.0"
+                f"parameter {key}: the ROS master stores integers of 32 bits; {element} is too large; write {element}.0"
             )
     return plain

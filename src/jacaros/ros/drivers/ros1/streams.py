@@ -1,7 +1,8 @@
-"""Messages of ROS 1 on a socket, each behind its length: read on the loop, written as far as the other side takes them.
+"""Messages of ROS 1 on a socket, each with its length: read on the loop, written as far as the other end accepts
+them.
 
-rospy has threads for both.  Before an agent could react to a message, the loop's thread had to be woken up by that of the
-connection, and before a command left, a third one; each of that takes a tenth of a millisecond on a machine that was idle.
+rospy uses threads for both. Then the connection's thread has to wake the loop's thread before an agent can react, and
+a third thread has to send the command; each costs 0.1 ms on an idle machine.
 """
 
 import asyncio
@@ -13,19 +14,19 @@ from collections.abc import Callable
 from contextlib import suppress
 
 CHUNK = 65536
-"""Bytes that are read at a time; of a long message up to `LARGE_CHUNK`."""
+"""Bytes that are read at a time; up to `LARGE_CHUNK` of a long message."""
 LARGE_CHUNK = 1 << 20
 _LENGTH = 4
-"""Bytes in front of a message that tell its length, the least significant first."""
+"""Bytes of the length in front of a message, little-endian."""
 
 
 class Inlet:
     """The messages of one publisher, read on the loop.
 
     Args:
-        loop: where they are read.
-        connection: is closed with this.
-        take: gets whole messages, the oldest first, and how many bytes have come.
+        loop: the loop.
+        connection: closed with this object.
+        take: called with complete messages, the oldest first, and the number of bytes received.
         ended: called on the loop when the publisher has closed the connection.
     """
 
@@ -41,15 +42,15 @@ class Inlet:
         self._take, self._ended = take, ended
         self._rest = bytearray()
         self._wanted = 0
-        """Length of `_rest` at which its first message is whole; 0 while that is not known."""
+        """Length of `_rest` at which its first message is complete; 0 while unknown."""
 
     def open(self) -> None:
-        """Begin to read."""
+        """Start reading."""
         self._socket.setblocking(False)
         self._loop.add_reader(self._socket.fileno(), self._read)
 
     def close(self) -> None:
-        """Read no more."""
+        """Stop reading."""
         if self._socket.fileno() >= 0:
             self._loop.remove_reader(self._socket.fileno())
             self._socket.close()
@@ -67,7 +68,7 @@ class Inlet:
             self.close()
             self._ended()
             return
-        # What is usual: one message, and nothing but that.
+        # The usual case: exactly one message.
         if not self._rest and int.from_bytes(data[:_LENGTH], "little") + _LENGTH == len(data):
             self._take([data[_LENGTH:]], len(data))
             return
@@ -75,13 +76,13 @@ class Inlet:
         self._take(self._whole() if len(self._rest) >= self._wanted else [], len(data))
 
     def _behind(self) -> bytes:
-        """Read what a loop that was busy has let pile up: only who sees all of it knows which messages are the newest."""
-        with suppress(OSError):  # nothing more has come; an end shows itself when it is read next
+        """Read the backlog of a busy loop: the newest messages are only known when all have been read."""
+        with suppress(OSError):  # nothing else to read; an end of the connection shows at the next read
             return self._socket.recv(LARGE_CHUNK)
         return b""
 
     def _whole(self) -> list[bytes]:
-        """Cut the whole messages off what has been read."""
+        """Split off the complete messages."""
         rest, messages, start = self._rest, [], 0
         self._wanted = 0
         while len(rest) - start >= _LENGTH:
@@ -96,16 +97,16 @@ class Inlet:
 
 
 class Outbox:
-    """What one subscriber is sent: at once what its socket takes, the rest by a thread that lives as long as that takes.
+    """Sends to one subscriber: immediately what its socket accepts, the rest in a temporary thread.
 
-    However slow the subscriber is, nobody here waits for it.
+    However slow the subscriber is, publishing does not block.
 
     Args:
-        connection: is closed with this.
-        size: how many messages may wait, the oldest is dropped first; 0: any number.
+        connection: closed with this object.
+        size: maximum number of waiting messages, the oldest is dropped first; 0: no limit.
 
     Attributes:
-        sent_bytes, sent_messages: so far.
+        sent_bytes, sent_messages: totals so far.
     """
 
     def __init__(self, connection: socket.socket, size: int) -> None:
@@ -113,22 +114,22 @@ class Outbox:
         self._socket = connection
         self._lock = threading.Lock()
         self._begun = b""
-        """The rest of a message of which a part has been sent."""
+        """The rest of a partly sent message."""
         self._waiting: deque[bytes] = deque(maxlen=size or None)
         self._sending = self._closed = False
         self._problem: OSError | None = None
         connection.setblocking(False)
-        # Commands are short and come alone: they are not to wait for others.
+        # Commands are short and come one at a time: they must not be delayed.
         with suppress(OSError):
             connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
 
     @property
     def busy(self) -> bool:
-        """Whether something has still to be sent."""
+        """Whether data remains to be sent."""
         return self._sending
 
     def send(self, data: bytes) -> None:
-        """Send *data*, which has its length in front, now or after what waits; callable from any thread.
+        """Send *data*, including its length, now or after the waiting messages; callable from any thread.
 
         Raises:
             OSError: the subscriber has gone.
@@ -148,7 +149,7 @@ class Outbox:
         threading.Thread(target=self._send_rest, name="ROS slow subscriber", daemon=True).start()
 
     def close(self) -> None:
-        """Send no more; callable from any thread."""
+        """Stop sending; callable from any thread."""
         with self._lock:
             if self._closed:
                 return
@@ -159,7 +160,7 @@ class Outbox:
                 self._socket.close()
 
     def _rest_of(self, data: bytes) -> bytes:
-        """Send what the socket takes, and give the rest."""
+        """Send what the socket accepts, and return the rest."""
         try:
             sent = self._socket.send(data)
         except (BlockingIOError, InterruptedError):

@@ -1,4 +1,4 @@
-"""Topics of ROS 1: publishers, subscriptions, and what the process shares between them."""
+"""Topics of ROS 1: publishers, subscriptions, and the connections they share in a process."""
 
 import threading
 from collections import deque
@@ -13,7 +13,7 @@ from jacaros.ros.handoff import Handoff, post
 from jacaros.ros.names import message_type
 from jacaros.ros.node import Wanted
 from jacaros.ros.qos import QoS
-from jacaros.ros.topics import SharedSubscription, TopicFeed, TopicPublisher
+from jacaros.ros.topics import SharedSubscription, TopicMultiplexer, TopicPublisher
 
 
 class Ros1Publisher(TopicPublisher[Ros1Node]):
@@ -29,7 +29,7 @@ class Ros1Publisher(TopicPublisher[Ros1Node]):
 
     @property
     def subscription_count(self) -> int:
-        """How many subscriptions are connected now."""
+        """Number of connected subscriptions."""
         publisher = self._publisher
         return 0 if publisher is None else int(publisher.get_num_connections())
 
@@ -49,7 +49,7 @@ class Ros1Publisher(TopicPublisher[Ros1Node]):
         self._node.link.do(self._unregister)
 
     def _sent(self) -> bool:
-        """Whether nothing waits in the queues to the subscriptions."""
+        """Whether the queues to the subscriptions are empty."""
         implementation = getattr(self._publisher, "impl", None)
         connections = list(getattr(implementation, "connections", None) or ())
         return not any(connection.busy for connection in connections)
@@ -60,11 +60,11 @@ class Ros1Publisher(TopicPublisher[Ros1Node]):
             for message in self._early:
                 try:
                     publisher.publish(message)
-                except rospy.ROSException as problem:  # a field that does not fit shows only now
+                except rospy.ROSException as problem:  # a mismatch is only detected here
                     post(
                         self._node.loop,
                         self._node.log,
-                        f"topic {self.topic}: a message was dropped: {problem}",
+                        f"topic {self.topic}: message dropped: {problem}",
                     )
             self._early.clear()
             self._publisher = publisher
@@ -76,10 +76,10 @@ class Ros1Publisher(TopicPublisher[Ros1Node]):
             self._publisher.unregister()
 
 
-class Ros1Feed(TopicFeed["Ros1Subscription"]):
-    """The process's one rospy subscriber of a topic.
+class Ros1Multiplexer(TopicMultiplexer["Ros1Subscription"]):
+    """The process's only rospy subscriber of a topic.
 
-    rospy itself shows a latched message only to the first subscriber in a process.
+    rospy itself delivers a latched message only to the first subscriber in a process.
     """
 
     def __init__(self, node: Ros1Node, topic: str, type_name: str) -> None:
@@ -89,17 +89,17 @@ class Ros1Feed(TopicFeed["Ros1Subscription"]):
         self.known_as = message_type(self._class._type)
         self._latched: dict[str, Any] = {}
         self._subscriber: Any = None
-        node.takers[topic] = self._take
+        node.handlers[topic] = self._take
         node.link.do(self._register)
 
     @property
     def publisher_count(self) -> int:
-        """How many publishers are connected now."""
+        """Number of connected publishers."""
         subscriber = self._subscriber
         return 0 if subscriber is None else int(subscriber.get_num_connections())
 
     def latched(self, reader: Any) -> Iterable[Any]:
-        """What each connected publisher said last: what one that has gone said is said by nobody any more."""
+        """Return the last message of each connected publisher; those of disconnected publishers no longer count."""
         if self._latched:
             connections = getattr(getattr(self._subscriber, "impl", None), "connections", None) or ()
             connected = {connection.callerid_pub for connection in list(connections)}
@@ -107,8 +107,8 @@ class Ros1Feed(TopicFeed["Ros1Subscription"]):
         return self._latched.values()
 
     def _leave(self) -> None:
-        if self._node.takers.get(self.topic) == self._take:
-            del self._node.takers[self.topic]
+        if self._node.handlers.get(self.topic) == self._take:
+            del self._node.handlers[self.topic]
         self._node.link.do(self._unregister)
 
     def _register(self) -> None:
@@ -126,7 +126,7 @@ class Ros1Feed(TopicFeed["Ros1Subscription"]):
             self.put(message)
 
     def _take(self, messages: Sequence[Any], header: Mapping[str, str]) -> None:
-        """Take messages that came together, on the loop."""
+        """Handle messages that arrived together, on the loop."""
         if header.get("latching") == "1":
             with self.lock:
                 self._latched[header.get("callerid", "")] = messages[-1]
@@ -140,9 +140,9 @@ class Ros1Subscription(SharedSubscription[Ros1Node]):
 
     def __init__(self, node: Ros1Node, wanted: Wanted) -> None:
         self.queue: Handoff[Any] = Handoff(node.loop, wanted.qos.depth, self.deliver)
-        super().__init__(node, wanted, node.feeds, Ros1Feed)
-        if self._feed is not None:
-            self._feed.see_type(node.types.get(self.topic))
+        super().__init__(node, wanted, node.multiplexers, Ros1Multiplexer)
+        if self._multiplexer is not None:
+            self._multiplexer.see_type(node.types.get(self.topic))
 
     def put(self, message: Any) -> None:
         """Queue a message, from any thread of rospy's."""

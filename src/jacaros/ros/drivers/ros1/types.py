@@ -1,4 +1,4 @@
-"""The message, service and action classes of ROS 1 as a `Schema`; what no package offers is generated."""
+"""The message, service and action classes of ROS 1 as a `Schema`; classes of missing packages are generated."""
 
 import hashlib
 import os
@@ -17,10 +17,10 @@ from jacaros.ros.interfaces import definition, split_action
 from jacaros.text_files import kept_files
 
 ROS1_PACKAGES = {"example_interfaces/srv/AddTwoInts": "rospy_tutorials"}
-"""Where ROS 1 keeps what ROS 2 has elsewhere."""
+"""Types that are in another package on ROS 1 than on ROS 2."""
 
 ACTION_SUFFIXES = ("ActionGoal", "ActionResult", "ActionFeedback", "Action", "Goal", "Result", "Feedback")
-"""Ends of the names of the messages that an action is made of, longer ones first."""
+"""Suffixes of the messages of an action, longer ones first."""
 
 _ON_DEBIAN = (
     *(
@@ -56,48 +56,49 @@ class GenpySchema:
         self._fields: dict[str, Mapping[str, FieldType]] = {}
 
     def look_in(self, folder: Path) -> None:
-        """Look for definitions in *folder* too, from now on."""
+        """Search *folder* for definitions, too, from now on."""
         if folder not in self._roots:
             self._roots = (*self._roots, folder)
 
     def fields(self, type_name: str) -> Mapping[str, FieldType]:
-        """Fields of a type in full form; raises `UnknownInterface`."""
+        """Return the fields of a type in full form. Raises `UnknownInterface`."""
         fields = self._fields.get(type_name)
         if fields is None:
             fields = self._fields[type_name] = _TIME_FIELDS.get(type_name) or self._read_fields(type_name)
         return fields
 
     def new(self, type_name: str) -> Any:
-        """Make a message with genpy's defaults; raises `UnknownInterface`."""
+        """Make a message with genpy's defaults. Raises `UnknownInterface`."""
         return self.message_class(type_name)()
 
     def numbers(self, field: FieldType, values: Any) -> Any:
-        """Turn an array into ``bytes`` for octets, into a list for the rest: what genpy serialises."""
+        """Convert an array to ``bytes`` for octets, otherwise to a list, which genpy serialises."""
         return values.tobytes() if field.base == "uint8" else list(values)
 
     def single(self, field: FieldType, value: Any) -> Any:
-        """Keep plain values as they are."""
+        """Return plain values unchanged."""
         return value
 
     def message_class(self, type_name: str) -> Any:
-        """The class of a message, or of a part of a service or action, in full form; raises `UnknownInterface`."""
+        """Return the class of a message, or of a part of a service or action, in full form. Raises
+        `UnknownInterface`."""
         found = self._classes.get(type_name)
         if found is None:
             found = self._classes[type_name] = self._find_message(type_name)
         return found
 
     def service_class(self, type_name: str) -> Any:
-        """The class of a service type in full form; raises `UnknownInterface`."""
+        """Return the class of a service type in full form. Raises `UnknownInterface`."""
         found = self._classes.get(type_name)
         if found is None:
             found = self._classes[type_name] = self._find_service(type_name)
         return found
 
     def action_class(self, type_name: str, part: str) -> Any:
-        """The class of one of the messages that actionlib makes of an action.
+        """Return the class of one of actionlib's messages of an action.
 
         Args:
-            type_name: of the action in full form.
+            type_name: action type in full form.
             part: ``ActionGoal``, ``ActionResult``, ``ActionFeedback``, ``Action``, ``Goal``, ``Result`` or
                 ``Feedback``.
 
@@ -136,7 +137,8 @@ class GenpySchema:
         return found
 
     def _generated_message(self, package: str, name: str) -> Any:
-        """The class of a message that is defined, by itself or as a part of an action; None when it is not."""
+        """Return the class of a message from its definition, alone or as a part of an action; None without a
+        definition."""
         text = definition(f"{package}/msg/{name}", self._roots)
         if text is not None:
             return self._generate(generated_message, f"{package}/{name}", text)
@@ -180,14 +182,14 @@ class GenpySchema:
         try:
             texts = action_texts(name, text)
         except ValueError as problem:
-            raise UnknownInterface(f"the definition of {package}/action/{name} is wrong: {problem}") from None
+            raise UnknownInterface(f"invalid definition of {package}/action/{name}: {problem}") from None
         return self._generate(generated_message, f"{package}/{name}{part}", texts[part])
 
     def _generate(self, generate: Callable[..., Any], full_name: str, text: str) -> Any:
         try:
             return generate(full_name, text, self._named_as_on_ros1)
         except _definition_errors() as problem:
-            raise UnknownInterface(f"the definition of {full_name} is wrong for ROS 1: {problem}") from None
+            raise UnknownInterface(f"invalid definition of {full_name} for ROS 1: {problem}") from None
 
     def _named_as_on_ros1(self, full_name: str) -> Any:
         package, name = full_name.split("/")
@@ -206,7 +208,7 @@ def _definition_errors() -> tuple[type[Exception], ...]:
 
 
 FindClass = Callable[[str], Any]
-"""Gives the class of a message type named as on ROS 1, ``geometry_msgs/Pose``; raises `UnknownInterface`."""
+"""Returns the class of a message type with its ROS 1 name, ``geometry_msgs/Pose``. Raises `UnknownInterface`."""
 
 ACTION_PARTS = {
     "ActionGoal": "Header header\nactionlib_msgs/GoalID goal_id\n{name}Goal goal\n",
@@ -217,14 +219,14 @@ ACTION_PARTS = {
         "{name}ActionFeedback action_feedback\n"
     ),
 }
-"""What actionlib wraps around goal, result and feedback (``actionlib_msgs/scripts/genaction.py``)."""
+"""The wrappers that actionlib adds to goal, result and feedback (``actionlib_msgs/scripts/genaction.py``)."""
 
 
 def generated_message(full_name: str, text: str, find: FindClass) -> Any:
-    """Give the class of a message.
+    """Return the class of a message.
 
     Args:
-        full_name: as on ROS 1, ``nav2_msgs/Costmap``.
+        full_name: ROS 1 name, ``nav2_msgs/Costmap``.
         text: its definition, in the notation of ROS 1 or ROS 2.
         find: finds the classes that the definition mentions.
     """
@@ -235,7 +237,7 @@ def generated_message(full_name: str, text: str, find: FindClass) -> Any:
 
 
 def generated_service(full_name: str, text: str, find: FindClass) -> Any:
-    """Give the class of a service; the arguments are those of `generated_message`."""
+    """Return the class of a service; the arguments are those of `generated_message`."""
     loader = import_module("genmsg.msg_loader")
     text = ros1_notation(text)
     parts = loader.load_srv_from_string(loader.MsgContext.create_default(), text, full_name)
@@ -251,10 +253,10 @@ def generated_service(full_name: str, text: str, find: FindClass) -> Any:
 
 
 def action_texts(name: str, text: str) -> dict[str, str]:
-    """Split an action's definition into those of its seven messages, by what follows the action's name in theirs.
+    """Split an action's definition into those of its seven messages, by the suffix of their names.
 
     Args:
-        name: of the action without its package.
+        name: name of the action without its package.
         text: the three parts of the definition.
     """
     goal, result, feedback = split_action(text)
@@ -276,9 +278,9 @@ _ROS1_BASES = {
 
 
 def ros1_notation(text: str) -> str:
-    """Write a definition as ROS 1 does: no bounds, no default values, ``time`` and ``duration``.
+    """Convert a definition to ROS 1's notation: no bounds, no default values, ``time`` and ``duration``.
 
-    ROS 1's own definitions are not changed, so neither are their md5 sums.
+    ROS 1's own definitions are unchanged, and so are their md5 sums.
     """
     return "\n".join(_ros1_line(line) for line in text.splitlines()) + "\n"
 
@@ -299,7 +301,7 @@ def _ros1_line(line: str) -> str:
 
 
 def _context(definitions: list[tuple[str, str]], find: FindClass) -> tuple[Any, dict[str, Any]]:
-    """Load definitions and all that they mention; give genmsg's context and the classes mentioned, by name."""
+    """Load definitions and all that they mention. Return genmsg's context and the mentioned classes, by name."""
     loader, messages = import_module("genmsg.msg_loader"), import_module("genmsg.msgs")
     context = loader.MsgContext.create_default()
     classes: dict[str, Any] = {}
@@ -312,7 +314,7 @@ def _context(definitions: list[tuple[str, str]], find: FindClass) -> tuple[Any, 
             if messages.is_builtin(mentioned) or mentioned in classes:
                 continue
             found = classes[mentioned] = find(mentioned)
-            # genpy puts the definitions of nested messages behind the message's own.
+            # genpy appends the definitions of nested messages to the message's own.
             waiting.append((mentioned, re.split(r"^={80}$", found._full_text, flags=re.MULTILINE)[0]))
     return context, classes
 
@@ -323,7 +325,7 @@ def _message_source(context: Any, full_name: str) -> str:
 
 
 def _joined(lines: Iterator[str]) -> str:
-    """The source without imports of message packages: their names are given to the module, see `_packages`."""
+    """Return the source without imports of message packages: their names are set in the module, see `_packages`."""
     source = "\n".join(lines) + "\n"
     return re.sub(r"^import \w+\.msg$", "", source, flags=re.MULTILINE)
 
@@ -334,11 +336,11 @@ def _digest(text: str, classes: dict[str, Any]) -> str:
 
 
 def _module(full_name: str, digest: str, source: Callable[[], str], classes: dict[str, Any]) -> ModuleType:
-    """Load the module of a definition, after writing it when it is not in the cache yet."""
+    """Load the module of a definition; write it first if it is not in the cache."""
     package, name = full_name.split("/")
     path = _cache_folder() / f"{package}_{name}_{digest}.py"
     if not path.is_file():
-        # Written aside and renamed: another process may be loading or writing the same file.
+        # Written to a temporary file and renamed: another process may load or write the same file.
         handle, aside = tempfile.mkstemp(dir=path.parent, suffix=".part")
         with os.fdopen(handle, "w", encoding="utf-8") as file:
             file.write(source())
@@ -353,7 +355,7 @@ def _module(full_name: str, digest: str, source: Callable[[], str], classes: dic
 
 
 def _packages(classes: dict[str, Any]) -> dict[str, SimpleNamespace]:
-    """What stands for ``import geometry_msgs.msg`` and the like: those packages may be generated themselves."""
+    """Return stand-ins for ``import geometry_msgs.msg`` and the like: those packages may be generated, too."""
     packages: dict[str, SimpleNamespace] = {}
     for full_name, found in classes.items():
         package, name = full_name.split("/")

@@ -1,8 +1,8 @@
-"""Actions of ROS 2, made of what they are made of: three services and two topics below ``<name>/_action``.
+"""Actions of ROS 2, built from their three services and two topics below ``<name>/_action``.
 
-rclpy's own classes for actions are not used: their state belongs to the executor's threads, they want the judgement of a
-goal before their callback returns, and on Jazzy an answer that comes too early is lost.  The protocol is that of the design
-article "Actions" (design.ros2.org), which every client library speaks.
+rclpy's own action classes are not used: their state belongs to the executor's threads, they need the decision about a
+goal before their callback returns, and on Jazzy an answer that arrives too early is lost. The protocol is that of the
+design article "Actions" (design.ros2.org), which every client library speaks.
 """
 
 from collections.abc import Callable
@@ -47,7 +47,7 @@ def id_message(identity: str) -> Any:
 
 
 class _ServedGoal:
-    """What the graph is told about one goal: its status, feedback and end."""
+    """Publishes one goal: its status, feedback and outcome."""
 
     def __init__(self, server: "Ros2ActionServer", info: Any) -> None:
         self.info = info
@@ -57,11 +57,11 @@ class _ServedGoal:
         self._server = server
 
     def feedback(self, message: Any) -> None:
-        """The goal has got so far."""
+        """Publish feedback."""
         self._server.publish_feedback(self.info.goal_id, message)
 
     def ended(self, outcome: Outcome) -> None:
-        """The goal is over."""
+        """Publish the outcome."""
         self._server.finish(self, outcome)
 
 
@@ -82,7 +82,7 @@ class Ros2ActionServer:
             impl.FeedbackMessage, name + FEEDBACK, profile(FEEDBACK_QUALITY)
         )
         self._status: Any = rcl.create_publisher(GoalStatusArray, name + STATUS, profile(STATUS_QUALITY))
-        # The goal's service is the last: a client that sees it finds the others too.
+        # The goal's service comes last: a client that sees it finds the others, too.
         self._services = [
             LateService(node, impl.GetResultService, name + GET_RESULT, self._tell_result),
             LateService(node, CancelGoal, name + CANCEL_GOAL, self._cancel),
@@ -91,12 +91,12 @@ class Ros2ActionServer:
         node.keep(self)
 
     def publish_feedback(self, identity: Any, message: Any) -> None:
-        """Tell how far a goal is."""
+        """Publish feedback of a goal."""
         if not self._closed and not self._node.ended:
             self._feedback.publish(self._impl.FeedbackMessage(goal_id=identity, feedback=message))
 
     def finish(self, goal: _ServedGoal, outcome: Outcome) -> None:
-        """Tell a goal's end to those who asked, and keep it for those who will."""
+        """Send a goal's outcome to the clients that requested it, and store it for later requests."""
         if self._node.ended:
             return
         goal.status = NUMBERS[outcome.status]
@@ -108,7 +108,7 @@ class Ros2ActionServer:
         self._node.loop.call_later(RESULT_KEPT, self._goals.pop, goal_id(goal.info.goal_id), None)
 
     def close(self) -> None:
-        """Stop to offer the action."""
+        """Stop offering the action."""
         if self._closed:
             return
         self._under_way.close()
@@ -116,7 +116,7 @@ class Ros2ActionServer:
         for service in self._services:
             service.close(late=True)
         for publisher in (self._feedback, self._status):
-            self._node.retire_later(self._node.rcl.destroy_publisher, publisher)
+            self._node.destroy_entity_later(self._node.rcl.destroy_publisher, publisher)
         self._node.forget(self)
 
     def _judge(self, request: Any, respond: Respond) -> None:
@@ -124,7 +124,7 @@ class Ros2ActionServer:
         known = identity in self._goals
         refusal = "" if known else self._under_way.judge(request.goal)
         stamp = self._node.rcl.get_clock().now().to_msg()
-        # ROS 2 has no words for a refusal.
+        # ROS 2 has no field for the reason of a rejection.
         respond(self._impl.SendGoalService.Response(accepted=refusal is None, stamp=stamp))
         if refusal is not None:
             return
@@ -135,7 +135,7 @@ class Ros2ActionServer:
         self._publish_status()
 
     def _cancel(self, request: Any, respond: Respond) -> None:
-        """Cancel as ``action_msgs/srv/CancelGoal`` says: one goal, all up to a time, or all."""
+        """Cancel as ``action_msgs/srv/CancelGoal`` defines: one goal, all up to a time, or all."""
         meant = self._meant(request.goal_info)
         agreed = [goal for goal in meant if self._under_way.cancel(goal_id(goal.info.goal_id))]
         for goal in agreed:

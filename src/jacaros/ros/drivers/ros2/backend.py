@@ -1,4 +1,4 @@
-"""ROS 2 through rclpy: the backend, put together."""
+"""ROS 2 through rclpy: the complete backend."""
 
 from collections.abc import Callable
 from typing import Any, TypeVar
@@ -30,7 +30,7 @@ from jacaros.ros.graph import GraphContents
 from jacaros.ros.handoff import in_thread
 from jacaros.ros.node import NodeSettings, Parts
 from jacaros.ros.parameter import Parameters
-from jacaros.ros.parameter_news import ParameterNews
+from jacaros.ros.parameter_events import ParameterEvents
 from jacaros.ros.tf import MESSAGE as TRANSFORM_MESSAGE
 from jacaros.ros.waiting import within
 
@@ -52,25 +52,25 @@ CAPABILITIES = frozenset(
 
 
 def _joining(what: str, make: Callable[..., T]) -> Callable[..., T]:
-    """Say in our words that two parts of one process do not agree about the type of a service or action."""
+    """Translate the error that two parts of one process use a service or action with different types."""
 
     def join(node: Ros2Node, name: str, type_name: str, *more: Any) -> T:
         try:
             return make(node, name, type_name, *more)
         except RCLError as problem:
             other = "incompatible type" in str(problem)
-            because = "this node uses it with another type already" if other else str(problem)
-            raise RosError(f"{what} {name} cannot be joined with type {type_name}: {because}") from None
+            because = "this node already uses it with another type" if other else str(problem)
+            raise RosError(f"{what} {name} cannot be used with type {type_name}: {because}") from None
 
     return join
 
 
 class Ros2Backend(Ros2Node):
-    """A ROS 2 node with all that the port offers.
+    """A ROS 2 node that implements the port.
 
     Args:
-        settings: names, clock and reports.
-        domain_id: the DDS domain; ``ROS_DOMAIN_ID`` without it.
+        settings: names, clock and log.
+        domain_id: the DDS domain; default: ``ROS_DOMAIN_ID``.
     """
 
     parts = Parts(
@@ -84,12 +84,12 @@ class Ros2Backend(Ros2Node):
 
     def __init__(self, settings: NodeSettings, domain_id: int | None = None) -> None:
         super().__init__(settings, domain_id)
-        self._news = ParameterNews(self.subscription, read_value)
+        self._parameter_events = ParameterEvents(self.subscription, read_value)
         self._parameters: dict[str, Parameters] = {}
 
     @property
     def capabilities(self) -> frozenset[str]:  # type: ignore[override]
-        """What works here; transforms only where ``tf2_msgs`` is installed."""
+        """The capabilities; transforms only if ``tf2_msgs`` is installed."""
         try:
             self.schema.message_class(TRANSFORM_MESSAGE)
         except UnknownInterface:
@@ -99,24 +99,26 @@ class Ros2Backend(Ros2Node):
     async def start(self) -> None:
         """Join the graph."""
         await super().start()
-        self._parameters[self.node_name] = OwnParameters(self, self._news)
+        self._parameters[self.node_name] = OwnParameters(self, self._parameter_events)
 
     def parameters(self, node: str | None = None) -> Parameters:
-        """Give the parameters of our own node, or of another."""
+        """Return the parameters of our own node, or of another."""
         name = self.node_name if node is None else self.resolve(node)
         if name not in self._parameters:
-            self._parameters[name] = OtherParameters(self, name, self._news)
+            self._parameters[name] = OtherParameters(self, name, self._parameter_events)
         return self._parameters[name]
 
     async def contents(self, timeout: float = 5.0) -> GraphContents:
-        """Look at the graph."""
+        """Return the contents of the graph."""
         seen = in_thread(self.loop, lambda: ros2_graph.contents(self), "looking at the graph")
         try:
             return await within(self.clock, seen, timeout)
         except TimeoutError:
-            raise CallTimedOut(f"rclpy did not tell within {timeout:g} s what is in the graph") from None
-        except RCLError as problem:  # a node that went while it was looked at
-            raise CallFailed(f"rclpy cannot tell what is in the graph: {problem}") from None
+            raise CallTimedOut(
+                f"rclpy did not return the contents of the graph within {timeout:g} s"
+            ) from None
+        except RCLError as problem:  # a node that left during the query
+            raise CallFailed(f"rclpy cannot return the contents of the graph: {problem}") from None
 
 
 BACKEND: type[Backend] = Ros2Backend

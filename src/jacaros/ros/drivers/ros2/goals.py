@@ -1,4 +1,4 @@
-"""Action clients of ROS 2: goals on their way to a server, and whether the server is still alive."""
+"""Action clients of ROS 2: goals on their way to a server, and whether the server is alive."""
 
 import time
 from collections.abc import Callable
@@ -28,22 +28,22 @@ from jacaros.ros.protocols.ros2_actions import (
     STATUS,
     STATUS_QUALITY,
     UNDER_WAY,
-    SignsOfLife,
+    FailureDetector,
     new_goal_id,
 )
 
 LOOKING = 0.1
-"""Seconds between two looks at the server, while a goal is under way or the server is waited for."""
+"""Seconds between two checks of the server, while a goal is active or a caller waits for the server."""
 COMPARING = 0.5
-"""Seconds between two looks at the types in the graph, while there is no server."""
+"""Seconds between two checks of the types in the graph, while there is no server."""
 REPEATING = 1.0
-"""Seconds after which a request is repeated that was not answered although it should have been."""
+"""Seconds after which an unanswered request is repeated."""
 FEEDBACK_WAITING = 100
-"""Feedback messages that wait for the loop; the oldest is dropped first."""
+"""Number of feedback messages that may wait for the loop; the oldest is dropped first."""
 
 
 class _SentGoal:
-    """What the wire knows of a goal."""
+    """The state of a goal in the wire."""
 
     def __init__(self, identity: str, request: Any) -> None:
         self.identity = identity
@@ -57,10 +57,10 @@ class _SentGoal:
 
 
 class Ros2GoalWire:
-    """Carries goals from a `GoalSender` to the servers of the graph.
+    """Transfers goals from a `GoalSender` to the servers of the graph.
 
-    An answer that is lost (a server answers before it has discovered who asks, a network drops out) does not leave
-    anybody waiting: acceptance and end are also told by the status topic, and then the request is repeated.
+    A lost answer (a server answers before it has discovered the client, or a network fails) leaves no caller waiting:
+    acceptance and end are also visible in the status topic, and then the request is repeated.
     """
 
     def __init__(self, node: Ros2Node, name: str, type_name: str) -> None:
@@ -78,7 +78,7 @@ class Ros2GoalWire:
         self._mismatch: str | None = None
         self._compared = 0.0
         self._servers: frozenset[bytes] = frozenset()
-        self._signs = SignsOfLife(self._probe, self.sender.server_present, self._look_with_fresh_eyes)
+        self._detector = FailureDetector(self._probe, self.sender.server_present, self._check_liveness)
         self._looking: Any = None
         self._calls: dict[Any, Any] = {}
         self._unsent: list[str] = []
@@ -104,14 +104,14 @@ class Ros2GoalWire:
             ),
         ]
         self._forget_hook = node.add_exit_hook(self._cancel_all)
-        node.farewells[self._farewell] = None
+        node.shutdown_steps[self._before_shutdown] = None
 
     @classmethod
     def client(cls, node: Ros2Node, name: str, type_name: str) -> GoalSender:
-        """Make an action client, as the port has it, and keep its wire at the node."""
+        """Make an action client for the port, and register its wire at the node."""
         return node.keep(cls(node, name, type_name)).sender
 
-    # What the sender asks for:
+    # Requests of the sender:
 
     @property
     def offered(self) -> bool:
@@ -121,11 +121,11 @@ class Ros2GoalWire:
         self._note_presence()
         if not self._there:
             self._keep_looking()
-        # A server of another type is one too: `send_goal` says what is wrong with it.
+        # A server of another type counts, too: `send_goal` reports the mismatch.
         return self._there or self._mismatch is not None
 
     def new_id(self) -> str:
-        """Make up the id of a new goal."""
+        """Return the id of a new goal."""
         return self._node.orphans.hashed_id()
 
     def send_goal(self, goal_id: str, goal: Any) -> None:
@@ -152,55 +152,55 @@ class Ros2GoalWire:
         """Follow a goal of an earlier run."""
         goal = self._goals[identity] = _SentGoal(identity, None)
         goal.sent = goal.accepted = True
-        self._signs.goal_begins()
+        self._detector.goal_begins()
         self._ask_for_result(goal)
         self._keep_looking()
 
     def forget_goal(self, identity: str) -> None:
-        """The goal is over."""
+        """Forget a goal that has ended."""
         self._goals.pop(identity, None)
         if not self._goals:
-            self._signs.rest()
+            self._detector.rest()
             self._forget_calls()
 
     def close(self) -> None:
-        """Leave, when what was sent last has arrived."""
+        """Leave when the last messages have arrived."""
         if self._closed:
             return
         self._closed = True
         self._forget_hook()
-        del self._node.farewells[self._farewell]
+        del self._node.shutdown_steps[self._before_shutdown]
         self._feedback.close()
         for timer in (self._looking, self._sending):
             if timer is not None:
                 timer.cancel()
         node = self._node
         for client in (self._goal_client, self._cancel_client, self._result_client):
-            node.retire_later(node.rcl.destroy_client, client)
+            node.destroy_entity_later(node.rcl.destroy_client, client)
         for subscription in self._subscriptions:
-            node.retire_later(node.rcl.destroy_subscription, subscription)
+            node.destroy_entity_later(node.rcl.destroy_subscription, subscription)
         node.forget(self)
 
-    def _farewell(self, seconds: float) -> None:
-        """Give requests to cancel the time to arrive."""
+    def _before_shutdown(self, seconds: float) -> None:
+        """Wait until requests to cancel have arrived."""
         if self._goals:
             time.sleep(min(0.1, seconds))
 
     def _cancel_all(self) -> None:
-        """Cancel what is under way, as an exit hook: when its client ends, nobody watches over the robot."""
+        """Exit hook: cancel the active goals, because after the client's end nothing watches the robot."""
         for goal in list(self._goals.values()):
             if not goal.over:
                 info = GoalInfo(goal_id=id_message(goal.identity))
                 self._cancel_client.call_async(CancelGoal.Request(goal_info=info))
 
-    # What comes back, on the loop:
+    # Answers, on the loop:
 
     def _answered(self, identity: str, answer: Any) -> None:
         goal = self._goals.get(identity)
         if answer.accepted:
             self._accept(identity)
         elif goal is not None and not goal.accepted:
-            # A server also refuses what it has accepted already; then its status is on the way and tells.
+            # The server also refuses what it has already accepted; then its status is about to arrive.
             self._node.loop.call_later(SETTLING if goal.repeated else 0.0, self._reject, identity)
 
     def _reject(self, identity: str) -> None:
@@ -214,7 +214,7 @@ class Ros2GoalWire:
             return
         if goal is not None:
             goal.accepted = True
-            self._signs.goal_begins()
+            self._detector.goal_begins()
         self.sender.accepted(identity)
         if goal is not None and identity in self._goals:
             self._ask_for_result(goal)
@@ -232,7 +232,7 @@ class Ros2GoalWire:
         self._feedback.deliver_all()
         status = ENDS.get(answer.status)
         if status is None:
-            text = f"the server of action {self.name} does not know goal {identity} any more: it was started anew"
+            text = f"the server of action {self.name} does not know goal {identity}: it was restarted"
             self.sender.fail(identity, ServerLost(text))
         else:
             self.sender.ended(identity, Outcome(status, answer.result, text_of(answer.result)))
@@ -247,7 +247,7 @@ class Ros2GoalWire:
     def _take_feedback(self, message: Any) -> None:
         identity = goal_id(message.goal_id)
         if identity in self._goals:
-            self._signs.heard()
+            self._detector.heard()
             self._accept(identity)
             self.sender.feedback(identity, message.feedback)
 
@@ -259,11 +259,11 @@ class Ros2GoalWire:
             identity = goal_id(entry.goal_info.goal_id)
             goal = self._goals.get(identity)
             if goal is not None:
-                self._signs.heard()
+                self._detector.heard()
                 goal.over = entry.status in ENDS
                 self._accept(identity)
 
-    # Looking after the server:
+    # Checking the server:
 
     def _keep_looking(self) -> None:
         if self._looking is None and not self._closed:
@@ -291,7 +291,7 @@ class Ros2GoalWire:
                 self.cancel_goal(goal.identity)
         if self._there:
             goals = self._goals.values()
-            self._signs.check(
+            self._detector.check(
                 now,
                 under_way=any(goal.accepted and not goal.over for goal in goals),
                 waiting=any(goal.sent and not goal.accepted for goal in goals),
@@ -315,19 +315,20 @@ class Ros2GoalWire:
                 self.sender.server_present(True)
 
     def _note_servers(self) -> bool:
-        """Note who offers the action; True when somebody is new among them."""
+        """Update the set of servers. Return whether there is a new one."""
         servers = action_servers(self._node, self.name)
         if servers <= self._servers:
             return False
         self._servers |= servers
         self._there_since = time.monotonic()
-        self._signs.stranger()
+        self._detector.reset()
         return True
 
     def _greet_newcomers(self) -> None:
-        """A server that came during a goal may have taken the place of one that died, unnoticed so far by the graph.
+        """Check goals after a new server appeared: it may have replaced a dead one that the graph still lists.
 
-        Then it does not know the goal, and says so; one that was not accepted yet is for it, unless it was given up.
+        If so, it does not know the goal and answers that; a goal that was not accepted is sent to it, unless it was
+        abandoned.
         """
         for goal in list(self._goals.values()):
             if goal.accepted:
@@ -337,9 +338,9 @@ class Ros2GoalWire:
                 self._send_when_settled(goal.identity)
 
     def _send_when_settled(self, identity: str) -> None:
-        """Send a goal, as soon as the server knows us: what it is sent earlier, or answers earlier, is lost.
+        """Send a goal as soon as the server knows the client: earlier messages or answers would be lost.
 
-        Goals are sent in their order: where a newer one takes over, it must be the newer one that does.
+        Goals are sent in order, because with pre-emption the newest one must win.
         """
         if identity not in self._unsent:
             self._unsent.append(identity)
@@ -374,20 +375,20 @@ class Ros2GoalWire:
             )
 
     def _probe(self) -> None:
-        """Ask for something that every server answers at once: the result of a goal that nobody knows."""
+        """Send a request that every server answers immediately: the result of an unknown goal."""
         request = self._impl.GetResultService.Request(goal_id=id_message(new_goal_id()))
-        self._call(self._result_client, request, lambda _: self._signs.probe_answered())
+        self._call(self._result_client, request, lambda _: self._detector.probe_answered())
 
-    def _look_with_fresh_eyes(self) -> None:
+    def _check_liveness(self) -> None:
         suspects = action_servers(self._node, self.name)
 
-        def tell(missing: frozenset[bytes]) -> None:
-            # With several servers it is not known whose goals ours are.
+        def report(missing: frozenset[bytes]) -> None:
+            # With several servers it is unknown which one has our goals.
             if not self._closed and suspects == action_servers(self._node, self.name):
-                self._signs.looked(missing != suspects)
+                self._detector.looked(missing != suspects)
 
         if suspects:
-            self._node.look_again(lambda rcl: action_servers_in(rcl, self.name), suspects, tell)
+            self._node.check_liveness(lambda rcl: action_servers_in(rcl, self.name), suspects, report)
 
     # Between the threads:
 
@@ -402,14 +403,14 @@ class Ros2GoalWire:
         call.add_done_callback(finished)
 
     def _forget_calls(self) -> None:
-        """Wait for answers no more: those of a server that has died would be waited for without end."""
+        """Drop pending calls: those of a dead server would wait forever."""
         for call in list(self._calls):
             client = self._calls.pop(call, None)
-            if client is not None:  # else it was answered just now, on the executor's thread
+            if client is not None:  # otherwise it was answered just now, on the executor's thread
                 client.remove_pending_request(call)
 
     def _take_answer(self, take: Callable[[Any], None], answer: Any) -> None:
-        self._signs.heard()
+        self._detector.heard()
         take(answer)
 
     def _post(self, action: Callable[..., None], *arguments: Any) -> None:

@@ -1,4 +1,4 @@
-"""What rclpy knows of the graph: who is there, with which types, and with which quality of service."""
+"""The graph as rclpy knows it: nodes, types, and quality of service."""
 
 from typing import Any
 
@@ -22,22 +22,22 @@ NODE_SERVICES = frozenset(
         "set_parameters_atomically",
     }
 )
-"""What every node offers, below its name."""
+"""Services that every node offers, below its name."""
 
 
 def absolute(namespace: str, name: str) -> str:
-    """Put a node's name together."""
+    """Return a node's absolute name."""
     return f"{namespace.rstrip('/')}/{name}"
 
 
 def endpoint(info: Any) -> Endpoint:
-    """Read what rclpy tells of an endpoint."""
+    """Convert rclpy's description of an endpoint."""
     name = "" if info.node_name.startswith("_") else absolute(info.node_namespace, info.node_name)
     return Endpoint(name, quality(info.qos_profile))
 
 
 def foreign_types(node: Ros2Node, topic: str, type_name: str) -> dict[str, str]:
-    """Types other than *type_name* that are published on a topic, each with one of the nodes that do it."""
+    """Return the types other than *type_name* that are published on a topic, each with one of its publishers."""
     ours = node.schema.graph_type(type_name)
     told = node.rcl.get_publishers_info_by_topic(topic)
     return {
@@ -46,7 +46,7 @@ def foreign_types(node: Ros2Node, topic: str, type_name: str) -> dict[str, str]:
 
 
 def own_types(node: Ros2Node, topic: str) -> list[list[str]]:
-    """With which types our own node is at a topic."""
+    """Return the types with which our own node uses a topic."""
     names = node.names
     told = [
         *node.rcl.get_publisher_names_and_types_by_node(names.node_name, names.namespace or "/"),
@@ -56,12 +56,12 @@ def own_types(node: Ros2Node, topic: str) -> list[list[str]]:
 
 
 def service_mismatch(node: Ros2Node, name: str, type_name: str) -> str | None:
-    """Tell that a service is there with another type only; None when all is well, or nothing is known."""
+    """Return a problem if a service exists with another type only; None if none exists, or nothing is known."""
     return _mismatch(node, "service", name, name, type_name, "")
 
 
 def action_mismatch(node: Ros2Node, name: str, type_name: str) -> str | None:
-    """Tell that an action is there with another type only; None when all is well, or nothing is known."""
+    """Return a problem if an action exists with another type only; None if none exists, or nothing is known."""
     return _mismatch(node, "action", name, name + SEND_GOAL, type_name, "_SendGoal")
 
 
@@ -75,22 +75,22 @@ def _mismatch(node: Ros2Node, what: str, name: str, service: str, type_name: str
     if node.schema.usual_type(ours.removesuffix(ending)) == theirs != ours.removesuffix(ending):
         package = theirs.split("/")[0].replace("_", "-")
         text = (
-            f"{what} {name} is of the genuine type {theirs}, of which only a look-alike is installed here: "
+            f"{what} {name} has the original type {theirs}, but only a substitute is installed here: "
             f"install ros-<distribution>-{package}"
         )
     return text
 
 
 def _offered_types(node: Ros2Node, name: str) -> list[str]:
-    """The types of a service as its servers have them; what rcl tells by names counts clients too, and so ourselves."""
+    """Return the types of a service according to its servers; rcl's names include clients, and thus ourselves."""
     told = node.rcl.get_publishers_info_by_topic(f"rr{name}Reply", no_mangle=True)
-    # On DDS they are called like nav2_msgs::action::dds_::NavigateToPose_SendGoal_Response_.
+    # On DDS they have names such as nav2_msgs::action::dds_::NavigateToPose_SendGoal_Response_.
     plain = {info.topic_type.replace("::dds_::", "::").replace("::", "/") for info in told}
     return sorted(type_name.removesuffix("_Response_") for type_name in plain)
 
 
 def contents(node: Ros2Node) -> GraphContents:
-    """Look at the graph as it is known now."""
+    """Return the graph as it is known now."""
     rcl = node.rcl
     nodes = sorted({absolute(space, name) for name, space in rcl.get_node_names_and_namespaces()})
     topics: dict[str, TopicInfo] = {}
@@ -98,7 +98,7 @@ def contents(node: Ros2Node) -> GraphContents:
     for name, types in rcl.get_topic_names_and_types():
         if name.endswith(FEEDBACK):
             servers = rcl.get_publishers_info_by_topic(name)
-            if servers:  # else it is only asked for
+            if servers:  # otherwise there are only clients
                 told = servers[0].topic_type.removesuffix("_FeedbackMessage")
                 actions[name.removesuffix(FEEDBACK)] = node.schema.usual_type(told)
         elif ACTION not in name and name not in INFRASTRUCTURE:
@@ -120,48 +120,49 @@ def _topic(node: Ros2Node, name: str, types: list[str]) -> TopicInfo:
 
 
 def _belongs_to_node(service: str, nodes: list[str]) -> bool:
-    """Whether a service is one of those that every node has."""
+    """Return whether a service is one that every node has."""
     owner, _, last = service.rpartition("/")
     return last in NODE_SERVICES and owner in nodes
 
 
 def _is_shown(node: str) -> bool:
-    """Nodes of tools begin with an underscore and are hidden, as in ROS 2's own lists."""
+    """Return whether a node is shown: names of tools begin with an underscore, as in ROS 2's own lists."""
     return not node.rpartition("/")[2].startswith("_")
 
 
 def publishers_in(rcl: Any, topic: str, no_mangle: bool = False) -> frozenset[bytes]:
-    """The identities of those who publish a topic, as far as a node of rclpy knows."""
+    """Return the identities of a topic's publishers that a node of rclpy knows."""
     told = rcl.get_publishers_info_by_topic(topic, no_mangle=no_mangle)
     return frozenset(bytes(info.endpoint_gid) for info in told)
 
 
 def action_servers_in(rcl: Any, name: str) -> frozenset[bytes]:
-    """The identities of those that offer an action, as far as a node of rclpy knows."""
+    """Return the identities of an action's servers that a node of rclpy knows."""
     return publishers_in(rcl, name + FEEDBACK)
 
 
 def action_servers(node: Ros2Node, name: str) -> frozenset[bytes]:
-    """The identities of those that offer an action: a server that was started anew has another."""
+    """Return the identities of an action's servers; a restarted server has a new one."""
     return action_servers_in(node.rcl, name)
 
 
 def service_servers_in(rcl: Any, name: str) -> frozenset[bytes]:
-    """The identities of those that offer a service, as far as a node of rclpy knows."""
+    """Return the identities of a service's servers that a node of rclpy knows."""
     return publishers_in(rcl, f"rr{name}Reply", no_mangle=True)
 
 
 def service_servers(node: Ros2Node, name: str) -> frozenset[bytes]:
-    """The identities of those that offer a service, where the middleware makes services of topics, as all on DDS do."""
+    """Return the identities of a service's servers, if the middleware builds services from topics, as all DDS ones
+    do."""
     return service_servers_in(node.rcl, name)
 
 
 _FOREVER = 2**62
-"""Nanoseconds from which on a deadline is none; the middlewares have several numbers for it."""
+"""Nanoseconds from which a deadline means none; the middlewares use different numbers."""
 
 
 def profile(qos: QoS) -> Any:
-    """Give rclpy's profile."""
+    """Convert to rclpy's profile."""
     reliability, durability = rclpy.qos.ReliabilityPolicy, rclpy.qos.DurabilityPolicy
     told: dict[str, Any] = {}
     if qos.deadline is not None:
@@ -175,12 +176,12 @@ def profile(qos: QoS) -> Any:
 
 
 def quality(given: Any) -> QoS:
-    """Read rclpy's profile of somebody's endpoint."""
+    """Convert rclpy's profile of another endpoint."""
     reliability, durability = rclpy.qos.ReliabilityPolicy, rclpy.qos.DurabilityPolicy
     nanoseconds = given.deadline.nanoseconds
     return QoS(
         reliability="best_effort" if given.reliability == reliability.BEST_EFFORT else "reliable",
         durability="transient_local" if given.durability == durability.TRANSIENT_LOCAL else "volatile",
-        depth=max(1, given.depth),  # not every middleware tells it
+        depth=max(1, given.depth),  # some middlewares do not report it
         deadline=nanoseconds * 1e-9 if 0 < nanoseconds < _FOREVER else None,
     )

@@ -1,6 +1,7 @@
-"""A node of rclpy: a context of our own, and beside the loop a thread for messages and one for all else.
+"""A node of rclpy with a context of its own; next to the loop there is a thread for messages and one for everything
+else.
 
-Domain, discovery range and the middleware below are ROS 2's own business: ``ROS_DOMAIN_ID``,
+Domain, discovery range and the middleware are configured as usual in ROS 2: ``ROS_DOMAIN_ID``,
 ``ROS_AUTOMATIC_DISCOVERY_RANGE``, ``RMW_IMPLEMENTATION``.
 """
 
@@ -14,7 +15,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-# Unless this is set before their import, rclpy's messages take whatever is assigned and publish it misread.
+# Unless this is set before their import, rclpy's messages accept any value and publish it misread.
 os.environ.setdefault("ROS_PYTHON_CHECK_FIELDS", "1")
 
 import rclpy  # type: ignore[import-not-found]
@@ -22,8 +23,8 @@ import rclpy.executors  # type: ignore[import-not-found]
 import rclpy.signals  # type: ignore[import-not-found]
 from rclpy.exceptions import ParameterException  # type: ignore[import-not-found]
 
+from jacaros.ros.drivers.ros2.liveness_check import Find, LivenessCheck
 from jacaros.ros.drivers.ros2.receiving import Receiver
-from jacaros.ros.drivers.ros2.second_look import Find, SecondLook
 from jacaros.ros.drivers.ros2.types import RosidlSchema, parameter
 from jacaros.ros.errors import ParameterRefused
 from jacaros.ros.handoff import in_thread, post
@@ -32,21 +33,21 @@ from jacaros.ros.node import Node, NodeSettings
 from jacaros.ros.ros_clock import RosClock
 
 SENDING = 0.5
-"""Seconds that closing waits for the last messages to be acknowledged; a dead receiver never does it."""
+"""Seconds that closing waits for acknowledgement of the last messages; a dead receiver never sends it."""
 STOPPING = 1.0
 """Seconds that closing waits for each of rclpy's threads."""
 AFTER_FAULT = 0.05
-"""Seconds of rest after a fault: one that comes back at once must not take a whole core."""
+"""Pause in seconds after a fault: a recurring one must not use a whole core."""
 LINGERING = 0.5
-"""Seconds that a closed thing stays in the graph when something that it sent may still be on its way."""
+"""Seconds that a closed entity stays in the graph while its last message may be on its way."""
 
 
 class Ros2Node(Node):
-    """The part of the ROS 2 backend that its publishers, services and actions rest on.
+    """The base of publishers, services and actions of the ROS 2 backend.
 
     Args:
-        settings: names, clock and reports.
-        domain_id: the DDS domain; ``ROS_DOMAIN_ID`` without it.
+        settings: names, clock and log.
+        domain_id: the DDS domain; default: ``ROS_DOMAIN_ID``.
     """
 
     name = "ros2"
@@ -55,19 +56,19 @@ class Ros2Node(Node):
         self.schema = RosidlSchema()
         super().__init__(settings, self.schema, Lifetime(settings.log, self._leave, threaded=True))
         self._domain_id = domain_id
-        # As on every node that goes by a simulator: tools ask for it.
+        # As for every node that uses simulated time: tools query it.
         self._simulated = {"use_sim_time": True} if isinstance(settings.clock, RosClock) else {}
         self._context: Any = rclpy.Context()
         self._executor: Any = None
         self._thread: threading.Thread | None = None
         self._stopped = threading.Event()
         self._ended = False
-        self._told = ""
+        self._reported = ""
         self.rcl: Any = None
         self.receiver: Receiver
-        self._looks: list[SecondLook] = []
-        self.farewells: dict[Callable[[float], None], None] = {}
-        """Wait, in any thread and for so many seconds at most, until what was sent has arrived."""
+        self._liveness_checks: list[LivenessCheck] = []
+        self.shutdown_steps: dict[Callable[[float], None], None] = {}
+        """Called in any thread with a number of seconds: wait at most that long until sent messages have arrived."""
 
     @property
     def ended(self) -> bool:
@@ -86,18 +87,18 @@ class Ros2Node(Node):
         if not self.ended:
             self.close_actions()
         await in_thread(self.loop, self._send_rest, "closing")
-        self.close_members()  # on the loop: what waits for an answer of theirs fails here
+        self.close_members()  # on the loop: callers that wait for their answers fail here
         await self.lifetime.leave()
         self.left()
 
-    def retire(self, destroy: Callable[[Any], Any], thing: Any) -> None:
-        """Have *destroy* called with *thing*, on the executor's thread.
+    def destroy_entity(self, destroy: Callable[[Any], Any], thing: Any) -> None:
+        """Call *destroy* with *thing* on the executor's thread.
 
-        Anywhere else the executor may be about to wait for the thing, or be in the middle of its lists.
+        Elsewhere the executor may be about to wait for it, or be iterating over its lists.
         """
 
         def now() -> None:
-            with suppress(Exception):  # it may be gone with its node
+            with suppress(Exception):  # it may already be destroyed with its node
                 destroy(thing)
 
         if self._ended or self._executor is None:
@@ -105,28 +106,28 @@ class Ros2Node(Node):
         else:
             self._executor.create_task(now)
 
-    def retire_later(self, destroy: Callable[[Any], Any], thing: Any) -> None:
-        """`retire`, but only when what was sent just before has arrived."""
+    def destroy_entity_later(self, destroy: Callable[[Any], Any], thing: Any) -> None:
+        """As `destroy_entity`, after the last messages have arrived."""
         if self._ended:
-            self.retire(destroy, thing)
+            self.destroy_entity(destroy, thing)
         else:
-            self.loop.call_later(LINGERING, self.retire, destroy, thing)
+            self.loop.call_later(LINGERING, self.destroy_entity, destroy, thing)
 
-    def look_again(
-        self, find: Find, suspects: frozenset[bytes], tell: Callable[[frozenset[bytes]], None]
+    def check_liveness(
+        self, find: Find, suspects: frozenset[bytes], report: Callable[[frozenset[bytes]], None]
     ) -> None:
-        """Find out who of the *suspects* is alive; see `SecondLook.ask`."""
+        """Find out which of the *suspects* are alive; see `LivenessCheck.ask`."""
         if self._ended:
             return
-        look = next((look for look in self._looks if look.fresh), None)
+        look = next((look for look in self._liveness_checks if look.fresh), None)
         if look is None:
-            look = SecondLook(self.loop, self._domain_id, self._looks.remove)
-            self._looks.append(look)
-        look.ask(find, suspects, tell)
+            look = LivenessCheck(self.loop, self._domain_id, self._liveness_checks.remove)
+            self._liveness_checks.append(look)
+        look.ask(find, suspects, report)
 
     def _join(self) -> None:
         leave_standard_output_alone()
-        # Signals are ours: rclpy's handlers would end the context before the exit hooks have published.
+        # We handle signals: rclpy's handlers would shut the context down before the exit hooks have published.
         no_signals = rclpy.signals.SignalHandlerOptions.NO
         rclpy.init(
             args=[], context=self._context, domain_id=self._domain_id, signal_handler_options=no_signals
@@ -139,10 +140,10 @@ class Ros2Node(Node):
                 use_global_arguments=False,
                 parameter_overrides=[parameter(name, value) for name, value in self._overrides()],
             )
-        except ParameterException as problem:  # a value for one of rclpy's own
+        except ParameterException as problem:  # a value for one of rclpy's own parameters
             self._context.try_shutdown()
             raise ParameterRefused(f"a parameter of {self.node_name}: {problem}") from None
-        for name in self.rcl.list_parameters([], 0).names:  # rclpy's own
+        for name in self.rcl.list_parameters([], 0).names:  # rclpy's own parameters
             self.given_parameters.take(name)
         self._executor = rclpy.executors.SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self.rcl)
@@ -152,41 +153,42 @@ class Ros2Node(Node):
         self._thread.start()
 
     def _overrides(self) -> Iterator[tuple[str, Any]]:
-        """What rclpy's own parameters are to be; ours are declared with their values."""
+        """Yield values for rclpy's own parameters; ours get their values when they are declared."""
         yield from (self._simulated | dict(self.given_parameters.items())).items()
 
     def _take_clock(self) -> None:
-        """Take the messages of ``/clock`` that rclpy follows (`use_sim_time`); simulators may send a thousand a second."""
+        """Read the messages of ``/clock`` that rclpy uses (`use_sim_time`); simulators may send a thousand a second."""
         for subscription in self.rcl.subscriptions:
             self.receiver.add(subscription, subscription.callback)
 
     def _spin(self) -> None:
         while self._context.ok() and not self._stopped.is_set():
             try:
-                # Not `spin_until_future_complete`: on Jazzy it hangs something on the future with each turn.
+                # Not `spin_until_future_complete`: on Jazzy it adds a callback to the future in each turn.
                 self._executor.spin_once()
             except rclpy.executors.ExternalShutdownException:
                 return
-            except Exception as problem:  # a fault in one callback must not make the node deaf
+            except Exception as problem:  # an exception in one callback must not block the node
                 if self._context.ok():
                     self._report(f"rclpy: {type(problem).__name__}: {problem}")
                     time.sleep(AFTER_FAULT)
 
     def _report(self, text: str) -> None:
-        """Log a fault, in any thread; a fault that comes back again and again is told once."""
-        if text != self._told:
-            self._told = text
+        """Log a fault, in any thread; consecutive equal faults are logged once."""
+        if text != self._reported:
+            self._reported = text
             post(self.loop, self.log, text)
 
     def _leave(self) -> None:
-        """Wait until the last messages have arrived, then end rclpy before the interpreter ends; on any thread."""
+        """Wait until the last messages have arrived, then shut rclpy down before the interpreter ends; on any
+        thread."""
         if self.rcl is None:
             return
         self._send_rest()
-        for look in list(self._looks):
+        for look in list(self._liveness_checks):
             look.leave()
         self.receiver.stop(STOPPING)
-        # The executor's thread stops itself: shutting an executor down under a spinning thread is a race.
+        # The executor's thread stops itself: shutting down an executor while its thread spins is a race.
         self._executor.create_task(self._stopped.set)
         if self._thread is not None:
             self._thread.join(STOPPING)
@@ -200,23 +202,23 @@ class Ros2Node(Node):
         if self.rcl is None:
             return
         deadline = time.monotonic() + SENDING
-        for farewell in list(self.farewells):
-            with suppress(Exception):  # whatever is wrong with one, the others are to be heard
-                farewell(max(0.0, deadline - time.monotonic()))
-        time.sleep(0.02)  # best-effort messages are acknowledged by nobody
+        for shutdown_step in list(self.shutdown_steps):
+            with suppress(Exception):  # a failure of one must not affect the others
+                shutdown_step(max(0.0, deadline - time.monotonic()))
+        time.sleep(0.02)  # best-effort messages are never acknowledged
 
 
 PROFILES = "FASTRTPS_DEFAULT_PROFILES_FILE"
-"""Names the file with Fast DDS 2's settings; version 3 calls it otherwise and reports on standard error anyway."""
+"""Names the settings file of Fast DDS 2; version 3 uses another variable and logs to standard error anyway."""
 
 LOGGERS = "RCUTILS_LOGGING_USE_STDOUT"
 """Whether rclpy's loggers write to standard output."""
 
 
 def leave_standard_output_alone() -> None:
-    """Have Fast DDS 2 and rclpy's loggers report on standard error, before they start.
+    """Make Fast DDS 2 and rclpy's loggers use standard error, before they start.
 
-    A file with Fast DDS's settings of the user's own is left alone.
+    A Fast DDS settings file of the user is kept.
     """
     os.environ[LOGGERS] = "0"
     middleware = os.environ.get("RMW_IMPLEMENTATION", "rmw_fastrtps_cpp")
@@ -225,7 +227,7 @@ def leave_standard_output_alone() -> None:
 
 
 def _is_fast_dds_2() -> bool:
-    # The package was renamed to fastdds with version 3.
+    # The package was renamed to fastdds in version 3.
     if find_spec("fastrtps") is not None:  # pip wheels
         return True
     try:

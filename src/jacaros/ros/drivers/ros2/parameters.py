@@ -1,4 +1,5 @@
-"""Parameters of ROS 2's nodes: our own through rclpy, others' through their services, news on ``/parameter_events``."""
+"""Parameters of ROS 2's nodes: our own through rclpy, others' through their services, changes on
+``/parameter_events``."""
 
 import math
 import threading
@@ -27,7 +28,7 @@ from jacaros.ros.drivers.ros2.types import parameter, plain_value
 from jacaros.ros.errors import CapabilityMissing, ParameterRefused, ParameterUnknown, ServerGone
 from jacaros.ros.handoff import LoopEnded, ask
 from jacaros.ros.parameter import Declaration, ParameterValue
-from jacaros.ros.parameter_news import ParameterNews
+from jacaros.ros.parameter_events import ParameterEvents
 from jacaros.ros.parameter_services import ParameterServices
 from jacaros.ros.parameter_store import checked_value, fault_of
 
@@ -43,13 +44,13 @@ def read_value(told: Any) -> ParameterValue | None:
 class OwnParameters:
     """The parameters of our own node.
 
-    rclpy keeps them and serves them to others on its thread; what is to be judged is judged on the loop.
+    rclpy stores them and serves other nodes on its thread; decisions about new values are made on the loop.
     """
 
-    def __init__(self, node: Ros2Node, news: ParameterNews) -> None:
+    def __init__(self, node: Ros2Node, events: ParameterEvents) -> None:
         self.node = node.node_name
         self._node = node
-        self._news = news
+        self._parameter_events = events
         self._judges: dict[str, Callable[[ParameterValue], str | None]] = {}
         self._loops_thread = threading.get_ident()
         node.rcl.add_on_set_parameters_callback(self._judge)
@@ -59,7 +60,7 @@ class OwnParameters:
         value = default = parameter(name, declaration.default)
         given = self._node.given_parameters.take(name)
         if given is not None:
-            # Of rclpy's own complaints none says what to write.
+            # rclpy's own error messages do not say what to write.
             for candidate in (checked_value(declaration.default), given):
                 if (fault := fault_of(candidate, declaration)) is not None:
                     raise ParameterRefused(f"parameter {name} of {self.node} is {fault}")
@@ -71,7 +72,7 @@ class OwnParameters:
                 name, value.value, _descriptor(default, declaration), ignore_override=True
             )
         except ParameterAlreadyDeclaredException:
-            raise ParameterRefused(f"parameter {name} of {self.node} is declared already") from None
+            raise ParameterRefused(f"parameter {name} of {self.node} is already declared") from None
         except (
             InvalidParameterException,
             InvalidParameterValueException,
@@ -85,7 +86,7 @@ class OwnParameters:
         return self._value(made)
 
     def _retyped(self, empty: Any, read_only: bool) -> Any:
-        """Give a declared empty list its type: rclpy takes every empty list for one of octets."""
+        """Set the type of a declared empty list: rclpy takes every empty list for octets."""
         rcl = self._node.rcl
         told = rcl.describe_parameter(empty.name)
         told.type, told.read_only = empty.type_.value, False
@@ -94,11 +95,11 @@ class OwnParameters:
         return rcl.get_parameter(empty.name)
 
     def withdraw(self, name: str) -> None:
-        """Take a declaration back."""
+        """Undeclare a parameter."""
         rcl = self._node.rcl
         if not rcl.has_parameter(name):
             raise ParameterUnknown(self._unknown(name))
-        rcl.describe_parameter(name).read_only = False  # that is meant for others, rclpy means everybody
+        rcl.describe_parameter(name).read_only = False  # rclpy applies it to our own node, too
         rcl.undeclare_parameter(name)
         self._judges.pop(name, None)
 
@@ -110,7 +111,7 @@ class OwnParameters:
         return sorted(self._node.rcl.list_parameters([], 0).names)
 
     async def get(self, name: str, timeout: float | None = None) -> ParameterValue:
-        """Give a parameter's value."""
+        """Return a parameter's value."""
         try:
             return self._value(self._node.rcl.get_parameter(name))
         except ParameterNotDeclaredException:
@@ -127,8 +128,8 @@ class OwnParameters:
             raise ParameterRefused(f"parameter {name} of {self.node} cannot be {value!r}: {result.reason}")
 
     def on_change(self, callback: Callable[[Mapping[str, ParameterValue]], None]) -> Callable[[], None]:
-        """Have *callback* called with what changed."""
-        return self._news.listen(self.node, callback)
+        """Call *callback* with changed parameters."""
+        return self._parameter_events.listen(self.node, callback)
 
     def _value(self, told: Any) -> ParameterValue:
         value: ParameterValue = (
@@ -140,7 +141,7 @@ class OwnParameters:
         return f"node {self.node} has no parameter {name}; it has {', '.join(self._names())}"
 
     def _judge(self, changes: list[Any]) -> Any:
-        """Called by rclpy, on whatever thread the change comes from."""
+        """Decide about changes; called by rclpy on the thread that makes them."""
         for change in changes:
             accept = self._judges.get(change.name)
             if accept is not None and (reason := self._judged(accept, self._value(change))) is not None:
@@ -148,13 +149,13 @@ class OwnParameters:
         return SetParametersResult(successful=True)
 
     def _judged(self, accept: Callable[[ParameterValue], str | None], value: ParameterValue) -> str | None:
-        def judge(tell: Callable[[str | None, Exception | None], None]) -> None:
+        def judge(report: Callable[[str | None, Exception | None], None]) -> None:
             try:
-                tell(accept(value), None)
-            except Exception as problem:  # the node lives on, and who asked learns of it
+                report(accept(value), None)
+            except Exception as problem:  # the node keeps running, and the caller receives the reason
                 reason = f"{type(problem).__name__}: {problem}"
-                self._node.log(f"judging a parameter of {self.node} failed: {reason}")
-                tell(reason, None)
+                self._node.log(f"the check of a parameter of {self.node} failed: {reason}")
+                report(reason, None)
 
         if threading.get_ident() == self._loops_thread:
             told: list[str | None] = []
@@ -167,20 +168,20 @@ class OwnParameters:
 
 
 class OtherParameters:
-    """The parameters of another node, through the services that every node has."""
+    """The parameters of another node, through the services of every node."""
 
-    def __init__(self, node: Ros2Node, name: str, news: ParameterNews) -> None:
+    def __init__(self, node: Ros2Node, name: str, events: ParameterEvents) -> None:
         self.node = name
         self._node = node
-        self._news = news
+        self._parameter_events = events
         self._services = ParameterServices(name, self._client)
 
     def declare(self, name: str, declaration: Declaration) -> ParameterValue:
-        """Only the node itself can do that."""
+        """Refuse: only the node itself can do that."""
         raise self._not_ours()
 
     def withdraw(self, name: str) -> None:
-        """Only the node itself can do that."""
+        """Refuse: only the node itself can do that."""
         raise self._not_ours()
 
     async def names(self, timeout: float | None = None) -> list[str]:
@@ -189,7 +190,7 @@ class OtherParameters:
         return sorted(answer.result.names)
 
     async def get(self, name: str, timeout: float | None = None) -> ParameterValue:
-        """Give a parameter's value."""
+        """Return a parameter's value."""
         answer = await self._read("GetParameters", {"names": [name]}, timeout)
         value = plain_value(parameter_value_to_python(answer.values[0])) if len(answer.values) == 1 else None
         if value is None:
@@ -206,7 +207,7 @@ class OtherParameters:
         wanted = parameter(name, value, kind).to_parameter_msg()
         answer = await self._services.call("SetParameters", {"parameters": [wanted]}, timeout)
         result = (
-            answer.results[0] if answer.results else SetParametersResult(reason="the node did not say why")
+            answer.results[0] if answer.results else SetParametersResult(reason="the node gave no reason")
         )
         if result.successful:
             return
@@ -215,21 +216,21 @@ class OtherParameters:
         raise ParameterRefused(f"parameter {name} of {self.node} cannot be {value!r}: {result.reason}")
 
     def on_change(self, callback: Callable[[Mapping[str, ParameterValue]], None]) -> Callable[[], None]:
-        """Have *callback* called with what changed."""
-        return self._news.listen(self.node, callback)
+        """Call *callback* with changed parameters."""
+        return self._parameter_events.listen(self.node, callback)
 
     def _not_ours(self) -> CapabilityMissing:
         return CapabilityMissing(
-            f"only {self.node} itself can declare its parameters; {self._node.node_name} can get and set them"
+            f"only {self.node} itself can declare its parameters; {self._node.node_name} can only get and set them"
         )
 
     async def _type(self, name: str, timeout: float | None) -> int:
-        """The number of a parameter's type; 0 for one that is not there."""
+        """Return the number of a parameter's type; 0 if it does not exist."""
         answer = await self._read("GetParameterTypes", {"names": [name]}, timeout)
         return int(answer.types[0]) if len(answer.types) == 1 else ParameterType.PARAMETER_NOT_SET
 
     async def _read(self, service: str, request: Mapping[str, Any], timeout: float | None) -> Any:
-        """Ask, and ask again where the node went away and is there: it was started anew, and had not been seen yet."""
+        """Call a service, and call again if the node went away and is back: it was restarted without being noticed."""
         clock = self._node.clock
         deadline = None if timeout is None else clock.elapsed + timeout
         while True:

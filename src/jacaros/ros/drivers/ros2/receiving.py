@@ -1,11 +1,11 @@
-"""Taking messages: a thread with a wait set of our own, beside rclpy's executor.
+"""Receiving messages: a thread with a wait set of our own, beside rclpy's executor.
 
-For each message rclpy's executor goes three times, in Python, through all that the node has: publishers' and subscriptions'
-events, services, clients.  Together with the change of threads that made an agent's reaction half as slow again as a bare
-callback.  Here a wait costs a few calls for each topic, and nothing else is looked at.
+For each message rclpy's executor iterates three times, in Python, over all entities of the node: events of publishers
+and subscriptions, services, clients. Together with the switch between threads, that made an agent's reaction 50 %
+slower than a plain callback. Here a wait costs a few calls per topic, and nothing else is checked.
 
-All that we use of rclpy's inner side is in this file.  Any release may change it: when something is another one, or there
-no more, rclpy's executor does what is done here.
+All uses of rclpy's internals are in this file. Any release may change them: if one differs or is missing, rclpy's
+executor takes over.
 """
 
 import threading
@@ -19,7 +19,7 @@ from rclpy.guard_condition import GuardCondition  # type: ignore[import-not-foun
 
 
 def _inner(name: str) -> Any:
-    """Something of rclpy's extension module; None when it is there no more."""
+    """Return an object of rclpy's extension module; None if it does not exist."""
     try:
         module = import_module("rclpy.impl.implementation_singleton")
         return getattr(module.rclpy_implementation, name, None)
@@ -28,24 +28,24 @@ def _inner(name: str) -> Any:
 
 
 RCLError: type[Exception] = _inner("RCLError") or RuntimeError
-"""What rclpy raises when rcl refuses something; a `RuntimeError` in all releases."""
+"""Raised by rclpy when rcl refuses a call; a `RuntimeError` in all releases."""
 InvalidHandle: type[Exception] = _inner("InvalidHandle") or RuntimeError
-"""Raised by the handle of something that has been destroyed."""
+"""Raised by the handle of a destroyed entity."""
 
 
 def wait_set(subscriptions: int, guards: int, events: int, context: Any) -> Any:
     """Make a wait set of rcl.
 
     Args:
-        subscriptions, guards, events: how many of each will be waited for.
+        subscriptions, guards, events: number of each in the set.
         context: the handle of rclpy's context.
 
     Raises:
-        NotImplementedError: rclpy has none.
+        NotImplementedError: rclpy has no wait sets.
     """
     made = _inner("WaitSet")
     if made is None:
-        raise NotImplementedError("rclpy shows no wait sets")
+        raise NotImplementedError("rclpy has no wait sets")
     return made(subscriptions, guards, 0, 0, 0, events, context)
 
 
@@ -53,37 +53,38 @@ Take = Callable[[Any], None]
 
 
 class NotForExecutor(CallbackGroup):  # type: ignore[misc]
-    """A group of subscriptions that rclpy's executor leaves alone, unless they are given back to it."""
+    """A group of subscriptions that rclpy's executor ignores, until they are returned to it."""
 
     given_back = False
 
     def add_entity(self, entity: Any) -> None:
-        """Nothing is to be noted; rclpy's groups never forget what was in them."""
+        """Do nothing; rclpy's groups never forget their entities."""
 
     def can_execute(self, entity: Any) -> bool:
-        """Whether the executor may wait for *entity*."""
+        """Return whether the executor may wait for *entity*."""
         return self.given_back
 
     def beginning_execution(self, entity: Any) -> bool:
-        """Whether the executor may call the callback of *entity*; it has one thread and asks for one at a time."""
+        """Return whether the executor may call the callback of *entity*; it has one thread and asks for one at a
+        time."""
         return self.given_back
 
     def ending_execution(self, entity: Any) -> None:
-        """Nothing is to be noted."""
+        """Do nothing."""
 
 
 def take_message(handle: Any, kind: Any) -> Any:
-    """Take a message of class *kind* with what is told about it; None when somebody else has taken it."""
+    """Take a message of class *kind* with its metadata; None if another receiver has taken it."""
     return handle.take_message(kind, False)
 
 
 class Receiver:
-    """Takes the messages of subscriptions, which are made with the callback group `group`.
+    """Receives the messages of subscriptions that use the callback group `group`.
 
     Args:
         context: rclpy's context.
-        report: takes one line about a fault; called in the receiver's thread.
-        executor: rclpy's, for all else; it gets the subscriptions too when the receiver cannot go on.
+        report: called with one line about a fault; in the receiver's thread.
+        executor: rclpy's, for everything else; it also gets the subscriptions if the receiver fails.
     """
 
     def __init__(self, context: Any, report: Callable[[str], None], executor: Any) -> None:
@@ -98,17 +99,17 @@ class Receiver:
         self._changed = False
         self._stopped = False
         self._over = False
-        self._told: set[str] = set()
+        self._reported: set[str] = set()
         self._thread = threading.Thread(target=self._run, name="ros2 receiver", daemon=True)
         self._thread.start()
 
     def add(self, subscription: Any, take: Take) -> None:
-        """Have *take* called with each message of *subscription*, in the receiver's thread; it must not block.
+        """Call *take* with each message of *subscription*, in the receiver's thread; it must not block.
 
-        Its other news (deadline, quality of service) is told in this thread too: an executor that waits for it wakes up
-        with each message, on Fast DDS, and has the interpreter just when it is needed here.
+        Its events (deadline, quality of service) are handled in this thread, too: with Fast DDS, an executor that
+        waits for them wakes up with each message, and then holds the interpreter when it is needed here.
         """
-        # A subscription that rclpy has made itself is of another group so far.
+        # A subscription made by rclpy itself has another group so far.
         for entity in (subscription, *subscription.event_handlers):
             entity.callback_group = self.group
         with self._lock:
@@ -116,7 +117,7 @@ class Receiver:
             self._wake()
 
     def remove(self, subscription: Any, then: Callable[[], None]) -> None:
-        """Let go of *subscription*, and call *then* when it is not waited for any more."""
+        """Release *subscription*, and call *then* when it is no longer waited for."""
         with self._lock:
             self._takers.pop(subscription, None)
             waited_for = not self._over
@@ -127,7 +128,7 @@ class Receiver:
             then()
 
     def stop(self, seconds: float) -> None:
-        """Take nothing more; wait at most *seconds* for the thread."""
+        """Stop receiving; wait at most *seconds* for the thread."""
         with self._lock:
             self._stopped = True
             self._wake()
@@ -142,12 +143,10 @@ class Receiver:
         try:
             while not self._stopped:
                 self._receive_until_changed()
-        except Exception as problem:  # rclpy's inner side, which the wait set is, may be another one day
+        except Exception as problem:  # rclpy's internals, such as the wait set, may change
             if not self._stopped and self._context.ok():
                 what = f"{type(problem).__name__}: {problem}"
-                self._report(
-                    f"waiting for messages the fast way failed, rclpy's executor does it now: {what}"
-                )
+                self._report(f"the fast receiver failed; rclpy's executor takes over: {what}")
                 self.group.given_back = True
                 self._wake_executor()
         with self._lock:
@@ -167,11 +166,11 @@ class Receiver:
             takers = list(self._takers.items())
         self._let_go()
         with ExitStack() as held:
-            # What is held here is destroyed by others only after it was let go.
+            # Entities held here are destroyed by other threads only after their release.
             handles, events, sources = [], [], {}
             for subscription, take in takers:
                 handle = subscription.handle
-                with suppress(InvalidHandle):  # gone with its node
+                with suppress(InvalidHandle):  # destroyed with its node
                     held.enter_context(handle)
                     handles.append(handle)
                     sources[handle.pointer] = (handle, subscription.msg_type, take)
@@ -206,7 +205,7 @@ class Receiver:
                 if (found := self._taken(handle, kind)) is not None
             ]
             happened = [(event, event.take_data()) for event in events if event.is_ready(waiting)]
-            # First all that is left to do here: once the loop is awake it shares the interpreter with this thread.
+            # Do everything here first: once the loop is awake, it shares the interpreter with this thread.
             arm()
             for take, message in arrived:
                 take(message)
@@ -217,9 +216,9 @@ class Receiver:
     def _taken(self, handle: Any, kind: Any) -> Any:
         try:
             return take_message(handle, kind)
-        except Exception as problem:  # one bad message must not make the node deaf
+        except Exception as problem:  # one bad message must not block the node
             text = f"a message of type {kind.__name__} cannot be read: {type(problem).__name__}: {problem}"
-            if text not in self._told:
-                self._told.add(text)
+            if text not in self._reported:
+                self._reported.add(text)
                 self._report(text)
             return None

@@ -14,18 +14,18 @@ from jacaros.ros.serving import Responder
 from jacaros.ros.waiting import within
 
 SETTLING = 0.5
-"""Seconds between finding a server and the first request: what it answers before it knows the client is lost."""
+"""Seconds between discovering a server and the first request: answers before it has discovered the client are lost."""
 
 COMPARING = 1.0
-"""Seconds after which it is looked again who offers a service that is called."""
+"""Seconds between two checks of who offers a called service."""
 
 
 DOUBTED, DOUBTED_AGAIN = 2.0, 30.0
-"""Seconds without an answer after which it is looked with fresh eyes whether the server lives, and then between looks."""
+"""Seconds without an answer after which the server's liveness is checked, and then between checks."""
 
 
 class _AskedServers:
-    """Those who offered a service when it was called, and whether one of them is still there."""
+    """The servers of a service when it was called, and whether one of them is still there."""
 
     def __init__(self, node: Ros2Node, name: str) -> None:
         self._node = node
@@ -36,7 +36,7 @@ class _AskedServers:
 
     @property
     def known(self) -> bool:
-        """Whether it is known who they are."""
+        """Whether the servers are known."""
         return bool(self._servers)
 
     @property
@@ -45,15 +45,15 @@ class _AskedServers:
         return not self._servers.isdisjoint(service_servers(self._node, self._name) - self._dead)
 
     def close(self) -> None:
-        """The call is over."""
+        """End the call."""
         self._timer.cancel()
 
     def _doubt(self) -> None:
-        def tell(missing: frozenset[bytes]) -> None:
+        def report(missing: frozenset[bytes]) -> None:
             self._dead = missing
 
         if self._servers:
-            self._node.look_again(lambda rcl: service_servers_in(rcl, self._name), self._servers, tell)
+            self._node.check_liveness(lambda rcl: service_servers_in(rcl, self._name), self._servers, report)
         self._timer = self._node.loop.call_later(DOUBTED_AGAIN, self._doubt)
 
 
@@ -65,11 +65,11 @@ class _Call:
 
 
 class LateService:
-    """A service whose response may come at any time.
+    """A service whose response may be sent at any time.
 
-    rclpy wants the response when its callback returns.  The callback returns the request instead, and
-    *sending* it passes it to the loop; the loop sends the real response when there is one.  So a handler may
-    take its time without holding up the executor, and any number of calls go on at once.
+    rclpy expects the response when its callback returns. Here the callback returns the request instead, and *sending*
+    it passes it to the loop; the loop sends the real response when it is ready. So a handler does not block the
+    executor, and any number of calls run concurrently.
 
     Args:
         node: the backend.
@@ -93,11 +93,11 @@ class LateService:
         self._closed = False
 
     def close(self, late: bool = False) -> None:
-        """Stop to offer the service; *late*: after the responses given just before have arrived."""
+        """Stop offering the service; *late*: after the last responses have arrived."""
         if not self._closed:
             self._closed = True
-            retire = self._node.retire_later if late else self._node.retire
-            retire(self._node.rcl.destroy_service, self._service)
+            destroy_entity = self._node.destroy_entity_later if late else self._node.destroy_entity
+            destroy_entity(self._node.rcl.destroy_service, self._service)
 
     def _hand_over(self, call: _Call, header: Any) -> None:
         def respond(response: Any) -> None:
@@ -105,7 +105,7 @@ class LateService:
                 return
             try:
                 self._send(response, header)
-            except Exception as problem:  # the client has gone: that is no fault of ours
+            except Exception as problem:  # the client has gone, which is not our fault
                 self._node.log(f"a response could not be sent: {problem}")
 
         post(self._node.loop, self._take, call.request, respond)
@@ -121,14 +121,14 @@ class Ros2Service:
         self._service = LateService(node, node.schema.message_class(type_name), name, self._answer)
 
     def close(self) -> None:
-        """Stop to offer the service."""
+        """Stop offering the service."""
         self._responder.close()
         self._service.close()
         self._node.forget(self)
 
     def _answer(self, request: Any, respond: Callable[[Any], None]) -> None:
         def done(response: Any, problem: CallFailed | None) -> None:
-            # ROS 2 has no way to tell a client of a failure: its call times out.
+            # ROS 2 cannot report a failure to a client: its call times out.
             if problem is None:
                 respond(response)
 
@@ -150,7 +150,7 @@ class Ros2Client(AttemptingClient):
 
     @property
     def ready(self) -> bool:
-        """Whether somebody offers the service."""
+        """Whether a node offers the service."""
         return not self._closed and bool(self._client.service_is_ready())
 
     async def _attempt(self, message: Any, rest: float | None) -> Any:
@@ -158,10 +158,10 @@ class Ros2Client(AttemptingClient):
         deadline = None if rest is None else clock.elapsed + rest
         if not self.ready:
             self._acquainted = False
-            # One of another type is never ready for us.
+            # A server of another type is never ready for us.
             if (mismatch := service_mismatch(node, self.name, self._type_name)) is not None:
                 raise CallFailed(mismatch)
-            raise ServiceUnavailable(f"nobody offers service {self.name}")
+            raise ServiceUnavailable(f"no node offers service {self.name}")
         if self._is_new():
             await clock.sleep(SETTLING if rest is None else min(SETTLING, rest / 4))
             if self._closed:
@@ -193,7 +193,8 @@ class Ros2Client(AttemptingClient):
             self._client.remove_pending_request(call)
 
     def _is_new(self) -> bool:
-        """Whether the server is not known yet; after a crash the next one takes over before the first is missed."""
+        """Return whether the server is new; after a crash, the next one takes over before the first counts as
+        missing."""
         now = time.monotonic()
         if self._acquainted and now < self._compared + COMPARING:
             return False
@@ -204,9 +205,9 @@ class Ros2Client(AttemptingClient):
         return fresh
 
     def close(self) -> None:
-        """Give the client up."""
+        """Close the client."""
         self._pending.close()
         if not self._closed:
             self._closed = True
-            self._node.retire(self._node.rcl.destroy_client, self._client)
+            self._node.destroy_entity(self._node.rcl.destroy_client, self._client)
             self._node.forget(self)

@@ -1,4 +1,4 @@
-"""Topics of ROS 2: publishers and subscriptions, and what a subscription learns besides messages."""
+"""Topics of ROS 2: publishers and subscriptions, and the events of subscriptions."""
 
 import time
 from collections.abc import Callable, Iterator
@@ -27,25 +27,25 @@ from jacaros.ros.qos import QoS, incompatibility
 from jacaros.ros.topics import TopicPublisher, TopicSubscription
 
 LOOKING = 2.0
-"""Seconds between two looks at who publishes on a topic that is silent: ROS 2 tells of no other type by itself."""
+"""Seconds between two checks of the publishers of a silent topic: ROS 2 does not report other types."""
 
 LIVELY = 2
-"""So many times messages must have come between two looks before silence is a reason to doubt that the publisher lives."""
+"""Number of messages between two checks from which a later silence is a reason to check the publisher's liveness."""
 TRUSTED = 60.0
-"""Seconds for which it is not doubted again, when it was found alive."""
+"""Seconds for which a live publisher is not checked again."""
 
 
 @contextmanager
 def _at_topic(node: Ros2Node, topic: str, type_name: str) -> Iterator[None]:
-    """Say in our words what rclpy says in its own when it cannot join a topic."""
+    """Translate rclpy's errors about topics that cannot be joined."""
     try:
         yield
     except RCLError as problem:
         others = {kind for kinds in own_types(node, topic) for kind in kinds} - {type_name}
         because = (
-            f"this node uses it with type {', '.join(sorted(others))} already" if others else str(problem)
+            f"this node already uses it with type {', '.join(sorted(others))}" if others else str(problem)
         )
-        raise RosError(f"topic {topic} cannot be joined with type {type_name}: {because}") from None
+        raise RosError(f"topic {topic} cannot be used with type {type_name}: {because}") from None
 
 
 class Ros2Publisher(TopicPublisher[Ros2Node]):
@@ -61,26 +61,26 @@ class Ros2Publisher(TopicPublisher[Ros2Node]):
             self._publisher: Any = node.rcl.create_publisher(
                 self._class, topic, profile(qos), event_callbacks=events
             )
-        node.farewells[self._farewell] = None
+        node.shutdown_steps[self._before_shutdown] = None
 
     @property
     def subscription_count(self) -> int:
-        """How many subscriptions are connected now."""
+        """Number of connected subscriptions."""
         return 0 if self._closed else int(self._publisher.get_subscription_count())
 
     def _send(self, message: Any) -> None:
         self._publisher.publish(message)
 
-    def _farewell(self, seconds: float) -> None:
-        """Wait until the reliable subscriptions have what was published, but not longer than *seconds*."""
+    def _before_shutdown(self, seconds: float) -> None:
+        """Wait at most *seconds* until the reliable subscriptions have received all messages."""
         self._publisher.wait_for_all_acked(rclpy.duration.Duration(seconds=seconds))
 
     def _leave(self) -> None:
-        del self._node.farewells[self._farewell]
-        self._node.retire(self._node.rcl.destroy_publisher, self._publisher)
+        del self._node.shutdown_steps[self._before_shutdown]
+        self._node.destroy_entity(self._node.rcl.destroy_publisher, self._publisher)
 
     def _compare_qos(self) -> None:
-        """Tell the log which subscriptions ask for more than is offered."""
+        """Log which subscriptions request more than is offered."""
         if self._closed or self._node.ended:
             return
         for info in self._node.rcl.get_subscriptions_info_by_topic(self.topic):
@@ -88,8 +88,8 @@ class Ros2Publisher(TopicPublisher[Ros2Node]):
             reason = None if listener.qos is None else incompatibility(self.qos, listener.qos)
             if reason is not None:
                 who = listener.node or "an unknown node"
-                text = f"topic {self.topic}: {who} does not get what we publish, because {reason}"
-                self.tell(text, bytes(info.endpoint_gid))
+                text = f"topic {self.topic}: incompatible QoS: {who} does not receive what is published here: {reason}"
+                self.report(text, bytes(info.endpoint_gid))
 
 
 class Ros2Subscription(TopicSubscription[Ros2Node]):
@@ -118,7 +118,7 @@ class Ros2Subscription(TopicSubscription[Ros2Node]):
 
     @property
     def publisher_count(self) -> int:
-        """How many publishers of the topic are known now."""
+        """Number of known publishers of the topic."""
         if self._closed:
             return 0
         if self._missing:
@@ -126,7 +126,7 @@ class Ros2Subscription(TopicSubscription[Ros2Node]):
         return int(self._node.rcl.count_publishers(self.topic))
 
     def deliver(self, message: Any) -> None:
-        """Hand a message over, on the loop."""
+        """Deliver a message, on the loop."""
         self._silent = False
         self._missing = frozenset()
         self._deadline_missed = False
@@ -139,7 +139,7 @@ class Ros2Subscription(TopicSubscription[Ros2Node]):
         self._node.receiver.remove(self._subscription, self._destroy)
 
     def _destroy(self) -> None:
-        self._node.retire(self._node.rcl.destroy_subscription, self._subscription)
+        self._node.destroy_entity(self._node.rcl.destroy_subscription, self._subscription)
 
     def _events(self) -> Any:
         def on_loop(action: Callable[[], None]) -> Callable[[Any], None]:
@@ -155,12 +155,12 @@ class Ros2Subscription(TopicSubscription[Ros2Node]):
         )
 
     def _miss_deadline(self) -> None:
-        # The middleware tells it again with every deadline that passes.
+        # The middleware reports it again with every deadline that passes.
         first, self._deadline_missed = not self._deadline_missed, True
-        self.tell_deadline(first)
+        self.report_deadline(first)
 
     def _compare_qos(self) -> None:
-        """Find out which publisher does not fit; the event itself names one of the reasons only."""
+        """Find the incompatible publisher; the event itself names only one of the reasons."""
         if self._closed:
             return
         found = False
@@ -169,17 +169,19 @@ class Ros2Subscription(TopicSubscription[Ros2Node]):
             reason = None if publisher.qos is None else incompatibility(publisher.qos, self.qos)
             if reason is not None:
                 found = True
-                self.tell_qos(reason, f" to {publisher.node or 'an unknown node'}", bytes(info.endpoint_gid))
+                self.report_qos(
+                    reason, f" to {publisher.node or 'an unknown node'}", bytes(info.endpoint_gid)
+                )
         if not found:
-            self.tell_qos("what it offers and what is asked for do not fit", " to a publisher")
+            self.report_qos("offer and request do not match", " to a publisher")
 
     def _look(self) -> None:
-        """See whether a silent topic carries another type: then nothing ever comes, and nobody says why."""
+        """Check whether a silent topic carries another type: then no message ever arrives, without an error."""
         if self._closed or self._node.ended:
             return
         if self._silent and self.publisher_count:
             for other, who in foreign_types(self._node, self.topic, self.type_name).items():
-                self.tell_other_type(who, other)
+                self.report_type_mismatch(who, other)
         if self._silent and self._lively >= LIVELY and time.monotonic() > self._trusted_until:
             self._doubt()
         self._lively = 0 if self._silent else self._lively + 1
@@ -187,14 +189,14 @@ class Ros2Subscription(TopicSubscription[Ros2Node]):
         self._timer = self._node.loop.call_later(LOOKING, self._look)
 
     def _doubt(self) -> None:
-        """Messages came all the time and come no more: find out whether their publishers are still alive."""
+        """Check the liveness of publishers whose regular messages have stopped."""
         suspects = publishers_in(self._node.rcl, self.topic)
 
-        def tell(missing: frozenset[bytes]) -> None:
+        def report(missing: frozenset[bytes]) -> None:
             if self._silent:
                 self._missing = missing
             if not missing:
                 self._trusted_until = time.monotonic() + TRUSTED
 
         if suspects:
-            self._node.look_again(lambda rcl: publishers_in(rcl, self.topic), suspects, tell)
+            self._node.check_liveness(lambda rcl: publishers_in(rcl, self.topic), suspects, report)

@@ -1,4 +1,4 @@
-"""The message and service classes of ROS 2's Python packages as a `Schema`, and values of parameters in rclpy's terms."""
+"""The message and service classes of ROS 2's Python packages as a `Schema`, and parameter values in rclpy's form."""
 
 from collections.abc import Mapping
 from functools import cache
@@ -15,7 +15,7 @@ from jacaros.ros.fields import FieldType, from_ros2
 from jacaros.ros.interfaces.ros2_package import PACKAGE, origin
 
 _PARTS = {"srv": ("Request", "Response"), "action": ("Goal", "Result", "Feedback")}
-"""The messages that services and actions are made of."""
+"""The messages of services and actions."""
 
 
 class RosidlSchema:
@@ -26,10 +26,10 @@ class RosidlSchema:
         self._fields: dict[str, Mapping[str, FieldType]] = {}
 
     def look_in(self, folder: Path) -> None:
-        """Nothing: ROS 2 wants packages that are installed."""
+        """Do nothing: ROS 2 needs installed packages."""
 
     def fields(self, type_name: str) -> Mapping[str, FieldType]:
-        """Fields of a type in full form; raises `UnknownInterface`."""
+        """Return the fields of a type in full form. Raises `UnknownInterface`."""
         fields = self._fields.get(type_name)
         if fields is None:
             told = self.message_class(type_name).get_fields_and_field_types()
@@ -37,40 +37,40 @@ class RosidlSchema:
         return fields
 
     def new(self, type_name: str) -> Any:
-        """Make a message with the definition's defaults; raises `UnknownInterface`."""
+        """Make a message with the definition's defaults. Raises `UnknownInterface`."""
         return self.message_class(type_name)()
 
     def numbers(self, field: FieldType, values: Any) -> Any:
-        """Turn an array into what rclpy checks fastest: numpy's for fixed lengths."""
+        """Convert an array to the form that rclpy checks fastest: numpy for fixed lengths."""
         if field.base == "byte":
             return [bytes([value]) for value in values]
         return numpy.array(values) if field.fixed and field.base != "bool" else values
 
     def single(self, field: FieldType, value: Any) -> Any:
-        """Turn an octet into ``bytes``; keep other plain values as they are."""
+        """Convert an octet to ``bytes``; return other plain values unchanged."""
         return bytes([value]) if field.base == "byte" else value
 
     def message_class(self, type_name: str) -> Any:
-        """The class of a message, request or response type in full form; raises `UnknownInterface`."""
+        """Return the class of a message, request or response type in full form. Raises `UnknownInterface`."""
         found = self._classes.get(type_name)
         if found is None:
             found = self._classes[type_name] = self._find(type_name)
         return found
 
     def graph_type(self, type_name: str) -> str:
-        """How the graph calls a type in full form: a look-alike has its own package; raises `UnknownInterface`."""
+        """Return the name of a type in the graph: a substitute has its own package. Raises `UnknownInterface`."""
         package, kind, name = type_name.split("/")
         self.message_class(type_name)
         return type_name if _is_installed(package) else f"{PACKAGE}/{kind}/{name}"
 
     def usual_type(self, told: str) -> str:
-        """How we call a type that the graph tells: a look-alike goes by the name of what it looks like."""
+        """Return our name of a type in the graph: a substitute has the name of the original."""
         package, _, rest = told.partition("/")
         kind, _, name = rest.partition("/")
         if package != PACKAGE:
             return told
         looks_like = origin(kind, name)
-        # Where the genuine package is installed the two differ, so the look-alike must be told from it.
+        # If the original package is installed, the two differ, so the substitute must be recognised.
         return told if looks_like is None or _is_installed(looks_like) else f"{looks_like}/{kind}/{name}"
 
     def _find(self, type_name: str) -> Any:
@@ -128,10 +128,10 @@ def parameter(name: str, value: Any, kind: Any = None) -> Any:
     Args:
         name: its name.
         value: plain value.
-        kind: rclpy's type of an empty list, which does not tell it by itself.
+        kind: rclpy's type of an empty list, which the list itself does not show.
 
     Raises:
-        ParameterRefused: no parameter can hold such a value.
+        ParameterRefused: a parameter cannot hold this value.
     """
     if isinstance(value, list | tuple):
         elements = list(value)
@@ -149,17 +149,17 @@ def parameter(name: str, value: Any, kind: Any = None) -> Any:
     elif isinstance(value, int) and not -_WIDEST <= value < _WIDEST:
         raise ParameterRefused(f"parameter {name}: {value} is too large for a parameter, which has 64 bits")
     else:
-        for python, kind in _KINDS.items():  # bool is an int, and comes first
+        for python, kind in _KINDS.items():  # bool is a subclass of int, so it comes first
             if isinstance(value, python):
                 return Parameter(name, kind, python(value))
     raise ParameterRefused(
-        f"parameter {name}: a parameter holds a bool, a number, a text, bytes, or a list of bools, ints, floats or "
-        f"texts; not {value!r}"
+        f"parameter {name}: expected a bool, a number, a text, bytes, or a list of bools, ints, floats or "
+        f"texts, found {value!r}"
     )
 
 
 def plain_value(told: Any) -> Any:
-    """Read a value that rclpy gives; None for a parameter without one."""
+    """Convert a value from rclpy; None for a parameter without one."""
     if isinstance(told, str | bool | int | float) or told is None:
         return told
     elements = list(told)

@@ -1,1 +1,1 @@
-"""A robot behind a rosbridge server: `backend` joins, `node` is what all parts share, `link` is the connection."""
+"""A robot behind a rosbridge server: `backend` joins the graph, `node` is the shared state, `link` the connection."""

@@ -1,9 +1,10 @@
-"""Action clients and servers: as soon as it is known whose graph it is, through actionlib's topics or, on ROS 2, as goals.
+"""Action clients and servers: through actionlib's topics on ROS 1, as goals on ROS 2, as soon as the version is
+known.
 
-The protocol has operations for goals of ROS 2, and tells less than ROS 2 does.  A client hears of feedback and of the
-end, but neither that its goal was accepted nor what became of a request for cancelling; that is read off the action's
-status topic, where a goal appears under an id that the bridge does not tell either: it is the new one.  A server
-cannot refuse: the bridge has accepted each goal already, so a refused goal is aborted, with the reason in its result.
+The protocol has operations for ROS 2's goals, but conveys less than ROS 2 does. A client receives feedback and the
+outcome, but neither the acceptance of its goal nor the answer to a request to cancel; both are read from the action's
+status topic. The bridge does not report the goal's id there, so a new id is taken to be ours. A server cannot reject:
+the bridge has already accepted each goal, so a rejected goal is aborted, with the reason in its result.
 """
 
 import uuid
@@ -12,7 +13,7 @@ from typing import Any
 from jacaros.clock import Timer
 from jacaros.ros.action import ActionPolicy, Execute, GoalStatus, Outcome
 from jacaros.ros.action_calling import GoalSender, GoalWire
-from jacaros.ros.action_serving import TEXT_FIELDS, OneGoalOf, ServedGoals, text_of
+from jacaros.ros.action_serving import TEXT_FIELDS, ServedGoals, SingleGoalListener, text_of
 from jacaros.ros.actionlib_client import ActionlibWire
 from jacaros.ros.actionlib_server import ActionlibServer
 from jacaros.ros.backend import Sample
@@ -22,16 +23,16 @@ from jacaros.ros.errors import CallFailed, ServerLost, ServerUnavailable
 from jacaros.ros.names import feedback_type, goal_type, result_type
 from jacaros.ros.node import Wanted
 from jacaros.ros.protocols.ros2_actions import CANCELING, ENDS, NUMBERS, STATUS, UNDER_WAY
-from jacaros.ros.protocols.rosbridge_requests import LOOK_AGAIN, Sight
+from jacaros.ros.protocols.rosbridge_requests import LOOK_AGAIN, Polled
 from jacaros.ros.qos import QoS
 
 STATUS_TYPE = "action_msgs/msg/GoalStatusArray"
 STATUS_QUALITY = QoS(durability="transient_local", depth=100)
 TOLD_WITHIN = 10.0
-"""Seconds after which a goal of which nothing was heard was not sent: the bridge looks for a server for one of them."""
-UNTOLD = f"nothing was heard of the goal within {TOLD_WITHIN:g} s"
+"""Seconds without a sign of a goal after which it counts as not sent: the bridge looks for a server for one of them."""
+UNTOLD = f"no answer about the goal within {TOLD_WITHIN:g} s"
 CANCELED_AFTER = 1.0
-"""Seconds within which a server that agrees to cancel has changed the goal's status."""
+"""Seconds within which a server that accepts to cancel has changed the goal's status."""
 
 
 class _Sent:
@@ -44,18 +45,18 @@ class _Sent:
 
 
 class PresenceWatch:
-    """Asks for the action's server as long as somebody waits for it or has a goal there.
+    """Polls for the action's server while a caller waits for it or a goal is active.
 
     Args:
-        node: asks.
-        sender: is told when the server comes and goes.
+        node: sends the requests.
+        sender: informed when the server comes and goes.
     """
 
     def __init__(self, node: BridgeNode, sender: GoalSender) -> None:
         self._node = node
         self._sender = sender
-        # Who publishes the hidden topics of actions, and who serves their services, rosapi does not tell.
-        self._sight = Sight(
+        # rosapi does not report publishers of the hidden topics of actions, nor servers of their services.
+        self._polled = Polled(
             node.requests,
             "/rosapi/action_servers",
             {},
@@ -68,26 +69,28 @@ class PresenceWatch:
 
     @property
     def offered(self) -> bool:
-        """Whether a server is there, as far as is known."""
-        if self._interruptions != self._node.requests.interruptions:  # it may have gone with the connection
+        """Whether there is a server, as far as is known."""
+        if (
+            self._interruptions != self._node.requests.interruptions
+        ):  # it may have been lost with the connection
             self._interruptions, self._known = self._node.requests.interruptions, False
         if self._timer is None:
             self._timer = self._node.clock.call_later(0.0, self._look)
         return self._known and self._node.connected
 
     def stop(self) -> None:
-        """Ask no more."""
+        """Stop polling."""
         if self._timer is not None:
             self._timer.cancel()
 
     def _look(self) -> None:
         self._timer = None
-        seen = self._node.connected and self._sight.value
+        seen = self._node.connected and self._polled.value
         if seen != self._known:
             self._known = seen
             self._sender.server_present(seen)
-        if self._sender.busy or self._sight.asking:
-            pause = LOOK_AGAIN / 4 if self._sight.asking else LOOK_AGAIN
+        if self._sender.busy or self._polled.asking:
+            pause = LOOK_AGAIN / 4 if self._polled.asking else LOOK_AGAIN
             self._timer = self._node.clock.call_later(pause, self._look)
 
 
@@ -112,7 +115,7 @@ class Ros2Goals:
         return self._watch.offered
 
     def new_id(self) -> str:
-        """Make up the id of a new goal; the bridge has one table of them for all of its clients."""
+        """Return the id of a new goal; the bridge has one table of ids for all its clients."""
         return f"send_action_goal:{self._sender.name}:{uuid.uuid4().hex}"
 
     def send_goal(self, goal_id: str, goal: Any) -> None:
@@ -126,14 +129,14 @@ class Ros2Goals:
             "args": node.translator.encode(goal_type(sender.type_name), goal),
             "feedback": True,
         }
-        # Known before it is sent: an exit hook in another thread must find it.
+        # Stored before it is sent: an exit hook in another thread must find it.
         self._goals[goal_id] = _Sent()
         node.goals[goal_id] = self
         sent: list[bool] = []
         node.lifetime.send(lambda _: sent.append(node.send(operation)), None)
         if sent != [True]:
             self.forget_goal(goal_id)
-            raise CallFailed(f"action {sender.name}: there is no connection to the rosbridge server")
+            raise CallFailed(f"action {sender.name}: no connection to the rosbridge server")
         node.clock.call_later(TOLD_WITHIN, lambda: self._expect_sign(goal_id))
 
     def cancel_goal(self, goal_id: str) -> None:
@@ -145,10 +148,10 @@ class Ros2Goals:
             self._node.clock.call_later(CANCELED_AFTER, lambda: self._cancel_is_overdue(goal_id))
 
     def adopt_goal(self, goal_id: str) -> None:
-        """Never called: the bridge makes up the ids that servers know, so that orphans are not recognised."""
+        """Never called: the bridge generates the servers' goal ids, so orphans are not recognised."""
 
     def forget_goal(self, goal_id: str) -> None:
-        """The goal is over for this client."""
+        """Stop reporting a goal: it has ended for this client."""
         self._goals.pop(goal_id, None)
         self._node.goals.pop(goal_id, None)
 
@@ -159,14 +162,14 @@ class Ros2Goals:
         self._status.close()
 
     def _cancel_all(self) -> None:
-        """An exit hook: a process that ends leaves no robot driving to its goal."""
+        """Exit hook: leave no robot driving towards its goal when the process ends."""
         for goal_id in list(self._goals):
             self._ask_to_cancel(goal_id)
 
-    # What the bridge tells, on the loop:
+    # Messages of the bridge, on the loop:
 
     def feedback(self, goal_id: str, values: Any) -> None:
-        """Feedback of a goal."""
+        """Pass on feedback of a goal."""
         self._accept(goal_id)
         if isinstance(values, dict) and values.keys() == {"goal_id", "feedback"}:  # older servers
             values = values["feedback"]
@@ -175,7 +178,7 @@ class Ros2Goals:
             self._sender.feedback(goal_id, message)
 
     def result(self, goal_id: str, message: dict[str, Any]) -> None:
-        """The end of a goal, or why it did not begin."""
+        """Pass on the outcome of a goal, or why it did not begin."""
         values, number = message.get("values"), message.get("status")
         if not message.get("result", True) and not (number in ENDS and isinstance(values, dict)):
             self._refused(goal_id, str(values))
@@ -191,18 +194,16 @@ class Ros2Goals:
             self._sender.fail(goal_id, CallFailed(f"action {self._sender.name}: the result cannot be read"))
 
     def refused(self, goal_id: str, text: str) -> None:
-        """The bridge itself does not take the goal, for instance because it is too old to know actions."""
+        """Handle a refusal by the bridge itself, for instance because it is too old to support actions."""
         self._refused(goal_id, text)
 
     def _refused(self, goal_id: str, text: str) -> None:
         if "No action server" in text:
-            self._sender.fail(goal_id, ServerUnavailable(f"nobody offers action {self._sender.name}"))
+            self._sender.fail(goal_id, ServerUnavailable(f"no server offers action {self._sender.name}"))
         elif "rejected" in text:
             self._sender.rejected(goal_id)
         elif "nknown operation" in text or text == UNTOLD:
-            problem = (
-                f"action {self._sender.name}: {text}: does this rosbridge server know actions? Version 2 does"
-            )
+            problem = f"action {self._sender.name}: {text}; does this rosbridge server support actions? Version 2 does"
             self._sender.fail(goal_id, CallFailed(problem))
         else:
             self._sender.rejected(goal_id, text)
@@ -237,7 +238,7 @@ class Ros2Goals:
             self._sender.accepted(goal_id)
 
     def _expect_sign(self, goal_id: str) -> None:
-        """Servers that know no actions do not say so."""
+        """Start the time-out for a first answer: servers without actions do not send an error."""
         sent = self._goals.get(goal_id)
         if sent is not None and not sent.accepted:
             self._ask_to_cancel(goal_id)
@@ -247,7 +248,7 @@ class Ros2Goals:
         sent = self._goals.get(goal_id)
         if sent is not None and sent.cancel_asked:
             sent.cancel_asked = False
-            # Without its key nobody knows; the request was delivered, and most servers agree always.
+            # Without its key the result is unknown; the request was delivered, and most servers always accept.
             self._sender.cancel_answered(goal_id, sent.key is None)
 
     def _decoded(self, type_name: str, values: Any) -> Any:
@@ -259,7 +260,7 @@ class Ros2Goals:
 
 
 class Ros2GoalService:
-    """The side of an action server on a ROS 2 robot."""
+    """An action server on a ROS 2 robot."""
 
     def __init__(
         self, node: BridgeNode, name: str, type_name: str, execute: Execute, policy: ActionPolicy
@@ -271,16 +272,16 @@ class Ros2GoalService:
         node.send({"op": "advertise_action", "type": type_name, "action": name})
 
     def abandon(self) -> None:
-        """The link is down: the bridge has told the clients that their goals are aborted, so they are."""
+        """The link is down: the bridge has reported the goals as aborted to the clients, so stop them."""
         self._goals.abandon()
 
     def close(self) -> None:
-        """Stop to offer the action."""
+        """Stop offering the action."""
         self._goals.close()
         self._node.send({"op": "unadvertise_action", "action": self.name})
 
     def goal(self, message: dict[str, Any]) -> None:
-        """Take a goal of the bridge; on the loop."""
+        """Handle a goal from the bridge; on the loop."""
         goal_id = str(message.get("id"))
         try:
             request = self._node.translator.decode(goal_type(self._type_name), message.get("args") or {})
@@ -291,10 +292,10 @@ class Ros2GoalService:
         if reason is not None:
             self._end(goal_id, self._aborted(reason))
         else:
-            self._goals.begin(goal_id, request, OneGoalOf(self, goal_id))
+            self._goals.begin(goal_id, request, SingleGoalListener(self, goal_id))
 
     def cancel(self, goal_id: str) -> None:
-        """Take a request for cancelling; the bridge has agreed to it already."""
+        """Handle a request to cancel; the bridge has already accepted it."""
         self._goals.cancel(goal_id)
 
     def feedback(self, goal_id: str, message: Any) -> None:
@@ -303,7 +304,7 @@ class Ros2GoalService:
         self._node.send({"op": "action_feedback", "id": goal_id, "action": self.name, "values": values})
 
     def ended(self, goal_id: str, outcome: Outcome) -> None:
-        """Send the end of a goal."""
+        """Send the outcome of a goal."""
         self._end(goal_id, outcome)
 
     def _end(self, goal_id: str, outcome: Outcome) -> None:
@@ -325,7 +326,9 @@ class Ros2GoalService:
         return Outcome(GoalStatus.ABORTED, self._node.factory.make(kind, told), text)
 
 
-LOST_LINK = "the connection to the rosbridge server was lost during goal {}; whether it goes on is not known"
+LOST_LINK = (
+    "the connection to the rosbridge server was lost during goal {}; it is unknown whether the goal continues"
+)
 
 
 class BridgeActionClient(GoalSender):
@@ -344,22 +347,22 @@ class BridgeActionClient(GoalSender):
             self.join()
 
     def join(self) -> None:
-        """The link is up."""
+        """Handle that the link is up."""
         self._wire.join()
 
     def lost(self) -> None:
-        """The link is down, and what a goal does meanwhile would be told to nobody."""
+        """Handle that the link is down: the outcome of active goals can no longer arrive."""
         for goal_id in list(self._goals):
             self.fail(goal_id, ServerLost(LOST_LINK.format(goal_id)))
 
     def close(self) -> None:
-        """Give the client up."""
+        """Close the client."""
         super().close()
         self._node.forget(self)
 
 
 class _Wire:
-    """The `GoalWire` that fits the robot's ROS."""
+    """The `GoalWire` for the robot's version of ROS."""
 
     def __init__(self, node: BridgeNode, sender: GoalSender) -> None:
         self._node = node
@@ -377,7 +380,7 @@ class _Wire:
                 else Ros2Goals(self._node, self._sender)
             )
         if self._sender.busy:
-            _ = self.offered  # begins to ask
+            _ = self.offered  # starts polling
 
     @property
     def offered(self) -> bool:
@@ -406,7 +409,7 @@ class _Wire:
     @property
     def _known(self) -> GoalWire:
         if self._fitting is None or not self._node.attached:
-            raise CallFailed(f"action {self._sender.name}: there is no connection to the rosbridge server")
+            raise CallFailed(f"action {self._sender.name}: no connection to the rosbridge server")
         return self._fitting
 
 
@@ -434,24 +437,24 @@ class BridgeActionServer:
             self._service = Ros2GoalService(self._node, *self._offer)
 
     def lost(self) -> None:
-        """The link is down: clients see the action go away, so nothing is to go on behind their backs."""
+        """Handle that the link is down: clients see the action disappear, so its goals must not continue."""
         if self._service is not None:
             self._service.abandon()
             self._service = None
 
     def close(self) -> None:
-        """Stop to offer the action."""
+        """Stop offering the action."""
         self._node.forget(self)
         if self._service is not None:
             self._service.close()
             self._service = None
 
     def goal(self, message: dict[str, Any]) -> None:
-        """Take a goal of the bridge (ROS 2)."""
+        """Handle a goal from the bridge (ROS 2)."""
         if isinstance(self._service, Ros2GoalService):
             self._service.goal(message)
 
     def cancel(self, goal_id: str) -> None:
-        """Take a request for cancelling of the bridge (ROS 2)."""
+        """Handle a request to cancel from the bridge (ROS 2)."""
         if isinstance(self._service, Ros2GoalService):
             self._service.cancel(goal_id)

@@ -1,8 +1,8 @@
 """A robot behind a rosbridge server, for a machine without ROS: JSON over a WebSocket.
 
-The server (``rosbridge_server`` of ROS 1 or ROS 2) is the node in the graph; we are one of its clients.  So the graph
-knows us by the server's name, and what rosapi, the node beside it, does not tell cannot be known.  Which ROS it is, is
-asked at each connection.  The message classes are those of the `memory` backend.
+The server (``rosbridge_server`` of ROS 1 or ROS 2) is the node in the graph; we are one of its clients. So the graph
+knows us by the server's name, and what rosapi, the node next to it, does not report remains unknown. The version of
+ROS is requested at each connection. The message classes are those of the `memory` backend.
 
 Everything happens on the loop; only exit hooks may send from another thread (see `Link`).
 """
@@ -28,7 +28,7 @@ from jacaros.ros.drivers.rosbridge.topics import BridgePublisher, BridgeSubscrip
 from jacaros.ros.errors import CapabilityMissing
 from jacaros.ros.graph import GraphContents
 from jacaros.ros.node import NodeSettings, Parts
-from jacaros.ros.parameter_news import ParameterNews
+from jacaros.ros.parameter_events import ParameterEvents
 
 DEFAULT_URL = "ws://127.0.0.1:9090"
 
@@ -37,8 +37,8 @@ class RosbridgeBackend(BridgeNode):
     """A client of a rosbridge server.
 
     Args:
-        settings: names, clock and reports.
-        url: address of the server; ``ROSBRIDGE_URI`` without it, and else port 9090 of this machine.
+        settings: names, clock and log.
+        url: address of the server; default: ``ROSBRIDGE_URI``, else port 9090 of this machine.
     """
 
     name = "rosbridge"
@@ -54,45 +54,45 @@ class RosbridgeBackend(BridgeNode):
     def __init__(self, settings: NodeSettings, url: str | None = None) -> None:
         if settings.parameters:
             raise CapabilityMissing(
-                f"parameter {next(iter(settings.parameters))} cannot be given: over rosbridge we are no node of the graph, "
-                "and have no parameters"
+                f"parameter {next(iter(settings.parameters))} cannot be set: over rosbridge there is no node of our own, "
+                "and so there are no parameters"
             )
         super().__init__(settings, checked_url(url or os.environ.get("ROSBRIDGE_URI") or DEFAULT_URL))
-        self._news = ParameterNews(self.subscription, read)
+        self._parameter_events = ParameterEvents(self.subscription, read)
 
     @property
     def capabilities(self) -> frozenset[str]:  # type: ignore[override]
-        """What can be done with the robot's ROS."""
-        # Failed handlers are told of by those services of ROS 1 alone that are not served over a bridge.
-        news = {PARAMETER_EVENTS} if self.ros_version == 2 else set()
-        return frozenset({TOPICS, SERVICES, TRANSFORMS, ACTIONS, DISCOVERY, PARAMETERS, *news})
+        """The capabilities with the robot's version of ROS."""
+        # Only services of ROS 1 that are not served over a bridge report failed handlers.
+        events = {PARAMETER_EVENTS} if self.ros_version == 2 else set()
+        return frozenset({TOPICS, SERVICES, TRANSFORMS, ACTIONS, DISCOVERY, PARAMETERS, *events})
 
     def parameters(self, node: str | None = None) -> BridgeParameters:
-        """Give the parameters of a node; our own can be used on ROS 1 alone, where the master keeps them."""
-        return BridgeParameters(self, self.node_name if node is None else self.resolve(node), self._news)
+        """Return the parameters of a node; our own exist on ROS 1 only, where the master stores them."""
+        return BridgeParameters(
+            self, self.node_name if node is None else self.resolve(node), self._parameter_events
+        )
 
     async def contents(self, timeout: float = 5.0) -> GraphContents:
-        """Look at the graph."""
+        """Return the contents of the graph."""
         return await look(self, timeout)
 
-    # What the server sends:
+    # Messages of the server:
 
     def _received(self, message: dict[str, Any]) -> None:
         operation = message["op"]
         if operation == "publish":
-            feed = self.feeds.get(str(message.get("topic")))
-            if feed is not None:
-                feed.put(message.get("msg"))
-        else:  # in its turn, after the messages of topics that came before
+            multiplexer = self.multiplexers.get(str(message.get("topic")))
+            if multiplexer is not None:
+                multiplexer.put(message.get("msg"))
+        else:  # in order, after earlier messages of topics
             self.loop.call_soon(self._dispatch, operation, message)
 
     def _dispatch(self, operation: str, message: dict[str, Any]) -> None:
         try:
             self._do(operation, message)
         except (TypeError, ValueError, KeyError, AttributeError) as problem:
-            self.log(
-                f"the rosbridge server sent {operation} with something that cannot be understood: {problem}"
-            )
+            self.log(f"the rosbridge server sent an invalid {operation}: {problem}")
 
     def _do(self, operation: str, message: dict[str, Any]) -> None:
         number = str(message.get("id"))
@@ -118,19 +118,19 @@ class RosbridgeBackend(BridgeNode):
                 server.cancel(number)
 
     def _note_status(self, message: dict[str, Any], number: str) -> None:
-        """The server has something to say, mostly that it did not do what was asked."""
+        """Handle a status message of the server, mostly that it refuses a request."""
         text = str(message.get("msg"))
         if message.get("level") not in ("error", "warning") or number.startswith("call_service:"):
             return  # a failed call is answered as well
         asked, _, topic = number.rpartition(":")[0].partition(":")
-        feed = self.feeds.get(topic)
-        if asked == "subscribe" and feed is not None:
-            feed.tell(f"topic {feed.topic}: the rosbridge server refuses it: {text}")
+        multiplexer = self.multiplexers.get(topic)
+        if asked == "subscribe" and multiplexer is not None:
+            multiplexer.report(f"topic {multiplexer.topic}: refused by the rosbridge server: {text}")
         elif number in self.goals and "nknown operation" in text:
             self.goals[number].refused(number, text)
-        elif text not in self._told and not number.startswith("send_action_goal:"):
-            self._told.add(text)
-            self.log(f"the rosbridge server says: {text}")
+        elif text not in self._reported and not number.startswith("send_action_goal:"):
+            self._reported.add(text)
+            self.log(f"message of the rosbridge server: {text}")
 
 
 BACKEND: type[Backend] = RosbridgeBackend

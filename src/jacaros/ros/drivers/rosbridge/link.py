@@ -1,10 +1,10 @@
-"""The connection to a rosbridge server, on the loop: made, watched, and made again whenever it is lost.
+"""The connection to a rosbridge server, on the loop: made, monitored, and made again whenever it is lost.
 
-The loop reads.  Any thread can write: the exit hooks, which stop the robot, run in a thread when the loop is stuck or has
-ended, and what they send must leave all the same.  So frames do not pass asyncio's transport, whose buffer only the loop
-empties.  They go to the socket directly, under a lock for which no sender waits.
+The loop reads. Any thread can write: the exit hooks, which stop the robot, run in a thread if the loop is stuck or
+has ended, and their messages must leave nevertheless. So frames do not use asyncio's transport, whose buffer only the
+loop empties. They are written to the socket directly, under a lock that no sender waits for.
 
-A link is up while the server answers pings: a robot that drove out of reach closes no connection.
+A link is up while the server answers pings: a robot that drove out of range closes no connection.
 """
 
 import asyncio
@@ -27,19 +27,20 @@ from jacaros.ros.handoff import post
 from jacaros.ros.protocols.rosbridge_wire import Fragments, Wire, address, frames
 
 FIRST_PAUSE, LONGEST_PAUSE, GROWTH = 0.25, 2.0, 1.7
-"""Seconds between two attempts to connect: at first, and at most; and by what each is longer than the one before."""
+"""Seconds between two attempts to connect: the first, the maximum, and the factor between them."""
 CONNECTING = 4.0
-"""Seconds after which an attempt is given up: a network that swallows packets says nothing for minutes."""
+"""Seconds after which an attempt is cancelled: a network that drops packets reports nothing for minutes."""
 PING_EVERY, PING_PATIENCE = 1.0, 4.0
 """Seconds between pings, and for the answer."""
 BACKLOG = 4_000_000
-"""Bytes that may wait for a slow network; what is published beyond is dropped, for it would arrive too late anyway."""
+"""Bytes that may wait for a slow network; later messages are dropped, because they would arrive too late anyway."""
 TRY_AGAIN = 0.002
-"""Seconds until what a slow network did not take is offered to it again."""
+"""Seconds until data that a slow network did not accept is offered again."""
 LAST_MESSAGE = 0.5
-"""Seconds that a thread which is not the loop's waits for the network to take a message: nobody else may offer it again."""
+"""Seconds that a thread other than the loop's waits for the network to accept a message: no other thread offers it
+again."""
 GOODBYE = 0.5
-"""Seconds for the server to close the connection when it is told that we leave."""
+"""Seconds for the server to close the connection after our close frame."""
 
 
 class Connection(asyncio.Protocol):
@@ -58,7 +59,7 @@ class Connection(asyncio.Protocol):
         self._queued: deque[bytes] = deque()
         self._output = bytearray()
         self._lock = threading.Lock()
-        """Held for reading and writing, never while anything waits.  Only readers wait for it."""
+        """Held for reading and writing, never during a wait. Only readers wait for it."""
         self._retrying = False
         self._transport: asyncio.Transport | None = None
         self._timer: asyncio.TimerHandle | None = None
@@ -66,11 +67,11 @@ class Connection(asyncio.Protocol):
         self.opened: asyncio.Future[None] = self._loop.create_future()
         self.ended: asyncio.Future[None] = self._loop.create_future()
         self.over = False
-        """Whether nothing can be read any more."""
+        """Whether nothing can be read any longer."""
 
     @property
     def backlog(self) -> int:
-        """Bytes that wait for the network."""
+        """Number of bytes that wait for the network."""
         return len(self._output)
 
     @property
@@ -78,10 +79,12 @@ class Connection(asyncio.Protocol):
         """Whether messages can be sent."""
         return not self.over and self._wire.opened
 
-    # asyncio's:
+    # asyncio's interface:
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        self._transport = cast("asyncio.Transport", transport)  # proactors' are not of the class
+        self._transport = cast(
+            "asyncio.Transport", transport
+        )  # those of the proactor loop are of another class
         self._socket: socket.socket = transport.get_extra_info("socket").dup()
         self._push()
 
@@ -102,7 +105,7 @@ class Connection(asyncio.Protocol):
             self.opened.set_exception(exc or self._wire.failure or ConnectionError("closed by the server"))
         self.ended.set_result(None)
 
-    # For the link:
+    # Interface for the link:
 
     def send(self, text: bytes) -> None:
         """Send a message, from any thread and even in a signal handler."""
@@ -111,13 +114,13 @@ class Connection(asyncio.Protocol):
             self.flush(LAST_MESSAGE)
 
     def flush(self, seconds: float) -> None:
-        """Wait until what was sent has left the process; blocks."""
+        """Wait until all sent data has left the process; blocks."""
         deadline = time.monotonic() + seconds
         while not self._push() and time.monotonic() < deadline:
             time.sleep(TRY_AGAIN)
 
     def close(self) -> None:
-        """Say goodbye to the server, after what was sent; from any thread."""
+        """Send the close frame after the pending messages; from any thread."""
         with self._lock:
             while self._queued:
                 self._wire.send(self._queued.popleft())
@@ -136,10 +139,10 @@ class Connection(asyncio.Protocol):
     def wait(
         self, done: Callable[[], object], seconds: float, on_message: Callable[[bytes, bool], None]
     ) -> None:
-        """Block until *done* gives True or the connection is lost.
+        """Block until *done* returns True or the connection is lost.
 
-        The loop reads meanwhile if it runs in another thread; otherwise it is waiting here, or has ended, and this thread
-        reads in its place.
+        If the loop runs in another thread, it reads meanwhile; otherwise this thread blocks it, or it has ended, and
+        this thread reads in its place.
         """
         deadline = time.monotonic() + seconds
         while not (done() or self.over) and (rest := deadline - time.monotonic()) > 0.0:
@@ -183,9 +186,9 @@ class Connection(asyncio.Protocol):
             on_message(payload, binary)
 
     def _push(self) -> bool:
-        """Give the network what it takes now; return False when some must wait.
+        """Write what the network accepts now; return False if data must wait.
 
-        A thread that finds the lock taken returns: the one that has it looks again for what was queued meanwhile.
+        A thread that finds the lock taken returns: its holder checks again for data queued meanwhile.
         """
         while self._lock.acquire(blocking=False):
             try:
@@ -216,7 +219,7 @@ class Connection(asyncio.Protocol):
                 del self._output[: self._socket.send(self._output)]
         except (BlockingIOError, InterruptedError):
             return False
-        except OSError:  # the reader learns it, too
+        except OSError:  # the reader also detects it
             self._output.clear()
         return True
 
@@ -241,10 +244,10 @@ class Link:
 
     Args:
         url: address of the server, ``ws://robot.lab.example:9090``.
-        on_up: called on the loop when the connection is there.
+        on_up: called on the loop when the connection is made.
         on_down: called there when it is lost, and when an attempt has failed.
         on_message: called there with each message of the server.
-        on_problem: called, from any thread, with a line about what cannot be understood.
+        on_problem: called, from any thread, with a line about an invalid message.
     """
 
     def __init__(
@@ -272,22 +275,22 @@ class Link:
         return self._connection is not None
 
     def start(self) -> None:
-        """Begin to connect; on the loop."""
+        """Start connecting; on the loop."""
         self._loop = asyncio.get_running_loop()
         self._work = self._loop.create_task(self._keep_connected())
 
     def stop(self) -> None:
-        """Connect no more; on the loop."""
+        """Stop connecting; on the loop."""
         self._connection = None
         if self._work is not None:
             self._work.cancel()
 
     def send(self, message: dict[str, Any], droppable: bool = False) -> bool:
-        """Send *message*, from any thread; False when it is lost because there is no connection.
+        """Send *message*, from any thread. Return False if it is lost because there is no connection.
 
         Args:
-            message: what the protocol calls an operation.
-            droppable: lose it also when too much waits already.
+            message: an operation of the protocol.
+            droppable: also drop it if too much data is already waiting.
         """
         connection = self._connection
         if connection is None or (droppable and connection.backlog > BACKLOG):
@@ -297,9 +300,9 @@ class Link:
         return self._connection is connection
 
     def ask(self, question: dict[str, Any], seconds: float) -> dict[str, Any] | None:
-        """Send an operation and block, in any thread, until its answer is there; None when the connection is lost.
+        """Send an operation and block, in any thread, until its answer arrives; None if the connection is lost.
 
-        What else arrives meanwhile waits for the loop.
+        Other messages wait for the loop.
 
         Raises:
             TimeoutError: there is no answer within *seconds*.
@@ -318,7 +321,7 @@ class Link:
             del self._awaited[number]
 
     def finish(self, seconds: float) -> None:
-        """Wait until what was sent has left the process, then close; blocks, so not on the loop."""
+        """Wait until all sent data has left the process, then close; blocks, so it must not run on the loop."""
         connection = self._connection
         if connection is not None:
             connection.flush(seconds)
@@ -329,7 +332,7 @@ class Link:
             post(self._loop, self.stop)
 
     def received(self, payload: bytes, binary: bool) -> None:
-        """Take a message of the server; on the loop."""
+        """Handle a message of the server; on the loop."""
         operation = self._operation(payload, binary)
         if operation is not None:
             self._on_message(operation)
@@ -340,7 +343,7 @@ class Link:
             post(self._loop, self._on_message, operation)
 
     def _operation(self, payload: bytes, binary: bool) -> dict[str, Any] | None:
-        """Read a message, JSON or, in binary ones, CBOR; None if there is nothing for the loop."""
+        """Decode a message, JSON or, if binary, CBOR; None if there is nothing for the loop."""
         try:
             message: Any = cbor2.loads(payload) if binary else json.loads(payload)
             if message["op"] == "fragment":
@@ -351,11 +354,9 @@ class Link:
                 self._awaited[message["id"]] = message
                 return None
         except Exception as problem:
-            # A CBOR message of junk may be dates, fractions, expressions: each has errors of its own.
+            # An invalid CBOR message may contain dates, fractions, expressions: each raises errors of its own.
             told = f"{type(problem).__name__}: {str(problem)[:80]}"
-            self._on_problem(
-                f"the rosbridge server sent a frame that is not an operation; it is ignored: {payload[:80]!r} ({told})"
-            )
+            self._on_problem(f"ignored an invalid frame of the rosbridge server: {payload[:80]!r} ({told})")
             return None
         operation: dict[str, Any] = message
         return operation
@@ -393,10 +394,10 @@ class Link:
 
 
 def checked_url(url: str) -> str:
-    """Give the address of a server with its port, 9090 by default.
+    """Return the address of a server with its port, 9090 by default.
 
     Raises:
-        UsageError: it is none.
+        UsageError: the address is invalid.
     """
     try:
         parts = urlsplit(url)
@@ -405,6 +406,6 @@ def checked_url(url: str) -> str:
         port, parts = None, urlsplit("")
     if parts.scheme not in ("ws", "wss") or not parts.hostname or parts.fragment:
         raise UsageError(
-            f"a rosbridge server has an address such as ws://robot.lab.example:9090, not {url!r}"
+            f"expected the address of a rosbridge server, such as ws://robot.lab.example:9090, found {url!r}"
         )
     return url if port is not None else f"{parts.scheme}://{parts.netloc}:9090{parts.path}"

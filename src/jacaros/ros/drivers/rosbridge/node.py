@@ -1,6 +1,6 @@
-"""What all parts of the rosbridge backend share: the connection, whose graph it is, and all that we have at the server.
+"""The shared state of the rosbridge backend: the connection, the version of ROS, and all entities at the server.
 
-The server forgets what it knows of us when the connection is lost, so it is told everything again after each connection.
+The server forgets its clients when the connection is lost, so everything is announced again after each connection.
 """
 
 import asyncio
@@ -22,25 +22,25 @@ from jacaros.ros.node import Node, NodeSettings
 from jacaros.ros.protocols.rosbridge_messages import Translator
 from jacaros.ros.protocols.rosbridge_requests import PATIENCE, Requests, greet
 from jacaros.ros.protocols.rosbridge_types import BridgeSchema, written_on_ros1
-from jacaros.ros.topics import TopicFeed
+from jacaros.ros.topics import TopicMultiplexer
 from jacaros.ros.waiting import within
 
 FIRST_LOOK = 5.0
-"""Seconds that starting waits for the first attempt to connect; a server that is not there refuses immediately."""
+"""Seconds that starting waits for the first attempt to connect; a missing server refuses immediately."""
 SENDING = 0.5
-"""Seconds that closing waits for the messages published last to leave."""
+"""Seconds that closing waits for the last messages to leave."""
 DOING = 1.0
-"""Seconds that closing waits until the server has done what it was sent last."""
+"""Seconds that closing waits until the server has processed the last messages."""
 FETCHING = 3.0
-"""Seconds that the loop may be held up by asking for a type that is unknown here."""
+"""Seconds that a request for an unknown type may block the loop."""
 CURE = (
-    "On the robot, start `ros2 launch rosbridge_server rosbridge_websocket_launch.xml` (ROS 1: `roslaunch rosbridge_server "
-    "rosbridge_websocket.launch`), and give its address with --bridge or ROSBRIDGE_URI."
+    "on the robot, start `ros2 launch rosbridge_server rosbridge_websocket_launch.xml` (ROS 1: `roslaunch rosbridge_server "
+    "rosbridge_websocket.launch`), and give its address with --bridge or ROSBRIDGE_URI"
 )
 FIRST_PAUSE, LONGEST_PAUSE = 1.0, 16.0
-"""Seconds until the first look whether a topic was admitted, and between two at most; each pause doubles the last."""
+"""Seconds until the first check whether a topic was admitted, and the maximum between two; each pause doubles."""
 MISSES = 3
-"""Looks without the topic after which it was refused."""
+"""Number of checks without the topic after which it counts as refused."""
 
 
 class Asked(Protocol):
@@ -54,40 +54,40 @@ class Asked(Protocol):
         """The type as the server writes it."""
 
     def join(self) -> None:
-        """Ask for it, at a server that does not know us yet."""
+        """Announce it to a server that does not know us yet."""
 
     def refused(self, text: str) -> None:
-        """The server does not do it; the text says why."""
+        """Handle that the server refuses it; *text* is the reason."""
 
 
 class CalledService(Protocol):
     """A service of ours."""
 
     def called(self, message: dict[str, Any]) -> None:
-        """Take a call."""
+        """Handle a call."""
 
 
-class AskedServer(Protocol):
+class GoalReceiver(Protocol):
     """An action server of ours."""
 
     def goal(self, message: dict[str, Any]) -> None:
-        """Take a goal."""
+        """Handle a goal."""
 
     def cancel(self, goal_id: str) -> None:
-        """Take a request for cancelling."""
+        """Handle a request to cancel."""
 
 
 class BridgeNode(Node):
-    """A client of a rosbridge server, for the parts that it consists of.
+    """A client of a rosbridge server, as seen by its parts.
 
     Args:
-        settings: names, clock and reports.
+        settings: names, clock and log.
         url: address of the server.
 
     Attributes:
-        attached: there is a connection, and it is known whose graph it is.
-        packs: the server can write CBOR.
-        goals: by the id of a goal, who sent it.
+        attached: whether there is a connection and the version of ROS is known.
+        packs: whether the server can send CBOR.
+        goals: senders by the ids of their goals.
     """
 
     def __init__(self, settings: NodeSettings, url: str) -> None:
@@ -98,29 +98,29 @@ class BridgeNode(Node):
         super().__init__(settings, self.schema, Lifetime(settings.log, self._leave, threaded=True))
         self.translator = Translator(self.schema)
         self.admission = Admission(self)
-        self.feeds: dict[str, TopicFeed[Any]] = {}
+        self.multiplexers: dict[str, TopicMultiplexer[Any]] = {}
         self.goals: dict[str, Any] = {}
-        # Weakly: the node keeps them, until they are closed.
+        # Weak references: the node holds the entities until they are closed.
         self.services: WeakValueDictionary[str, CalledService] = WeakValueDictionary()
-        self.action_servers: WeakValueDictionary[str, AskedServer] = WeakValueDictionary()
+        self.action_servers: WeakValueDictionary[str, GoalReceiver] = WeakValueDictionary()
         self.attached = False
         self.packs = False
         self._numbers = itertools.count(1)
         self._has_rosapi = False
         self._greeting: asyncio.Task[None] | None = None
         self._ended_at = ""
-        """The type at which rosapi went away."""
+        """The type at which rosapi crashed."""
         self._checks: set[asyncio.Task[None]] = set()
         self._lost_topics: set[str] = set()
-        self._told: set[str] = set()
+        self._reported: set[str] = set()
 
     @property
     def ros_version(self) -> int:  # type: ignore[override]
-        """Of the robot; 2 until the first connection."""
+        """Version of the robot; 2 until the first connection."""
         return self.translator.ros_version
 
     async def start(self) -> None:
-        """Connect, or say that the server is awaited and go on trying in the background."""
+        """Connect, or log that the server is missing and keep trying in the background."""
         looked = self.join()
         self._link.start()
         await asyncio.wait([looked], timeout=FIRST_LOOK)
@@ -144,41 +144,41 @@ class BridgeNode(Node):
         self.left()
 
     def rosout(self, level: str, text: str) -> None:
-        """Write a line to the graph's log; while there is no connection nobody would read it."""
+        """Write a line to the graph's log; without a connection it is dropped."""
         if self.connected:
             super().rosout(level, text)
 
-    # For the parts:
+    # Interface for the parts:
 
     def number(self, operation: str, name: str) -> str:
-        """An id for an operation; the server names it when it has something to say about it."""
+        """Return an id for an operation; the server quotes it in status messages."""
         return f"{operation}:{name}:{next(self._numbers)}"
 
     def send(self, operation: dict[str, Any], droppable: bool = False) -> bool:
-        """Send an operation to the server that knows us, from any thread; False when it is lost."""
+        """Send an operation to a server that knows us, from any thread. Return False if it is lost."""
         return self.attached and self._link.send(operation, droppable)
 
     def written_type(self, type_name: str) -> str:
-        """A type in full form as the server writes it."""
+        """Return the server's name of a type."""
         return written_on_ros1(type_name) if self.ros_version == 1 else type_name
 
     def require_connection(self, service: str) -> None:
-        """Raise `ServiceUnavailable` while there is no server."""
+        """Raise `ServiceUnavailable` if there is no server."""
         if not self.connected:
             raise ServiceUnavailable(
-                f"service {service}: there is no connection to the rosbridge server at {self.url}"
+                f"service {service}: no connection to the rosbridge server at {self.url}"
             )
 
     def note_loss(self, topic: str) -> None:
-        """Say that messages are lost, once a topic and an interruption; from any thread."""
+        """Log lost messages, once per topic and interruption; from any thread."""
         if topic not in self._lost_topics:
             self._lost_topics.add(topic)
             self._say(
-                f"messages for {topic} are lost: the rosbridge server at {self.url} is away or too slow"
+                f"topic {topic}: messages are lost: the rosbridge server at {self.url} is away or too slow"
             )
 
     async def rosapi(self, service: str, arguments: dict[str, Any], timeout: float | None = None) -> Any:
-        """Call a service of rosapi and give the fields of its response.
+        """Call a service of rosapi and return the fields of its response.
 
         Raises:
             ServiceUnavailable: rosapi does not run.
@@ -201,25 +201,25 @@ class BridgeNode(Node):
         finally:
             self.requests.forget(number)
 
-    # For the link:
+    # Interface for the link:
 
     def _link_up(self) -> None:
         if self._greeting is not None:
             self._greeting.cancel()
         self._ended_at = ""
         self._lost_topics.clear()
-        self._told.clear()
+        self._reported.clear()
         self._greeting = self.loop.create_task(self._greet())
 
     async def _greet(self) -> None:
-        """Find out whose graph it is, and tell the server all that we have."""
+        """Find out the version of ROS, and announce everything to the server."""
         found = await greet(self._rosapi, self.clock, lambda: self._link.up)
         if found is None:
             return
         if not found.told:
             self.log(
-                f"the rosbridge server at {self.url} has no rosapi beside it, so nothing can be looked up; ROS 2 is "
-                "assumed. Its launch file starts both"
+                f"the rosbridge server at {self.url} has no rosapi node, so the graph cannot be queried; assuming ROS 2; "
+                "its launch file starts both"
             )
         self.translator.ros_version, self.packs = found.ros_version, found.packs
         self._has_rosapi = found.told
@@ -228,9 +228,9 @@ class BridgeNode(Node):
         self.found()
 
     def _join(self) -> None:
-        """Tell all that we have to a server that does not know us yet."""
-        for feed in list(self.feeds.values()):
-            feed.join()
+        """Announce everything to a server that does not know us yet."""
+        for multiplexer in list(self.multiplexers.values()):
+            multiplexer.join()
         for member in list(self.members):
             join = getattr(member, "join", None)
             if join is not None:
@@ -241,8 +241,8 @@ class BridgeNode(Node):
         if self._greeting is not None:
             self._greeting.cancel()
         self.requests.fail_all()
-        for feed in list(self.feeds.values()):
-            feed.lost()
+        for multiplexer in list(self.multiplexers.values()):
+            multiplexer.lost()
         for member in list(self.members):
             lost = getattr(member, "lost", None)
             if lost is not None:
@@ -253,7 +253,7 @@ class BridgeNode(Node):
         self.missing(f"rosbridge server at {self.url}", CURE)
 
     def _received(self, message: dict[str, Any]) -> None:
-        """Take an operation of the server."""
+        """Handle an operation of the server."""
         raise NotImplementedError
 
     def _say(self, text: str) -> None:
@@ -269,7 +269,7 @@ class BridgeNode(Node):
         return answer
 
     def _check_rosapi(self, asked: str) -> None:
-        """Find out whether rosapi still runs: genuine ones end at some types that they are asked for."""
+        """Check whether rosapi still runs: real ones crash when they are asked for certain types."""
         check = self.loop.create_task(self._look_for_rosapi(asked))
         self._checks.add(check)
         check.add_done_callback(self._checks.discard)
@@ -283,24 +283,23 @@ class BridgeNode(Node):
                 self._ended_at = asked
                 self.log(f"{problem}{self._loss_of_rosapi()}")
         except CallFailed:
-            pass  # the link is lost, which is reported
+            pass  # the link is lost, which is reported elsewhere
 
     def _loss_of_rosapi(self) -> str:
         if not self._ended_at:
             return ""
         return (
-            f": rosapi went away when it was asked for the type {self._ended_at}. Start rosapi again on the robot, and "
+            f": rosapi crashed when it was asked for the type {self._ended_at}; restart rosapi on the robot, and "
             "name a folder with the definition of this type (in a mapping file: interfaces)"
         )
 
     def _cannot_ask(self) -> str | None:
         if self.attached:
             return None
-        return f"the rosbridge server at {self.url} would be asked, but there is no connection to it"
+        return f"no connection to the rosbridge server at {self.url}, which could be asked"
 
     def _leave(self) -> None:
-        # A server forgets what it has received and not done yet when its client leaves; an answer says that all before it
-        # is done.
+        # A server discards pending operations when its client leaves; an answer shows that all earlier ones are done.
         with contextlib.suppress(TimeoutError):
             self.requests.call_blocking("/rosapi/get_time", {}, DOING)
         self._link.finish(SENDING)
@@ -313,14 +312,14 @@ class _Case:
 
 
 class Admission:
-    """Looks after what was asked for until it is there.
+    """Checks requested topics until they exist.
 
-    rosbridge refuses silently: a topic of another type, a type that is not installed on the robot, a name that it may not
-    serve are lines in its own log and nothing on the link.  So the node looks at the graph after each subscription and
-    advertisement, until the topic is there with our type.
+    rosbridge refuses silently: a topic of another type, a type that is not installed on the robot, or a name that it
+    may not serve only appears in its own log. So the node checks the graph after each subscription and advertisement,
+    until the topic exists with our type.
 
     Args:
-        node: asks.
+        node: sends the requests.
     """
 
     def __init__(self, node: BridgeNode) -> None:
@@ -330,19 +329,19 @@ class Admission:
         self._pause = FIRST_PAUSE
 
     def expect(self, asked: Asked) -> None:
-        """*asked* was asked for just now; on the loop."""
+        """Note that *asked* was just requested; on the loop."""
         if any(part.startswith("_") for part in asked.topic.split("/")):
-            return  # hidden: rosapi does not tell it
+            return  # hidden: rosapi does not report it
         self._cases.setdefault(asked, _Case()).misses = 0
         self._pause = FIRST_PAUSE
         self._look_later()
 
     def forget(self, asked: Asked) -> None:
-        """Nobody wants it any more."""
+        """Stop checking an entity."""
         self._cases.pop(asked, None)
 
     def close(self) -> None:
-        """Look no more."""
+        """Stop checking."""
         self._cases.clear()
         if self._timer is not None:
             self._timer.cancel()
@@ -377,15 +376,15 @@ class Admission:
             )
         else:
             del self._cases[asked]
-            if case.conflict:  # it was refused, and would not be now
+            if case.conflict:  # it was refused, and would be accepted now
                 asked.join()
 
     def _missed(self, asked: Asked, case: _Case, wanted: str) -> None:
         case.misses += 1
-        # rosapi of ROS 1 tells of topics only that are published.
+        # rosapi of ROS 1 reports only published topics.
         if self._node.ros_version == 2 and case.misses == MISSES:
             case.conflict = True
             asked.refused(
-                f"topic {asked.topic} is not in the graph though the rosbridge server was asked for it: is {wanted} "
+                f"topic {asked.topic}: requested from the rosbridge server, but not in the graph: is {wanted} "
                 "installed on the robot, and may the server serve this topic (its parameter topics_glob)?"
             )

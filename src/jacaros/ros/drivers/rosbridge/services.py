@@ -1,4 +1,4 @@
-"""Services through the bridge, both ways, and what rosapi's services tell of the graph and of parameters."""
+"""Services through the bridge, as client and server, and rosapi's services for the graph and for parameters."""
 
 import asyncio
 import json
@@ -20,18 +20,18 @@ from jacaros.ros.errors import (
 from jacaros.ros.graph import Endpoint, GraphContents, TopicInfo
 from jacaros.ros.names import action_type, message_type, request_type, response_type, service_type
 from jacaros.ros.parameter import Declaration, ParameterValue
-from jacaros.ros.parameter_news import ParameterNews
+from jacaros.ros.parameter_events import ParameterEvents
 from jacaros.ros.parameter_services import ParameterServices
 from jacaros.ros.parameter_store import checked_value
-from jacaros.ros.protocols.rosbridge_requests import Sight
+from jacaros.ros.protocols.rosbridge_requests import Polled
 from jacaros.ros.serving import Responder
 from jacaros.ros.waiting import within
 
 _NOT_OUR_DEFINITION = ("does not have a field", "message requires a", "Expected a JSON object")
-"""What the server says of a request whose fields are others in its definition."""
+"""Parts of the server's error for a request that does not match its definition."""
 
 FOR_EVER = 86400.0
-"""The time-out of a call without one, for servers that would choose five seconds themselves."""
+"""Time-out of a call without one, for servers that would otherwise use five seconds."""
 
 
 class BridgeClient(AttemptingClient):
@@ -42,13 +42,13 @@ class BridgeClient(AttemptingClient):
     def __init__(self, node: BridgeNode, name: str, type_name: str) -> None:
         node.schema.service(type_name)
         super().__init__(node, name, type_name)  # pyright: ignore[reportArgumentType]
-        self._offered = Sight(
+        self._offered = Polled(
             node.requests, "/rosapi/service_type", {"service": name}, lambda seen: bool(seen["type"]), False
         )
 
     @property
     def ready(self) -> bool:
-        """Whether somebody offers the service, as the bridge said a second ago at most."""
+        """Whether a node offers the service, according to the bridge at most 1 s ago."""
         return self._node.connected and self._offered.value
 
     def _may_be_called(self) -> bool:
@@ -76,11 +76,11 @@ class BridgeClient(AttemptingClient):
             return node.translator.decode(response_type(self._type_name), values)
         except ValueError as problem:
             raise CallFailed(
-                f"service {self.name}: the response is no {self._type_name}: {problem}"
+                f"service {self.name}: the response is not a {self._type_name}: {problem}"
             ) from None
 
     def close(self) -> None:
-        """Give the client up."""
+        """Close the client."""
         self._node.forget(self)
         self._pending.close()
 
@@ -105,7 +105,7 @@ class BridgeService:
         self._node.send({"op": "advertise_service", "type": kind, "service": self.name})
 
     def close(self) -> None:
-        """Stop to offer the service."""
+        """Stop offering the service."""
         self._responder.close()
         if not self._closed:
             self._closed = True
@@ -113,12 +113,12 @@ class BridgeService:
             self._node.send({"op": "unadvertise_service", "service": self.name})
 
     def called(self, message: dict[str, Any]) -> None:
-        """Take a request of the server; on the loop."""
+        """Handle a request of the server; on the loop."""
         node, number = self._node, message.get("id")
         try:
             request = node.translator.decode(request_type(self._type_name), message.get("args") or {})
         except ValueError as problem:
-            node.log(f"service {self.name}: a request is no {self._type_name}: {problem}")
+            node.log(f"service {self.name}: the request is not a {self._type_name}: {problem}")
             return
 
         def done(response: Any, problem: ServiceError | None) -> None:
@@ -126,8 +126,8 @@ class BridgeService:
             if problem is None:
                 answer["values"] = node.translator.encode(response_type(self._type_name), response)
                 node.send(answer | {"result": True})
-            # The server has no way to pass a failure on (it would send a response of zeros): as on ROS 2 the call
-            # gets no answer.
+            # The server cannot pass on a failure (it would send a response of zeros): as on ROS 2, the call gets no
+            # answer.
 
         self._responder.answer(request, done)
 
@@ -144,16 +144,16 @@ _PARAMETER_SERVICES = (
 )
 _LOGS = ("/rosout", "/rosout_agg", "/parameter_events")
 AT_ONCE = 8
-"""Questions under way at the same time: older servers answer one after the other anyway."""
+"""Number of concurrent requests; older servers answer them in turn anyway."""
 
 
 async def look(backend: BridgeNode, timeout: float) -> GraphContents:
-    """Ask rosapi for all that is there; raises `ServiceError`."""
+    """Return the contents of the graph according to rosapi. Raises `ServiceError`."""
     try:
         async with asyncio.timeout(timeout):
             return await _Look(backend).contents()
     except TimeoutError:
-        raise CallFailed(f"rosapi did not tell the graph's contents within {timeout:g} s") from None
+        raise CallFailed(f"rosapi did not return the contents of the graph within {timeout:g} s") from None
 
 
 class _Look:
@@ -200,10 +200,10 @@ class _Look:
         return list(answer.get("action_servers", ()))
 
     async def _action(self, name: str, types: dict[str, str]) -> tuple[str, str, bool]:
-        """Its name, its type, and whether somebody serves it."""
+        """Return an action's name, its type, and whether a server offers it."""
         goal = types.get(f"{name}/goal", "")
         if goal.endswith("ActionGoal"):  # ROS 1
-            # rosapi of ROS 1 goes by the names of topics, and a client alone makes all five too.
+            # rosapi of ROS 1 uses the names of topics, and a client alone has all five, too.
             servers = await self._ask("publishers", topic=f"{name}/status")
             return name, _full(action_type, goal.removesuffix("ActionGoal")), bool(servers["publishers"])
         kind = await self._type("action_type", "action", name)
@@ -235,36 +235,36 @@ def _is_internal(name: str) -> bool:
         "/_action/" in name
         or last in _PARAMETER_SERVICES
         or last in ("get_loggers", "set_logger_level", "get_logger_levels", "set_logger_levels")
-        or name.startswith("/rosapi/")  # what we look with
+        or name.startswith("/rosapi/")  # the services that we use
     )
 
 
 _ABSENT = "jacaros: no such parameter"
-"""The default that is asked for: rosapi has no other way to say that there is no parameter."""
+"""The default in the request: rosapi has no other way to report a missing parameter."""
 
 
 class BridgeParameters:
     """Parameters of one node, seen from outside.
 
     Args:
-        backend: asks.
+        backend: sends the requests.
         node: absolute name of the node.
-        news: tells of changes on ROS 2.
+        events: reports changes on ROS 2.
     """
 
-    def __init__(self, backend: BridgeNode, node: str, news: ParameterNews) -> None:
+    def __init__(self, backend: BridgeNode, node: str, events: ParameterEvents) -> None:
         self.node = node
         self._backend = backend
-        self._news = news
+        self._parameter_events = events
         self._of_node = NodeParameters(backend, node)
         self._of_master = MasterParameters(backend, node)
 
     def declare(self, name: str, declaration: Declaration) -> ParameterValue:
-        """Always raises `CapabilityMissing`: over a bridge we are no node whose parameters others could see."""
+        """Raise `CapabilityMissing`: over a bridge there is no node of our own with parameters."""
         self._missing(f"parameter {name} cannot be declared")
 
     def withdraw(self, name: str) -> None:
-        """Always raises `CapabilityMissing`, as `declare`."""
+        """Raise `CapabilityMissing`, as `declare`."""
         self._missing(f"parameter {name} cannot be withdrawn")
 
     async def names(self, timeout: float | None = None) -> list[str]:
@@ -272,7 +272,7 @@ class BridgeParameters:
         return await self._parameters.names(timeout)
 
     async def get(self, name: str, timeout: float | None = None) -> ParameterValue:
-        """Give a parameter's value."""
+        """Return a parameter's value."""
         return await self._parameters.get(name, timeout)
 
     async def set(self, name: str, value: ParameterValue, timeout: float | None = None) -> None:
@@ -280,11 +280,11 @@ class BridgeParameters:
         await self._parameters.set(name, value, timeout)
 
     def on_change(self, callback: Callable[[Mapping[str, ParameterValue]], None]) -> Callable[[], None]:
-        """Have *callback* called with what changed; on ROS 2, for rosapi of ROS 1 tells no changes."""
+        """Call *callback* with changed parameters; on ROS 2 only, because rosapi of ROS 1 does not report changes."""
         if self._backend.ros_version == 1:
-            self._missing(f"news of changed parameters of {self.node}")
+            self._missing(f"changes of parameters of {self.node} are not reported")
         self._require_other()
-        return self._news.listen(self.node, callback)
+        return self._parameter_events.listen(self.node, callback)
 
     @property
     def _parameters(self) -> "NodeParameters | MasterParameters":
@@ -294,24 +294,22 @@ class BridgeParameters:
         return self._of_node
 
     def _require_other(self) -> None:
-        """On ROS 2 parameters belong to nodes, and we are none."""
+        """On ROS 2 parameters belong to nodes, and we have none."""
         if self.node == self._backend.node_name:
             raise CapabilityMissing(
-                "parameters of our own: over rosbridge we are no node of the graph, so there are none, and none change; "
+                "over rosbridge there is no node of our own, and so there are no parameters of our own; "
                 "name another node"
             )
 
     def _missing(self, what: str) -> NoReturn:
-        raise CapabilityMissing(
-            f"{what}: the rosbridge backend cannot do this; it is done on the robot itself, with --ros ros2"
-        )
+        raise CapabilityMissing(f"{what} over rosbridge; run on the robot itself, with --ros ros2")
 
 
 class MasterParameters:
-    """What the ROS 1 master keeps below a node's name, through rosapi.
+    """The parameters of the ROS 1 master below a node's name, through rosapi.
 
     Args:
-        backend: asks.
+        backend: sends the requests.
         node: absolute name of the node.
     """
 
@@ -326,7 +324,7 @@ class MasterParameters:
         return sorted(name.removeprefix(prefix) for name in answer["names"] if name.startswith(prefix))
 
     async def get(self, name: str, timeout: float | None = None) -> ParameterValue:
-        """Give a parameter's value."""
+        """Return a parameter's value."""
         arguments = {"name": f"{self._node}/{name}", "default_value": json.dumps(_ABSENT)}
         answer = await self._backend.rosapi("get_param", arguments, timeout)
         text = answer.get("value", "")
@@ -342,10 +340,10 @@ class MasterParameters:
         """Change a parameter."""
         if isinstance(value, bytes):
             raise ParameterRefused(
-                f"parameter {name}: the rosbridge protocol carries no octets in parameters"
+                f"parameter {name}: the rosbridge protocol does not support bytes in parameters"
             )
         if self._plain_or_none(value) is None:
-            raise ParameterRefused(f"no parameter holds {value!r}, which is to be that of {name}")
+            raise ParameterRefused(f"parameter {name} cannot be {value!r}")
         arguments = {"name": f"{self._node}/{name}", "value": json.dumps(value)}
         await self._backend.rosapi("set_param", arguments, timeout)
 
@@ -354,15 +352,17 @@ class MasterParameters:
         if plain is not None:
             return plain
         if isinstance(value, dict):
-            raise ParameterUnknown(f"{name} of {self._node} is a group: ask for its parts, {name}/PART")
-        raise CallFailed(f"parameter {name} of node {self._node} has a value that is none of ours: {value!r}")
+            raise ParameterUnknown(
+                f"parameter {name} of {self._node} is a group; read its parts, {name}/PART"
+            )
+        raise CallFailed(f"parameter {name} of node {self._node} has an unsupported value: {value!r}")
 
     def _plain_or_none(self, value: Any) -> ParameterValue | None:
         if isinstance(value, bool | int | float | str):
             return value
         if isinstance(value, list):
             for kinds in ((bool,), (int,), (int, float), (str,)):
-                # bool is a kind of int, and a list of both is none of ours
+                # bool is a subclass of int, and a list of both is not supported
                 if all(
                     isinstance(each, kinds) and (bool in kinds or not isinstance(each, bool))
                     for each in value
@@ -382,7 +382,7 @@ _FIELDS = {
     8: "double_array_value",
     9: "string_array_value",
 }
-"""Where ``rcl_interfaces/msg/ParameterValue`` has a value, by the numbers of ``ParameterType``."""
+"""The field of ``rcl_interfaces/msg/ParameterValue`` for each number of ``ParameterType``."""
 _NUMBERS: Mapping[type, int] = {bool: 1, int: 2, float: 3, str: 4, bytes: 5}
 _LIST_NUMBERS: Mapping[type, int] = {bool: 6, int: 7, float: 8, str: 9}
 _TEXTS, _NOT_SET = 9, 0
@@ -392,7 +392,7 @@ class NodeParameters:
     """The parameters of one node.
 
     Args:
-        node: calls.
+        node: sends the calls.
         name: absolute name of the node that has them.
     """
 
@@ -407,7 +407,7 @@ class NodeParameters:
         return sorted(answer.result.names)
 
     async def get(self, name: str, timeout: float | None = None) -> ParameterValue:
-        """Give a parameter's value."""
+        """Return a parameter's value."""
         answer = await self._services.call("GetParameters", {"names": [name]}, timeout)
         value = read(answer.values[0]) if len(answer.values) == 1 else None
         if value is None:
@@ -428,11 +428,11 @@ class NodeParameters:
             return
         if not await self._type(name, timeout):
             raise ParameterUnknown(f"node {self.node} has no parameter {name}")
-        reason = answer.results[0].reason if answer.results else "the node did not say why"
+        reason = answer.results[0].reason if answer.results else "the node gave no reason"
         raise ParameterRefused(f"parameter {name} of {self.node} cannot be {value!r}: {reason}")
 
     async def _type(self, name: str, timeout: float | None) -> int:
-        """The number of a parameter's type; 0 for one that is not there."""
+        """Return the number of a parameter's type; 0 if it does not exist."""
         answer = await self._services.call("GetParameterTypes", {"names": [name]}, timeout)
         return int(answer.types[0]) if len(answer.types) == 1 else _NOT_SET
 

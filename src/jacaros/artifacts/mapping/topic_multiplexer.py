@@ -1,6 +1,6 @@
-"""Topics of a mapped artifact: each message goes to the properties and signals that show something of it.
+"""Topics of a mapped artifact: each message updates the properties and signals that show parts of it.
 
-An array has one property for each element: what is new is defined, what changed updated, what is gone removed.
+For an array there is one property per element: new elements are defined, changed ones updated, missing ones removed.
 """
 
 import dataclasses
@@ -26,27 +26,32 @@ from jacaros.trace import Cause
 from jacaros.yaml_nodes import Problem
 
 
-class Topic:
-    """One topic, however many properties come from it.
+class TopicMultiplexer:
+    """Deliver the messages of one subscription to all its properties and signals.
 
     Args:
         host: the artifact.
         written: the topic.
-        type_name: of its messages; None: to be found.
-        qos: what the mapping asks for.
-        feeds: those that take its messages.
+        type_name: message type; None: found at run time.
+        qos: the quality of service in the mapping.
+        updaters: receive the messages.
     """
 
     def __init__(
-        self, host: Host, written: Written, type_name: Written | None, qos: QoS | None, feeds: "list[Feed]"
+        self,
+        host: Host,
+        written: Written,
+        type_name: Written | None,
+        qos: QoS | None,
+        updaters: "list[Updater]",
     ) -> None:
-        self.feeds = feeds
+        self.updaters = updaters
         self._host, self._written, self._type_name = host, written, type_name
         self._qos = qos if qos is not None else SENSOR_DATA
         self._stamps: Stamps | None = None
 
     def begin(self, search: TypeSearch) -> None:
-        """Listen, as soon as the type is known."""
+        """Subscribe as soon as the type is known."""
         if self._type_name is not None:
             self._listen(self._type_name.text)
         else:
@@ -55,40 +60,46 @@ class Topic:
     def _listen(self, type_name: str) -> None:
         host, written = self._host, self._written
         problems: list[Problem] = []
-        for feed in self.feeds:
-            feed.prepare(type_name, problems)
+        for updater in self.updaters:
+            updater.prepare(type_name, problems)
         if problems:
-            host.tell(problems)
-        self.feeds = [feed for feed in self.feeds if feed.ready]
-        if not self.feeds:
+            host.report(problems)
+        self.updaters = [updater for updater in self.updaters if updater.ready]
+        if not self.updaters:
             return
-        kept = self._qos.durability == "transient_local"  # such messages are old when they come, and right
-        if not kept and "header" in host.ros.fields(type_name) and any(feed.is_state for feed in self.feeds):
+        kept = (
+            self._qos.durability == "transient_local"
+        )  # latched messages are old when they arrive, and valid
+        if (
+            not kept
+            and "header" in host.ros.fields(type_name)
+            and any(updater.is_state for updater in self.updaters)
+        ):
             topic = host.ros.resolve(host.robot_topic(written.text))
             self._stamps = Stamps(host.faults_at(topic), host.clock)
-        tell = host.on_topic_event(written.text, written.place)
+        report = host.on_topic_event(written.text, written.place)
         try:
-            host.subscription(written.text, type_name, self._take, self._qos, tell)
+            host.subscription(written.text, type_name, self._take, self._qos, report)
         except CapabilityMissing as error:
             host.fail(f"{host.mapping.where(written.place)}: {error}", "ros_error", host.name)
 
     def _take(self, sample: Sample) -> None:
         old = self._stamps is not None and not self._stamps.accept(_stamp_of(sample.message), sample.stamp)
-        for feed in self.feeds:
-            if not (old and feed.is_state):
-                feed.take(sample)
+        for updater in self.updaters:
+            if not (old and updater.is_state):
+                updater.take(sample)
 
 
 def _stamp_of(message: Any) -> float:
     return to_seconds(message.header.stamp)
 
 
-class Feed:
-    """A property or signal from messages.
+class Updater:
+    """Update a property, or send signals, from messages.
 
     Args:
         host: the artifact.
-        part: what the mapping says.
+        part: its declaration.
     """
 
     def __init__(self, host: Host, part: TopicPart) -> None:
@@ -127,20 +138,20 @@ class Feed:
 
     @property
     def is_state(self) -> bool:
-        """Whether only the newest message counts: not for signals, nor where each message tells of some elements."""
+        """Whether only the newest message counts: not for signals, nor if each message contains only some elements."""
         return not self.part.signal and self.part.each is None
 
     @property
     def ready(self) -> bool:
-        """Whether the type is known, and all that is wanted is in it."""
+        """Whether the type is known and has all fields."""
         return self._extract is not None
 
     def prepare(self, type_name: str, problems: list[Problem]) -> None:
-        """Get ready for messages of a type; *problems* takes what does not fit."""
+        """Prepare for messages of a type; *problems* receives mismatches."""
         self._extract = extractor(self.part, type_name, self._host.ros, problems)
 
     def take(self, sample: Sample) -> None:
-        """Take a message."""
+        """Handle a message."""
         if self._frame is None or self._is_in_frame(sample, self._frame):
             self.take_message(sample.message, sample.cause, sample.topic)
 
@@ -149,12 +160,12 @@ class Feed:
         given = message.header.frame_id.strip("/")
         if given == wanted:
             return True
-        text = f"the frame is {given or 'not told'}, not {wanted}"
-        self._refuse(Unshowable(given, text, "is that its frame? Then write it", "wrong_frame"), sample.topic)
+        text = f"expected frame {wanted}, found {given or 'none'}"
+        self._refuse(Unshowable(given, text, "if that is its frame, write it", "wrong_frame"), sample.topic)
         return False
 
     def take_message(self, message: object, cause: Cause | None, topic: str) -> None:
-        """Take a message, or the feedback of an action."""
+        """Handle a message, or the feedback of an action."""
         assert self._extract is not None
         try:
             rows = self._extract(message)
@@ -187,7 +198,7 @@ class Feed:
 
     def _signal(self, rows: list[Row], cause: Cause | None) -> None:
         if self._pause is not None:
-            self._held = (rows, cause)  # the newest is not lost
+            self._held = (rows, cause)  # keep the newest
             return
         if self.part.when_changed:
             before, self._sent = self._sent, {row.key: row.values for row in rows}
@@ -199,7 +210,7 @@ class Feed:
         self._host.start(self._host.send_signals, self.part.name, [row.values for row in rows], cause=cause)
 
     def _go_on(self) -> None:
-        """The pause after a signal is over."""
+        """Continue after the pause that follows a signal."""
         self._pause = None
         if self._held is not None:
             held, self._held = self._held, None
@@ -210,33 +221,35 @@ class Feed:
             self._pause.cancel()
 
     def withdraw(self) -> None:
-        """Have the property no more."""
+        """Remove the property."""
         if self._reading is not None:
             self._reading.withdraw()
 
     def _refuse(self, error: Unshowable, topic: str) -> None:
-        """Tell that a message was left out: people once, with the line; agents by a signal."""
+        """Report a message that was not shown: by one log line with the position, and by a signal to agents."""
         part, host = self.part, self._host
-        host.tell_once((part.name, error.path), part.place, f"{part.name} is not shown: {error}", error.help)
+        host.report_once(
+            (part.name, error.path), part.place, f"`{part.name}` is not shown: {error}", error.help
+        )
         if self._faults is None:
 
-            def tell(why: Structure, text: str) -> None:
-                host.start(host.tell_bad_message, topic, why)
+            def report(why: Structure, text: str) -> None:
+                host.start(host.report_bad_message, topic, why)
 
-            self._faults = Faults(topic, tell)
+            self._faults = Faults(topic, report)
         self._faults.add(Structure(error.functor, (error.path,)), str(error))
 
 
 def _stand(view: RangeOfView, values: tuple[object, ...]) -> None:
-    """Count from the place that a property shows."""
+    """Use the position in a property as origin."""
     x, y = (*values, 0, 0)[:2]
     if isinstance(x, int | float) and isinstance(y, int | float):
         view.stand(float(x), float(y))
 
 
-def feedback_feed(host: Host, part: TopicPart) -> Feed:
-    """A property from the feedback of an action: no goal, no property."""
-    return Feed(host, dataclasses.replace(part, initial=None))
+def feedback_updater(host: Host, part: TopicPart) -> Updater:
+    """Make a property from the feedback of an action; it exists while there is a goal."""
+    return Updater(host, dataclasses.replace(part, initial=None))
 
 
 class Elements:
@@ -244,7 +257,7 @@ class Elements:
 
     Args:
         host: the artifact.
-        part: what the mapping says.
+        part: its declaration.
     """
 
     def __init__(self, host: Host, part: TopicPart) -> None:
@@ -261,7 +274,7 @@ class Elements:
         host.at_dispose(self.close)
 
     def take(self, rows: list[Row], cause: Cause | None) -> None:
-        """Take the elements of a message."""
+        """Handle the elements of a message."""
         now, expire = self._host.clock.elapsed, self._part.policy.expire
         new = {row.key: self._kept(row) for row in rows}
         if expire is not None:
@@ -272,7 +285,7 @@ class Elements:
         self._want(new, cause)
 
     def _kept(self, row: Row) -> Row:
-        """The row that is shown, if the new one hardly differs."""
+        """Return the row that is already shown if the new one hardly differs."""
         old = self._wanted.get(row.key)
         if old is None or self._part.policy.differ(old.values, row.values):
             return row
@@ -288,7 +301,7 @@ class Elements:
         self._host.start(self._host.show_rows, self._part.name, cause=cause)
 
     def show(self) -> None:
-        """Bring the properties up to date, within an operation."""
+        """Update the properties, within an operation."""
         self._coming = False
         host, name = self._host, self._part.name
         before, self._shown = self._shown, self._wanted
@@ -303,7 +316,7 @@ class Elements:
                 host.update_property(name, *row.values, annotations=row.annotations, where=old.values)
 
     def _alive(self, now: float, expire: float) -> dict[object, Row]:
-        """The elements that were seen a short while ago."""
+        """Return the elements that were seen recently."""
         alive = {
             key: row for key, row in self._wanted.items() if now - self._seen.get(key, now) < expire - 1e-9
         }
@@ -322,7 +335,7 @@ class Elements:
             self._expiry = self._host.clock.call_later(max(0.001, oldest + expire - now), self._look)
 
     def close(self) -> None:
-        """Look no more."""
+        """Stop the timer."""
         self._reading.close()
         if self._expiry is not None:
             self._expiry.cancel()

@@ -1,8 +1,8 @@
-"""Whether somebody whom the graph still lists is alive: asked with fresh eyes.
+"""Check whether a peer that the graph still lists is alive.
 
-A process that was killed, or has dropped out of the network, stays in the graph of those who knew it until its lease has
-run out, which is up to 20 s with Fast DDS.  A participant that joins only now finds the living alone.  It costs some ten
-milliseconds and is gone again in seconds.
+A process that was killed, or has lost its network, stays in the graph of its peers until its lease expires, up to 20
+s with Fast DDS. A participant that has just joined discovers only living ones. It costs about 10 ms and leaves again
+after some seconds.
 """
 
 import asyncio
@@ -16,42 +16,43 @@ import rclpy.signals  # type: ignore[import-not-found]
 
 from jacaros.ros.handoff import in_thread
 
-NODE = "_jacaros_second_look"
+NODE = "_jacaros_liveness_check"
 """Tools do not show nodes that begin with an underscore."""
 MISSED_AFTER = 4.0
-"""Seconds after which who was not found is called missing; the living announce themselves every 3 s, and when met."""
+"""Seconds after which an undiscovered peer counts as missing; living ones announce themselves every 3 s, and on
+discovery."""
 GIVEN_UP_AFTER = 8.0
-"""Seconds after which the look is over.  Who is found until then is called present after all."""
+"""Seconds after which the check ends. Peers discovered until then are reported as present."""
 POLL = 0.1
-"""Seconds between two looks at what was found."""
+"""Seconds between two queries of the discovered peers."""
 FRESH = 0.5
-"""Seconds for which a look also serves others who begin to doubt."""
+"""Seconds during which a running check also serves further callers."""
 
 Find = Callable[[Any], frozenset[bytes]]
-"""Reads identities from a node of rclpy: of those who publish a topic, say."""
+"""Returns identities from a node of rclpy, such as those of a topic's publishers."""
 
 
 class _Question:
     def __init__(
-        self, find: Find, suspects: frozenset[bytes], tell: Callable[[frozenset[bytes]], None]
+        self, find: Find, suspects: frozenset[bytes], report: Callable[[frozenset[bytes]], None]
     ) -> None:
         self.find = find
         self.suspects = suspects
-        self.tell = tell
+        self.report = report
         self.missing: frozenset[bytes] = frozenset()
 
 
-class SecondLook:
-    """One participant that has joined just now, and what is asked of it; on the loop.
+class LivenessCheck:
+    """One participant that has just joined, and the callers' questions; on the loop.
 
     Args:
-        loop: where it is told.
+        loop: loop of the callbacks.
         domain_id: the DDS domain; None for ``ROS_DOMAIN_ID``.
-        over: called when the look is over.
+        over: called when the check has ended.
     """
 
     def __init__(
-        self, loop: asyncio.AbstractEventLoop, domain_id: int | None, over: Callable[["SecondLook"], None]
+        self, loop: asyncio.AbstractEventLoop, domain_id: int | None, over: Callable[["LivenessCheck"], None]
     ) -> None:
         self._loop = loop
         self._domain_id = domain_id
@@ -62,26 +63,26 @@ class SecondLook:
         self._left = False
         self._context: Any = None
         self._rcl: Any = None
-        in_thread(loop, self._join, "second look").add_done_callback(self._joined)
+        in_thread(loop, self._join, "liveness check").add_done_callback(self._joined)
 
     @property
     def fresh(self) -> bool:
-        """Whether it began so lately that who is found was alive just now."""
+        """Whether it has begun so recently that its results are valid for a new caller."""
         return time.monotonic() < self._began + FRESH
 
-    def ask(self, find: Find, suspects: frozenset[bytes], tell: Callable[[frozenset[bytes]], None]) -> None:
-        """Find out who of the *suspects* is alive.
+    def ask(self, find: Find, suspects: frozenset[bytes], report: Callable[[frozenset[bytes]], None]) -> None:
+        """Find out which of the *suspects* are alive.
 
         Args:
             find: see `Find`.
-            suspects: whom to look for.
-            tell: called with those that are missing: none as soon as all were found, else after `MISSED_AFTER`, and
-                again if some are found after that.
+            suspects: identities to look for.
+            report: called with the missing ones: with none as soon as all are found, else after `MISSED_AFTER`, and
+                again if some are found later.
         """
-        self._questions.append(_Question(find, suspects, tell))
+        self._questions.append(_Question(find, suspects, report))
 
     def leave(self) -> None:
-        """Leave the graph; on any thread."""
+        """Leave the graph; callable on any thread."""
         with self._lock:
             self._left = True
             if self._rcl is not None:
@@ -106,7 +107,9 @@ class SecondLook:
             )
 
     def _joined(self, done: "asyncio.Future[None]") -> None:
-        if done.exception() is not None:  # no more participants on this machine, say: then the lease decides
+        if (
+            done.exception() is not None
+        ):  # for instance no further participants on this machine: then the lease decides
             self._end()
         else:
             self._began = time.monotonic()
@@ -120,7 +123,7 @@ class SecondLook:
             missing = question.suspects - self._found(question)
             if not missing or (patience > MISSED_AFTER and missing != question.missing):
                 question.missing = missing
-                question.tell(missing)
+                question.report(missing)
             if not missing:
                 self._questions.remove(question)
         if patience > GIVEN_UP_AFTER or not self._questions:
@@ -134,4 +137,4 @@ class SecondLook:
 
     def _end(self) -> None:
         self._over(self)
-        in_thread(self._loop, self.leave, "second look")
+        in_thread(self._loop, self.leave, "liveness check")

@@ -1,4 +1,4 @@
-"""What ROS 2's nodes tell of their parameters on ``/parameter_events`` (``rcl_interfaces/msg/ParameterEvent``)."""
+"""Changed parameters of ROS 2's nodes, from ``/parameter_events`` (``rcl_interfaces/msg/ParameterEvent``)."""
 
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -12,12 +12,12 @@ EVENTS, EVENT_TYPE, EVENT_QUALITY = "/parameter_events", "rcl_interfaces/msg/Par
 Listener = Callable[[Mapping[str, ParameterValue]], None]
 
 
-class ParameterNews:
-    """Tells of changed parameters of all nodes, from the one topic; joined at the first use.
+class ParameterEvents:
+    """Reports changed parameters of all nodes from one subscription, which is made on first use.
 
     Args:
-        subscribe: that of the backend; gets the topic, its type, what takes its messages, and the quality of service.
-        read: the value in an ``rcl_interfaces/msg/ParameterValue``, None for a parameter without one.
+        subscribe: subscribes at the backend, given the topic, its type, the callback, and the quality of service.
+        read: returns the value of an ``rcl_interfaces/msg/ParameterValue``, None for a parameter without one.
     """
 
     def __init__(
@@ -31,7 +31,7 @@ class ParameterNews:
         self._listeners: dict[str, list[Listener]] = {}
 
     def listen(self, node_name: str, callback: Listener) -> Callable[[], None]:
-        """Have *callback* called with what changes at a node; the result ends that."""
+        """Call *callback* with changed parameters of a node. Return a function that removes it."""
         if not self._joined:
             self._joined = True
             self._subscribe(EVENTS, EVENT_TYPE, self._take, EVENT_QUALITY)

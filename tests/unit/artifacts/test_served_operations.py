@@ -60,7 +60,7 @@ class Desk(RosArtifact):
 
     @operation
     def done(self, number: int) -> None:
-        """Let the order be carried out."""
+        """Execute the order."""
         self.carried_out = number
 
 
@@ -159,7 +159,7 @@ def test_a_failing_goal_is_aborted_with_the_code_of_its_reason() -> None:
     with_desk(body)
 
 
-def test_clients_are_told_when_the_artifact_is_disposed() -> None:
+def test_clients_are_notified_when_the_artifact_is_disposed() -> None:
     async def body(lab: Lab, desk: ArtifactId) -> None:
         client = lab.backend.action_client("/r1/carry", COUNT)
         goal = await client.send({"target": 7}, timeout=5)
