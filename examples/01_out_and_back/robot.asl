@@ -6,7 +6,7 @@
 // The first goal of the agent: it wants to `start`.
 !start.
 
-// A plan: to reach the goal `start`, do these steps one after the other.
+// A plan: to reach the goal `start`, do these steps in turn.
 +!start
   <- // An artifact is a thing that the agent uses; this one drives the robot.
      !use_artifact("wheels", "ArtCmdVel", [frame(map)]);

@@ -25,7 +25,7 @@ def score(code: list[Atom], guess: list[Atom], right: Out, misplaced: Out) -> No
 
 @internal_action
 def codes(tried: list[Structure]) -> Iterator[list[Atom]]:
-    """Every code that may be the secret one, given what was tried: a condition takes one after the other."""
+    """Every code that may be the secret one, given the previous guesses: a condition takes them in turn."""
     yield from _possible(tried)
 
 
@@ -63,5 +63,5 @@ class Keeper(Agent):
         self.add_belief(Literal("secret", ([self.random.choice(COLOURS) for _ in range(LENGTH)],)))
 
     def soc_acc(self, message: Message) -> bool:
-        """Refuse everybody else's messages."""
+        """Refuse messages from all others."""
         return message.sender == self.player

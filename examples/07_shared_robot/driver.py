@@ -62,7 +62,7 @@ def driver() -> Selector:
 
 
 def when(name: str, condition: Behaviour, action: Behaviour) -> Sequence:
-    """An action that is interrupted as soon as its condition does not hold any more."""
+    """An action that is interrupted as soon as its condition no longer holds."""
     return Sequence(name, memory=False, children=[condition, action])
 
 

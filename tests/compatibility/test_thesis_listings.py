@@ -176,7 +176,7 @@ def test_the_household() -> None:
 
 def test_the_range_of_view_and_the_way_to_the_goal() -> None:
     lines = run("map", 10.0).lines
-    # Signals are events: those of the range of view are handled while the agent goes on.
+    # Signals are events: those of the range of view are handled while the agent continues.
     seen = ["[robot] 0 0 home", "[robot] 0 1 free", "[robot] 1 0 obstacle", "[robot] 1 1 free"]
     assert [line for line in lines if line in seen] == seen
     went = ["[robot] north, turn 90", "[robot] east, turn -90", "[robot] east, turn 0", "[robot] at the goal"]

@@ -194,7 +194,7 @@ def shared_memory(process: int | str) -> set[str]:
     """Files in shared memory that Fast DDS has made for a process; 2 calls them fastrtps_…, 3 fastdds_…"""
     try:
         maps = Path(f"/proc/{process}/maps").read_text()
-    except OSError:  # it has ended, or it is somebody else's
+    except OSError:  # it has ended, or belongs to another user
         return set()
     return set(re.findall(r"/dev/shm/(?:sem\.)?fast(?:rtps|dds)_\S+", maps))
 

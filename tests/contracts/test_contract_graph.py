@@ -67,7 +67,7 @@ def test_actions_are_seen_but_not_what_they_are_made_of(graph: Any, pair: Pair, 
     graph.wait_until(lambda: left.contents()["actions"].get(topic) == COUNT, "the action is seen")
     seen = left.contents()
     assert not [name for name in (*seen["topics"], *seen["services"]) if name.startswith(topic)]
-    left.action_ready(topic)  # makes a client, which alone is no action
+    left.action_ready(topic)  # makes a client, which alone is not an action
     right.unserve_action(topic)
     graph.wait_until(lambda: topic not in left.contents()["actions"], "the action is gone")
 

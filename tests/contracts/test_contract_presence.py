@@ -27,7 +27,7 @@ def test_the_reference_has_the_same_table_of_capabilities() -> None:
     one_for_all = {
         kind: able for kind, able in CAPABILITIES.items() if not kind.startswith(("rosbridge-", "mqtt"))
     }
-    # Both flavours of the bridge, whichever side the peers are on, but for the side that is no bridge.
+    # Both flavours of the bridge, whichever side the peers are on, except the side that is not a bridge.
     for flavour, words in (("rosbridge-ros1", {"yes"}), ("rosbridge-ros2", {"yes", "of ROS 2"})):
         told: dict[str, set[str]] = {kind.strip("`"): set() for kind in head[1:-1]}
         for row in itertools.takewhile(lambda row: len(row) == len(head), rows):

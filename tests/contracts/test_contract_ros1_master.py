@@ -75,7 +75,7 @@ def test_a_restarted_master_learns_everything_again(master: Master, ros1: InProc
 def test_an_early_message_that_cannot_be_serialised_does_not_silence_its_topic(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    # rospy serialises only when somebody is connected, which at this moment is a race; so its publisher is a stand-in.
+    # rospy serialises only with a connection, which at this moment is a race; so its publisher is a stand-in.
     import rospy
 
     from jacaros.ros.drivers.ros1 import topics as ros1_topics
@@ -299,7 +299,7 @@ async def main():
         await until(lambda: listening.publisher_count == 1)
         print("connected", flush=True)
         await asyncio.get_running_loop().run_in_executor(None, sys.stdin.readline)
-        # As when the network was away for longer than TCP is patient: nobody tells the master.
+        # As when the network was away for longer than TCP is patient: the master is not notified.
         for each in list(rospy.topics.get_topic_manager().get_subscriber_impl("/before").connections):
             each.close()
         await until(lambda: listening.publisher_count == 0)

@@ -58,7 +58,7 @@ def native(graph: Any) -> Callable[..., str]:
     return run
 
 
-def test_a_genuine_server_carries_out_our_goals(graph: Any, pair: Pair) -> None:
+def test_an_actionlib_server_executes_our_goals(graph: Any, pair: Pair) -> None:
     left, _ = pair
     with running(graph, "serve"):
         left.send_goal("native", "/native/count", {"target": 4, "period": 0.05}, timeout=60)

@@ -198,7 +198,7 @@ async def test(backend, publisher, hear):
         subscription.close()
     await until(lambda: (len(list(backend.rcl.subscriptions)), len(list(backend.rcl.waitables))) == before)
     backend.subscription("/a", STRING, hear)
-    await talk(publisher, "after all")
+    await talk(publisher, "after the switch")
     assert told == [], told
 """,
     )

@@ -70,7 +70,7 @@ class Ids:
         self._by_number[number] = artifact
 
     def find(self, number: Sequence[Any]) -> ArtifactId | None:
-        """The artifact that was told of."""
+        """The announced artifact."""
         return self._by_number.get((number[0], number[1]))
 
     def encode(self, value: object, outs: list[Out] | None = None) -> Any:
@@ -300,7 +300,7 @@ class RemoteWorkspace(ports.Workspace):
     def _check(self, artifact: ArtifactId) -> None:
         if artifact not in self._offers:
             reason = Structure("artifact_not_available", (artifact.name,))
-            raise UnknownArtifact(f"artifact {artifact.name} is there no more", reason)
+            raise UnknownArtifact(f"artifact {artifact.name} no longer exists", reason)
 
     # ---- asked for
 
@@ -426,7 +426,7 @@ class RemoteWorkspace(ports.Workspace):
 
 
 class _RemoteMailbox:
-    """Sends what an agent of the other side is told over the cable."""
+    """Sends messages for agents of the other side over the cable."""
 
     def __init__(self, cable: Cable) -> None:
         self._cable = cable
@@ -486,7 +486,7 @@ class RemoteServices:
         return self._providers.get(service, [])
 
     def know(self, name: str, service: str, provides: bool) -> None:
-        """An agent provides a service, or does so no more."""
+        """An agent provides a service, or no longer does."""
         known = self._providers.setdefault(service, [])
         if provides and name not in known:
             known.append(name)

@@ -10,7 +10,7 @@ from jacaros.testing import run_project
 
 FILES = {
     "auction.jcm": """
-        /* An auction on artifacts: one auctioneer, some bidders of two kinds, and somebody who watches. */
+        /* An auction on artifacts: one auctioneer, some bidders of two kinds, and an observer. */
 
         mas auction uses common/hall {
 

@@ -101,7 +101,7 @@ def test_a_message_that_does_not_arrive_comes_back() -> None:
             +!say <- .send(bob, tell, hello).
         """
         ann = here.add_agent("ann", program)
-        first.agents.know("bob", True)  # what was told of him was true once
+        first.agents.know("bob", True)  # outdated information
         await ann.achieve("ask").wait(timeout=9)
         await ann.achieve("say")
         await settled(here, there)

@@ -16,10 +16,10 @@ ROOT = Path(__file__).parents[2]
 
 INSTEAD = {
     r"(?:is|are|was|were|be|been|being|gets?) (?:\w+ )?told": "log, warn, report, raise, notify: name the actor",
-    r"(?<!there )(?:is|are|was|were) no(?! longer\b| more\b| matter\b|[.,:;)`\'\"])": "is not a, does not exist, unknown",
+    r"(?<!there )(?:is|are|was|were) no(?! longer\b| more\b| matter\b| \w+er\b|[.,:;)`\'\"])": "is not a, does not exist, unknown",
     r"(?-i:(?:is|are|was|were) none)": "is not one, does not exist, is invalid",
     r"that there (?:is|are) not": "unknown",
-    r"(?:whoever|nobody|somebody|everybody)": "you, the caller, no agent, every agent",
+    r"(?<!/)(?:whoever|nobody|somebody|everybody)(?![\"'`/(])": "you, the caller, no agent, every agent",
     r"who(?:ever)? wants": "to …",
     r"(?:no|not any|any) more(?! than\b| \w+s\b)": "no longer, not again",
     r"needs not": "need not",

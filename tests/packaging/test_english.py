@@ -22,7 +22,7 @@ def test_no_text_uses_a_phrase_to_avoid() -> None:
         ("page.md", "The failure is told to the agent.\n", "is told"),
         ("module.py", '"""Whoever calls this waits."""\n', "Whoever"),
         ("test_it.py", "def test_nobody_waits() -> None: ...\n", "nobody"),
-        ("module.py", 'MESSAGE = f"{1} is no number"\n', "is no "),
+        ("module.py", 'MESSAGE = f"{1} is no number"\n', "is no"),
     ],
 )
 def test_a_phrase_is_found_in_pages_docstrings_names_and_messages(

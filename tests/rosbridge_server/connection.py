@@ -249,7 +249,7 @@ class Connection:
             raise CallFailed("Timeout exceeded while waiting for service response") from None
         except CallFailed:
             if not bridge.ros1:
-                return None  # ROS 2 tells nobody
+                return None  # ROS 2 reports this to no client
             raise
         finally:
             client.close()

@@ -85,7 +85,7 @@ class SentGoals:
             self.under_way.remove(action)
 
     async def cancel(self, message: dict[str, Any]) -> None:
-        """Ask for cancelling; the client is told nothing."""
+        """Request cancellation without an answer to the client."""
         handle, action, key = self._handles.get(str(message.get("id")), (None, "", b""))
         if handle is not None and await handle.cancel() and handle.end is None:
             self.note(action, key, 3)
@@ -177,5 +177,5 @@ class AdvertisedAction:
                 future.set_result(message)
 
     def close(self) -> None:
-        """The client has gone, or does not offer the action any more: its goals are aborted."""
+        """The client has gone, or no longer offers the action: its goals are aborted."""
         self._server.close()

@@ -38,7 +38,7 @@ class ParameterServices:
         return SERVICES[name] if name in SERVICES and node in nodes else ""
 
     async def call(self, service: str, arguments: dict[str, Any]) -> dict[str, Any] | None:
-        """Answer one call; None when it is none of these services."""
+        """Answer one call; None for any other service."""
         node, _, name = service.rpartition("/")
         if name not in SERVICES:
             return None

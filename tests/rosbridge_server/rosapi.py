@@ -99,7 +99,7 @@ class RosApi:
         return {"nodes": [*(await self._contents()).nodes, "/rosapi"]}
 
     async def _publishers(self, topic: str) -> dict[str, Any]:
-        # The hidden topics of actions are not told, as in the genuine one.
+        # The hidden topics of actions are left out, as in the original.
         info = (await self._contents()).topics.get(topic)
         return {"publishers": sorted({each.node for each in info.publishers}) if info else []}
 

@@ -80,7 +80,7 @@ def array_of_numbers(field: FieldType, values: Any) -> Any:
     Lists, tuples, ranges, bytes, arrays of numpy and whatever else is iterable are taken.
 
     Raises:
-        TypeError: these are no numbers, or floating-point numbers with fractions for integers.
+        TypeError: these are not numbers, or floating-point numbers with fractions for integers.
         ValueError: wrong length or out of range.
     """
     if isinstance(values, str | Mapping | Set) or not isinstance(values, Iterable):
@@ -104,7 +104,7 @@ def _converted(field: FieldType, values: Any) -> Any:
         try:
             return array(code, values)
         except (OverflowError, TypeError):
-            pass  # one of them is no such number, or one such as 3.0 for an integer
+            pass  # one of them is not such a number, or is one such as 3.0 for an integer
     checked: list[Any] = [single_value(field.element, each) for each in values]
     return checked if code is None else array(code, checked)
 

@@ -19,7 +19,7 @@ MESSAGES = "jacaros/messages"
 def place_of(publisher: str, type_name: str, topic: str) -> str:
     """Where the broker has the messages of a node (``+``: of all) at a topic.
 
-    The broker keeps one message at each place, so each publisher has its own; and nobody reads what is of another type.
+    The broker keeps one message at each place, so each publisher has its own. Messages of another type are not read.
     """
     return f"{MESSAGES}/{publisher}/{type_name.replace('/', '.')}{topic}"
 

@@ -34,7 +34,7 @@ class Program:
 
     Attributes:
         lines, errors: what it wrote so far to standard output and standard error.
-        code: the exit code, once somebody has noted it.
+        code: the exit code, once it is known.
     """
 
     code: int | None = None
@@ -64,7 +64,7 @@ class Program:
 
     @property
     def complaints(self) -> list[str]:
-        """The lines of standard error; that something of the graph or a message was late on a busy machine is none."""
+        """The lines of standard error, without those about late discovery and messages on a busy machine."""
         late = (
             "[ros] waiting for",
             "still trying",

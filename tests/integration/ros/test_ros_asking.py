@@ -91,9 +91,7 @@ def empty_graph(kind: str, tmp_path: Path) -> Iterator[tuple[str, str]]:
     master.close()
 
 
-def test_a_graph_in_which_nobody_is_says_so(
-    ask: Callable[..., Program], empty_graph: tuple[str, str]
-) -> None:
+def test_an_empty_graph_is_reported(ask: Callable[..., Program], empty_graph: tuple[str, str]) -> None:
     asked = ask("list", *empty_graph, "--timeout", "5")
     assert asked.code == 1, asked.lines
     assert any("no other node is in the" in line for line in asked.errors)

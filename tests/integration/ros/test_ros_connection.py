@@ -36,7 +36,7 @@ def test_a_publisher_that_dies_and_comes_back(
     say(second, "again", agents)
     second.publish("/chatter", {"data": "end"})
     assert agents.end() == 0
-    # What is heard may be told before the connection is: it is looked at twice a second.
+    # Output can appear before the connection is reported, which is checked twice a second.
     lines = [
         line for n, line in enumerate(agents.lines) if "heard" not in line or line not in agents.lines[:n]
     ]

@@ -11,7 +11,7 @@ from processes import Agents, Program, WorldProcess
 
 PROGRAMS = Path(__file__).parent / "programs"
 YARD = Path(__file__).parent / "worlds" / "yard.yaml"
-CURE = "start it with `roscore`, or set ROS_MASTER_URI to its address"
+HELP = "start it with `roscore`, or set ROS_MASTER_URI to its address"
 
 
 @pytest.fixture
@@ -38,7 +38,7 @@ def test_a_master_that_is_late_is_awaited_in_plain_words(
     )
     told = [
         f"[ros] waiting for the ROS master at {late_master.uri}",
-        f"[ros] the ROS master at {late_master.uri} is missing; still trying; {CURE}",
+        f"[ros] the ROS master at {late_master.uri} is missing; still trying; {HELP}",
         f"[ros] found the ROS master at {late_master.uri}",
     ]
     try:
@@ -63,7 +63,7 @@ def test_a_robot_that_is_late_is_awaited_in_plain_words(
 ) -> None:
     agents = run_agents("short.asl")
     agents.until_error("is missing")
-    # On ROS 2 it is also told that nobody else is there, which is tested where graphs are looked at.
+    # ROS 2 also warns about an empty graph; another test covers that.
     [told] = [line for line in agents.errors if "is missing" in line]
     assert told == (
         "[Wheels] no publisher on topic /odom (nav_msgs/msg/Odometry); still listening; "

@@ -33,7 +33,7 @@ class Arm(RosArtifact):
 
     @operation
     async def empty(self) -> None:
-        """Want to know what nobody says."""
+        """Request a transform that no node publishes."""
         await self.call(self.emptier, 2.0, must_succeed=True)
 
 

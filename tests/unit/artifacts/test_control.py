@@ -86,7 +86,7 @@ def test_a_turn_stops_within_a_degree_whatever_the_latency(late: int, degrees: f
     assert math.degrees(base.pose.heading) == pytest.approx(degrees, abs=1)
 
 
-def test_wheels_that_stick_below_a_speed_still_come_to_an_end() -> None:
+def test_a_motion_ends_although_wheels_stick_below_a_speed() -> None:
     base = Base(1, Velocity(0.019, 0.049))
     base.follow(Straight(1.0))
     base.follow(Turn(2.0))

@@ -412,7 +412,7 @@ def test_a_silent_publisher_is_lost_where_messages_are_expected() -> None:
     in_lab(body, None)
 
 
-def test_without_the_option_nothing_is_said_of_connections_and_a_disposed_artifact_looks_no_more() -> None:
+def test_connections_are_watched_only_with_the_option_and_until_disposal() -> None:
     async def body(lab: Lab) -> None:
         lab.backend.publisher("/odom", ODOMETRY)
         watcher = lab.watch(await lab.make(ArtOdometry))

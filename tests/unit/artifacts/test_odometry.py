@@ -29,7 +29,7 @@ def test_verbose_odometry_gives_one_change_and_no_signal_for_each_new_message() 
         assert watcher.signals == []
         changed = len(watcher.changes)
         await lab.sleep(5)
-        assert len(watcher.changes) == changed, "a standing robot is no news"
+        assert len(watcher.changes) == changed, "a standing robot causes no change"
 
     in_lab(body)
 

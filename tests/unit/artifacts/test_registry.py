@@ -52,7 +52,7 @@ def test_a_dotted_python_path_is_imported() -> None:
 @pytest.mark.parametrize(
     "name", ["os.path", "json.JSONDecoder", "jacaros.env.Artifact", "nowhere.Thing", "a b.C", ""]
 )
-def test_what_is_no_artifact_type_is_unknown(name: str) -> None:
+def test_other_names_are_unknown_artifact_types(name: str) -> None:
     with pytest.raises(UnknownArtifactType):
         find_type(name)
 

@@ -70,7 +70,7 @@ def test_strings_and_atoms_stay_apart() -> None:
     assert term(Atom("kitchen")) is atom("kitchen")
 
 
-def test_an_atom_that_is_no_plain_word_is_quoted() -> None:
+def test_an_atom_that_is_not_a_plain_word_is_quoted() -> None:
     assert term(Atom("Living room")) is atom("'Living room'")
     assert to_value(atom("'Living room'")) == "Living room"
     assert atom_of("Odom") is atom("'Odom'")

@@ -1,4 +1,4 @@
-"""Programs whose agents believe in properties that are no plain numbers and texts, and that meddle with such beliefs."""
+"""Programs whose agents believe in properties that are not plain numbers and strings, and that meddle with such beliefs."""
 
 from collections.abc import Callable
 from pathlib import Path

@@ -17,7 +17,7 @@ class Client:
         self.goals[goal_id] = SentGoal(f"message of {goal_id}", now)
 
     def hears(self, now: float = 0.0, times: int = 1, **states: State) -> list[tuple[Any, ...]]:
-        """Take the server's list of goals so many times; gives what was told by that."""
+        """Receive the server's list of goals N times; return what it reported."""
         self.told.clear()
         for _ in range(times):
             self.goals.take_status([(name, state, "") for name, state in states.items()], now)

@@ -229,7 +229,7 @@ def test_attempts_to_call_end_in_time_when_the_clock_jumps_back() -> None:
 
         async def nobody(rest: float | None) -> None:
             rests.append(rest)
-            raise ServiceUnavailable("nobody is there")
+            raise ServiceUnavailable("no node is there")
 
         clock.move_to(100.0)
         call = asyncio.ensure_future(call_when_offered(clock, lines.append, "service /x", nobody, 1.0))

@@ -101,7 +101,7 @@ class ServerLife(RuleBasedStateMachine):
                     return {"last": 7}
                 raise
             if order == "abort":
-                raise Abort("no more")
+                raise Abort("enough")
             if order == "fail":
                 raise ValueError("broken")
             return {"last": 3} if order == "finish" else {"nonsense": 1}

@@ -37,7 +37,7 @@ class Carrier:
     def send_goal(self, goal_id: str, goal: Any) -> None:
         self.sent.append(goal_id)
         if len(self.sent) <= self._absent:
-            self._loop.call_soon(self.sender.fail, goal_id, ServerUnavailable("nobody there"))
+            self._loop.call_soon(self.sender.fail, goal_id, ServerUnavailable("no server"))
         else:
             self._loop.call_soon(self.sender.accepted, goal_id)
 

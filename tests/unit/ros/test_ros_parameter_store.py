@@ -136,7 +136,7 @@ def test_unknown_names_are_reported_with_the_known_ones() -> None:
 
 
 @pytest.mark.parametrize("value", [None, {"a": 1}, [1, "a"], [[1]], [b"a"], math.nan, object()])
-def test_other_values_are_no_parameters(value: Any) -> None:
+def test_other_values_are_refused_as_parameters(value: Any) -> None:
     with pytest.raises(ParameterRefused, match="expected a bool, a number"):
         checked_value(value)
 

@@ -294,7 +294,7 @@ def test_a_question_blocks_until_its_answer_and_other_messages_wait_for_the_loop
             await asyncio.sleep(0)
             assert [message["op"] for message in got] == ["publish"]
             with pytest.raises(TimeoutError):
-                link.ask({"op": "nothing", "id": "nobody answers"}, 0.05)
+                link.ask({"op": "nothing", "id": "never answered"}, 0.05)
 
     run(main, WallClock())
 

@@ -19,7 +19,7 @@ def end_of_call(takes: float, offered: bool) -> str:
         await clock.sleep(min(rest, takes))
         if rest < takes:
             raise TimeoutError
-        raise ServiceUnavailable("nobody is there")
+        raise ServiceUnavailable("no node is there")
 
     async def main() -> str:
         with pytest.raises((ServiceUnavailable, CallTimedOut)) as caught:
@@ -51,7 +51,7 @@ def test_the_1st_10th_and_100th_unsuccessful_wait_is_logged() -> None:
 
     async def attempt(_: float | None) -> str:
         if not there:
-            raise ServiceUnavailable("nobody is there")
+            raise ServiceUnavailable("no node is there")
         return "answer"
 
     async def call(seconds: float) -> None:

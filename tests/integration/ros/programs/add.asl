@@ -1,4 +1,4 @@
-// Adds by a service: nobody offers it at first, then somebody does; a second server never answers.
+// Adds by a service that no node offers at first; a second server never answers.
 !begin.
 
 +!begin

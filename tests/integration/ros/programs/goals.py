@@ -1,4 +1,4 @@
-"""A client of the world's actions, plain Python over the port: sends goals one after the other, prints what became of them.
+"""A client of the world's actions, plain Python over the port: sends goals in turn, prints their outcomes.
 
 Arguments: the kind of graph.
 """

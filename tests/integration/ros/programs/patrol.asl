@@ -1,4 +1,4 @@
-// Patrols between four corners; at half a charge it goes to its dock, charges, and goes on where it was heading.
+// Patrols between four corners; at half a charge it goes to its dock, charges, and continues to where it was heading.
 corner(0, 0, 0).
 corner(1, 1, 0).
 corner(2, 1, 1).

@@ -22,7 +22,7 @@ HERE = Place(1, 1)
 
 
 def leaves(type_name: str, before: str = "") -> Iterator[tuple[str, FieldType]]:
-    """The paths of all fields that are no messages themselves, of arrays of messages those of all elements."""
+    """The paths of all fields that are not messages themselves, of arrays of messages those of all elements."""
     for name, kind in KNOWN.fields(type_name).items():
         path = f"{before}{name}"
         if not kind.is_message or kind.base in TIMES:

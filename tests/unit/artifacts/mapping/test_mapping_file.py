@@ -225,7 +225,7 @@ WRONG = {
         "1:34: 'mode' is 'lazy' | choose one of: verbose, on_demand",
     ),
     "rate": ("properties: {a: {topic: t, rate: 0}}", "1:34: 'rate' is 0, but must be above zero | "),
-    "on demand of nobody": (
+    "on demand without a publisher": (
         "properties: {a: {topic: t, mode: on_demand}}",
         "1:14: no operation requests `a`, which is updated on demand | add an operation: look: {refresh: a}",
     ),
@@ -367,7 +367,7 @@ WRONG = {
         "parameters: {a: 1, b: {default: 2, parameter: c}}\noperations: {go: {set_parameter: b, value: 1}}",
         "2:34: `go` names no node, and `b` is not a parameter of our own | our own parameters: a, c",
     ),
-    "parameter of nobody": (
+    "parameter of an unknown node": (
         "parameters: {a: {minimum: 1}}",
         (
             "1:17: the parameter `a` has neither a node nor a default | write the node that has it, "
@@ -471,7 +471,7 @@ def test_a_file_that_is_not_there(tmp_path: Path) -> None:
         load_mapping(tmp_path / "no.yaml")
 
 
-def test_a_file_that_is_no_text(tmp_path: Path) -> None:
+def test_a_file_that_is_not_text(tmp_path: Path) -> None:
     (tmp_path / "m.yaml").write_bytes(b"\xff\xfe")
     with pytest.raises(MappingError, match="the file is in UTF-16"):
         load_mapping(tmp_path / "m.yaml")

@@ -230,7 +230,7 @@ def test_mismatches_are_reported_with_location_and_help(name: str) -> None:
     assert any(each.startswith(expected) for each in found), found
 
 
-def test_all_of_it_is_told_at_once() -> None:
+def test_all_problems_are_reported_in_one_pass() -> None:
     found = told(ODOMETRY.format("fields: [a, b]") + "\n" + TWIST.format("fields: {c: 1, d: 2}"))
     assert len(found) == 4
 
