@@ -88,7 +88,7 @@ def interrupted(
 ) -> tuple[int, str, str]:
     """Exit code, further output and errors of a run that gets one signal when it has printed ``begun``.
 
-    Between that and the step there is a moment; *in_the_step*, the signal arrives when the warning about the step has been logged.
+    The step begins a moment later. With *in_the_step*, the signal arrives after the warning about the step.
     """
     (folder / "bob.asl").write_text(program, encoding="utf-8")
     command = [sys.executable, "-m", "jacaros", "run", "bob.asl", *options]

@@ -4,7 +4,7 @@
 
 It behaves like rosbridge_suite: version 0.11 for ROS 1, version 2 for ROS 2, each with rosapi beside it.  What it
 says is the line ``@{"port": N}``.  Then it takes commands as JSON lines on standard input, like the peers of the
-contract tests: nodes of its own graph, made by ``node``, do what ``peer`` is told, and the bridge itself can be
+contract tests: nodes of its own graph, made by ``node``, follow the commands of ``peer``, and the bridge itself can be
 stopped, started and frozen while the graph lives on, as on a robot.
 """
 
