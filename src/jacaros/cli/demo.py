@@ -5,7 +5,7 @@ from pathlib import Path
 
 import click
 
-from jacaros.cli.outputs import wrong_output
+from jacaros.cli.usage import examples, usage_error
 
 PROGRAM = Path(__file__).with_name("patrol.asl")
 ROBOT = ("--world", "patrol", "--mapping", "nav2.yaml", "--mapping", "turtlebot4.yaml")
@@ -13,7 +13,10 @@ ROBOT = ("--world", "patrol", "--mapping", "nav2.yaml", "--mapping", "turtlebot4
 
 
 @click.command(
-    "demo", context_settings={"ignore_unknown_options": True}, short_help="Show a robot on patrol."
+    "demo",
+    context_settings={"ignore_unknown_options": True},
+    short_help="Show a robot on patrol.",
+    epilog=examples("jacaros demo", "jacaros demo --view=terminal", "jacaros demo --save"),
 )
 @click.option(
     "--save", is_flag=True, help="Write the program to patrol.asl in this folder, and do not run it."
@@ -46,7 +49,7 @@ def _save(file: Path) -> None:
         with file.open("xb") as copy:
             copy.write(PROGRAM.read_bytes())
     except FileExistsError as error:
-        raise wrong_output(f"file exists: `{file}`", "rename it, or change to another folder") from error
+        raise usage_error(f"file exists: `{file}`", "rename it, or change to another folder") from error
     except OSError as error:
-        raise wrong_output(f"cannot write `{file}`: {error.strerror}", "change to another folder") from error
+        raise usage_error(f"cannot write `{file}`: {error.strerror}", "change to another folder") from error
     click.echo(f"wrote {file}; run it with\n  jacaros run {file} {shlex.join(ROBOT)} --view")
