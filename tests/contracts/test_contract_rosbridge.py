@@ -43,7 +43,7 @@ def test_a_restarted_server_is_found_again_and_gets_everything_again(bridged: Be
     bridged.wait_until(lambda: client.connected() is False, "the loss is noticed")
     assert any("rosbridge server at ws://127.0.0.1" in line for line in client.log())
     client.publish("/to_robot", {"data": "lost"})
-    assert any("messages for /to_robot are lost" in line for line in client.log())
+    assert any("topic /to_robot: messages are lost" in line for line in client.log())
     bridged.server.do("start")
     bridged.wait_until(client.connected, "the connection is there again")
     assert client.connection() == [True, False, True]

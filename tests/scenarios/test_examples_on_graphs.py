@@ -105,7 +105,7 @@ def test_the_patrol_continues_after_a_recharge(
     world.until_truth(is_back_on_patrol, "a corner after a recharge")
     agents.stop()
     judge(example.check(world.close(), cycles=1), agents)
-    assert [line.split(" at ")[0] for line in world.errors] == ["the battery of turtlebot is"]
+    assert [line.split(" at ")[0] for line in world.errors] == ["warning: the battery of `turtlebot` is"]
 
 
 @not_on_kilted

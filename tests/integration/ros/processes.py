@@ -72,7 +72,7 @@ class Program:
             "still listening",
             "later than earlier ones",
             "no other node is in the ROS",
-            "[ros] /clock is there",
+            "[ros] /clock found",
             # DDS meets shared memory of a process that another test has killed, and takes the network instead.
             "RTPS_TRANSPORT_SHM",
         )
