@@ -14,7 +14,7 @@ from importlib import import_module
 import click
 
 from jacaros.cli.outputs import OUTPUT_GONE
-from jacaros.cli.usage import did_you_mean, examples, usage_error
+from jacaros.cli.usage import did_you_mean, examples, in_our_form, usage_error
 from jacaros.errors import JacarosError, UsageError
 from jacaros.excerpts import help_line
 from jacaros.output import PLAIN
@@ -147,8 +147,7 @@ def call(arguments: list[str] | None = None) -> int:
     except click.exceptions.Abort:
         return 130
     except click.ClickException as wrong:
-        wrong.show()
-        return 2
+        return _report(in_our_form(wrong), 2)
     except UsageError as wrong:
         return _report(wrong, 2)
     except JacarosError as wrong:

@@ -1,5 +1,7 @@
 """Errors of wrong usage, and the examples at the end of help texts."""
 
+import click
+
 from jacaros.errors import UsageError
 from jacaros.excerpts import help_line, printable
 
@@ -20,6 +22,26 @@ def usage_error(what: str, help: str = "") -> UsageError:
 def did_you_mean(names: list[str]) -> str:
     """Return the help that names what may have been meant; empty without names."""
     return f"did you mean {' or '.join(f'`{name}`' for name in names)}?" if names else ""
+
+
+def in_our_form(wrong: click.ClickException) -> UsageError:
+    """Return an error of click in the form of all other errors."""
+    path = wrong.ctx.command_path if isinstance(wrong, click.UsageError) and wrong.ctx else "jacaros"
+    overview = f"`{path} --help` lists the options"
+    if isinstance(wrong, click.NoSuchOption):
+        near = sorted(wrong.possibilities or ())
+        return usage_error(f"unknown option: `{wrong.option_name}`", did_you_mean(near) or overview)
+    if isinstance(wrong, click.MissingParameter) and wrong.param is not None:
+        is_option = isinstance(wrong.param, click.Option)
+        name = (
+            wrong.param.opts[0] if is_option else wrong.param.make_metavar(click.Context(click.Command("")))
+        )
+        return usage_error(f"missing {'option' if is_option else 'argument'}: `{name}`", overview)
+    if isinstance(wrong, click.BadParameter) and wrong.param is not None:
+        what = wrong.message[:1].lower() + wrong.message[1:].rstrip(".")
+        return usage_error(f"{wrong.param.opts[0]}: {what}", overview)
+    text = wrong.format_message()
+    return usage_error(text[:1].lower() + text[1:].rstrip("."), overview)
 
 
 def examples(*commands: str) -> str:

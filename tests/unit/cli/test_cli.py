@@ -58,6 +58,13 @@ def test_run_is_the_default_command(folder: Path, capsys: pytest.CaptureFixture[
         (["nonsense"], "error: unknown command: `nonsense`\n  = help: `jacaros --help` lists the commands"),
         (["chek"], "did you mean `check`?"),
         (["run", "house.yaml"], "--mapping house.yaml"),
+        (["run", "hello.asl", "--worl", "x"], "error: unknown option: `--worl`\n  = help: did you mean"),
+        (["run"], "error: missing argument: `FILE`"),
+        (
+            ["sim", "empty"],
+            "error: missing option: `--ros`\n  = help: `jacaros sim --help` lists the options",
+        ),
+        (["run", "hello.asl", "--for", "x"], "error: --for: 'x' is not a valid float"),
         (["run", "hello"], "did you mean `hello.asl`?"),
         (["run", "hello.asl", "--ros-args", "-q"], "unknown argument after --ros-args: `-q`"),
         (["sim", "empty", "--ros", "ros2", "--clock", "fast"], "--ros memory"),

@@ -154,7 +154,9 @@ def test_unknown_and_faulty_actions_are_reported(tmp_path: Path, monkeypatch: py
     schema = GenpySchema([tmp_path])
     with pytest.raises(UnknownInterface, match=r"no YActionAction\); is it x/action/Y\?; install"):
         schema.action_class("x/action/YAction", "Goal")
-    with pytest.raises(UnknownInterface, match="invalid definition of lab_msgs/action/Cut: expected an action def"):
+    with pytest.raises(
+        UnknownInterface, match="invalid definition of lab_msgs/action/Cut: expected an action def"
+    ):
         schema.new("lab_msgs/action/Cut_Goal")
     with pytest.raises(UnknownInterface, match="lab_msgs/msg/int33"):
         schema.new("lab_msgs/action/Odd_Goal")
