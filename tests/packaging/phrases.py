@@ -16,7 +16,8 @@ ROOT = Path(__file__).parents[2]
 
 INSTEAD = {
     r"(?:is|are|was|were|be|been|being|gets?) (?:\w+ )?told": "log, warn, report, raise, notify: name the actor",
-    r"(?<!there[ \n])(?:is|are|was|were) no(?! longer\b| more\b| matter\b| (?:fast|slow|bett|great|small|larg|fin)er\b|[.,:;)`\'\"])": (
+    r"(?<!there[ \n])(?:is|are|was|were) no"
+    r"(?! longer\b| more\b| matter\b| (?:fast|slow|bett|great|small|larg|fin)er\b|[.,:;)`\'\"])": (
         "is not a, does not exist, unknown"
     ),
     r"(?-i:(?:is|are|was|were) none)": "is not one, does not exist, is invalid",
