@@ -1,4 +1,4 @@
-"""Did the robot drive out, turn around, come back and turn around again?  Judged from the ground truth."""
+"""Judge from the ground truth whether the robot drove out, turned around, came back and turned around again."""
 
 import math
 import sys
@@ -9,7 +9,7 @@ from jacaros.testing.paths import angle_between, distance, seen_from, turns
 
 
 def check(truth: GroundTruth, near: float = 0.05) -> Verdict:
-    """Judge a run that began with the robot at rest, and ends at most *near* metres from there."""
+    """Judge a run that starts with the robot at rest and must end at most *near* metres from the start."""
     verdict = Verdict()
     path = [*truth.path(), truth.latest()]
     start, end = path[0], path[-1]

@@ -1,21 +1,21 @@
-// Out and back: drive ahead for a while, turn around, come back by the same time, turn around again.
+// Out and back: drive ahead for a while, turn around, drive back for the same time, turn around again.
 
-// Plans that come with jacaros, among them use_artifact.
+// Plans that come with JaCaROS, including use_artifact.
 { include("$jacaros/artifacts.asl") }
 
-// The first goal of the agent: it wants to `start`.
+// The initial goal of the agent: achieve `start`.
 !start.
 
-// A plan: to reach the goal `start`, do these steps in turn.
+// A plan: to achieve the goal `start`, run these steps in order.
 +!start
-  <- // An artifact is a thing that the agent uses; this one drives the robot.
+  <- // An artifact is something that the agent uses; this one drives the robot.
      !use_artifact("wheels", "ArtCmdVel", [frame(map)]);
      for (.member(Leg, [out, back])) {
         .print("driving ", Leg);
-        move(25);     // drive ahead for 2.6 seconds: 26 commands, ten a second
-        rotate(180);  // degrees, to the left; ends when odometry says so
+        move(25);     // drive ahead for 2.6 seconds: 26 commands at 10 Hz
+        rotate(180);  // degrees, to the left; ends when odometry has measured them
      };
-     getCurrentPose(X, Y, _Heading);  // names with a capital are variables: they get their values here
+     getCurrentPose(X, Y, _Heading);  // capitalised names are variables: they get their values here
      .print("I believe to be ", math.round(1000 * math.sqrt(X * X + Y * Y)),
             " mm from where I started");
-     .stopMAS.  // end the whole system
+     .stopMAS.  // stop the whole system

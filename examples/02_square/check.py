@@ -1,4 +1,4 @@
-"""Did the robot drive a square of one metre, corner by corner?  Judged from the ground truth."""
+"""Judge from the ground truth whether the robot drove a square of one metre, corner by corner."""
 
 import math
 import sys
@@ -9,11 +9,11 @@ from jacaros.testing import Verdict, judge
 from jacaros.testing.paths import angle_between, distance, seen_from, to_segment, turns
 
 CORNERS = ((1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.0, 0.0))
-"""Where the robot turns, in metres ahead of and to the left of where it started."""
+"""Corners where the robot turns: metres ahead and to the left of its start."""
 
 
 def check(truth: GroundTruth) -> Verdict:
-    """Judge a run that began with the robot at rest."""
+    """Judge a run that starts with the robot at rest."""
     verdict = Verdict()
     path = [*truth.path(), truth.latest()]
     start, end = path[0], path[-1]

@@ -1,12 +1,12 @@
-// A square: four sides of one metre, back to where and how the robot stood at the beginning.
+// A square: four sides of one metre, back to the start and facing the same way.
 
 { include("$jacaros/artifacts.asl") }
 
 !start.
 
 +!start
-  <- // Drives by odometry: an operation ends when the robot has come as far as it was told to.  With frame(map)
-     // localisation puts odometry right, which drifts, as wheels slip.
+  <- // Drives by odometry: an operation ends when the robot has gone the whole way.  Odometry drifts, because
+     // wheels slip; with frame(map), localisation corrects it.
      !use_artifact("wheels", "ArtCmdVelMuxAndOdometry", [frame(map)]);
      for (.range(Side, 1, 4)) {
         moveForward(1);  // metres

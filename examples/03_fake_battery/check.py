@@ -1,6 +1,6 @@
-"""Did the agent tell every state of the battery, in order and at the right level?
+"""Judge whether the agent reported every state of the battery, in order and at the right level.
 
-Judged from the agent's output; with a ground truth file also from the battery of the robot::
+Judged from the agent's output; with a ground truth file, also from the robot's battery::
 
     python check.py OUTPUT_FILE [GROUND_TRUTH_FILE]
 """
@@ -14,14 +14,14 @@ from jacaros.sim import GroundTruth
 from jacaros.testing import Verdict
 
 STATES = ((100, "Full Battery"), (50, "Medium Battery"), (20, "Low Battery"), (0, "empty"))
-"""Percent from which on the battery is said to be so."""
+"""States of the battery, each with the percentage at which the agent must report it."""
 
 
 def check(output: Iterable[str], truth: GroundTruth | None = None) -> Verdict:
-    """Judge the lines of the output, and what truly happened to the battery.
+    """Judge the lines of the output and, with *truth*, the level of the robot's battery.
 
-    A timer battery must be told at exactly the right percent.  A robot tells its battery once a second, so
-    that one may be a percent late.
+    The states of a timer battery must be reported at exactly the right percentage.  A robot publishes its battery
+    once a second, so these reports may be one percent late.
     """
     verdict = Verdict()
     told = [match for line in output if (match := re.fullmatch(r"\[\w+\] (\d+) %: (.+)", line.rstrip()))]
@@ -32,17 +32,17 @@ def check(output: Iterable[str], truth: GroundTruth | None = None) -> Verdict:
     for match, (level, state) in zip(told, STATES, strict=False):
         percent = int(match.group(1))
         verdict.measure(f"percent at '{state}'", percent)
-        verdict.expect(level - late <= percent <= level, f"'{state}' was told at {percent} %, not {level} %")
+        verdict.expect(level - late <= percent <= level, f"'{state}' reported at {percent} %, not {level} %")
     if truth is not None:
         levels = [event.data["level"] for event in truth.events_of("battery", "battery_empty")]
-        # The agent, which knows whole percents only, ends the run when the last half percent is left.
+        # The agent sees whole percentages only, so it may end the run with half a percent left.
         expected = [*range(99, -1, -1)]
         verdict.expect(levels in (expected, expected[:-1]), f"the battery went through {levels}")
     return verdict
 
 
 def main(arguments: list[str]) -> int:
-    """Judge the files of the command line; the exit code."""
+    """Judge the files named on the command line; return the exit code."""
     if not 1 <= len(arguments) <= 2:
         print(__doc__)
         return 2

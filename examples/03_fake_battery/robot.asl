@@ -1,4 +1,4 @@
-// A battery runs down from 100 to 0 percent, and the agent tells what it thinks of it.
+// A battery runs down from 100 to 0 percent, and the agent reports its state.
 
 { include("$jacaros/artifacts.asl") }
 
@@ -8,12 +8,12 @@
 +!start : battery_source(Source)
   <- !use_artifact("battery", "ArtSimBattery", [source(Source)]).
 
-// Without such a belief it is a battery that a timer drains, one percent a second.
+// Without this belief, a timer drains the battery by one percent per second.
 +!start
   <- !use_artifact("battery", "ArtSimBattery").
 
-// The artifact shows battery(Percent) and diagnostics(Text).  The agent believes what it sees, and a
-// plan that begins with +diagnostics runs whenever there is a new one.
+// The artifact has the observable properties battery(Percent) and diagnostics(Text).  They become beliefs of the
+// agent, and a plan that begins with +diagnostics runs whenever the text changes.
 +diagnostics(Text) : battery(Percent)
   <- .print(Percent, " %: ", Text).
 

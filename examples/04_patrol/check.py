@@ -1,4 +1,4 @@
-"""Did the robot go from corner to corner, recharge when it had to, and go on where it had left off?
+"""Judge whether the robot patrolled the corners in order, recharged in time, and continued where it left off.
 
 Judged from the ground truth.
 """
@@ -13,14 +13,14 @@ from jacaros.testing import Verdict, judge
 from jacaros.testing.paths import Stay, distance, judge_recharging, to_segment
 
 CORNERS = ((0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0))
-"""The route, in metres, from where the robot begins."""
+"""Corners of the route, in metres; the robot starts at the first one."""
 
 REACHED = 0.05
-"""A corner is visited when the robot comes so near, in metres."""
+"""Distance within which a corner counts as visited, in metres."""
 
 
 class Visit(NamedTuple):
-    """The robot was at a corner, from ``begin`` to ``end``."""
+    """A visit to a corner, from ``begin`` to ``end`` (s)."""
 
     corner: int
     begin: float
@@ -28,7 +28,7 @@ class Visit(NamedTuple):
 
 
 def check(truth: GroundTruth, cycles: int = 10, near: float = REACHED) -> Verdict:
-    """Judge a run of at least so many recharges; corners are visited at most *near* metres off."""
+    """Judge a run with at least *cycles* recharges; a corner is visited within *near* metres."""
     verdict = Verdict()
     path = [*truth.path(), truth.latest()]
     found = visits(path, near)
@@ -49,7 +49,7 @@ def check(truth: GroundTruth, cycles: int = 10, near: float = REACHED) -> Verdic
 
 
 def visits(path: Sequence[Sample], near: float = REACHED) -> list[Visit]:
-    """All visits of corners, oldest first."""
+    """Return all visits to corners, oldest first."""
     found: list[Visit] = []
     at = None
     for sample in path:
@@ -66,10 +66,10 @@ def visits(path: Sequence[Sample], near: float = REACHED) -> list[Visit]:
 def judge_next(
     verdict: Verdict, before: Visit, after: Visit, between: Sequence[Stay], path: Sequence[Sample]
 ) -> None:
-    """Expect the visit *after* where the robot was heading when it left the corner *before*."""
+    """Expect the visit *after* at the corner that the robot was heading for when it left *before*."""
     heading_for = [(before.corner + 1) % len(CORNERS)]
     if between and straight_to_dock(before, between[0], path):
-        # It left from the corner itself: perhaps before driveTo knew that it had arrived.
+        # It left from the corner itself, perhaps before driveTo noticed its arrival.
         heading_for.append(before.corner)
     verdict.expect(
         after.corner in heading_for,
@@ -78,7 +78,7 @@ def judge_next(
 
 
 def straight_to_dock(before: Visit, stay: Stay, path: Sequence[Sample]) -> bool:
-    """Whether the robot drove from the corner to the dock without any other way before."""
+    """Return whether the robot drove straight from the corner to the dock."""
     way = [sample for sample in path if before.end <= sample.time <= stay.begin]
     dock = way[-1].x, way[-1].y
     return all(to_segment(sample, CORNERS[before.corner], dock) <= 2 * REACHED for sample in way)

@@ -1,4 +1,4 @@
-"""Starts the patrol's world and its agents on ROS 2: ``ros2 launch examples/04_patrol/patrol_launch.py``."""
+"""Start the world and the agents of the patrol on ROS 2: ``ros2 launch examples/04_patrol/patrol_launch.py``."""
 
 from pathlib import Path
 
@@ -9,7 +9,7 @@ FOLDER = Path(__file__).parent
 
 
 def generate_launch_description() -> LaunchDescription:
-    """The world, in place of a robot, and the agents, which follow its clock."""
+    """Return the world, in place of a robot, and the agents, which follow its clock."""
     world = Node(
         package="jacaros",
         executable="jacaros",

@@ -1,7 +1,7 @@
-"""Were the tasks of each room done in that room, in order, the rooms cleaned, and the battery never empty?
+"""Judge whether all tasks were done in their rooms and in order, the rooms are clean, and the battery never ran empty.
 
-Judged from the ground truth: the world takes note of every task with the room that the robot is truly in, and of the dirt
-that is left.
+Judged from the ground truth: the world logs every task with the room that the robot is actually in, and the dirt that
+remains.
 """
 
 import sys
@@ -19,14 +19,14 @@ ROUND = (
     ("bathroom", "scrub tub"),
     ("bathroom", "mop floor"),
 )
-"""The rooms with their tasks; in the hallway, where a round ends, there is nothing to do."""
+"""Rooms of a round with their tasks; the hallway, where a round ends, has none."""
 
 HALLWAY = (0.0, 0.0)
 PLACES = {"living_room": (2.0, 0.0), "kitchen": (2.0, 2.0), "bathroom": (0.0, 2.0)}
-"""The corner of each room that is cleaned, in metres."""
+"""Where the robot stands to clean each room, in metres."""
 
 ROUNDS_TO_CLEAN = 4
-"""Each round removes at least that part of the dirt, a quarter."""
+"""Rounds after which all is clean: each removes at least a quarter of the dirt."""
 
 
 def check(
@@ -36,7 +36,7 @@ def check(
     tasks_of_round: Sequence[tuple[str, str]] = ROUND,
     places: Mapping[str, Place] = PLACES,
 ) -> Verdict:
-    """Judge a run of so many rounds and at least so many recharges."""
+    """Judge a run of *rounds* rounds with at least *recharges* recharges."""
     verdict = Verdict()
     tasks = truth.events_of("task")
     verdict.measure("tasks", len(tasks))
@@ -52,7 +52,7 @@ def check(
 
     judge_dirt(verdict, truth, rounds, places)
 
-    # A round is over when the robot is in the hallway: after the last task, and before the first one of the next.
+    # A round ends in the hallway, after its last task and before the first task of the next round.
     ends = [event.time for event in tasks[len(tasks_of_round) - 1 :: len(tasks_of_round)]]
     begins = [event.time for event in tasks[len(tasks_of_round) :: len(tasks_of_round)]]
     at_home = [sample.time for sample in truth.path() if distance(sample, *HALLWAY) <= 0.05]
@@ -70,7 +70,7 @@ def check(
 def judge_dirt(
     verdict: Verdict, truth: GroundTruth, rounds: int, places: Mapping[str, Place] = PLACES
 ) -> None:
-    """Judge what is left of the dirt, and where the robot was when it removed the rest."""
+    """Judge how much dirt remains, and where the robot was when it removed the rest."""
     for room in truth.world["rooms"]:
         for dirt in room.get("dirt", []):
             kind, before = dirt["kind"], dirt["grams"]

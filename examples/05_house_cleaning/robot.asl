@@ -1,18 +1,18 @@
-// House cleaning: from room to room, in each room the tasks of that room; when the battery is low, even in the
-// middle of a task, to the dock, back into the room, and on.
+// House cleaning: drive from room to room and do the tasks of each.  When the battery is low, even in the middle of
+// a task, recharge in the dock, return to the room, and continue.
 
 { include("$jacaros/artifacts.asl") }
 
 /* What the agent knows */
 
-room(0, hallway, 0, 0).  // number, name, and where to go, in metres
+room(0, hallway, 0, 0).  // number, name, x and y in metres
 room(1, living_room, 2, 0).
 room(2, kitchen, 2, 2).
 room(3, bathroom, 0, 2).
 dock(1, 1).
-rounds(4).  // so often the house is cleaned
+rounds(4).  // how often to clean the house
 
-done(0).  // rounds done
+done(0).  // rounds completed
 recharges(0).
 
 !start.
@@ -25,22 +25,22 @@ recharges(0).
 
 /* From room to room */
 
-// The household shows in atRoom(Number) which room is the present one; it begins in the hallway.
+// The property atRoom(Number) of the household is the current room, at first the hallway.
 +!clean_house : done(N) & rounds(N) & recharges(R)
   <- .print("The house is clean: ", N, " rounds, the battery charged ", R, " times.");
      .stopMAS.
 
-// A room needs the wheels from the way there to the last swing.
+// Cleaning a room needs the wheels, from the drive there to the last swing.
 @room[needs(wheels)]
 +!clean_house
-  <- updateWhereAmI;  // the next room is the present one now
+  <- updateWhereAmI;  // make the next room the current one
      ?atRoom(Number);
      ?room(Number, Room, X, Y);
      driveTo(X, Y);
      !clean_room(Number, Room);
      !!clean_house.
 
-// The round ends in the hallway, where there is nothing to do.
+// A round ends in the hallway, which has no tasks.
 +!clean_room(_, hallway) : done(N)
   <- -+done(N + 1);
      .print("hallway: round ", N + 1, " is done").
@@ -49,16 +49,16 @@ recharges(0).
   <- clean(Number);
      rotate(-5);
      rotate(10);
-     rotate(-5).  // a little swing, as one does
+     rotate(-5).  // a little swing
 
-// What `clean` does shows in these properties of the household; they are empty at the beginning.
+// `clean` sets these properties of the household to its current task; they are empty at first.
 +vacuum(Thing, Room) : Thing \== "" <- .print(Room, ": vacuum the ", Thing).
 +mop(Thing, Room) : Thing \== "" <- .print(Room, ": mop the ", Thing).
 +scrub(Thing, Room) : Thing \== "" <- .print(Room, ": scrub the ", Thing).
 
 /* The battery */
 
-// More urgent than the house, and in need of the same wheels: driving and cleaning wait until the robot is back.
+// More urgent than cleaning, and needs the same wheels: driving and cleaning wait until the robot is back.
 @charge[urgency(10)]
 +diagnostics("Low Battery")
   <- .print("battery low");
@@ -74,7 +74,7 @@ recharges(0).
      operationRecharge;
      -+recharges(N + 1).
 
-// Something went wrong: the robot missed the dock, or something stood in its way.
+// Failure: the robot missed the dock, or its path was blocked.
 -!recharge[error_msg(Text)]
   <- !give_up(Text).
 
@@ -83,9 +83,9 @@ recharges(0).
 
 +!give_up(Text)
   <- .print("I need help: ", Text);
-     .stopMAS(0, 1).  // the exit code tells that it went wrong
+     .stopMAS(0, 1).  // the exit status reports the failure
 
-// Back to the room that it was in, or on its way to; perhaps it had just arrived.
+// Back to the room that the robot was in or heading for.
 +!return : atRoom(Number) & room(Number, Room, X, Y)
   <- .print("back to the ", Room);
      driveTo(X, Y).

@@ -1,19 +1,19 @@
-// Tests of robot.asl without a robot: what it tells the wheels is faked.  `jacaros test legs_test.asl` runs them.
+// Tests of robot.asl without a robot: its actions are faked.  Run them with `jacaros test legs_test.asl`.
 
 { include("$jacaros/tester_agent.asl") }
 
-// Plans that stand before an included file take the place of those in it.
-+!start : not ready.   // the goal of robot.asl: nothing happens before a test is ready
+// Plans before an include override the plans of the included file.
++!start : not ready.   // the initial goal of robot.asl does nothing until a test is ready
 +!use_artifact(_, _).  // no wheels
 
 { include("../robot.asl") }
 
-// A plan whose label says `test` is a test.
+// A plan with `test` in its label is a test.
 @drives_out_and_back[test]
 +!test_legs
   <- !fake_action(move(_));
      !fake_action(rotate(_));
-     !fake_action(getCurrentPose(0.03, 0.04, 0));  // the values that the robot gets
+     !fake_action(getCurrentPose(0.03, 0.04, 0));  // the pose that the fake returns
      !fake_action(.stopMAS);
      +ready;
      !start;

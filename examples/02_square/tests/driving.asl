@@ -1,4 +1,4 @@
-// Tests in the simulated world; test_driving.jcm says which one.
+// Tests in a simulated world; test_driving.jcm selects the world.
 
 { include("$jacaros/tester_agent.asl") }
 

@@ -1,4 +1,4 @@
-// Tests of robot.asl without a robot: its wheels are faked.
+// Tests of robot.asl without a robot: its actions are faked.
 
 { include("$jacaros/tester_agent.asl") }
 

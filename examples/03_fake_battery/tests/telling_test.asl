@@ -1,4 +1,4 @@
-// Tests of what the agent tells of its battery; no battery is needed, beliefs are enough.
+// Tests of the agent's reports; beliefs are enough, so no battery is needed.
 
 { include("$jacaros/tester_agent.asl") }
 
@@ -28,7 +28,7 @@
      +battery(1);
      !assert_not_did(.stopMAS).
 
-// The real artifact: a battery that a timer drains, one percent a second of the run's clock.
+// With the real artifact: a timer drains the battery by one percent per second of the run's clock.
 @a_timer_drains_the_battery[test]
 +!test_timer
   <- +ready;

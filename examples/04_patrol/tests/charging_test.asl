@@ -1,4 +1,4 @@
-// Tests of when and how the robot charges; wheels and battery are faked.
+// Tests of charging; wheels and battery are faked.
 
 { include("$jacaros/tester_agent.asl") }
 
@@ -8,7 +8,7 @@
 
 { include("../robot.asl") }
 
-// Driving takes a second, charging two; time is the virtual one of the run.
+// Driving takes one second and charging two, in virtual time.
 +!fakes
   <- !fake_action(driveTo(_, _), after(1000));
      !fake_action(operationRecharge, after(2000));

@@ -1,4 +1,4 @@
-// A test with a robot: test_dock.jcm puts it into the room.
+// A test with a simulated robot; test_dock.jcm selects its world.
 
 { include("$jacaros/tester_agent.asl") }
 

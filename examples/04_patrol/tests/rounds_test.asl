@@ -1,4 +1,4 @@
-// Tests of the patrol: the corners in their order, and the end of the shift.
+// Tests of the patrol: the order of the corners, and the end of the shift.
 
 { include("$jacaros/tester_agent.asl") }
 

@@ -1,4 +1,4 @@
-// Tests of how the rooms are cleaned; wheels, battery and household are faked.
+// Tests of cleaning; wheels, battery and household are faked.
 
 { include("$jacaros/tester_agent.asl") }
 
