@@ -1,4 +1,4 @@
-// Breaks the code: guesses only what fits all answers so far.
+// Breaks the code: every guess fits all answers so far.
 
 tried([]).
 

@@ -1,6 +1,6 @@
-"""What the agents of this game cannot say well in AgentSpeak, in Python.
+"""The parts of the game that are easier to write in Python than in AgentSpeak.
 
-The agents find it by its name: `mastermind.score(...)` in a program is the function `score` of this file.
+Programs call them by the name of this file: `mastermind.score(...)` is the function `score`.
 """
 
 import asyncio
@@ -16,7 +16,7 @@ LENGTH = 4
 
 @internal_action
 def score(code: list[Atom], guess: list[Atom], right: Out, misplaced: Out) -> None:
-    """How many pegs of a guess are right, and how many have only the right colour."""
+    """Count the pegs of a guess that are right, and those with only the right colour."""
     hits = sum(peg == wanted for peg, wanted in zip(guess, code, strict=True))
     common = sum(min(code.count(colour), guess.count(colour)) for colour in COLOURS)
     right.set(hits)
@@ -25,19 +25,19 @@ def score(code: list[Atom], guess: list[Atom], right: Out, misplaced: Out) -> No
 
 @internal_action
 def codes(tried: list[Structure]) -> Iterator[list[Atom]]:
-    """Every code that may be the secret one, given the previous guesses: a condition takes them in turn."""
+    """Yield every code that fits the previous guesses; a context tries them in turn."""
     yield from _possible(tried)
 
 
 @arithmetic_function
 def left(tried: list[Structure]) -> int:
-    """How many codes may still be the secret one."""
+    """Count the codes that fit the previous guesses."""
     return sum(1 for _ in _possible(tried))
 
 
 @internal_action
 async def ponder(agent: Agent, seconds: float) -> None:
-    """Think for a while, on the clock of the run: only the intention that calls it waits."""
+    """Wait for some seconds of the run's clock; only the calling intention waits."""
     agent.print("hmm ...")
     await asyncio.sleep(seconds)
 
@@ -55,13 +55,13 @@ def _fits(code: list[Atom], guess: Any, *answer: object) -> bool:
 
 
 class Keeper(Agent):
-    """Thinks up a secret code, and listens to one player only."""
+    """An agent that chooses a secret code and accepts messages from one player only."""
 
     def init(self, player: str) -> None:
-        """Begin with a code that follows from the seed of the run."""
+        """Choose a code; the seed of the run makes it reproducible."""
         self.player = player
         self.add_belief(Literal("secret", ([self.random.choice(COLOURS) for _ in range(LENGTH)],)))
 
     def soc_acc(self, message: Message) -> bool:
-        """Refuse messages from all others."""
+        """Accept messages from the player only."""
         return message.sender == self.player

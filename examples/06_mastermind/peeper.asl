@@ -1,4 +1,4 @@
-// Asks for the code itself.  The keeper does not listen.
+// Asks for the code itself.  The keeper does not answer.
 
 !peep.
 

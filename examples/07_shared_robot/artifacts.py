@@ -1,4 +1,4 @@
-"""The artifacts of this project; those of the robot, its wheels and its battery, come with JaCaROS."""
+"""Artifacts of this project; those for the wheels and the battery come with JaCaROS."""
 
 import math
 
@@ -9,12 +9,12 @@ from jacaros.ros.qos import SENSOR_DATA
 
 
 class Shift(Artifact):
-    """Who has the robot: one at a time.  Whoever wants it asks, and whoever has it hands it over.
+    """The right to use the robot: one agent has it at a time, and the others wait until it is released.
 
     Properties:
-        on_duty(Who): who has the robot; ``nobody`` at the beginning.
-        wanted_by(Who): for everybody who waits for it.
-        visits(N): corners reached, as the driver tells.
+        on_duty(Agent): the agent that has the robot; ``nobody`` at first.
+        wanted_by(Agent): one property for each waiting agent.
+        visits(N): number of corners reached, as counted by the driver.
     """
 
     def init(self) -> None:
@@ -23,7 +23,7 @@ class Shift(Artifact):
 
     @operation
     async def take_over(self) -> None:
-        """Get the robot; waits until it is free."""
+        """Acquire the robot; waits until it is free."""
         who = Atom(self.caller)
         self.define_property("wanted_by", who)
         try:
@@ -34,28 +34,28 @@ class Shift(Artifact):
 
     @operation
     def hand_over(self) -> None:
-        """Let go of the robot; fails with ``not_on_duty(Who)`` for others than who has it."""
+        """Release the robot; fails with ``not_on_duty(Caller)`` if the caller does not have it."""
         if self.value("on_duty") != self.caller:
             self.fail(f"{self.caller} does not have the robot", "not_on_duty", Atom(self.caller))
         self.update_property("on_duty", Atom("nobody"))
 
     @operation
     def visited(self) -> None:
-        """Note that another corner was reached."""
+        """Count another corner."""
         self.update_property("visits", self.value("visits") + 1)
 
 
 class Front(RosArtifact):
-    """What stands in front of the robot, seen by its laser.
+    """Obstacles in front of the robot, measured by its laser.
 
     Properties:
-        ahead(Metres): how far it is to the nearest thing within 25 degrees to both sides.
+        ahead(Metres): distance to the nearest obstacle within 25 degrees of straight ahead; exists from the first scan on.
     """
 
     FIELD = math.radians(25.0)
 
     def open(self) -> None:
-        """Listen to the laser; before its first scan nothing is known."""
+        """Subscribe to the laser."""
         self.subscription("scan", "sensor_msgs/msg/LaserScan", self.look, SENSOR_DATA)
 
     def look(self, sample: Sample) -> None:

@@ -1,7 +1,7 @@
-"""Did the driver go round the corners, keep off the visitor, and the supervisor recharge in time and end the shift?
+"""Judge whether the driver patrolled and avoided the visitor, and the supervisor recharged in time and ended the shift.
 
-Judged from the ground truth.  Only the driver knows the corners, only the supervisor the dock: that the robot was at
-both shows that both drove it.
+Judged from the ground truth.  Only the driver knows the corners, and only the supervisor knows the dock: a robot that was
+at both was driven by both.
 """
 
 import sys
@@ -15,17 +15,17 @@ from jacaros.testing import Verdict, judge
 from jacaros.testing.paths import distance, judge_recharging
 
 CORNERS = ((2.0, 0.0), (2.0, 2.0), (0.0, 2.0), (0.0, 0.0))
-"""The route, in metres; the robot begins and ends at the last one."""
+"""Corners of the route, in metres; the robot starts and ends at the last one."""
 
 REACHED = 0.05
-"""A corner is visited when the robot comes so near, in metres."""
+"""Distance within which a corner counts as visited, in metres."""
 
 APART = 0.4
-"""Metres between the centres of two robots that do not touch, and a little more."""
+"""Least distance between the centres of two robots, in metres: they do not touch, with a small margin."""
 
 
 def check(truth: GroundTruth, rounds: int = 4, recharges: int = 2) -> Verdict:
-    """Judge a run of so many rounds and at least so many recharges."""
+    """Judge a run of *rounds* rounds with at least *recharges* recharges."""
     verdict = Verdict()
     path = [*truth.path("turtlebot"), truth.latest("turtlebot")]
     visits = corners_of(path)
@@ -38,7 +38,7 @@ def check(truth: GroundTruth, rounds: int = 4, recharges: int = 2) -> Verdict:
 
     nearest, waited = beside_the_visitor(path, truth.path("visitor"))
     verdict.measure("metres from the visitor", nearest)
-    verdict.expect(nearest >= APART, f"the robot came as near as {nearest:.2f} m to the visitor")
+    verdict.expect(nearest >= APART, f"the robot came within {nearest:.2f} m of the visitor")
     verdict.measure("seconds it waited for the visitor", waited)
     verdict.expect(waited >= 2.0, "the robot did not wait for the visitor")
     verdict.expect(not truth.events_of("bump", "collision"), "the robot bumped into something")
@@ -50,7 +50,7 @@ def check(truth: GroundTruth, rounds: int = 4, recharges: int = 2) -> Verdict:
 
 
 def corners_of(path: Sequence[Sample]) -> list[int]:
-    """The corners in the order of their visits; coming back to the same one counts once."""
+    """Return the corners in the order of their visits; consecutive visits to one corner count once."""
     near = (
         next((n for n, (x, y) in enumerate(CORNERS) if distance(sample, x, y) <= REACHED), None)
         for sample in path
@@ -59,7 +59,7 @@ def corners_of(path: Sequence[Sample]) -> list[int]:
 
 
 def beside_the_visitor(path: Sequence[Sample], visitor: Sequence[Sample]) -> tuple[float, float]:
-    """How near the robot came to the visitor, and how many seconds it stood within a metre of it."""
+    """Return the least distance to the visitor (m), and how long the robot stood within a metre of it (s)."""
     times = [sample.time for sample in visitor]
     nearest, waited = float("inf"), 0.0
     for before, sample in pairwise(path):
@@ -72,7 +72,7 @@ def beside_the_visitor(path: Sequence[Sample], visitor: Sequence[Sample]) -> tup
 
 
 def speed_at_end(path: Sequence[Sample]) -> tuple[float, float]:
-    """How fast the robot drove and turned at last: metres and radians a second."""
+    """Return the speed (m/s) and the turning rate (rad/s) at the end of the path."""
     last = path[-1]
     before = next(sample for sample in reversed(path) if sample.time < last.time)
     seconds = last.time - before.time

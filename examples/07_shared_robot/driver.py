@@ -1,4 +1,4 @@
-"""The driver: a behaviour tree of py_trees that patrols with the robot, as long as it has it."""
+"""The driver: a py_trees behaviour tree that patrols while it has the robot."""
 
 from itertools import cycle
 from typing import NamedTuple
@@ -14,11 +14,11 @@ from jacaros import PythonAgent
 from jacaros.behaviour_trees import Act, FromBlackboard, HasProperty, PropertyCheck, TreeRunner
 
 CLEAR = 0.7
-"""Metres that must be free in front of the robot."""
+"""Free distance required in front of the robot, in metres."""
 
 
 class Corner(NamedTuple):
-    """A place of the route, in metres."""
+    """A corner of the route, in metres."""
 
     x: float
     y: float
@@ -28,7 +28,7 @@ ROUTE = (Corner(2, 0), Corner(2, 2), Corner(0, 2), Corner(0, 0))
 
 
 class NextCorner(Behaviour):
-    """Puts the next corner of the route on the blackboard; SUCCESS."""
+    """Write the next corner of the route to the blackboard; always SUCCESS."""
 
     def __init__(self) -> None:
         super().__init__("next corner")
@@ -43,7 +43,7 @@ class NextCorner(Behaviour):
 
 
 def driver() -> Selector:
-    """The tree: at every tick the first of its four branches that has something to do."""
+    """Return the tree: each tick runs the first of its four branches that applies."""
     wanted = HasProperty("wanted_by", "supervisor")
     not_mine = Inverter("not mine", HasProperty("on_duty", "driver"))
     not_clear = Inverter("not clear", PropertyCheck("ahead", lambda metres: metres >= CLEAR))
@@ -55,28 +55,28 @@ def driver() -> Selector:
             when("hands the robot over", wanted, Act("hand_over")),
             when("asks for the robot", not_mine, Act("take_over")),
             when("waits for a clear way", not_clear, Running("stand")),
-            # With memory: a step that is done is not begun anew while the next one has its turn.
+            # With memory, a completed step is not restarted while the next one runs.
             Sequence("patrols", memory=True, children=[drive, Act("visited"), NextCorner()]),
         ],
     )
 
 
 def when(name: str, condition: Behaviour, action: Behaviour) -> Sequence:
-    """An action that is interrupted as soon as its condition no longer holds."""
+    """Return an action that is interrupted as soon as its condition no longer holds."""
     return Sequence(name, memory=False, children=[condition, action])
 
 
 class Driver(PythonAgent):
-    """An agent whose mind is the tree; it prints which branch of it is at work."""
+    """An agent controlled by the tree; it prints the active branch."""
 
     branch = ""
 
     async def run(self) -> None:
         runner = TreeRunner(driver(), self.session)
-        runner.tree.add_post_tick_handler(self.tell)
+        runner.tree.add_post_tick_handler(self.report)
         await runner.run(forever=True)
 
-    def tell(self, tree: BehaviourTree) -> None:
+    def report(self, tree: BehaviourTree) -> None:
         branch = tree.root.current_child.name
         if branch != self.branch:
             self.branch = branch

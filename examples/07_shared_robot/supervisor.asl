@@ -1,22 +1,22 @@
-// The supervisor: it lets the driver patrol, takes the robot when the battery is low, and ends the shift.
+// The supervisor lets the driver patrol, takes the robot when the battery is low, and ends the shift.
 
 /* What the agent knows */
 
-dock(1, 1).  // places, in metres
+dock(1, 1).  // x and y in metres
 home(0, 0).
-rounds(4).  // the shift is over after so many
+rounds(4).  // number of rounds in a shift
 recharges(0).
 
 /* The battery */
 
 +diagnostics("Low Battery") : battery(Percent)
-  <- .print("I want the robot: ", Percent, " % left, that is for the way to the dock");
+  <- .print("I want the robot: ", Percent, " % left, enough to reach the dock");
      !recharge.
 
 +!recharge : dock(X, Y) & recharges(N)
-  <- take_over;  // this plan waits here until the driver has handed it over
+  <- take_over;  // the plan waits here until the driver has released the robot
      driveTo(X, Y)[artifact_name("wheels")];
-     ?battery(Percent);  // ? : what is it now?
+     ?battery(Percent);  // ? : query a belief
      .print("recharge ", N + 1, ", with ", Percent, " % left");
      operationRecharge;
      -+recharges(N + 1);
@@ -35,7 +35,7 @@ recharges(0).
      .print("the robot is at home: ", N, " rounds, ", R, " recharges");
      .stopMAS.
 
-/* Something went wrong: the robot missed the dock, or something stood in its way */
+/* Failures: the robot missed the dock, or its path was blocked */
 
 -!recharge[error_msg(Text)]
   <- !give_up(Text).
@@ -45,4 +45,4 @@ recharges(0).
 
 +!give_up(Text)
   <- .print("I need help: ", Text);
-     .stopMAS(0, 1).  // the exit code tells that it went wrong
+     .stopMAS(0, 1).  // the exit status reports the failure

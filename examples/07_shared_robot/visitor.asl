@@ -1,4 +1,4 @@
-// The visitor: when the patrol is on the far side of the room, it steps into its way for a while.
+// The visitor: while the patrol is on the far side of the room, it moves into the path and stays there for a while.
 
 +visits(2)
   <- driveTo(1, 0)[artifact_name("legs")];

@@ -1,36 +1,36 @@
-"""The post: which parcels wait where, and which are on the robot."""
+"""The post: parcels that wait in rooms, and parcels on the robot."""
 
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.env import Atom, operation
 
 
 class Post(RosArtifact):
-    """Parcels between the rooms of a house.
+    """Parcel delivery between the rooms of a house.
 
-    What is loaded and unloaded is also published as text, such as ``load 2``, on ``/cleaning/task``: the embedded
-    world logs it with the room in which the robot truly is.
+    Loading and unloading are also published as text, such as ``load 2``, on ``/cleaning/task``: the embedded world
+    logs them with the room that the robot is actually in.
 
     Properties:
-        parcel(Number, From, To): a parcel waits in the room From.
-        aboard(Number, To): a parcel is on the robot.
-        delivered(Count): so many have reached their rooms.
+        parcel(Number, From, To): a parcel that waits in room From, for room To.
+        aboard(Number, To): a parcel on the robot, for room To.
+        delivered(Count): number of parcels delivered.
     """
 
     def open(self) -> None:
-        """Begin without parcels."""
+        """Start without parcels."""
         self.last = 0
         self.define_property("delivered", 0)
         self.journal = self.publisher("cleaning/task", "std_msgs/msg/String")
 
     @operation
     def order(self, start: Atom, goal: Atom) -> None:
-        """Let a parcel wait in a room."""
+        """Add a parcel that waits in room *start*, for room *goal*."""
         self.last += 1
         self.define_property("parcel", self.last, start, goal)
 
     @operation
     def load(self, number: int) -> None:
-        """Put a parcel that waits on the robot."""
+        """Load a waiting parcel; fails with ``no_parcel(Number)`` if it does not wait anywhere."""
         if not self.has_property("parcel", number, None, None):
             self.fail(f"parcel {number} does not wait anywhere", "no_parcel", number)
         (parcel,) = self.find_properties("parcel", number, None, None)
@@ -40,7 +40,7 @@ class Post(RosArtifact):
 
     @operation
     def unload(self, number: int) -> None:
-        """Take a parcel from the robot: it has been delivered."""
+        """Deliver a parcel; fails with ``no_parcel(Number)`` if it is not on the robot."""
         if not self.has_property("aboard", number, None):
             self.fail(f"parcel {number} is not on the robot", "no_parcel", number)
         self.remove_property("aboard", number, None)

@@ -1,6 +1,6 @@
-"""Did every parcel come from its room into its room, on short ways, and was the battery never empty?
+"""Judge whether every parcel reached its room, on a short route, and the battery never ran empty.
 
-Judged from the ground truth: the world takes note of what is loaded and unloaded with the room that the robot is truly in.
+Judged from the ground truth: the world logs loading and unloading with the room that the robot is actually in.
 """
 
 import sys
@@ -28,11 +28,11 @@ PARCELS = (
     ("kitchen", "living_room"),
     ("hallway", "bathroom"),
 )
-"""Where each parcel comes from and goes to, in the order of the customer's orders."""
+"""Origin and destination of each parcel, in the order of the customer's orders."""
 
 
 def check(truth: GroundTruth, recharges: int = 1) -> Verdict:
-    """Judge a run of all parcels and at least so many recharges."""
+    """Judge a run that delivers all parcels, with at least *recharges* recharges."""
     verdict = Verdict()
     done = [(event.data["task"], event.data["room"]) for event in truth.events_of("task")]
     for number, (start, goal) in enumerate(PARCELS, 1):
@@ -46,19 +46,19 @@ def check(truth: GroundTruth, recharges: int = 1) -> Verdict:
     stays = judge_recharging(verdict, truth)
     verdict.expect(len(stays) >= recharges, f"{len(stays)} recharges, not {recharges}")
     verdict.expect(not truth.events_of("bump", "collision"), "the robot bumped into something")
-    # The ways to the dock and back do not count.
-    verdict.measure("metres for one parcel after the other", one_by_one())
+    # Driving to the dock and back does not count.
+    verdict.measure("metres for one parcel at a time", one_by_one())
     verdict.at_most("metres driven", truth.odometer() - 3.0 * len(stays), one_by_one() * 2 / 3)
     return verdict
 
 
 def rooms(done: list[tuple[str, str]], task: str) -> list[str]:
-    """Where a task was done."""
+    """Return the rooms in which a task was done."""
     return [room for each, room in done if each == task]
 
 
 def one_by_one() -> float:
-    """Metres of the way on which one parcel is carried after the other."""
+    """Return the length of the route that carries one parcel at a time, in metres."""
     way = ["hallway", *(room for parcel in PARCELS for room in parcel)]
     return sum(dist(PLACES[here], PLACES[there]) for here, there in pairwise(way))
 

@@ -1,4 +1,4 @@
-// The people of the house: they leave parcels, and are content when all of them have arrived.
+// The residents of the house: they leave parcels, and end the run when all have arrived.
 
 parcels(14).
 

@@ -1,10 +1,10 @@
-// The robot: goes where it is sent, loads and unloads there, and minds its battery.
+// The robot: drives to the rooms it is sent to, loads and unloads there, and recharges when its battery is low.
 
 { include("$jacaros/artifacts.asl") }
 
 /* What the agent knows */
 
-place(hallway, 0, 0).  // rooms, in metres
+place(hallway, 0, 0).  // name, x and y in metres
 place(living_room, 2, 0).
 place(kitchen, 2, 2).
 place(bathroom, 0, 2).
@@ -18,12 +18,12 @@ recharges(0).
   <- !use_artifact("wheels", "ArtCmdVelMuxAndOdometry");
      !use_artifact("battery", "ArtSimBattery", [source(robot)]).
 
-/* To a room, on behalf of the dispatcher */
+/* Visiting a room for the dispatcher */
 
-// The wheels are needed until the parcels are out and in.
+// Needs the wheels until all parcels are unloaded and loaded.
 @visit[needs(wheels)]
 +!visit(Room)[source(Sender)]
-  <- -+bound(Room);  // so that it finds its way after a recharge
+  <- -+bound(Room);  // where to return after a recharge
      ?place(Room, X, Y);
      driveTo(X, Y);
      !exchange(Room);
@@ -60,7 +60,7 @@ recharges(0).
 +!return : bound(Room) & place(Room, X, Y) <- driveTo(X, Y).
 +!return.
 
-/* Something went wrong: the robot missed the dock, or something stood in its way */
+/* Failures: the robot missed the dock, or its path was blocked */
 
 -!recharge[error_msg(Text)]
   <- !give_up(Text).
@@ -70,4 +70,4 @@ recharges(0).
 
 +!give_up(Text)
   <- .print("I need help: ", Text);
-     .stopMAS(0, 1).  // the exit code tells that it went wrong
+     .stopMAS(0, 1).  // the exit status reports the failure

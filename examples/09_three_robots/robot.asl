@@ -1,21 +1,21 @@
-// A robot that watches over some places of a storehouse, and over those of another robot while that one charges.
+// A robot that watches some places of a storehouse, and those of another robot while that one charges.
 
 { include("$jacaros/artifacts.asl") }
 
-/* What the agent knows; the project says what robot it has, what that robot watches, and where it charges */
+/* What the agent knows; the project file adds the name of its robot, the places to watch, and the dock */
 
-place(north_west, -1.5, 2.2, 0).  // metres, and degrees
+place(north_west, -1.5, 2.2, 0).  // x and y in metres, yaw in degrees
 place(north_east, 3.2, 2.2, 180).
 place(middle_west, -1.5, 0, 0).
 place(middle_east, 3.2, 0, 180).
 place(south_west, -1.5, -2.2, 0).
 place(south_east, 3.2, -2.2, 180).
-shift(2).  // it ends after so many recharges
+shift(2).  // number of recharges in a shift
 recharges(0).
 
 colleague(Name) :- .all_names(Names) & .member(Name, Names) & not .my_name(Name).
 
-// Whoever is asked for help looks at its own battery first.
+// A robot helps only if its own battery is well charged.
 can_help(Percent) :- percent_left(Percent) & Percent > 40 & not charging & not off_duty.
 
 !start.
@@ -26,19 +26,19 @@ can_help(Percent) :- percent_left(Percent) & Percent > 40 & not charging & not o
      !!keep_charged;
      !!watch.
 
-// One parameter, the robot's name, stands before all topics, actions and frames.
+// One parameter, the robot's name, is the prefix of all topics, actions and frames.
 +!use_robot : robot(Name)
   <- .concat(Name, "_nav", Nav);
      .concat(Name, "_base", Base);
      !use_artifact(Nav, "nav2.yaml", [Name]);
      !use_artifact(Base, "turtlebot4.yaml", [Name]).
 
-// Alone in its process it may have it from the command line: jacaros run robot.asl --namespace robot_1
+// In a process of its own, the robot can get the prefix from the command line: jacaros run robot.asl --namespace robot_1
 +!use_robot
   <- !use_artifact(nav, "nav2.yaml", []);
      !use_artifact(base, "turtlebot4.yaml", []).
 
-/* Watching: what is to be watched may change from round to round */
+/* Watching: the places may change from round to round */
 
 +!watch : not watched(_)
   <- .wait(watched(_));
@@ -54,7 +54,7 @@ can_help(Percent) :- percent_left(Percent) & Percent > 40 & not charging & not o
 
 +!arrived(_).
 
-/* Charging: in the library's steps, with words for the others before and after */
+/* Charging: the steps of the library, with messages to the others before and after */
 
 +!dock_and_charge
   <- +charging;
@@ -70,11 +70,11 @@ can_help(Percent) :- percent_left(Percent) & Percent > 40 & not charging & not o
 +!count : recharges(N)
   <- -+recharges(N + 1).
 
-// The colleague with the fullest battery watches what this robot watches; that is a matter of telling it.
+// Give the places of this robot to the colleague with the fullest battery: `tell` adds them to its beliefs.
 +!hand_over
   <- for (colleague(Name)) {
         .send(Name, askOne, can_help(_), Answer, 2000);
-        if (can_help(Percent) = Answer) {  // it may be false
+        if (can_help(Percent) = Answer) {  // not `false` or `timeout`
            +offer(Percent, Name)
         }
      };
@@ -83,7 +83,7 @@ can_help(Percent) :- percent_left(Percent) & Percent > 40 & not charging & not o
      !choose(Offers).
 
 +!choose([])
-  <- .print("battery low, and nobody has time for my places").
+  <- .print("battery low, and no robot has time for my places").
 
 +!choose(Offers)
   <- .max(Offers, offer(_, Helper));
@@ -103,7 +103,7 @@ can_help(Percent) :- percent_left(Percent) & Percent > 40 & not charging & not o
 +!take_back
   <- .print("battery full").
 
-/* The end of the shift: in the dock; whoever is the last one closes the house */
+/* The end of the shift: wait in the dock until the shifts of all robots have ended */
 
 +!end_of_shift : shift(Most) & recharges(N) & N >= Most
   <- +off_duty;
@@ -117,7 +117,7 @@ can_help(Percent) :- percent_left(Percent) & Percent > 40 & not charging & not o
 
 { include("$jacaros/navigation.asl") }
 
-/* Something went wrong that the library could not help */
+/* Failures that the library could not recover from */
 
 -!keep_charged[error_msg(Text)]
   <- .print("I need help: ", Text);

@@ -1,6 +1,6 @@
-"""Did the robot explore the flat, map it, and drive to its goal and back home?
+"""Judge whether the robot explored and mapped the flat, and drove to its goal and back home.
 
-Judged from the ground truth: the map that it saved is compared with the world, where it drove with its true path.
+Judged from the ground truth: the saved map is compared with the world, and the places with the robot's true path.
 """
 
 import math
@@ -18,20 +18,20 @@ SAVED = Path("runs/flat.yaml")
 """The map that the agent saved."""
 
 SIZE = 0.1
-"""Side of a cell, in metres."""
+"""Side length of a cell, in metres."""
 
 REACHED = 0.15
-"""A place is reached when the robot comes so near, in metres."""
+"""Distance within which a place counts as reached, in metres."""
 
 GOAL = (5.6, 4.1)
-"""Where the goal is, in metres from where the robot began."""
+"""Position of the goal, in metres from the start of the robot."""
 
 AGREEMENT = 0.95
-"""Share of the cells seen that must be as in the world."""
+"""Least share of the seen cells that must agree with the world."""
 
 
 def check(truth: GroundTruth, saved: Path = SAVED) -> Verdict:
-    """Judge a run, and the map that was saved in it."""
+    """Judge a run and the map saved in it."""
     verdict = Verdict()
     path = [*truth.path(), truth.latest()]
     start = path[0]
@@ -46,7 +46,7 @@ def check(truth: GroundTruth, saved: Path = SAVED) -> Verdict:
 
 
 def judge_map(verdict: Verdict, truth: GroundTruth, start: Sample, saved: Path) -> None:
-    """Expect that the cells seen agree with the world, and that most of its floor was seen."""
+    """Expect the seen cells to agree with the world, and most of the floor to be seen."""
     seen = load(saved).grid.labels(SIZE)
     wrong = sum(is_obstacle(truth, start, cell) != (label == OBSTACLE) for cell, label in seen.items())
     agreement = verdict.measure("share of cells that agree", 1.0 - wrong / max(1, len(seen)))
@@ -57,7 +57,7 @@ def judge_map(verdict: Verdict, truth: GroundTruth, start: Sample, saved: Path) 
 
 
 def is_obstacle(truth: GroundTruth, start: Sample, cell: Cell) -> bool:
-    """Whether a wall or a piece of furniture is in a cell of the map, whose origin is where the robot began."""
+    """Return whether a map cell has a wall or furniture in it; the origin of the map is the robot's start."""
     x, y = in_world(start, cell[0] * SIZE, cell[1] * SIZE)
     if any(left <= x <= right and low <= y <= high for left, low, right, high in truth.world["boxes"]):
         return True
@@ -65,7 +65,7 @@ def is_obstacle(truth: GroundTruth, start: Sample, cell: Cell) -> bool:
 
 
 def is_in_square(start: Sample, x: float, y: float, ax: float, ay: float, bx: float, by: float) -> bool:
-    """Whether a segment of a wall comes into the cell around x, y (Liang and Barsky's clipping)."""
+    """Return whether a wall segment crosses the cell around x, y (Liang-Barsky clipping)."""
     sine, cosine = math.sin(start.yaw), math.cos(start.yaw)
     ax, ay = cosine * (ax - x) + sine * (ay - y), cosine * (ay - y) - sine * (ax - x)
     bx, by = cosine * (bx - x) + sine * (by - y), cosine * (by - y) - sine * (bx - x)
@@ -81,13 +81,13 @@ def is_in_square(start: Sample, x: float, y: float, ax: float, ay: float, bx: fl
 
 
 def in_world(start: Sample, x: float, y: float) -> tuple[float, float]:
-    """A point of the map, whose origin is where the robot began, in the world."""
+    """Convert a point of the map, whose origin is the robot's start, to world coordinates."""
     sine, cosine = math.sin(start.yaw), math.cos(start.yaw)
     return start.x + cosine * x - sine * y, start.y + sine * x + cosine * y
 
 
 def open_floor(truth: GroundTruth) -> float:
-    """Square metres of the world without furniture."""
+    """Return the floor area without furniture, in square metres."""
     left, low, right, high = truth.world["bounds"]
     boxes = sum((c - a) * (d - b) for a, b, c, d in truth.world["boxes"])
     return float((right - left) * (high - low) - boxes)

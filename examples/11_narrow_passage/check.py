@@ -1,4 +1,4 @@
-"""Was everything brought, with one robot in the passage at a time, without a bump, and did the medicine wait least?
+"""Judge whether all loads arrived, with one robot in the passage at a time and no bump, and the medicine waited least.
 
 Judged from the ground truth.
 """
@@ -19,23 +19,23 @@ LANES = {"robot_1": 1.5, "robot_2": 0.0, "robot_3": -1.5}
 MEDICINE = "robot_3"
 
 SHELF = 3.4
-"""Metres from the middle of the passage to the shelves, in both rooms."""
+"""Distance from the middle of the passage to the shelves in both rooms, in metres."""
 
 FRONT = 2.4
-"""Metres from there to where robots wait, in both rooms."""
+"""Distance from the middle of the passage to the waiting positions in both rooms, in metres."""
 
 NEAR = 0.12
-"""A robot is at a place when it is this near, in metres."""
+"""Distance within which a robot is at a place, in metres."""
 
 RADIUS = 0.17
-"""Of a robot, in metres."""
+"""Radius of a robot, in metres."""
 
 SOON = 1.0
-"""Seconds that a robot may take to leave when it has the passage; who comes within them was too late to go first."""
+"""Seconds a robot may take to leave once it has the passage; a robot that arrives meanwhile cannot go first."""
 
 
 class Crossing(NamedTuple):
-    """One way through the passage: when the robot came to its front, left it, was inside, and was out again."""
+    """A crossing of the passage: when the robot came to its front, left it, was inside, and was out again (s)."""
 
     robot: str
     came: float
@@ -45,7 +45,7 @@ class Crossing(NamedTuple):
 
     @property
     def waited(self) -> float:
-        """Seconds in front of the passage."""
+        """Waiting time in front of the passage, in seconds."""
         return self.left - self.came
 
 
@@ -66,7 +66,7 @@ def check(truth: GroundTruth, loads: int = 3) -> Verdict:
 
 
 def judge_waiting(verdict: Verdict, found: dict[str, list[Crossing]]) -> None:
-    """Expect that the medicine is the next one through the passage whenever it waits, and so waits least."""
+    """Expect waiting medicine to be next through the passage, and so to have the shortest mean wait."""
     means = {robot: mean([each.waited for each in ways]) for robot, ways in found.items()}
     for robot, waited in means.items():
         verdict.measure(f"seconds that {robot} waited, mean", waited)
@@ -88,18 +88,18 @@ def judge_waiting(verdict: Verdict, found: dict[str, list[Crossing]]) -> None:
         for other in ways
     )
     verdict.measure("times that the medicine and another robot waited", met)
-    verdict.expect(met >= 1, "nobody waited together with the medicine")
+    verdict.expect(met >= 1, "no robot waited together with the medicine")
 
 
 def is_inside(truth: GroundTruth, sample: Sample) -> bool:
-    """Whether any part of a robot is in the passage."""
+    """Return whether any part of a robot is in the passage."""
     (passage,) = (room for room in truth.world["rooms"] if room["name"] == "passage")
     west, south, east, north = passage["area"]
     return west - RADIUS < sample.x < east + RADIUS and south < sample.y < north
 
 
 def crossings(truth: GroundTruth, robot: str) -> list[Crossing]:
-    """All ways of a robot through the passage, from one room to the other."""
+    """Return all crossings of a robot, from one room to the other."""
     found: list[Crossing] = []
     came = left = 0.0
     begin: Sample | None = None
@@ -121,12 +121,12 @@ def crossings(truth: GroundTruth, robot: str) -> list[Crossing]:
 
 
 def front_of(sample: Sample) -> float:
-    """Where robots wait in the room of a sample: x, in metres."""
+    """Return where robots wait in the room of a sample: x, in metres."""
     return -FRONT if sample.x < 0 else FRONT
 
 
 def loads_of(truth: GroundTruth, robot: str) -> int:
-    """How often a robot stood at its shelf in the store, and then at that in the ward."""
+    """Count how often a robot stood at its shelf in the store, and then at its shelf in the ward."""
     loads, loaded = 0, False
     for before, sample in pairwise(truth.path(robot)):
         if sample.odometer - before.odometer > 1e-4 or sample.time == before.time:
@@ -139,7 +139,7 @@ def loads_of(truth: GroundTruth, robot: str) -> int:
 
 
 def seconds_together(truth: GroundTruth) -> float:
-    """Seconds in which more than one robot was in the passage."""
+    """Return how long more than one robot was in the passage, in seconds."""
     paths = {robot: truth.path(robot) for robot in LANES}
     times = {robot: [sample.time for sample in path] for robot, path in paths.items()}
     moments = sorted({round(time, 1) for each in times.values() for time in each})
@@ -156,7 +156,7 @@ def seconds_together(truth: GroundTruth) -> float:
 
 
 def mean(values: list[float]) -> float:
-    """The mean; 0 of nothing."""
+    """Return the mean, or 0 for an empty list."""
     return sum(values) / len(values) if values else 0.0
 
 

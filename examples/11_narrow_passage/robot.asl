@@ -1,18 +1,18 @@
-// A robot that brings things from a store in the west to a ward in the east, through a passage that only one robot fits through.
+// A robot that brings supplies from a store in the west to a ward in the east, through a passage for one robot at a time.
 
 { include("$jacaros/artifacts.asl") }
 
-/* What the agent knows; the project says what robot it has, what it brings, its lane, and on which side it begins */
+/* What the agent knows; the project file adds the name of its robot, what it brings, its lane, and its starting side */
 
-shelf(west, -3.4).  // metres, in the robot's lane: where it loads,
+shelf(west, -3.4).  // x in metres, in the robot's lane: where it loads,
 shelf(east, 3.4).   // and where it unloads
-front(west, -2.4).  // where it waits for the passage, and comes out of it
+front(west, -2.4).  // where it waits for the passage, and where it comes out
 front(east, 2.4).
 heading(east, 0).  // degrees
 heading(west, 180).
 opposite(west, east).
 opposite(east, west).
-loads(3).  // loads that it has to bring
+loads(3).  // number of loads to bring
 brought(0).
 
 colleague(Name) :- .all_names(Names) & .member(Name, Names) & not .my_name(Name).
@@ -25,7 +25,7 @@ colleague(Name) :- .all_names(Names) & .member(Name, Names) & not .my_name(Name)
      .wait(pose(_, _, _));
      !errand.
 
-// What a plan's label says of urgency holds for its sub-goals, too: of all that wait for the passage, the medicine goes first.
+// Sub-goals inherit the urgency of their plan: of all robots that wait for the passage, the medicine goes first.
 @medicine[urgency(10)]
 +!errand : brings(medicine)
   <- !bring.
@@ -36,7 +36,7 @@ colleague(Name) :- .all_names(Names) & .member(Name, Names) & not .my_name(Name)
 /* From the shelf in the store to the shelf in the ward, and back for the next load */
 
 +!bring : brought(N) & loads(Most) & N >= Most
-  <- .print("all is brought");
+  <- .print("everything is delivered");
      !end_of_shift.
 
 +!bring : side(west)
@@ -50,7 +50,7 @@ colleague(Name) :- .all_names(Names) & .member(Name, Names) & not .my_name(Name)
      !to_the_other_side;
      !bring.
 
-// Who begins in the ward has nothing to unload yet.
+// A robot that starts in the ward has nothing to unload yet.
 +!count : loaded & brings(What) & brought(N)
   <- -loaded;
      -+brought(N + 1);
@@ -74,18 +74,18 @@ colleague(Name) :- .all_names(Names) & .member(Name, Names) & not .my_name(Name)
 
 /* The passage */
 
-// No artifact has a resource of this name, so it is one of the run: all agents share it. The plan has it before its first step,
-// and gives it back when the robot stands in front of the passage on the other side, out of the way.
+// No artifact has a resource of this name, so it belongs to the run, and all agents share it. The plan acquires it before
+// its first step, and releases it when the robot is in front of the passage on the other side, out of the way.
 //
 // Without `atomic`, the medicine would preempt a robot that is in the passage: the robot would stop there, and the medicine
-// would drive into the passage towards it. Nothing preempts what an atomic plan needs. So urgency decides who is next, and
-// the robot inside always drives out. Meanwhile its agent does nothing else.
+// would drive into the passage towards it. The resources of an atomic plan cannot be preempted, so urgency decides which
+// robot is next, and the robot inside always drives out. Meanwhile, its agent does nothing else.
 @cross[atomic, needs(passage)]
 +!cross(Other) : front(Other, X) & lane(Y) & heading(Other, Yaw)
   <- !go_to(X, Y, Yaw);
      -+side(Other).
 
-/* The end: who has brought everything waits for the others */
+/* The end: a robot that has delivered everything waits for the others */
 
 +!end_of_shift
   <- .broadcast(tell, off_duty);
@@ -94,7 +94,7 @@ colleague(Name) :- .all_names(Names) & .member(Name, Names) & not .my_name(Name)
 
 { include("$jacaros/navigation.asl") }
 
-/* Something went wrong that the library could not help */
+/* Failures that the library could not recover from */
 
 -!errand[error_msg(Text)]
   <- .print("I need help: ", Text);

@@ -45,7 +45,7 @@ def test_the_map_agrees_with_the_world_and_leads_to_the_goal_and_home(seed: int,
 
 def test_the_output_of_the_agent() -> None:
     lines = run_of(PROJECT).lines
-    assert lines[0].startswith("[robot] explored, on a way of ")
+    assert lines[0].startswith("[robot] explored, after driving ")
     assert lines[1:] == ["[robot] at the place called goal", "[robot] at the place called home"]
 
 

@@ -39,7 +39,7 @@ def test_what_the_robots_print() -> None:
     result = run_of(PROJECT)
     for robot, what in (("robot_1", "linen"), ("robot_2", "meals"), ("robot_3", "medicine")):
         loads = [f"{what} {number} is in the ward" for number in (1, 2, 3)]
-        assert result.of(robot) == [*loads, "all is brought"]
+        assert result.of(robot) == [*loads, "everything is delivered"]
 
 
 # The program without one of its annotations.

@@ -62,7 +62,7 @@ def test_one_command_runs_it_and_one_judges_it(tmp_path: Path) -> None:
 def test_the_output_says_who_has_the_robot_and_why() -> None:
     lines = [line for line in run_of(PROJECT).lines if not line.startswith("[visitor]")]
     handover = [
-        "[supervisor] I want the robot: 20 % left, that is for the way to the dock",
+        "[supervisor] I want the robot: 20 % left, enough to reach the dock",
         "[driver] hands the robot over",
         "[driver] asks for the robot",
     ]
@@ -158,7 +158,7 @@ def test_the_checker_sees_a_robot_that_comes_too_near_to_the_visitor() -> None:
             else sample
         )
 
-    assert any("m to the visitor" in each for each in check(falsified(truth_of_example(), nearer)).complaints)
+    assert any("m of the visitor" in each for each in check(falsified(truth_of_example(), nearer)).complaints)
 
 
 def test_the_checker_sees_a_robot_that_still_moves_at_the_end() -> None:

@@ -48,7 +48,7 @@ def test_one_robot_alone_in_its_process(tmp_path: Path) -> None:
 def test_the_checker_sees_robots_that_do_not_help(tmp_path: Path) -> None:
     project = spoilt(tmp_path, PROJECT, "Percent > 40", "Percent > 100")
     result = run_project(project, seed=0, seconds=1500)
-    assert any("others watched in 0 recharges" in each for each in check(result.ground_truth).complaints)
+    assert any("helped in only 0 recharges" in each for each in check(result.ground_truth).complaints)
 
 
 def test_the_checker_sees_a_bump() -> None:

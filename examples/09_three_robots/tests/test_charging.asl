@@ -1,4 +1,4 @@
-// Tests of how a robot charges and who watches meanwhile; the robot and its colleagues are faked.
+// Tests of charging, and of who watches in the meantime; the robot and its colleagues are faked.
 
 { include("$jacaros/tester_agent.asl") }
 
@@ -14,7 +14,7 @@ watched(north_west).
      !fake_action(dock_at(_), after(1000));
      !fake_action(leave_dock, after(1000)).
 
-@goes_round_what_it_watches_also_for_others[test]
+@visits_its_own_places_and_those_of_others[test]
 +!test_watch
   <- !fakes;
      !!watch;
@@ -35,7 +35,7 @@ watched(north_west).
      .wait(3000);
      !assert_did(dock_at("dock_1"), 1);
      !assert_true(charging);
-     !assert_printed("nobody has time for my places");
+     !assert_printed("no robot has time for my places");
      -+battery(96, charging);
      .wait(2000);
      !assert_did(leave_dock, 1);
@@ -46,7 +46,7 @@ watched(north_west).
 
 @gives_its_places_to_the_fullest_colleague[test]
 +!test_choose
-  <- .my_name(Me);  // the fullest one is this agent itself, for there is no other in this test
+  <- .my_name(Me);  // the fullest one is this agent itself, because the test has no other
      !choose([offer(60, one), offer(90, Me), offer(50, three)]);
      !assert_true(helper(Me));
      !assert_printed("has my places").

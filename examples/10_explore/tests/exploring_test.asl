@@ -20,7 +20,7 @@
      !fake_action(getFrontier(_, _), failed(explored));
      !fake_action(getDistance(21.4));
      !explore;
-     !assert_printed("explored, on a way of 21 m");
+     !assert_printed("explored, after driving 21 m");
      !assert_not_did(moveForward(_)).
 
 @asks_for_help_when_something_else_is_wrong[test]
