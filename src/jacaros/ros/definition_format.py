@@ -1,7 +1,7 @@
 """The format of message definitions (``.msg``, and the parts of ``.srv`` and ``.action``) of ROS 1 and ROS 2.
 
 Each line is a field, ``float64[<=3] name default``, a constant, ``uint8 NAME=7``, or a comment. Default values are ignored:
-few definitions have any, and `jacaros.ros.message.DEFAULTS` holds those.
+few definitions have them, and `jacaros.ros.message.DEFAULTS` holds those.
 """
 
 import ast
@@ -25,7 +25,7 @@ _COMMENT = re.compile(r"\s*#.*")
 
 @dataclass(frozen=True)
 class Definition:
-    """What a message definition says.
+    """A parsed message definition.
 
     Attributes:
         fields: types by name, in order.
@@ -37,11 +37,11 @@ class Definition:
 
 
 def parse_definition(text: str, package: str) -> Definition:
-    """Read the definition of a message.
+    """Parse the definition of a message.
 
     Args:
-        text: its lines.
-        package: the package of types that are named without one.
+        text: text of the definition.
+        package: package of types that are named without one.
 
     Raises:
         ValueError: a line is neither a field nor a constant, or a name occurs twice.

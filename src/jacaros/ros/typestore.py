@@ -1,7 +1,7 @@
-"""Message types without a ROS installation: a `Schema` made from definition files.
+"""Message types without a ROS installation: a `Schema` built from definition files.
 
-The types of ROS 2 Jazzy are in one file, ``interfaces/jazzy.msg``. A type is parsed, and its class made, at first use;
-all runs of a process share the classes.
+The types of ROS 2 Jazzy are in one file, ``interfaces/jazzy.msg``. A type is parsed, and its class created, on first
+use; all runs of a process share the classes.
 """
 
 import dataclasses
@@ -23,7 +23,7 @@ _ZEROS: Mapping[str, object] = {"string": "", "bool": False, "float32": 0.0, "fl
 
 
 class _Store:
-    """The types that are known in this process."""
+    """The types known in this process."""
 
     def __init__(self) -> None:
         file = (BUILT_IN / "jazzy.msg").read_text(encoding="utf-8")
@@ -33,7 +33,7 @@ class _Store:
         self._classes: dict[str, type] = {}
 
     def names(self) -> set[str]:
-        """Names of all types, in full form."""
+        """Return the full names of all types."""
         return {*self._texts, *self._definitions}
 
     def __contains__(self, type_name: str) -> bool:
@@ -69,22 +69,22 @@ def _message_class(type_name: str, described: Definition) -> type:
 
 
 def _python_name(field: str) -> str:
-    """Return the attribute for a field: a keyword of Python has an underscore appended."""
+    """Return the attribute name of a field; a Python keyword gets an underscore appended."""
     return f"{field}_" if keyword.iskeyword(field) else field
 
 
 def stored_types() -> list[str]:
-    """Names of all message types of the store, in full form, sorted."""
+    """Return the full names of all stored message types, sorted."""
     return sorted(_store().names())
 
 
 def is_stored(type_name: str) -> bool:
-    """Whether a type in full form is in the store already."""
+    """Return whether the type with this full name is stored already."""
     return type_name in _store()
 
 
 class DefinitionSchema:
-    """Message classes of ROS 2 Jazzy, plus those of definitions found in folders.
+    """Message classes of ROS 2 Jazzy, plus those defined in folders.
 
     Args:
         roots: the user's own definition folders; see `jacaros.ros.interfaces`.
@@ -96,12 +96,12 @@ class DefinitionSchema:
         self._makers: dict[str, Callable[[], Any]] = {}
 
     def look_in(self, folder: Path) -> None:
-        """Look for definitions in *folder* too, from now on."""
+        """From now on, also look for definitions in *folder*."""
         if folder not in self._roots:
             self._roots = (*self._roots, folder)
 
     def fields(self, type_name: str) -> Mapping[str, FieldType]:
-        """Fields of a type in full form; raises `UnknownInterface`."""
+        """Return the fields of the type with this full name; raises `UnknownInterface`."""
         fields = self._fields.get(type_name)
         if fields is None:
             self._require(type_name)
@@ -109,7 +109,7 @@ class DefinitionSchema:
         return fields
 
     def new(self, type_name: str) -> Any:
-        """Make a message with zeros, empty texts and empty sequences; raises `UnknownInterface`."""
+        """Create a message with zeros, empty strings and empty sequences; raises `UnknownInterface`."""
         maker = self._makers.get(type_name)
         if maker is None:
             maker = self._makers[type_name] = self._compile(type_name)
@@ -124,17 +124,17 @@ class DefinitionSchema:
         return value
 
     def service(self, type_name: str) -> None:
-        """Make the request and response types of a service known; raises `UnknownInterface`."""
+        """Load the request and response types of a service; raises `UnknownInterface`."""
         self._require_parts(type_name, "service", (request_type, response_type), split_service)
 
     def action(self, type_name: str) -> None:
-        """Make the goal, result and feedback types of an action known; raises `UnknownInterface`."""
+        """Load the goal, result and feedback types of an action; raises `UnknownInterface`."""
         self._require_parts(type_name, "action", (goal_type, result_type, feedback_type), split_action)
 
     def offered(self, type_name: str) -> None:
-        """Raise `UnknownInterface` for a service or an action that has no definition.
+        """Raise `UnknownInterface` for a service or an action without a definition.
 
-        The definition is read when the first request or goal comes: that takes milliseconds, and a robot offers many.
+        The definition is parsed on the first request or goal: parsing takes milliseconds, and a robot serves many types.
         """
         kind = type_name.split("/")[1]
         part = request_type(type_name) if kind == "srv" else goal_type(type_name)
@@ -195,13 +195,13 @@ class DefinitionSchema:
         _store().add(type_name, parsed)
 
     def _compile(self, type_name: str) -> Callable[[], Any]:
-        """A function that makes a message, written out as one expression: nested messages need no calls between."""
+        """Return a function that creates a message in one expression, so nested messages need no further calls."""
         names: dict[str, Any] = {}
         maker: Callable[[], Any] = eval(f"lambda: {self._message(type_name, names)}", names)
         return maker
 
     def _message(self, type_name: str, names: dict[str, Any]) -> str:
-        """An expression that makes a message; *names* takes what it refers to."""
+        """Return an expression that creates a message; add the objects it refers to to *names*."""
         defaults = DEFAULTS.get(type_name, {})
         values = [
             repr(defaults[name]) if name in defaults else self._value(field, names)
@@ -222,7 +222,7 @@ class DefinitionSchema:
 
 
 def _named(value: object, names: dict[str, Any]) -> str:
-    """A name for a value in an expression."""
+    """Add a value to *names*, and return its name for use in an expression."""
     name = f"v{len(names)}"
     names[name] = value
     return name

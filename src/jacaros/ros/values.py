@@ -1,4 +1,4 @@
-"""Checking of single values and arrays of numbers against the type of a field."""
+"""Check single values and arrays of numbers against the type of a field."""
 
 from array import array
 from collections.abc import Iterable, Mapping, Set
@@ -8,17 +8,17 @@ from jacaros.ros.fields import FLOATS, INTEGER_RANGES, FieldType
 
 
 def written(value: object) -> str:
-    """A value as messages to people have it: those of a user's own classes, such as terms, as ``str`` gives them."""
+    """Format a value for an error message: ``repr`` for built-in types, ``str`` for others, such as terms."""
     return repr(value) if type(value).__module__ == "builtins" else str(value)
 
 
 def single_value(field: FieldType, value: Any) -> bool | int | float | str:
-    """Give *value* as the plain Python value that fits *field* (its base, not an array).
+    """Return *value* as a plain Python value of the base type of *field* (not as an array).
 
-    Whole floating-point numbers are taken for integer fields, numpy scalars for all.
+    Integer fields accept whole floating-point numbers, and all fields accept numpy scalars.
 
     Raises:
-        TypeError: another kind of value is needed.
+        TypeError: the value has the wrong type.
         ValueError: the number is out of range, or the string too long.
     """
     if hasattr(value, "item") and getattr(value, "shape", None) == ():
@@ -40,7 +40,7 @@ def _text(field: FieldType, value: Any) -> str:
     if isinstance(value, str):
         if field.bound and len(value) > field.bound:
             raise ValueError(f"a string of {len(value)} characters is given")
-        return str.__str__(value)  # subclasses, such as atoms of the agents' language, become plain texts
+        return str.__str__(value)  # convert subclasses, such as atoms, to plain strings
     raise TypeError(f"{written(value)} is given")
 
 
@@ -71,16 +71,16 @@ _TYPECODES = {
     "int64": "q",
     "uint64": "Q",
 }
-"""Element types of `array.array`, as rclpy uses them too."""
+"""Type codes of `array.array`, the same as in rclpy."""
 
 
 def array_of_numbers(field: FieldType, values: Any) -> Any:
-    """Give *values* as an `array.array` of the field's type, or as a list for booleans.
+    """Return *values* as an `array.array` of the field's type, or as a list for booleans.
 
-    Lists, tuples, ranges, bytes, arrays of numpy and whatever else is iterable are taken.
+    Accepts lists, tuples, ranges, bytes, numpy arrays and any other iterable.
 
     Raises:
-        TypeError: these are not numbers, or floating-point numbers with fractions for integers.
+        TypeError: an element is not a number, or has a fraction in an integer field.
         ValueError: wrong length or out of range.
     """
     if isinstance(values, str | Mapping | Set) or not isinstance(values, Iterable):
@@ -93,7 +93,7 @@ def array_of_numbers(field: FieldType, values: Any) -> Any:
 
 def _converted(field: FieldType, values: Any) -> Any:
     if isinstance(values, bytes | bytearray | memoryview):
-        values = array("B", bytes(values))  # numbers, not the machine's bytes of other numbers
+        values = array("B", bytes(values))  # one number per byte, not raw bytes of wider numbers
     code = _TYPECODES.get(field.base)
     if code is not None and isinstance(values, array):
         if values.typecode == code:
@@ -104,7 +104,7 @@ def _converted(field: FieldType, values: Any) -> Any:
         try:
             return array(code, values)
         except (OverflowError, TypeError):
-            pass  # one of them is not such a number, or is one such as 3.0 for an integer
+            pass  # an element is invalid, or is a whole float for an integer field: check each one below
     checked: list[Any] = [single_value(field.element, each) for each in values]
     return checked if code is None else array(code, checked)
 

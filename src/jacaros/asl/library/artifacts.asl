@@ -1,15 +1,15 @@
-// Plans that make, find and focus artifacts.  A program takes them in by
+// Plans that create, find and focus artifacts.  Include them in a program:
 //
 //     { include("$jacaros/artifacts.asl") }
 //
-// and says what it wants to use, each artifact by a name of its own choice:
+// and name each artifact that the program uses:
 //
 //     !use_artifact("wheels", "ArtCmdVel");
 //     !use_artifact("battery", "ArtSimBattery", [source(robot)]);
 
 /* Any artifact */
 
-// Have an artifact of this name and type, and perceive it: its properties become beliefs.
+// Create an artifact with this name and type, unless it exists, and focus it: its properties become beliefs.
 +!use_artifact(Name, Type)
   <- !use_artifact(Name, Type, []).
 
@@ -21,19 +21,19 @@
 +!create_artifact(Name, Type, Parameters)
   <- makeArtifact(Name, Type, Parameters).
 
-// It is there already, another agent was faster: just as well.
+// The artifact exists, because another agent was faster: nothing to do.
 -!create_artifact(_, _, _)[env_failure_reason(Reason)]
     : Reason = makeArtifactFailure("artifact_already_present", _).
 
-// Any other reason concerns who wanted the artifact.
+// Pass any other failure to the goal that posted this one.
 -!create_artifact(_, _, _)[error(Error), error_msg(Text), env_failure_reason(Reason)]
   <- .fail(error(Error), error_msg(Text), env_failure_reason(Reason)).
 
-// A program that makes artifacts in its own way may fail without a reason of the environment.
+// A program's own plan for creating artifacts may fail without a reason from the environment.
 -!create_artifact(_, _, _)[error(Error), error_msg(Text)]
   <- .fail(error(Error), error_msg(Text)).
 
-// Find an artifact; one that is not there yet has five seconds to come.
+// Find an artifact; wait up to five seconds for it to be created.
 +?artifact(Name, Id)
   <- ?artifact(Name, Id, 50).
 
@@ -50,9 +50,9 @@
 -?artifact(_, _, _)[error(Error), error_msg(Text)]
   <- .fail(error(Error), error_msg(Text)).
 
-/* The artifacts of the thesis, by the names of its plans: make with create_..., find with tool... */
+/* The artifacts of the thesis, under the names of its plans: create_... creates and tool... finds an artifact */
 
-// Where the robot is: odom(X, Y, Z).
+// The position of the robot: odom(X, Y, Z).
 +!create_odom <- !create_artifact("Odom", "ArtOdometry", []).
 +!create_odom(Robot)
   <- .concat("Odom", Robot, Name);
@@ -60,7 +60,7 @@
 +?toolOdom(Id) <- ?artifact("Odom", Id).
 +?toolOdom(Robot, Id) <- .concat("Odom", Robot, Name); ?artifact(Name, Id).
 
-// Driving, by time: move(N), rotate(Degrees).
+// Driving by time: move(N), rotate(Degrees).
 +!create_cmd_vel <- !create_artifact("Cmd_vel", "ArtCmdVel", []).
 +?toolCmd_vel(Id) <- ?artifact("Cmd_vel", Id).
 
@@ -68,7 +68,7 @@
 +!create_cmd_vel_odom <- !create_artifact("Cmd_vel_odom", "ArtCmdVelAndOdometry", []).
 +?toolCmd_vel_odom(Id) <- ?artifact("Cmd_vel_odom", Id).
 
-// The same by the topic of a Kobuki base.
+// The same, on the topic of a Kobuki base.
 +!create_cmd_vel_mux_odom <- !create_artifact("Cmd_vel_mux_odom", "ArtCmdVelMuxAndOdometry", []).
 +?toolCmd_vel_mux_odom(Id) <- ?artifact("Cmd_vel_mux_odom", Id).
 

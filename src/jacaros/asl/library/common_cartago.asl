@@ -1,7 +1,7 @@
-// What programs of JaCaMo expect of $jacamo/templates/common-cartago.asl: where the agent is, and what it focuses.
-// What the project file says of joining and focusing is done before the first goal; no plan is needed for it.
+// The rules that JaCaMo programs expect from $jacamo/templates/common-cartago.asl: joined workspaces, focused artifacts.
+// The agent joins and focuses what the project file lists before its first goal, so no plan is needed for that.
 
-// The agent is in a workspace.
+// The agent has joined a workspace.
 joined(Workspace, Id) :- default::joinedWsp(Id, Workspace, _).
 
 // The agent focuses an artifact.

@@ -1,4 +1,4 @@
-// An agent that a test makes by !create_mock_agent(Name), to talk to.  It tells the test's agent when it has nothing to do.
+// An agent that a test creates with !create_mock_agent(Name) to exchange messages with.  It reports when it is idle.
 
 +jag_sleeping : mock_owner(Owner) & .my_name(Me)
   <- .send(Owner, tell, sleeping(Me)).

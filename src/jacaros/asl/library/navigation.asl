@@ -1,25 +1,25 @@
-// Plans of robots that go to places, patrol and recharge, over operations that a mapping or an artifact offers.  A program
-// takes them in by
+// Plans for robots that go to places, patrol and recharge.  They use the operations of a mapping or an artifact.  Include
+// them in a program:
 //
 //     { include("$jacaros/navigation.asl") }
 //
-// and says what it knows of its world and how patient it is:
+// and describe the world and the robot's limits by beliefs (defaults in parentheses):
 //
-//     place(kitchen, 2, 2, 90).   // where to stand, in metres, and where to look, in degrees
-//     attempts(5).                // so often a way is tried (3)
+//     place(kitchen, 2, 2, 90).   // x and y in metres, yaw in degrees
+//     attempts(5).                // attempts to reach a place (3)
 //     low_at(30).                 // percent at which the battery is low (20)
-//     charged_at(100).            // percent at which it is full enough (95)
-//     dock_id("dock_1").          // how Nav2 calls the robot's dock, where Nav2 docks it
+//     charged_at(100).            // percent at which it is charged (95)
+//     dock_id("dock_1").          // Nav2's name for the robot's dock, if Nav2 does the docking
 //
-// A plan of the program that stands before the include goes first, so every step below can be done otherwise.
+// Plans before the include take precedence, so a program can override every step below.
 
 attempts_allowed(N) :- attempts(N).
 attempts_allowed(3) :- not attempts(_).
 
-percent_left(Percent) :- charge_told(Percent) & Percent <= 150.
-percent_left(Percent) :- charge_told(Told) & Told > 150 & Percent = Told / 100.  // a driver that counts in percent itself
-charge_told(Percent) :- battery(Percent, _).
-charge_told(Percent) :- battery(Percent).
+percent_left(Percent) :- reported_charge(Percent) & Percent <= 150.
+percent_left(Percent) :- reported_charge(Charge) & Charge > 150 & Percent = Charge / 100.  // the driver counts in percent
+reported_charge(Percent) :- battery(Percent, _).
+reported_charge(Percent) :- battery(Percent).
 
 battery_low :- percent_left(Percent) & low_at(Least) & Percent <= Least.
 battery_low :- percent_left(Percent) & not low_at(_) & Percent <= 20.
@@ -27,43 +27,43 @@ battery_low :- percent_left(Percent) & not low_at(_) & Percent <= 20.
 battery_full :- percent_left(Percent) & charged_at(Least) & Percent >= Least.
 battery_full :- percent_left(Percent) & not charged_at(_) & Percent >= 95.
 
-/* Going somewhere */
+/* Going to a place */
 
-// To a place by its name, or to a pose in the map: metres and degrees.
+// Go to a place by its name, or to a pose in the map (metres and degrees).
 +!go_to(Place) : place(Place, X, Y, Yaw)
   <- !go_to(X, Y, Yaw).
 
 +!go_to(Place)
-  <- .concat("there is no belief place(", Place, ", X, Y, Yaw)", Text);
+  <- .concat("unknown place `", Place, "`: no belief place(", Place, ", X, Y, Yaw)", Text);
      .fail(error(unknown_place), error_msg(Text), env_failure_reason(unknown_place(Place))).
 
 +!go_to(X, Y, Yaw)
   <- !attempt(drive_there(X, Y, Yaw), 1).
 
-// The one place that knows how this robot drives.
+// The only step that depends on how this robot drives.
 +!drive_there(X, Y, Yaw)
   <- navigate_to(X, Y, Yaw).
 
-/* Attempts: one step, again and again until it succeeds */
+/* Attempts: run a step until it succeeds */
 
 +!attempt(Step, _)
   <- !Step.
 
-// The goal was cancelled from outside, so trying again would be wrong.
+// The goal was cancelled from outside: do not retry.
 -!attempt(_, _)[error(Error), error_msg(Text), env_failure_reason(canceled)]
   <- .fail(error(Error), error_msg(Text), env_failure_reason(canceled)).
 
-// It did not work: see what can be done about the reason, and try again.
+// The step failed: recover from the reason, and retry.
 -!attempt(Step, Number)[env_failure_reason(Reason)] : attempts_allowed(Most) & Number < Most
   <- !recover(Reason);
      !attempt(Step, Number + 1).
 
-// What a program does in its own way may fail without such a reason: then the kind of error is it.
+// A program's own step may fail without such a reason: recover from the kind of error instead.
 -!attempt(Step, Number)[error(Error)] : attempts_allowed(Most) & Number < Most
   <- !recover(Error);
      !attempt(Step, Number + 1).
 
-// Tried often enough: the reason concerns who wanted the step.
+// No attempts left: pass the failure to the goal that posted this one.
 -!attempt(_, _)[error(Error), error_msg(Text), env_failure_reason(Reason)]
   <- .fail(error(Error), error_msg(Text), env_failure_reason(Reason)).
 
@@ -72,12 +72,12 @@ battery_full :- percent_left(Percent) & not charged_at(_) & Percent >= 95.
 
 /* Before the next attempt */
 
-// The server is starting, or is gone and may come back.
+// The server is starting, or has stopped and may come back.
 +!recover(rejected) <- .wait(3000).
 +!recover(server_unavailable) <- .wait(3000).
 +!recover(server_lost) <- .wait(3000).
 
-// No way was found, or it took too long: forget obstacles that may have gone, and give them time to go.
+// No path was found, or it took too long: forget obstacles that may have moved, and give them time to move.
 +!recover(_)
   <- !forget_obstacles;
      .wait(2000).
@@ -85,12 +85,12 @@ battery_full :- percent_left(Percent) & not charged_at(_) & Percent >= 95.
 +!forget_obstacles
   <- clear_costmaps.
 
-// Not every robot can: just as well.
+// Not every robot has this operation: ignore the failure.
 -!forget_obstacles.
 
 /* Patrol */
 
-// From place to place, again and again; or so many rounds.
+// Visit the places in turn, without end or for a number of rounds.
 +!patrol([]).
 
 +!patrol(Places)
@@ -109,7 +109,7 @@ battery_full :- percent_left(Percent) & not charged_at(_) & Percent >= 95.
   <- !visit(Place);
      !round(Rest).
 
-// Be there, and do there what the program has a plan `arrived` for: less urgent plans drive no robot meanwhile.
+// Go to a place and run the program's plan `arrived` there.  Meanwhile, less urgent plans cannot use the wheels.
 @navigation__visit[needs(wheels)]
 +!visit(Place)
   <- !reach(Place, Reached);
@@ -121,18 +121,18 @@ battery_full :- percent_left(Percent) & not charged_at(_) & Percent >= 95.
   <- !go_to(Place);
      .abolish(unreachable(Place, _)).
 
-// Unknown place: an error in the goal to patrol.
+// An unknown place is an error in the patrol goal.
 -!reach(_, _)[error(Error), error_msg(Text), env_failure_reason(unknown_place(Place))]
   <- .fail(error(Error), error_msg(Text), env_failure_reason(unknown_place(Place))).
 
-// A place that cannot be reached is left out and known.
+// Skip a place that cannot be reached, and remember it as unreachable(Place, Reason).
 -!reach(Place, false)[env_failure_reason(Reason)]
   <- !leave_out(Place, Reason).
 
 -!reach(Place, false)[error(Error)]
   <- !leave_out(Place, Error).
 
-// After a moment: there may be no other place.
+// Wait for a moment: there may be no other place to visit.
 +!leave_out(Place, Reason)
   <- .abolish(unreachable(Place, _));
      +unreachable(Place, Reason);
@@ -140,7 +140,7 @@ battery_full :- percent_left(Percent) & not charged_at(_) & Percent >= 95.
 
 +!arrived(_).
 
-/* Rest: the robot stands as long as there is a reason, whatever less urgent plans want of its wheels */
+/* Holding: the robot stands still while there is a reason to, and less urgent plans cannot use its wheels */
 
 +!hold(Reason)
   <- !stand_for(Reason);
@@ -168,9 +168,9 @@ battery_full :- percent_left(Percent) & not charged_at(_) & Percent >= 95.
 
 +!stand_longer.
 
-/* The battery, which is known as battery(Percent, _) or battery(Percent) */
+/* The battery: battery(Percent, _) or battery(Percent) */
 
-// As long as this goal is pursued, the robot goes to its dock whenever the battery is low.  Plans that need its wheels wait.
+// While this goal is active, the robot goes to its dock whenever the battery is low.  Plans that need its wheels wait.
 +!keep_charged
   <- .wait(battery_low);
      !charge_first;
@@ -180,7 +180,7 @@ battery_full :- percent_left(Percent) & not charged_at(_) & Percent >= 95.
 +!charge_first
   <- !dock_and_charge.
 
-// A robot that cannot charge stands, so that its battery lasts until a person has come.
+// A robot that cannot charge stands still, so that its battery lasts until a person comes.
 -!charge_first[error(Error), error_msg(Text), env_failure_reason(Reason)]
   <- !stand_for(battery);
      .fail(error(Error), error_msg(Text), env_failure_reason(Reason)).
@@ -189,7 +189,7 @@ battery_full :- percent_left(Percent) & not charged_at(_) & Percent >= 95.
   <- !stand_for(battery);
      .fail(error(Error), error_msg(Text)).
 
-// To the dock, wait there until the battery is full, and out again.
+// Drive into the dock, wait until the battery is full, and drive out.
 +!dock_and_charge
   <- !into_dock;
      !wait_until_charged;
@@ -201,11 +201,11 @@ battery_full :- percent_left(Percent) & not charged_at(_) & Percent >= 95.
 +!out_of_dock
   <- !attempt(drive_out_of_dock, 1).
 
-// Where Nav2 knows the dock by a name, it finds the way.
+// If Nav2 knows the dock by name, it drives there.
 +!drive_into_dock : dock_id(Name)
   <- dock_at(Name).
 
-// Others drive to a place in front of it, if the program knows one, and in.
+// Otherwise, drive to the place in front of the dock, if the program has one, and then into the dock.
 +!drive_into_dock : place(dock, X, Y, Yaw)
   <- !go_to(X, Y, Yaw);
      dock.
@@ -219,15 +219,15 @@ battery_full :- percent_left(Percent) & not charged_at(_) & Percent >= 95.
 +!drive_out_of_dock
   <- undock.
 
-// Until the battery is full enough.
+// Wait until the battery is full.
 +!wait_until_charged : battery_full.
 
 +!wait_until_charged
   <- !get_fuller;
      !wait_until_charged.
 
-// Slow batteries take two minutes for a percent; one that gets no fuller in five stands in no dock.  A goal of its own: a
-// program that waits in another way has failures of other kinds.
+// A slow battery takes two minutes per percent; if the level does not rise for five, the robot is not in a dock.  This is
+// a goal of its own because a program that waits in another way has other failures.
 +!get_fuller : percent_left(Before)
   <- .wait(battery_full | percent_left(Now) & Now > Before, 300000).
 
@@ -235,5 +235,5 @@ battery_full :- percent_left(Percent) & not charged_at(_) & Percent >= 95.
   <- .wait(percent_left(_), 300000).
 
 -!get_fuller
-  <- .fail(error(action_failed), error_msg("the battery has not become fuller for five minutes"),
+  <- .fail(error(action_failed), error_msg("the battery level has not risen for five minutes"),
            env_failure_reason(no_current)).

@@ -1,4 +1,4 @@
-// The assertion goals of tests.  `jacaros test` gives them to every agent that it tests; other programs take them in by
+// Assertion goals for tests.  `jacaros test` adds them to every agent that it tests; include them in other programs:
 //
 //     { include("$jacaros/test_assert.asl") }
 //
@@ -9,7 +9,7 @@
 +!assert_equals(Expected, Actual)
   <- jacaros.assert_equals(Expected, Actual).
 
-// Numbers that differ by no more than the tolerance.
+// Numbers that differ by at most the tolerance.
 @test__assert_equals_tolerance[atomic]
 +!assert_equals(Expected, Actual, Tolerance)
   <- jacaros.assert_equals(Expected, Actual, Tolerance).
@@ -57,9 +57,9 @@
 +!force_failure(Message)
   <- jacaros.force_failure(Message).
 
-/* Those that Jason does not have */
+/* Assertions that Jason does not have */
 
-// The goal fails, for whatever reason.
+// The goal fails, for any reason.
 @test__assert_fail
 +!assert_fail(Goal)
   <- !Goal;
@@ -69,7 +69,7 @@
 -!assert_fail(Goal)
   <- jacaros.assert_fail(Goal, failed).
 
-// From now on the test answers an external action: it succeeds at once, or ends as the outcome says.
+// Fake an external action from now on: it succeeds immediately, or ends with the given outcome.
 @test__fake_action[atomic]
 +!fake_action(Action)
   <- jacaros.fake(Action).
@@ -78,7 +78,7 @@
 +!fake_action(Action, Outcome)
   <- jacaros.fake(Action, Outcome).
 
-// The agent has begun such an external action since the test began.
+// The agent has started a matching external action since the test began.
 @test__assert_did[atomic]
 +!assert_did(Action)
   <- jacaros.assert_did(Action).
@@ -91,14 +91,14 @@
 +!assert_not_did(Action)
   <- jacaros.assert_not_did(Action).
 
-// The agent has printed a line with this in it.
+// The agent has printed a line that contains this text.
 @test__assert_printed[atomic]
 +!assert_printed(Text)
   <- jacaros.assert_printed(Text).
 
-/* The rest of the ROS graph, as the test plays it */
+/* The rest of the ROS graph, played by the test */
 
-// Publish a message; a moment later agents believe its values.
+// Publish a message, and wait for the agents to perceive its values.
 @test__fake_message
 +!fake_message(Topic, Fields)
   <- jacaros.fake_message(Topic, Fields);
@@ -119,7 +119,7 @@
 +!fake_service(Name, Type, Fields)
   <- jacaros.fake_service(Name, Type, Fields).
 
-// An artifact of this run has published such a message since the test began.
+// An artifact of this run has published a matching message since the test began.
 @test__assert_published[atomic]
 +!assert_published(Topic, Fields)
   <- jacaros.assert_published(Topic, Fields).
@@ -132,7 +132,7 @@
 +!assert_not_published(Topic)
   <- jacaros.assert_not_published(Topic).
 
-// A service of the test was called with such a request since the test began.
+// A faked service was called with a matching request since the test began.
 @test__assert_called[atomic]
 +!assert_called(Service, Fields)
   <- jacaros.assert_called(Service, Fields).

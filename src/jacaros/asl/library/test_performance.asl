@@ -1,5 +1,5 @@
-// How long a goal takes: `!check_performance(goal, 10, Mean)` pursues it ten times and gives the mean in nanoseconds of the
-// run's clock.  On the virtual clock only waiting takes time.
+// Measure how long a goal takes: `!check_performance(goal, 10, Mean)` runs it ten times and returns the mean in nanoseconds
+// of the run's clock.  On the virtual clock, only waiting takes time.
 
 @test__check_performance
 +!check_performance(Goal, Times, Mean)

@@ -1,24 +1,24 @@
-// What a file of agent tests takes in, by any of the names that Jason's users write:
+// A file of agent tests includes this file, under any of the names that Jason programs use:
 //
 //     { include("$jacaros/tester_agent.asl") }
 //
-// `jacaros test FILE` runs its plans whose label says `test`.
+// `jacaros test FILE` runs the plans with `test` in their label.
 
 { include("$jacaros/test_assert.asl") }
 { include("$jacaros/test_performance.asl") }
 
-// Programs written for Jason ask for it; `jacaros test` has its own way, and leaves this goal out.
+// Programs written for Jason have this goal; `jacaros test` runs the tests without it, and skips it.
 @test__execute_test_plans
 +!execute_test_plans
   <- .print("run the tests of this agent with jacaros test").
 
-// Another agent for a test to talk to; the test may kill it when it is done.
+// Create an agent for a test to exchange messages with; the test can kill it afterwards.
 @test__create_mock_agent
 +!create_mock_agent(Name) : .my_name(Me)
   <- .create_agent(Name, "mock_agent.asl");
      .send(Name, tell, mock_owner(Me)).
 
-// Wait until such an agent has dealt with what it has been sent.
+// Wait until a mock agent has handled the messages sent to it.
 @test__wait_idle
 +!wait_idle(Name)
   <- .wait(not sleeping(Name), 300, _);
