@@ -1,4 +1,4 @@
-// As chapter 9 and listing B.1: what is in the range of view is signalled cell by cell, and objects have positions.
+// As chapter 9 and listing B.1: the cells in view are signalled one at a time, and objects have positions.
 // jacaros: ignore-file singleton-variable
 
 !start.

@@ -1,4 +1,4 @@
-// As listing 26: odometry with and without the name of a robot, plans with an empty context.
+// As listing 26: odometry with and without the name of a robot, and plans with an empty context.
 // jacaros: ignore-file missing-context, singleton-variable
 
 !watch.
@@ -45,5 +45,5 @@
      stopFocus(OdomId);
      ?currentPose(X, Y, Z);
      .print("the pose: ", X, " ", Y, " ", Z);
-     !create_odom("robot_0");  // there is an artifact of that name
+     !create_odom("robot_0");  // an artifact with that name exists
      .stopMAS.

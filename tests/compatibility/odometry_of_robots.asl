@@ -1,4 +1,4 @@
-// As listings 7 and 8: one odometry artifact for each robot, told apart by the robot's name; empty brackets.
+// As listings 7 and 8: one odometry artifact per robot, named after the robot; empty brackets.
 // jacaros: ignore-file missing-context, empty-brackets, singleton-variable
 
 !start.

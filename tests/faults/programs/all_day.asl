@@ -1,4 +1,4 @@
-// Patrols, is suspended and dropped in the middle of goals, asks services, and makes and disposes artifacts, again and again.
+// Patrols, is suspended and dropped in the middle of goals, calls services, and creates and disposes artifacts, repeatedly.
 { include("$jacaros/artifacts.asl") }
 { include("$jacaros/navigation.asl") }
 
@@ -44,7 +44,7 @@ attempts(2).
      disposeArtifact(Other);
      !visitors.
 
-// No server offers what this artifact needs, so it waits and is cancelled.
+// No server exists for this artifact, so it waits and is cancelled.
 +!hurry
   <- dock.
 

@@ -1,4 +1,4 @@
-// Drives by time alone, three times two seconds, whatever odometry says, and tells what it perceives.
+// Drives by time alone, three times for two seconds, without odometry, and prints what it perceives.
 !begin.
 
 +!begin

@@ -1,4 +1,4 @@
-// Drives to a point by odometry and back, as often as it takes, and tells what it perceives.
+// Drives to a point by odometry and back, retrying until it succeeds, and prints what it perceives.
 !begin.
 
 +!begin

@@ -1,4 +1,4 @@
-// Goes to two places by the plan library, which knows what to do when the way fails.
+// Goes to two places with the plan library, which recovers from failed drives.
 { include("$jacaros/navigation.asl") }
 
 place(far, 2, 0, 0).

@@ -1,4 +1,4 @@
-// Asks a service of the robot until it does what it should, while the robot drives; tells every reason.
+// Calls a service of the robot until it succeeds, while the robot drives, and prints the reason of every failure.
 !begin.
 
 +!begin

@@ -1,4 +1,4 @@
-// Drives ahead by time, and stops as soon as it sees that it is far enough; its odometry comes a thousand times a second.
+// Drives ahead by time, and stops once its odometry, published at 1000 Hz, shows that it is far enough.
 !begin.
 
 +!begin
@@ -16,7 +16,7 @@
      .print("seen at ", X, " after ", N, " thoughts");
      abortMoving.
 
-// What it thinks on the way takes longer than a message does.
+// Its reasoning on the way takes longer than the interval between messages.
 +pose(X, _, _) : X >= 0.9 & not stopped & thoughts(N)
   <- -+thoughts(N + 1);
      for (.range(I, 1, 20000)) { _Y = I }.

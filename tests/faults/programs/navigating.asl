@@ -1,4 +1,4 @@
-// Lets the robot's own navigation bring it to a point and back, as often as it takes, and tells what it perceives.
+// Drives to a point and back by the robot's own navigation, retrying until it succeeds, and prints what it perceives.
 !begin.
 
 +!begin

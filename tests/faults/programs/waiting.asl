@@ -1,4 +1,4 @@
-// Drives, waits, and asks a server that never answers, all at once; tells how long each took.
+// Drives, waits, and calls a server that never answers, at the same time, and prints how long each took.
 !begin.
 
 +!begin

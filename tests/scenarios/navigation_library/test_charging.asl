@@ -14,7 +14,7 @@ place(b, 2, 0, 0).
      !fake_action(leave_dock, after(500));
      !fake_action(clear_costmaps).
 
-@charges_in_the_middle_of_a_patrol_and_goes_on[test]
+@charges_in_the_middle_of_a_patrol_and_continues[test]
 +!test_low
   <- !fakes;
      +battery(50, discharging);
@@ -39,7 +39,7 @@ place(b, 2, 0, 0).
      .drop_desire(patrol(_));
      .drop_desire(keep_charged).
 
-@goes_on_when_the_last_reason_to_rest_has_gone[test]
+@continues_when_no_reason_to_hold_is_left[test]
 +!test_reasons
   <- !fakes;
      +battery(50);
@@ -48,7 +48,7 @@ place(b, 2, 0, 0).
      .wait(100);
      -+battery(20);
      .wait(1000);
-     !!hold(person);  // the robot charges: it stands for a person afterwards
+     !!hold(person);  // the robot is charging: it stands still for the person afterwards
      .wait(2000);
      !assert_did(navigate_to(_, _, _), 1);
      -+battery(100);
@@ -62,7 +62,7 @@ place(b, 2, 0, 0).
      .drop_desire(patrol(_));
      .drop_desire(keep_charged).
 
-@charges_again_and_again[test]
+@charges_repeatedly[test]
 +!test_again
   <- !fakes;
      !!keep_charged;
@@ -75,7 +75,7 @@ place(b, 2, 0, 0).
      !assert_did(dock, 2);
      .drop_desire(keep_charged).
 
-@the_program_says_what_is_low_and_what_is_full[test]
+@the_program_sets_the_low_and_the_full_level[test]
 +!test_levels
   <- !fakes;
      +low_at(40);
@@ -89,7 +89,7 @@ place(b, 2, 0, 0).
      !assert_did(undock, 1);
      .drop_desire(keep_charged).
 
-@a_driver_that_counts_in_percent_itself_is_understood[test]
+@accepts_a_driver_that_counts_in_percent[test]
 +!test_percent
   <- +battery(9820, discharging);
      !assert_true(percent_left(98.2));
@@ -107,7 +107,7 @@ place(b, 2, 0, 0).
      !assert_did(dock, 1);
      !assert_did(undock, 1).
 
-@nav2_docks_it_by_the_name_of_the_dock[test]
+@nav2_docks_by_the_name_of_the_dock[test]
 +!test_name
   <- !fakes;
      +dock_id("dock_2");
@@ -117,7 +117,7 @@ place(b, 2, 0, 0).
      !assert_did(leave_dock, 1);
      !assert_not_did(dock).
 
-@tries_again_to_dock[test]
+@retries_docking[test]
 +!test_retry
   <- !fakes;
      !fake_action(dock, failed(aborted(0, "not seen"), "the dock is not seen"));
@@ -130,7 +130,7 @@ place(b, 2, 0, 0).
      !assert_did(dock, 2);
      !assert_did(undock, 1).
 
-@the_patrol_rests_while_the_robot_cannot_dock[test]
+@the_patrol_waits_while_the_robot_cannot_dock[test]
 +!test_no_dock
   <- !fakes;
      !fake_action(dock, failed(aborted(0, "not seen"), "the dock is not seen"));
@@ -150,7 +150,7 @@ place(b, 2, 0, 0).
 -!mind[env_failure_reason(Reason)]
   <- +trouble(Reason).
 
-@a_dock_without_current_is_given_up[test, timeout(2000000)]
+@abandons_a_dock_without_current[test, timeout(2000000)]
 +!test_no_current
   <- !fakes;
      +battery(30);

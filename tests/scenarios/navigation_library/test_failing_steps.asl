@@ -1,9 +1,9 @@
-// Steps that a program does in its own way, and that fail: the failures arrive where they belong, whatever their kind.
+// A program's own steps that fail: every kind of failure reaches the right goal.
 
 { include("$jacaros/tester_agent.asl") }
 
 +!drive_there(1, _, _)
-  <- ?map_of(cellar).  // fails with no reason of an operation
+  <- ?map_of(cellar).  // fails without a reason from an operation
 
 +!recover(test_goal_failed) : broken_recovery
   <- ?spare_wheel.
@@ -48,7 +48,7 @@ place(b, 2, 0, 0).
      !fake_action(undock);
      !fake_action(take_picture, failed(service_timeout(3), "the camera does not answer")).
 
-// What a program hears of a goal that fails.
+// Record how a goal of the program fails.
 +!hear(Goal)
   <- !Goal;
      +heard(nothing, nothing).
@@ -59,14 +59,14 @@ place(b, 2, 0, 0).
 -!hear(_)[error(Error)]
   <- +heard(Error, none).
 
-@a_drive_that_fails_without_a_reason_is_tried_again_and_then_told[test]
+@retries_a_drive_that_fails_without_a_reason_and_then_fails[test]
 +!test_drive
   <- +own_recovery;
      !!hear(go_to(a));
      .wait(heard(test_goal_failed, none), 60000);
      !assert_true(recovered(test_goal_failed)).
 
-@what_fails_while_obstacles_are_forgotten_does_not_matter[test]
+@ignores_failures_while_forgetting_obstacles[test]
 +!test_forget
   <- !fakes;
      +own_recovery;
@@ -81,7 +81,7 @@ place(b, 2, 0, 0).
      !!hear(go_to(a));
      .wait(heard(test_goal_failed, none), 1000).
 
-@a_patrol_leaves_out_what_it_cannot_reach_whatever_the_reason[test]
+@a_patrol_skips_an_unreachable_place_for_any_reason[test]
 +!test_unreachable
   <- !fakes;
      +attempts(1);
@@ -90,7 +90,7 @@ place(b, 2, 0, 0).
      !assert_true(unreachable(a, test_goal_failed));
      !assert_false(unreachable(b, _)).
 
-@a_place_that_was_reached_is_not_called_unreachable[test]
+@a_place_that_was_reached_is_not_unreachable[test]
 +!test_arrived
   <- !fakes;
      +own_arrival(action);
@@ -99,7 +99,7 @@ place(b, 2, 0, 0).
      !assert_false(unreachable(_, _));
      !assert_did(navigate_to(_, _, _), 1).
 
-@what_is_done_at_a_place_may_fail_without_a_reason[test]
+@the_action_at_a_place_may_fail_without_a_reason[test]
 +!test_arrived_plain
   <- !fakes;
      +own_arrival(ia);
@@ -107,7 +107,7 @@ place(b, 2, 0, 0).
      .wait(heard(test_goal_failed, none), 60000);
      !assert_false(unreachable(_, _)).
 
-@a_visit_of_its_own_fails_the_patrol[test]
+@a_failing_visit_of_the_program_fails_the_patrol[test]
 +!test_visit
   <- !fakes;
      +own_visit;
@@ -115,7 +115,7 @@ place(b, 2, 0, 0).
      .wait(heard(action_failed, service_timeout(3)), 60000);
      !assert_false(unreachable(_, _)).
 
-@a_dock_of_its_own_is_tried_again_and_then_told[test]
+@retries_docking_of_the_program_and_then_fails[test]
 +!test_dock
   <- !fakes;
      +own_dock;
@@ -124,7 +124,7 @@ place(b, 2, 0, 0).
      .wait(heard(test_goal_failed, none), 60000);
      !assert_true(recovered(test_goal_failed)).
 
-@the_way_out_of_its_own_dock_too[test]
+@retries_leaving_the_dock_of_the_program_and_then_fails[test]
 +!test_undock
   <- !fakes;
      +own_dock_out;
@@ -134,14 +134,14 @@ place(b, 2, 0, 0).
      .wait(heard(stuck, none), 60000);
      !assert_true(recovered(stuck)).
 
-@waiting_in_its_own_way_may_fail[test]
+@waiting_of_the_program_may_fail[test]
 +!test_charging
   <- !fakes;
      +own_charging;
      !!hear(dock_and_charge);
      .wait(heard(test_goal_failed, none), 60000).
 
-@charging_in_its_own_way_fails_keep_charged[test]
+@failing_charging_of_the_program_fails_keep_charged[test]
 +!test_all
   <- !fakes;
      +own_charging(all);

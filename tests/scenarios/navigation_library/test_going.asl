@@ -1,4 +1,4 @@
-// Plans of $jacaros/navigation.asl that go somewhere; the robot is faked.
+// Plans of $jacaros/navigation.asl that go to a place; the robot is faked.
 
 { include("$jacaros/tester_agent.asl") }
 { include("$jacaros/navigation.asl") }
@@ -11,7 +11,7 @@ place(kitchen, 2, 3, 90).
      !go_to(kitchen);
      !assert_did(navigate_to(2, 3, 90), 1).
 
-@a_place_that_nobody_knows_is_told[test]
+@fails_for_an_unknown_place[test]
 +!test_unknown
   <- !fake_action(navigate_to(_, _, _));
      !!ask(cellar);
@@ -19,7 +19,7 @@ place(kitchen, 2, 3, 90).
      !assert_true(reason(unknown_place(cellar)));
      !assert_not_did(navigate_to(_, _, _)).
 
-@tries_again_when_there_was_no_way[test]
+@retries_when_no_path_was_found[test]
 +!test_blocked
   <- !fake_action(navigate_to(_, _, _), failed(aborted(208, "no way"), "no way"));
      !fake_action(clear_costmaps);
@@ -30,7 +30,7 @@ place(kitchen, 2, 3, 90).
      !assert_did(navigate_to(2, 3, 90), 2);
      !assert_did(clear_costmaps, 1).
 
-@gives_up_after_its_attempts_with_the_reason[test]
+@fails_with_the_reason_after_all_attempts[test]
 +!test_attempts
   <- +attempts(4);
      !fake_action(navigate_to(_, _, _), failed(timeout(60), "too late"));
@@ -41,14 +41,14 @@ place(kitchen, 2, 3, 90).
      !assert_true(text("too late"));
      !assert_did(navigate_to(2, 3, 90), 4).
 
-@three_attempts_unless_the_program_says_otherwise[test]
+@makes_three_attempts_by_default[test]
 +!test_three
   <- !fake_action(navigate_to(_, _, _), failed(rejected, "not now"));
      !!ask(kitchen);
      .wait(reason(rejected), 60000);
      !assert_did(navigate_to(2, 3, 90), 3).
 
-@does_not_try_again_what_was_cancelled[test]
+@does_not_retry_a_cancelled_goal[test]
 +!test_canceled
   <- !fake_action(navigate_to(_, _, _), failed(canceled, "cancelled"));
      !fake_action(clear_costmaps);
@@ -58,7 +58,7 @@ place(kitchen, 2, 3, 90).
      !assert_did(navigate_to(_, _, _), 1);
      !assert_not_did(clear_costmaps).
 
-@waits_for_a_server_that_is_gone[test]
+@waits_for_a_server_that_has_stopped[test]
 +!test_server
   <- !fake_action(navigate_to(_, _, _), failed(server_lost, "gone"));
      !fake_action(clear_costmaps);
@@ -69,7 +69,7 @@ place(kitchen, 2, 3, 90).
      .wait(arrived, 5000);
      !assert_not_did(clear_costmaps).
 
-@a_robot_that_cannot_forget_obstacles_tries_all_the_same[test]
+@retries_on_a_robot_that_cannot_forget_obstacles[test]
 +!test_forget
   <- !fake_action(navigate_to(_, _, _), failed(aborted(105, "stuck"), "stuck"));
      !fake_action(clear_costmaps, failed(service_unavailable("x"), "no such service"));

@@ -1,4 +1,4 @@
-// A program that does each step of $jacaros/navigation.asl in its own way.
+// A program that overrides each step of $jacaros/navigation.asl.
 
 { include("$jacaros/tester_agent.asl") }
 

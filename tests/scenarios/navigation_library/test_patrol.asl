@@ -15,7 +15,7 @@ place(c, 3, 0, 0).
   <- !fake_action(navigate_to(_, _, _), after(1000));
      !fake_action(clear_costmaps).
 
-@goes_round_and_round[test]
+@repeats_its_rounds[test]
 +!test_round
   <- !fakes;
      !!patrol([a, b]);
@@ -26,13 +26,13 @@ place(c, 3, 0, 0).
      .wait(3000);
      !assert_did(navigate_to(_, _, _), 5).
 
-@goes_so_many_rounds[test]
+@stops_after_the_given_number_of_rounds[test]
 +!test_rounds
   <- !fakes;
      !patrol([a, b, c], 2);
      !assert_did(navigate_to(_, _, _), 6).
 
-@rests_while_it_is_suspended_and_goes_on_where_it_was[test]
+@stops_while_suspended_and_continues_where_it_was[test]
 +!test_suspended
   <- !fakes;
      !!patrol([a, b, c]);
@@ -44,7 +44,7 @@ place(c, 3, 0, 0).
      .wait(been(c), 3000);
      .drop_desire(patrol(_)).
 
-@leaves_out_a_place_that_it_cannot_reach[test]
+@skips_a_place_that_it_cannot_reach[test]
 +!test_unreachable
   <- +attempts(1);
      !fakes;
@@ -56,7 +56,7 @@ place(c, 3, 0, 0).
      !patrol([b], 1);
      !assert_false(unreachable(b, _)).
 
-@a_place_that_nobody_knows_ends_the_patrol[test]
+@an_unknown_place_ends_the_patrol[test]
 +!test_unknown
   <- !fakes;
      !assert_fail(patrol([a, nowhere]));

@@ -1,4 +1,4 @@
-// Adds by a service that no node offers at first; a second server never answers.
+// Adds with a service that no node serves at first; a second server never answers.
 !begin.
 
 +!begin

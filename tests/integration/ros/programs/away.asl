@@ -1,4 +1,4 @@
-// Drives away, half a minute long.
+// Drives away for half a minute.
 !drive.
 
 +!drive

@@ -1,4 +1,4 @@
-// Takes longer to think about a place than the next one takes to come; tells each that it has thought about.
+// Takes longer to handle a position than the next one takes to arrive, and reports each position that it has handled.
 !begin.
 
 +!begin

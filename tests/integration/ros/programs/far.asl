@@ -1,4 +1,4 @@
-// Drives three metres in one go: time enough to be ended in the middle.
+// Drives three metres in one go: long enough to be interrupted on the way.
 !drive.
 
 +!drive

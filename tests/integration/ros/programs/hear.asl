@@ -1,4 +1,4 @@
-// Tells what it knows of its connection to a topic, and what it hears there.
+// Prints the state of its connection to a topic, and the messages that it receives there.
 !begin.
 
 +!begin

@@ -1,4 +1,4 @@
-// Patrols between four corners; at half a charge it goes to its dock, charges, and continues to where it was heading.
+// Patrols four corners; at half charge it drives to its dock, charges, and continues to the same corner.
 corner(0, 0, 0).
 corner(1, 1, 0).
 corner(2, 1, 1).

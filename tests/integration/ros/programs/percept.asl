@@ -1,4 +1,4 @@
-// Drives far away as soon as it perceives its battery.
+// Drives far away as soon as it perceives its battery level.
 !begin.
 
 +!begin

@@ -1,4 +1,4 @@
-// Drives half a metre as soon as there is a robot.
+// Drives half a metre as soon as a robot is present.
 !drive.
 
 +!drive

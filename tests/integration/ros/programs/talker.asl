@@ -1,4 +1,4 @@
-// Prints, writes to the log, and has a goal that it cannot reach, again and again; and listens.
+// Repeatedly prints, logs, and fails a goal; also receives messages.
 
 !talk.
 

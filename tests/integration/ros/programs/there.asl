@@ -1,4 +1,4 @@
-// Lets the robot's navigation bring it to a point, as often as it takes, and tells what it perceives.
+// Drives to a point by the robot's navigation, retrying until it succeeds, and prints what it perceives.
 !begin.
 
 +!begin

@@ -1,4 +1,4 @@
-// Two stops from wherever the robot stands: one program for robots of any name.
+// Drives to two stops from any start: one program for robots of any name.
 { include("$jacaros/navigation.asl") }
 
 !start.

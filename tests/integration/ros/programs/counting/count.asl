@@ -1,4 +1,4 @@
-// Counts by action servers of other processes, which go on, refuse, give up and die.
+// Counts with action servers of other processes, which complete, reject, abort and die.
 !begin.
 
 +!begin

@@ -1,4 +1,4 @@
-// Lets the robot's navigation drive it, for longer than any test takes.
+// Drives by the robot's navigation, for longer than any test takes.
 !drive.
 
 +!drive

@@ -1,4 +1,4 @@
-// Drives, and after a while its process hangs in a step that never ends.
+// Drives until its process hangs in a step that never ends.
 { include("action.asl") }
 !hang.
 

@@ -1,4 +1,4 @@
-// Drives by velocity commands, for longer than any test takes, and tells what has interrupted it.
+// Drives by velocity commands, for longer than any test takes, and prints what interrupted it.
 !drive.
 
 +!drive

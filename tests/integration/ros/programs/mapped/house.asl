@@ -1,4 +1,4 @@
-// Drives, looks and navigates by the mapping alone; ends with a goal that no robot can reach.
+// Drives, perceives and navigates with a mapping only, and ends with a goal that no robot can reach.
 
 !start.
 
