@@ -240,8 +240,8 @@ def test_an_unknown_option_of_an_artifact(project: Project) -> None:
     assert project.run_file("robot.asl") == told(
         0,
         "[robot] warning: the goal !start failed and has no plan for its failure: action_failed, "
-        "cannot create artifact battery (ArtSimBattery): ArtSimBattery has no option 'drian'; "
-        "it knows dock_timeout, drain, expire, level, namespace, source, topic, watch_connection (robot.asl:3)\n"
+        "cannot create artifact battery (ArtSimBattery): ArtSimBattery has no option `drian`; "
+        "its options: dock_timeout, drain, expire, level, namespace, source, topic, watch_connection (robot.asl:3)\n"
         '  step: makeArtifact("battery","ArtSimBattery",[drian(2)],_)\n'
         '  reason: env_failure_reason(makeArtifactFailure("init_failed","battery"))\n',
     )
