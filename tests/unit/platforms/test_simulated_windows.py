@@ -157,7 +157,7 @@ def test_programs_are_checked_tested_and_formatted(tmp_path: Path) -> None:
     ended("fmt", "ugly.asl", folder=tmp_path)
     assert ugly.read_bytes().startswith('!go.\n+!go <- .print("→").\n'.encode())
     _, errors = ended("run", "tests", folder=tmp_path, code=2)
-    assert "tests is a folder" in errors
+    assert "`tests` is a folder" in errors
 
 
 @simulated
