@@ -98,7 +98,7 @@ def test_a_node_without_simulated_time_is_logged_once(
 
     def help() -> bool:
         simulator.publish("/clock", {"clock": 5.0})
-        return any("to follow the simulator run with --clock ros" in line for line in agents.errors)
+        return any("to follow the simulator, run with --clock ros" in line for line in agents.errors)
 
     wait_until(help, "the help at the simulator's clock")
     wait_until(lambda: simulator.subscription_count("/clock") == 0, "no subscription is left")

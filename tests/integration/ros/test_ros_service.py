@@ -21,6 +21,6 @@ def test_success_and_failure_of_a_service_reach_the_plan(
     assert agents.end() == 0
     # On ROS 2 the first answer may be lost: the server may not know its new client well enough yet.
     first, *_, success, failure = agents.lines
-    assert first == f"[add] service_unavailable(add_two_ints): no server offered {ADDING} within 1 s"
+    assert first == f"[add] service_unavailable(add_two_ints): no node offered {ADDING} within 1 s"
     assert success == "[add] sum 42"
     assert failure == f"[add] service_timeout(1): {SILENT} did not answer within 1 s"

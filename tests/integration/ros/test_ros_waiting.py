@@ -62,9 +62,9 @@ def test_a_robot_that_is_late_is_awaited_in_plain_words(
     run_world: Callable[..., WorldProcess], run_agents: Callable[..., Agents]
 ) -> None:
     agents = run_agents("short.asl")
-    agents.until_error("is missing")
+    agents.until_error("still listening")
     # ROS 2 also warns about an empty graph; another test covers that.
-    [told] = [line for line in agents.errors if "is missing" in line]
+    [told] = [line for line in agents.errors if "still listening" in line]
     assert told == (
         "[Wheels] no publisher on topic /odom (nav_msgs/msg/Odometry); still listening; "
         "is the node that publishes it running?"
