@@ -314,6 +314,6 @@ def test_a_driver_that_counts_in_percent_is_understood() -> None:
         assert watcher.values("battery") == [(98,), (55,), (19,), (1,)]
         assert watcher.values("diagnostics")[-1] == (LOW,)
         assert len(lab.logged) == 1
-        assert "taken for percent" in lab.logged[0]
+        assert "assuming percent" in lab.logged[0]
 
     in_lab(body, None)

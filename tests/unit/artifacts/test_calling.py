@@ -84,7 +84,7 @@ def test_wanting_success_of_a_service_that_says_nothing_about_it_is_a_mistake_of
         ended = await lab.call(artifact, "empty")
         assert ended.outcome is not None
         assert not ended.outcome.ok
-        assert any("has no field success" in line for line in lab.logged)
+        assert any("has no field `success`" in line for line in lab.logged)
 
     in_lab(body, None)
 

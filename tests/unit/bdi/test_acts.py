@@ -59,7 +59,7 @@ def test_dropping_the_intention_cancels_the_action() -> None:
     agent = begun("!g. !d. +!g <- move; .print(done). +!d <- .wait(10); .drop_intention(g).")
     agent.run()
     assert agent.acts[0].cancelled
-    with pytest.raises(ValueError, match="has ended with its intention"):
+    with pytest.raises(ValueError, match="has already ended with its intention"):
         agent.acts[0].complete()
     agent.mind.complete(1, Completion(True))
     agent.run()

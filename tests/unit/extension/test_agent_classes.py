@@ -231,8 +231,8 @@ def test_an_unknown_class_is_reported_before_anything_runs(
 def test_a_java_class_is_reported_and_has_no_effect(tmp_path: Path) -> None:
     result = run(tmp_path, "!go. +!go <- .print(hello).", "", "agentClass your.Careful")
     assert result.of("bob") == ["hello"]
-    assert "the Java class your.Careful has no effect" in result.errors[0]
-    assert "a class Careful(jacaros.Agent) in your.py" in result.errors[0]
+    assert "the Java class `your.Careful` has no effect" in result.errors[0]
+    assert "`class Careful(jacaros.Agent)` in your.py" in result.errors[0]
 
 
 def test_an_agent_made_at_run_time_can_be_of_a_class(tmp_path: Path) -> None:
@@ -344,7 +344,7 @@ def test_a_check_looks_at_the_classes_and_the_python_code(tmp_path: Path) -> Non
     assert sorted((each.severity, each.message.partition(" in /")[0]) for each in found) == [
         ("error", "unknown class Mien"),
         ("warning", "internal action `my.one` expects 1 argument, found 2"),
-        ("warning", "the Java class your.Mine has no effect"),
+        ("warning", "the Java class `your.Mine` has no effect"),
         ("warning", "unknown internal action `my.oen`"),
     ]
 

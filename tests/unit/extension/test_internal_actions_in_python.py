@@ -418,7 +418,7 @@ def test_an_invalid_declaration_is_reported_with_its_line(tmp_path: Path, python
     ("call", "help"),
     [
         ("my.nrom(1, X)", "did you mean `my.norm`?"),
-        ("my.plain(1, X)", "the function my.plain exists: put @internal_action before it"),
+        ("my.plain(1, X)", "put @internal_action before the function my.plain"),
         ("my.zzz(1, X)", "add a function `zzz` with @internal_action to my.py"),
         ("your.norm(1, X)", "write a function `norm` with @internal_action in your.py beside the project"),
     ],

@@ -202,7 +202,7 @@ def test_an_operation_is_executed() -> None:
         assert await done(page, "operate", artifact="/main/counter", text="count(4, X)") == "X = 7"
         assert await refused(page, "operate", artifact="counter", text="refuse") == "not today"
         assert await refused(page, "operate", artifact="counter", text="refuse[a(1)]") == "not today"
-        assert "no operation nope/0" in await refused(page, "operate", artifact="counter", text="nope")
+        assert "unknown operation `nope/0`" in await refused(page, "operate", artifact="counter", text="nope")
         assert "unknown artifact" in await refused(page, "operate", artifact="clock", text="count(1, X)")
 
     commanding(test)

@@ -98,7 +98,7 @@ def test_obstacles_have_unique_names(world: World) -> None:
 
 @pytest.mark.parametrize("radius", [0.0, -1.0, 2.5, math.nan])
 def test_the_size_of_an_obstacle_is_limited(world: World, radius: float) -> None:
-    with pytest.raises(UsageError, match=r"0\.02 to 2 metres"):
+    with pytest.raises(UsageError, match=r"between 0\.02 and 2 metres"):
         world.add_obstacle(0.0, 0.0, radius)
 
 
@@ -108,7 +108,7 @@ def test_a_battery_level_can_be_set(world: World) -> None:
     assert world.ground_truth.events_of("battery_set", robot="one")[0].data == {"level": 7.5}
     world.step()
     assert world.ground_truth.events_of("battery", robot="one")[-1].data == {"level": 8}
-    with pytest.raises(UsageError, match="0 to 100"):
+    with pytest.raises(UsageError, match="between 0 and 100 percent"):
         world.set_battery("one", 101.0)
 
 

@@ -53,7 +53,7 @@ def test_the_map_of_another_tool_is_read(tmp_path: Path) -> None:
             "did you mean 'occupied_thresh'",
         ),
         ("image: none.pgm\nresolution: 1\norigin: [0, 0, 0]\n", "none.pgm"),
-        ("image: room.yaml\nresolution: 1\norigin: [0, 0, 0]\n", "not a PGM or PNG image"),
+        ("image: room.yaml\nresolution: 1\norigin: [0, 0, 0]\n", "expected a PGM or PNG image"),
         (
             "image: short.pgm\nresolution: 1\norigin: [0, 0, 0]\n",
             "ends after 3 of 4 pixels (2 x 2); save the map again",

@@ -385,7 +385,7 @@ WRONG = {
     "parameter with mixed values": (
         "parameters: {a: [1, 2.5]}",
         (
-            "1:17: a parameter holds a bool, a number, a text, bytes, or a list of bools, ints, floats or texts; not "
+            "1:17: expected a bool, a number, a text, bytes, or a list of bools, ints, floats or texts, found "
             "[1, 2.5] | write numbers of one type in a list: [1.0, 2.5]"
         ),
     ),

@@ -162,7 +162,7 @@ def test_a_session_can_act_beside_the_agents() -> None:
 
 def test_errors_are_raised_at_the_call(tmp_path: Path) -> None:
     async def test(mas: Mas) -> None:
-        with pytest.raises(AslError, match=r"<bob>:1:16: error: a term is expected"):
+        with pytest.raises(AslError, match=r"<bob>:1:16: error: expected a term"):
             mas.add_agent("bob", "+!go <- .print(.")
         with pytest.raises(UsageError, match=r"program not found: carl\.asl; expected in"):
             mas.add_agent("carl")

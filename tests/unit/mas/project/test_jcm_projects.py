@@ -187,7 +187,7 @@ def test_agents_may_have_names_of_sections_and_keys(folder: Path) -> None:
         ("agent bob { beliefs: !start }", "expected a belief, found the goal `!start`"),
         (
             "agent bob { beliefs: p(X) :- q(X) }",
-            "invalid belief `p(X) :- q(X)`: the end is expected, not ':-'",
+            "invalid belief `p(X) :- q(X)`: expected the end of the text, found `:-`",
         ),
         ("agent bob { instances: 0 }", "expected a number or names of agents as `instances`"),
         ("agent bob { ag-class: a.B c.D }", "duplicate key `ag-class`: an agent has only one"),

@@ -433,7 +433,7 @@ def test_errors_of_a_jcm_file_are_reported_together(folder: Path):
         """
     assert located(report(folder, "p.jcm", text)) == [
         ("2:9", "program of agent `dora` not found: dora.asl"),
-        ("3:24", "invalid belief `p(`: the file ends where a term is expected"),
+        ("3:24", "invalid belief `p(`: expected a term, found the end of the file"),
         ("4:17", "missing `:` after `goals`"),
         ("7:5", "expected `,`, found `artifact`"),
         ("8:3", "expected `:`, found `}`"),
@@ -447,7 +447,9 @@ def test_wrong_beliefs_are_reported_at_their_line(folder: Path):
     found = report(folder, "p.jcm", "mas m {\n agent bob {\n beliefs: p(1), q(2]\n }\n}")
     assert "p.jcm:3:" in found
     found = report(folder, "p.mas2j", 'MAS m {\n agents:\n bob [goals="go(else)"];\n}')
-    assert found.startswith("p.mas2j:3:13: error: invalid goal `go(else)`: 'else' is a reserved word")
+    assert found.startswith(
+        "p.mas2j:3:13: error: invalid goal `go(else)`: reserved word `else` used as a name"
+    )
 
 
 @pytest.mark.parametrize("name", ["p.jcm", "p.mas2j"])

@@ -69,7 +69,7 @@ def compute(self, x):
         ("await self.act('x')", "OperationFailed: no artifact of workspace /main has an operation x/0"),
         (
             "A.on_message = print; self.messages()",
-            "JacarosError: A has on_message, which is called with every message",
+            "JacarosError: A has on_message, which receives all messages, so none can be awaited",
         ),
         ("self.focus('x')", "UnknownArtifact: unknown artifact `x` in workspace /main"),
         ("self.join('x')", "UnknownWorkspace: unknown workspace `/main/x`; did you mean `/main`?"),
