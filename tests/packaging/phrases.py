@@ -92,10 +92,23 @@ def prose(source: str) -> Iterator[tuple[int, str]]:
 TOKENS_OF_PROSE = {tokenize.STRING, tokenize.COMMENT, getattr(tokenize, "FSTRING_MIDDLE", tokenize.STRING)}
 
 
-def tracked(under: Iterable[str]) -> list[Path]:
-    """The files under version control in these folders."""
+def tracked(under: Iterable[str] = ()) -> list[Path]:
+    """The files in these folders, by default in all, that git tracks or does not ignore."""
     listing = subprocess.run(
-        ["git", "-c", "safe.directory=*", "ls-files", "-z", "--", *under],
+        [
+            *(
+                "git",
+                "-c",
+                "safe.directory=*",
+                "ls-files",
+                "--cached",
+                "--others",
+                "--exclude-standard",
+                "-z",
+                "--",
+            ),
+            *under,
+        ],
         cwd=ROOT,
         capture_output=True,
         text=True,
@@ -105,5 +118,5 @@ def tracked(under: Iterable[str]) -> list[Path]:
 
 
 if __name__ == "__main__":
-    for finding in findings(tracked(sys.argv[1:] or ["."])):
+    for finding in findings(tracked(sys.argv[1:])):
         print(f"{finding.path}:{finding.line}: {finding.phrase!r}; instead: {finding.instead}")

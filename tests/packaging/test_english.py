@@ -10,8 +10,7 @@ pytestmark = pytest.mark.slow
 
 def test_no_text_uses_a_phrase_to_avoid() -> None:
     found = [
-        f"{each.path}:{each.line}: {each.phrase!r}; instead: {each.instead}"
-        for each in findings(tracked(["."]))
+        f"{each.path}:{each.line}: {each.phrase!r}; instead: {each.instead}" for each in findings(tracked())
     ]
     assert found == []
 

@@ -2,7 +2,6 @@
 
 import ast
 import re
-import subprocess
 import tomllib
 from importlib import metadata
 from pathlib import Path
@@ -13,6 +12,7 @@ from xml.etree import ElementTree
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 from packaging.version import Version
+from phrases import tracked
 from ruamel.yaml import YAML
 
 import jacaros
@@ -50,18 +50,6 @@ HOSTS = {
 
 
 REPOSITORY = "https://github.com/jacaros/jacaros"
-
-
-def tracked() -> list[Path]:
-    """Return the files under version control; all files without version control."""
-    listing = subprocess.run(
-        ["git", "-c", "safe.directory=*", "ls-files", "--cached", "--others", "--exclude-standard", "-z"],
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        check=True,
-    ).stdout
-    return [ROOT / name for name in listing.split("\0") if name and (ROOT / name).is_file()]
 
 
 def texts() -> list[tuple[str, str]]:
