@@ -106,7 +106,7 @@ def test_declaring_is_for_where_parameters_are_declared(graph: Any, pair: Pair, 
             left.declare(name, 1)
         return
     assert left.declare(name, 1) == 1
-    with pytest.raises(ParameterRefused, match="declared already"):
+    with pytest.raises(ParameterRefused, match="already declared"):
         left.declare(name, 2)
     with pytest.raises(CapabilityMissing, match="itself"):
         left.declare(name, 1, node=right.node_name())

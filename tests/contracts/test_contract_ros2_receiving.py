@@ -172,7 +172,7 @@ async def test(backend, publisher, hear):
     try:
         backend.subscription("/a", "std_msgs/msg/Int32", hear)
     except RosError as problem:
-        assert "uses it with type std_msgs/msg/String already" in str(problem), problem
+        assert "already uses it with type std_msgs/msg/String" in str(problem), problem
     else:
         sys.exit("a topic has two types")
 """,

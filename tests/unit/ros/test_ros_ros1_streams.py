@@ -222,3 +222,18 @@ def test_closing_ends_what_waits(pair: tuple[socket.socket, socket.socket]) -> N
         outbox.send(framed(b"too late"))
     while theirs.recv(CHUNK):
         pass
+
+
+def test_a_socket_closed_by_its_owner_ends_the_sending(pair: tuple[socket.socket, socket.socket]) -> None:
+    ours, _ = pair
+    outbox = Outbox(ours, 3)
+    while not outbox.busy:
+        outbox.send(framed(bytes(1_000_000)))
+    ours.close()
+
+    async def main() -> None:
+        await until(lambda: not outbox.busy)
+
+    run(main, WallClock())
+    with pytest.raises(OSError, match="Bad file descriptor"):
+        outbox.send(framed(b"too late"))

@@ -20,6 +20,10 @@ _LENGTH = 4
 """Bytes of the length in front of a message, little-endian."""
 
 
+CLOSED_CHECK = 1.0
+"""Seconds between attempts to send to a blocked socket: an epoll selector does not report a socket that was closed."""
+
+
 class Inlet:
     """The messages of one publisher, read on the loop.
 
@@ -176,12 +180,13 @@ class Outbox:
 
     def _send_rest(self) -> None:
         with selectors.DefaultSelector() as writable:
-            writable.register(self._socket, selectors.EVENT_WRITE)
+            with suppress(ValueError):  # rospy has closed the socket: the next attempt to send fails
+                writable.register(self._socket, selectors.EVENT_WRITE)
             self._send_when(writable)
 
     def _send_when(self, writable: selectors.BaseSelector) -> None:
         while True:
-            writable.select()
+            writable.select(CLOSED_CHECK)
             with self._lock:
                 if not self._closed:
                     self._begun = self._rest_of(self._begun)
