@@ -10,11 +10,11 @@ from jacaros.artifacts.mapping.declared import OperationPart, Source, ValuePart
 from jacaros.artifacts.mapping.encoding import Fill, WrongValue, builder, fitting
 from jacaros.artifacts.mapping.host import Host
 from jacaros.artifacts.mapping.type_search import ask_type
-from jacaros.artifacts.robots.motion_claim import GUARD_TRIPPED, Claim, Motions, motions_of
+from jacaros.artifacts.robots.motion_claim import Aborted, Driving, Motions, motions_of
 from jacaros.env.artifact import Out
 from jacaros.env.execution import OperationExecution
-from jacaros.env.kernel.holding import Holding
 from jacaros.env.resources.resource import WHEELS, Use
+from jacaros.env.values import Atom, Structure
 from jacaros.ros.backend import Publisher
 from jacaros.ros.errors import MessageMismatch
 from jacaros.ros.guarded import VELOCITIES, guarded_by
@@ -118,64 +118,36 @@ class Publishing:
 
     async def _repeat(self, inputs: Sequence[object], seconds: float, period: float) -> None:
         """Publish until the time is over. Pauses do not count, and the motions of one robot take turns."""
-        host, motions, execution = self._host, self._motions, self._host.current
-        holding = execution.hold((self._use(execution),))
-        claims_itself = not holding.entered
-
-        def stop() -> None:
-            halt()
-            claim.wake()
-
-        def halt() -> None:
-            if holding.holds:  # otherwise another motion may be driving the robot
-                self._end(inputs)
-
-        claim = Claim(halt)
-        execution.on_pause(stop)
-        unwatch = holding.watch(claim.wake)
-        ignore = guarded_by(host.ros).on_interruption(lambda: claim.interrupt(GUARD_TRIPPED))
-        left = seconds
+        host, left = self._host, seconds
         pauses = self._pauses(inputs) if seconds > 0.0 else iter(())
+        driving = Driving(host, self._motions, self._use(host.current), lambda: self._end(inputs))
         try:
-            holding.enter()
-            while left > 1e-9:
-                if not self._may_go(execution, holding, claim):
-                    await host.step(claim.wait(host.clock, None))
-                elif not claim.aborted and (pause := next(pauses, None)) is not None:
-                    await host.step(claim.wait(host.clock, pause))
-                elif not claim.aborted:
-                    began, claim.gap = host.clock.elapsed, None
+            with driving:
+                await driving.ready()
+                for pause in pauses:
+                    await driving.wait(pause)
+                    await driving.ready()
+                while left > 1e-9:
+                    await driving.ready()
+                    began, driving.claim.gap = host.clock.elapsed, None
                     self._send(inputs)
-                    await host.step(claim.wait(host.clock, min(period, left)))
+                    await driving.wait(min(period, left))
                     left -= host.clock.elapsed - began
-                    if claim.gap is not None and self._drives:
-                        text = f"the open-loop motion `{self._part.name}` was interrupted ({claim.gap})"
-                        host.fail(text, "interrupted", round(seconds - left, 3))
-                if claim.aborted:
-                    host.fail(f"`{self._part.name}` was aborted", "aborted", round(seconds - left, 3))
-        finally:
-            ignore()
-            unwatch()
-            halt()
-            motions.claims.pop(claim, None)
-            if claims_itself:
-                holding.leave()
+                    self._heed_gap(driving.claim.gap, seconds - left)
+        except Aborted:
+            host.fail(f"`{self._part.name}` was aborted", "aborted", round(seconds - left, 3))
+
+    def _heed_gap(self, gap: Structure | Atom | None, covered: float) -> None:
+        """Fail if the robot was not watched for a while."""
+        if gap is not None and self._drives:
+            text = f"the open-loop motion `{self._part.name}` was interrupted ({gap})"
+            self._host.fail(text, "interrupted", round(covered, 3))
 
     def _use(self, execution: OperationExecution) -> Use:
         """Return the wheels, or a resource that makes two calls of the same operation exclude each other."""
         if self._drives:
             return Use(WHEELS)
         return Use(f"{execution.request.artifact.path}.{self._part.name}")
-
-    def _may_go(self, execution: OperationExecution, holding: Holding, claim: Claim) -> bool:
-        """Return whether to publish now; if not, other motions may use the robot."""
-        if execution.suspended:
-            self._motions.claims.pop(claim, None)
-        else:
-            self._motions.claims[claim] = None
-        if execution.paused:
-            holding.rest()
-        return not execution.paused
 
     def _warn_unmatched(self, message: str, help: str) -> None:
         """Log once that a topic has no subscribers: its name or type may be wrong."""

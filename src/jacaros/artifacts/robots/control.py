@@ -8,30 +8,6 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
-DISTANCE_TOLERANCE = 0.005
-"""Remaining metres at which a drive is at its goal."""
-
-ANGLE_TOLERANCE = math.radians(0.3)
-"""Remaining radians at which a turn is at its goal."""
-
-LEAST_SPEED = 0.02
-"""Minimum speed of a drive, metres per second: real wheels stick below it."""
-
-LEAST_TURN_SPEED = 0.05
-"""Minimum speed of a turn, radians per second."""
-
-LATENCY = 0.1
-"""Seconds from the measurement of a pose until its command takes effect; the controller predicts by this time."""
-
-BRAKING_SHARE = 0.6
-"""Fraction of the robot's acceleration used for slowing down; the rest is a reserve for disturbances."""
-
-GAIN = 4.0
-"""Speed per remaining distance, 1/s, in the last centimetres; stable up to 0.3 s of latency."""
-
-HOLDING_GAIN = 8.0
-"""The same within the tolerances, where the minimum speeds do not apply: wheels may stick there."""
-
 
 class Pose(NamedTuple):
     """Where a robot is: x and y in metres, heading in radians."""
@@ -124,64 +100,20 @@ def bearing(origin: Pose, x: float, y: float) -> float:
     return math.atan2(y - origin.y, x - origin.x)
 
 
-def approach(
-    remaining: float, speed: float, *, cruise: float, acceleration: float, least: float, period: float
-) -> float:
-    """Return the next speed of a trapezoidal profile that ends exactly at the goal.
-
-    Args:
-        remaining: signed remaining distance (metres or radians).
-        speed: the previous signed speed.
-        cruise: maximum speed.
-        acceleration: limit of the robot; speeding up uses all of it, slowing down `BRAKING_SHARE`.
-        least: minimum speed while the goal is not reached.
-        period: seconds between two commands.
-    """
-    towards = math.copysign(1.0, remaining)
-    ahead = abs(remaining) - max(0.0, speed * towards) * LATENCY
-    braking = math.sqrt(2.0 * BRAKING_SHARE * acceleration * max(0.0, ahead))
-    wanted = max(least, min(cruise, braking, GAIN * abs(remaining)))
-    faster = max(least, speed * towards + acceleration * period)
-    return towards * min(wanted, faster)
-
-
-def drive_command(line: Line, pose: Pose, before: Velocity, limits: Limits, period: float) -> Velocity:
-    """Return the command that follows *line*: the speed of `approach`, the heading steered back to the line.
+def steer(line: Line, pose: Pose, speed: float, jitter: float, most: float) -> float:
+    """Return the turn rate that leads back to *line*.
 
     The robot aims at the point of the line 0.4 m ahead (look-ahead). Close to the goal it only keeps its heading,
     because there is no distance left for returning to the line.
+
+    Args:
+        line: the line.
+        pose: pose at which the command takes effect.
+        speed: signed speed.
+        jitter: seconds by which the command may come early or late.
+        most: greatest turn rate of the robot.
     """
-    remaining = line.remaining(pose)
-    linear = approach(
-        remaining,
-        before.linear,
-        cruise=limits.speed,
-        acceleration=limits.acceleration,
-        least=min(LEAST_SPEED, limits.speed),
-        period=period,
-    )
-    pull = math.atan2(line.aside(pose), 0.4) if abs(remaining) > 0.05 else 0.0
-    aim = line.start.heading - math.copysign(1.0, linear) * pull
-    angular = clamp(2.0 * unwrapped(aim - pose.heading), 0.5 * limits.turn_speed)
-    return limits.clip(Velocity(linear, angular))
-
-
-def turn_command(remaining: float, before: Velocity, limits: Limits, period: float) -> Velocity:
-    """Return the command that turns on the spot until the signed angle *remaining* is zero."""
-    angular = approach(
-        remaining,
-        before.angular,
-        cruise=limits.turn_speed,
-        acceleration=limits.turn_acceleration,
-        least=min(LEAST_TURN_SPEED, limits.turn_speed),
-        period=period,
-    )
-    return limits.clip(Velocity(0.0, angular))
-
-
-def hold_command(way: float, angle: float) -> Velocity:
-    """Return the command that corrects the rest within the tolerances: metres and radians."""
-    return Velocity(
-        clamp(HOLDING_GAIN * way, LEAST_SPEED),
-        clamp(HOLDING_GAIN * angle, LEAST_TURN_SPEED),
-    )
+    pull = math.atan2(line.aside(pose), 0.4) if abs(line.remaining(pose)) > 0.05 else 0.0
+    aim = line.start.heading - math.copysign(1.0, speed) * pull
+    gain = min(2.0, 0.4 / jitter) if jitter else 2.0
+    return clamp(gain * unwrapped(aim - pose.heading), 0.5 * most)

@@ -5,16 +5,9 @@ Their goals are absolute, so after a rest they continue from wherever the robot 
 
 import math
 
-from jacaros.artifacts.robots.control import (
-    STANDSTILL,
-    Limits,
-    Pose,
-    Velocity,
-    bearing,
-    distance,
-    unwrapped,
-)
-from jacaros.artifacts.robots.maneuver import PERIOD, Maneuver, Straight, Turn
+from jacaros.artifacts.robots.approach import Outlook, Step, Tolerance
+from jacaros.artifacts.robots.control import STANDSTILL, Limits, Pose, bearing, distance, unwrapped
+from jacaros.artifacts.robots.maneuver import Maneuver, Straight, Turn
 
 ARRIVED = 0.015
 """Metres within which `DriveTo` is at its point."""
@@ -23,11 +16,14 @@ AIMED = math.radians(2.0)
 """Radians within which `DriveTo` corrects its heading while driving instead of turning first."""
 
 
+AIMING = Tolerance(math.radians(1.0), math.radians(2.0))
+"""How exactly `DriveTo` turns towards its point: it corrects the rest while driving."""
+
+
 class TurnTo:
     """Turn the short way round to an absolute heading; after a rest, from the robot's present heading."""
 
     activity = "turning"
-    period = PERIOD
     needs_odometry = True
 
     def __init__(self, heading: float) -> None:
@@ -53,13 +49,9 @@ class TurnTo:
         self._turn = Turn(unwrapped(self._goal - pose.heading))
         self._turn.begin(pose)
 
-    def command(self, pose: Pose, before: Velocity, limits: Limits, period: float) -> Velocity | None:
+    def command(self, outlook: Outlook) -> Step | None:
         """As `Turn`."""
-        return self._turn.command(pose, before, limits, period)
-
-    def hold(self, pose: Pose) -> Velocity:
-        """As `Turn`."""
-        return self._turn.hold(pose)
+        return self._turn.command(outlook)
 
     def rest(self, pose: Pose) -> None:
         """Note the angle turned so far."""
@@ -74,7 +66,6 @@ class TurnTo:
 class DriveTo:
     """Turn towards a point and drive there; after a rest, from wherever the robot is."""
 
-    period = PERIOD
     needs_odometry = True
 
     def __init__(self, x: float, y: float) -> None:
@@ -106,30 +97,27 @@ class DriveTo:
         """Measure the distance."""
         self._way = distance(pose, self._goal)
 
-    def command(self, pose: Pose, before: Velocity, limits: Limits, period: float) -> Velocity | None:
+    def command(self, outlook: Outlook) -> Step | None:
         """Return the command of the present part; when a part ends, the next begins."""
         if self._part is None:
-            return self._next_part(pose, limits, period)
-        command = self._part.command(pose, before, limits, period)
-        if command is None:
+            return self._next_part(outlook)
+        step = self._part.command(outlook)
+        if step is None:
             self._finish_part()
-            return None if distance(pose, self._goal) <= ARRIVED else STANDSTILL
-        return command
+            return None if distance(outlook.pose, self._goal) <= ARRIVED else Step(STANDSTILL)
+        return step
 
-    def hold(self, pose: Pose) -> Velocity:
-        """Stand still: any correction would begin with a turn."""
-        return STANDSTILL
-
-    def _next_part(self, pose: Pose, limits: Limits, period: float) -> Velocity | None:
+    def _next_part(self, outlook: Outlook) -> Step | None:
+        pose = outlook.pose
         way = distance(pose, self._goal)
         if way <= ARRIVED:
             return None
         aside = unwrapped(bearing(pose, self._goal.x, self._goal.y) - pose.heading)
         # If the line would end within half a centimetre of the point, the robot counts as facing it.
         aimed = abs(aside) <= AIMED or abs(aside) * way <= 0.005
-        self._part = Straight(way, pose.heading + aside) if aimed else Turn(aside)
+        self._part = Straight(way, pose.heading + aside) if aimed else Turn(aside, AIMING)
         self._part.begin(pose)
-        return self._part.command(pose, STANDSTILL, limits, period) or STANDSTILL
+        return self._part.command(outlook) or Step(STANDSTILL)
 
     def _finish_part(self) -> None:
         self._driven = self.covered
@@ -148,7 +136,6 @@ class DriveTo:
 class Sequence:
     """Several maneuvers in turn; all have absolute goals, so they can be repeated after a rest."""
 
-    period = PERIOD
     needs_odometry = True
 
     def __init__(self, *parts: Maneuver) -> None:
@@ -181,18 +168,14 @@ class Sequence:
         """Begin the first part."""
         self._part.begin(pose)
 
-    def command(self, pose: Pose, before: Velocity, limits: Limits, period: float) -> Velocity | None:
+    def command(self, outlook: Outlook) -> Step | None:
         """Return the command of the present part; None after the last."""
-        command = self._part.command(pose, before, limits, period)
-        if command is None and self._index + 1 < len(self._parts):
+        step = self._part.command(outlook)
+        if step is None and self._index + 1 < len(self._parts):
             self._index += 1
-            self._part.begin(pose)
-            return STANDSTILL
-        return command
-
-    def hold(self, pose: Pose) -> Velocity:
-        """As the last part does."""
-        return self._part.hold(pose)
+            self._part.begin(outlook.pose)
+            return Step(STANDSTILL)
+        return step
 
     def rest(self, pose: Pose) -> None:
         """Rest the present part."""

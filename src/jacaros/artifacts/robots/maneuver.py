@@ -6,20 +6,17 @@ from the robot's pose with the remaining distance or angle.
 """
 
 import math
-from typing import Protocol
+from typing import ClassVar, Protocol
 
+from jacaros.artifacts.robots.approach import ANGLE, DISTANCE, Approach, Outlook, Step, Tolerance
 from jacaros.artifacts.robots.control import (
-    ANGLE_TOLERANCE,
-    DISTANCE_TOLERANCE,
     STANDSTILL,
     Limits,
     Line,
     Pose,
     Velocity,
     distance,
-    drive_command,
-    hold_command,
-    turn_command,
+    steer,
     unwrapped,
 )
 
@@ -29,19 +26,14 @@ DISPLACED_DISTANCE = 0.02
 DISPLACED_ANGLE = math.radians(2.0)
 """Radians by which a resting robot must be turned to continue from its new heading."""
 
-PERIOD = 0.05
-"""Seconds between two commands of a closed loop."""
-
 
 class Maneuver(Protocol):
     """A task of the wheels.
 
     Attributes:
-        period: seconds between two commands.
         needs_odometry: False for open-loop motions; their poses may be made up.
     """
 
-    period: float
     needs_odometry: bool
 
     @property
@@ -61,11 +53,8 @@ class Maneuver(Protocol):
     def begin(self, pose: Pose) -> None:
         """Start at *pose*."""
 
-    def command(self, pose: Pose, before: Velocity, limits: Limits, period: float) -> Velocity | None:
-        """Return the next command for *pose* after the command *before*; None at the end."""
-
-    def hold(self, pose: Pose) -> Velocity:
-        """Return the command that keeps the robot at the goal while it settles."""
+    def command(self, outlook: Outlook) -> Step | None:
+        """Return the next command; None at the end."""
 
     def rest(self, pose: Pose) -> None:
         """Store the pose of a robot that was suspended or stopped early; only after `begin`."""
@@ -78,12 +67,12 @@ class Straight:
     """Drive a signed length along *heading*, by default the robot's initial heading."""
 
     activity = "driving"
-    period = PERIOD
     needs_odometry = True
 
     def __init__(self, length: float, heading: float | None = None) -> None:
         self._length = length
         self._heading = heading
+        self._approach = Approach(DISTANCE)
         self._before = 0.0
         self._along = 0.0
         self._line = Line(Pose(0.0, 0.0, 0.0), length)
@@ -107,16 +96,20 @@ class Straight:
         heading = pose.heading if self._heading is None else self._heading
         self._line = Line(Pose(pose.x, pose.y, heading), self._length)
 
-    def command(self, pose: Pose, before: Velocity, limits: Limits, period: float) -> Velocity | None:
+    def command(self, outlook: Outlook) -> Step | None:
         """Follow the line."""
-        self._along = self._line.along(pose)
-        if abs(self._line.remaining(pose)) <= DISTANCE_TOLERANCE:
-            return None
-        return drive_command(self._line, pose, before, limits, period)
-
-    def hold(self, pose: Pose) -> Velocity:
-        """Correct the last millimetres."""
-        return hold_command(self._line.remaining(pose), unwrapped(self._line.start.heading - pose.heading))
+        line, model = self._line, outlook.model
+        self._along = line.along(outlook.pose)
+        pulse = self._approach.speed(
+            model.linear,
+            outlook,
+            line.remaining(outlook.pose),
+            line.remaining(outlook.ahead),
+        )
+        if pulse is None or not pulse.speed:
+            return None if pulse is None else Step(STANDSTILL)
+        turn = steer(line, outlook.ahead, pulse.speed, model.jitter, outlook.limits.turn_speed)
+        return Step(Velocity(pulse.speed, turn), pulse.seconds)
 
     def rest(self, pose: Pose) -> None:
         """Store the rest of the line."""
@@ -135,19 +128,18 @@ class Turn:
     """Turn on the spot by a signed angle; more than a full turn is possible."""
 
     activity = "turning"
-    period = PERIOD
     needs_odometry = True
 
-    def __init__(self, angle: float) -> None:
+    def __init__(self, angle: float, tolerance: Tolerance = ANGLE) -> None:
         self._angle = angle
-        self._turned = 0.0
-        self._heading = 0.0
+        self._approach = Approach(tolerance)
+        self._heading = self._now = 0.0
         self._resting = Pose(0.0, 0.0, 0.0)
 
     @property
     def covered(self) -> float:
         """Degrees turned, positive in both directions."""
-        return math.degrees(abs(self._turned))
+        return math.degrees(abs(self._now - self._heading))
 
     def seconds(self, limits: Limits) -> float:
         """Angle divided by turn speed, plus the ramps."""
@@ -155,45 +147,41 @@ class Turn:
 
     def progress(self, pose: Pose) -> float:
         """Remaining radians."""
-        return abs(self._angle - self._turned - unwrapped(pose.heading - self._heading))
+        return abs(self._remaining(pose))
+
+    def _remaining(self, pose: Pose) -> float:
+        # Headings of a model count full turns.
+        return self._heading + self._angle - pose.heading
 
     def begin(self, pose: Pose) -> None:
         """Count the angle from the heading of *pose*."""
-        self._heading = pose.heading
-        self._turned = 0.0
+        self._heading = self._now = pose.heading
 
-    def command(self, pose: Pose, before: Velocity, limits: Limits, period: float) -> Velocity | None:
-        """Continue turning, adding up the angle across the jump at 180 degrees."""
-        self._count(pose)
-        remaining = self._angle - self._turned
-        if abs(remaining) <= ANGLE_TOLERANCE:
-            return None
-        return turn_command(remaining, before, limits, period)
-
-    def hold(self, pose: Pose) -> Velocity:
-        """Correct the last fractions of a degree."""
-        self._count(pose)
-        return hold_command(0.0, self._angle - self._turned)
-
-    def _count(self, pose: Pose) -> None:
-        self._turned += unwrapped(pose.heading - self._heading)
-        self._heading = pose.heading
+    def command(self, outlook: Outlook) -> Step | None:
+        """Continue turning."""
+        self._now = outlook.pose.heading
+        pulse = self._approach.speed(
+            outlook.model.angular,
+            outlook,
+            self._remaining(outlook.pose),
+            self._remaining(outlook.ahead),
+        )
+        return None if pulse is None else Step(Velocity(0.0, pulse.speed), pulse.seconds)
 
     def rest(self, pose: Pose) -> None:
         """Store the angle turned so far."""
-        self._count(pose)
-        self._resting = pose
+        self._now, self._resting = pose.heading, pose
 
     def go_on(self, pose: Pose) -> None:
         """Turn the rest; turns by others in between do not count."""
         if is_displaced(self._resting, pose):
-            self._heading = pose.heading
+            self._heading += pose.heading - self._resting.heading
 
 
 class Timed:
     """Repeat one velocity a number of times, ten times a second: open-loop driving."""
 
-    period = 0.1
+    period: ClassVar = 0.1
     needs_odometry = False
 
     def __init__(self, velocity: Velocity, times: int) -> None:
@@ -224,17 +212,13 @@ class Timed:
         """Store the start."""
         self._start = self._now = pose
 
-    def command(self, pose: Pose, before: Velocity, limits: Limits, period: float) -> Velocity | None:
+    def command(self, outlook: Outlook) -> Step | None:
         """Return the same velocity until the number of commands is reached."""
-        self._now = pose
+        self._now = outlook.pose
         if self._given >= self._times:
             return None
         self._given += 1
-        return limits.clip(self._velocity)
-
-    def hold(self, pose: Pose) -> Velocity:
-        """Stand still."""
-        return STANDSTILL
+        return Step(outlook.limits.clip(self._velocity), self.period)
 
     def rest(self, pose: Pose) -> None:
         """The remaining commands are given later."""

@@ -4,23 +4,22 @@ Every end publishes zero velocity: success, failure, drop, suspension, loss of o
 """
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Protocol
 
 from jacaros.artifacts.kit.connection import Matching
+from jacaros.artifacts.robots.approach import PERIOD, NotMoving, Outlook, Step, Unsettled
 from jacaros.artifacts.robots.control import STANDSTILL, Limits, Pose, Velocity, distance
+from jacaros.artifacts.robots.drive_model import DriveModel
 from jacaros.artifacts.robots.maneuver import Maneuver
-from jacaros.artifacts.robots.motion_claim import GUARD_TRIPPED, Claim, Motions
+from jacaros.artifacts.robots.motion_claim import Aborted, Driving, Motions
 from jacaros.artifacts.robots.odometry import NO_TRANSFORM, Odometer
 from jacaros.env.resources.resource import WHEELS, Use
 from jacaros.env.values import Atom, Structure
+from jacaros.ros.backend import Backend
 
 STALE = 0.5
 """Seconds after which the newest odometry is too old to drive by; the robot stops until more arrives."""
-
-SETTLED = 3
-"""Number of consecutive odometry messages at the goal that end a motion."""
 
 STUCK = 2.0
 """Seconds without progress after which a commanded motion is blocked."""
@@ -38,8 +37,6 @@ meaning."""
 LONGEST_BRAKING = 3.0
 """Seconds after which a braking robot counts as standing: its twist may only be noise."""
 
-UNKNOWN_POSE = Pose(0.0, 0.0, 0.0)
-
 
 class MotionFailed(Exception):
     """Raised when a motion ends early.
@@ -48,7 +45,7 @@ class MotionFailed(Exception):
         functor, argument: the failure reason, such as ``aborted(0.42)``.
     """
 
-    def __init__(self, message: str, functor: str, argument: float) -> None:
+    def __init__(self, message: str, functor: str, argument: float | Atom | Structure) -> None:
         super().__init__(message)
         self.functor, self.argument = functor, argument
 
@@ -75,7 +72,12 @@ class Wheels(Protocol):
     motions: Motions
     matching: Matching
     odometer: Odometer
+    model: DriveModel
     settings: MotionSettings
+
+    @property
+    def ros(self) -> Backend:
+        """The graph."""
 
     @property
     def current(self) -> Any:
@@ -83,9 +85,6 @@ class Wheels(Protocol):
 
     def command(self, velocity: Velocity) -> None:
         """Publish a velocity command."""
-
-    def on_interruption(self, callback: Callable[[], None]) -> Callable[[], None]:
-        """Call *callback* when a guard has stopped the robot. Return a function that removes it."""
 
     def interrupted(self, why: Structure | Atom) -> None:
         """Signal that the robot was not watched for a while."""
@@ -108,11 +107,13 @@ class Motion:
     def __init__(self, wheels: Wheels, maneuver: Maneuver) -> None:
         self._wheels = wheels
         self._maneuver = maneuver
-        self._execution = wheels.current
-        self._holding = self._execution.hold((Use(WHEELS),))
-        self._claims_itself = not self._holding.entered
-        self._claim = Claim(self.halt)
-        self._before = STANDSTILL
+        self._driving = Driving(
+            wheels,
+            wheels.motions,
+            Use(WHEELS),
+            lambda: wheels.command(STANDSTILL),
+            lambda state: wheels.show(self, state),
+        )
         self._begun = False
         self._due = 0.0
         self._active = 0.0
@@ -122,42 +123,32 @@ class Motion:
         self._left_at: Pose | None = None
         self._watched = False
         self._progress = Progress()
+        self._sought = (0.0, 0.0)
 
     def halt(self) -> None:
         """Command zero velocity immediately if this motion is driving."""
-        self._before = STANDSTILL
-        if self._holding.holds:
-            self._wheels.command(STANDSTILL)
-
-    def end(self) -> None:
-        """Stop, and let the next motion drive; calling it again has no effect."""
-        self.halt()
-        self._wheels.motions.claims.pop(self._claim, None)
-        if self._claims_itself:
-            self._holding.leave()
-        self._wheels.show(self, None)
+        self._driving.halt()
 
     async def run(self) -> None:
         """Drive the maneuver to its end.
 
         Raises:
-            MotionFailed: ``aborted``, ``no_odometry``, ``no_transform``, ``blocked``, ``interrupted`` or ``timeout``.
+            MotionFailed: ``aborted``, ``no_odometry``, ``no_transform``, ``blocked``, ``does_not_move``, ``late``,
+                ``interrupted`` or ``timeout``.
         """
-        forget = self._execution.on_pause(self._on_pause)
-        unwatch = self._holding.watch(self._claim.wake)
-        ignore = self._wheels.on_interruption(lambda: self._claim.interrupt(GUARD_TRIPPED))
         try:
-            await self._claim_wheels()
-            await self._drive()
+            with self._driving:
+                await self._drive()
+        except Aborted:
+            if self._begun:
+                self._maneuver.rest(self._pose())
+            raise MotionFailed("the motion was aborted", "aborted", self._maneuver.covered) from None
+        except Unsettled:
+            raise self._unsettled() from None
+        except NotMoving:
+            raise self._stuck() from None
         finally:
-            forget()
-            unwatch()
-            ignore()
-            self.end()
-
-    def _on_pause(self) -> None:
-        self.halt()
-        self._claim.wake()
+            self._wheels.show(self, None)
 
     async def _drive(self) -> None:
         ended = False
@@ -168,7 +159,6 @@ class Motion:
             else:
                 self._maneuver.begin(self._pose())
             self._begun = True
-            self._before = STANDSTILL
             self._progress.reset()
             ended = await self._follow()
 
@@ -176,25 +166,8 @@ class Motion:
         """Claim the robot and wait until it stands: it may still roll from an earlier motion."""
         ready = False
         while not ready:
-            await self._claim_wheels()
+            await self._driving.ready()
             ready = await self._stand()
-
-    async def _claim_wheels(self) -> None:
-        """Claim the wheels. A motion that is suspended meanwhile is not ended by `Motions.abort`."""
-        execution, claims = self._execution, self._wheels.motions.claims
-        self._holding.enter()
-        claims[self._claim] = None
-        while execution.paused:
-            suspended = execution.suspended
-            if suspended:
-                claims.pop(self._claim, None)
-            else:
-                claims[self._claim] = None
-            self._wheels.show(self, "paused" if suspended else "waiting")
-            self._holding.rest()
-            if execution.paused:
-                await self._wait(None)
-        claims[self._claim] = None
 
     async def _stand(self) -> bool:
         """Bring a robot that receives commands to a stop. Return False if the agent suspends the motion meanwhile."""
@@ -202,54 +175,57 @@ class Motion:
         blind = not self._maneuver.needs_odometry
         pauses = self._wheels.matching.pauses(always=blind)
         self._due = self._wheels.clock.elapsed
-        while not self._execution.paused:
+        while not self._driving.paused:
             self._heed_gap()
             seen = blind or self._has_odometry()
             pause = next(pauses, None)
-            if pause is None and seen and (self._stands() or braking >= LONGEST_BRAKING):
+            if pause is None and seen and self._rests(braking):
                 return True
-            await self._command(STANDSTILL, pause)
-            braking += self._maneuver.period if pause is None else pause
+            await self._command(Step(STANDSTILL, PERIOD if pause is None else pause), pause is None)
+            braking += PERIOD if pause is None else pause
         return False
+
+    def _rests(self, braking: float) -> bool:
+        """Return whether the robot stands, or has braked for so long that its twist must be noise."""
+        odometer = self._wheels.odometer
+        return (
+            odometer.newest is None
+            or self._wheels.model.has_come_to_rest()
+            or braking >= LONGEST_BRAKING + self._wheels.model.delay
+        )
 
     async def _follow(self) -> bool:
         """Follow the maneuver. Return True at its end, False if the agent suspended it and the robot stands."""
-        maneuver, odometer = self._maneuver, self._wheels.odometer
+        maneuver = self._maneuver
         blind = not maneuver.needs_odometry
-        settled = 0
         self._due = self._wheels.clock.elapsed
-        while settled < SETTLED:
-            if self._execution.paused:
+        while True:
+            if self._driving.paused:
                 if await self._brake():
                     maneuver.rest(self._pose())
                     return False
                 continue
             self._heed_gap()
-            seen = odometer.count
             if not blind and not self._has_odometry():
-                await self._command(STANDSTILL)
+                await self._command(Step(STANDSTILL))
                 continue
-            command = maneuver.command(
-                self._pose(), self._before, self._wheels.settings.limits, maneuver.period
-            )
-            self._check(command)
-            if blind and command is None:
+            step = maneuver.command(self._outlook())
+            self._check(step)
+            if step is None:
                 return True
-            await self._command(command or maneuver.hold(self._pose()))
-            if command is not None:
-                settled = 0
-            elif odometer.count > seen:
-                settled += 1
-        return True
+            await self._command(step)
 
-    async def _command(self, velocity: Velocity, seconds: float | None = None) -> None:
-        """Send one command and wait until the next is due; None: the period of the maneuver."""
-        period = self._maneuver.period if seconds is None else seconds
+    def _outlook(self) -> Outlook:
+        wheels, now = self._wheels, self._wheels.clock.elapsed
+        ahead, velocity = wheels.model.ahead(now)
+        return Outlook(wheels.model, wheels.settings.limits, now, wheels.model.pose, ahead, velocity)
+
+    async def _command(self, step: Step, periodic: bool = True) -> None:
+        """Send one command and wait until the next is due."""
         self._wheels.show(self, self._maneuver.activity)
-        self._wheels.command(velocity)
-        self._before = velocity
-        await self._wait(self._until_due(period) if seconds is None else seconds)
-        self._active += period
+        self._wheels.command(step.velocity)
+        await self._driving.wait(self._until_due(step.seconds) if periodic else step.seconds)
+        self._active += step.seconds
 
     def _until_due(self, period: float) -> float:
         """Return the seconds until the next command, counted from the time at which this one was due.
@@ -262,37 +238,23 @@ class Motion:
             self._due = max(self._due, now)
         return max(0.0, self._due - now)
 
-    async def _wait(self, seconds: float | None) -> None:
-        await self._wheels.step(self._claim.wait(self._wheels.clock, seconds))
-        if self._claim.aborted:
-            if self._begun:
-                self._maneuver.rest(self._pose())
-            raise MotionFailed("the motion was aborted", "aborted", self._maneuver.covered)
-
     async def _brake(self) -> bool:
         """Stop before another motion may drive: braking is part of the motion, and counts.
 
         Return False if the agent resumes the motion before the robot stands.
         """
         self._wheels.show(self, "paused")
-        odometer = self._wheels.odometer
-        seen, braking = odometer.count, 0.0
-        while self._execution.paused:
-            # The newest message may predate the command that moved the robot.
-            if (self._stands() and odometer.count >= seen + 2) or braking >= LONGEST_BRAKING:
+        braking = 0.0
+        while self._driving.paused:
+            if self._rests(braking):
                 return True
             self._wheels.command(STANDSTILL)
-            await self._wait(self._maneuver.period)
-            braking += self._maneuver.period
+            await self._driving.wait(PERIOD)
+            braking += PERIOD
         return False
 
     def _pose(self) -> Pose:
-        newest = self._wheels.odometer.newest
-        return UNKNOWN_POSE if newest is None else newest.pose
-
-    def _stands(self) -> bool:
-        newest = self._wheels.odometer.newest
-        return newest is None or newest.standing
+        return self._wheels.model.pose
 
     def _heed_gap(self) -> None:
         """After a gap, signal it, and continue only with new odometry; an open-loop motion fails.
@@ -303,11 +265,10 @@ class Motion:
         if self._sees():
             self._watched = True
         elif self._watched and not self._maneuver.needs_odometry:
-            self._claim.interrupt(self._silence())
-        why, self._claim.gap = self._claim.gap, None
+            self._driving.claim.interrupt(self._silence())
+        why, self._driving.claim.gap = self._driving.claim.gap, None
         if why is None:
             return
-        self._before = STANDSTILL
         self._progress.reset()
         self._wheels.interrupted(why)
         self._left_at = self._pose() if self._begun else None
@@ -340,7 +301,7 @@ class Motion:
         if self._blind_since is None:
             self._blind_since = self._active
             if self._begun and odometer.trusted and odometer.count >= self._fresh:
-                self._claim.gap = self._silence()
+                self._driving.claim.gap = self._silence()
         limit = self._wheels.settings.odometry_timeout
         if self._active - self._blind_since >= limit:
             raise MotionFailed(f"{_lack(odometer)} for {limit:g} s", odometer.lacking, limit)
@@ -360,21 +321,44 @@ class Motion:
             text = f"odometry changed its frame from {self._frame} to {frame}"
             raise MotionFailed(text, "no_odometry", round(self._active - since, 1))
 
-    def _check(self, command: Velocity | None) -> None:
+    def _check(self, step: Step | None) -> None:
         """Fail if the motion takes too long or makes no progress."""
         settings, maneuver = self._wheels.settings, self._maneuver
         allowed = settings.timeout or 30.0 + 4.0 * maneuver.seconds(settings.limits)
         if self._active >= allowed:
             raise MotionFailed(f"the motion took longer than {allowed:g} s", "timeout", allowed)
-        if command is None or command == STANDSTILL:
+        model = self._wheels.model
+        sought, self._sought = self._sought, (model.linear.lower, model.angular.lower)
+        if step is None or step.velocity == STANDSTILL or self._sought != sought:
             self._progress.reset()
         elif self._progress.is_stuck(maneuver.progress(self._pose()), self._active, self._patience()):
-            raise MotionFailed("the robot is stuck", "blocked", maneuver.covered)
+            raise self._stuck()
 
     def _patience(self) -> float:
-        """Return the seconds without progress that are too long; slow cruising needs more."""
+        """Return the seconds without progress that are too long; slow cruising and late robots need more."""
         limits = self._wheels.settings.limits
-        return max(STUCK, 4.0 * LEAST_PROGRESS / min(limits.speed, limits.turn_speed))
+        return (
+            max(STUCK, 4.0 * LEAST_PROGRESS / min(limits.speed, limits.turn_speed)) + self._wheels.model.delay
+        )
+
+    def _stuck(self) -> MotionFailed:
+        """Return the failure of a robot that does not follow commands: it is blocked if it has followed them before."""
+        model, driving = self._wheels.model, self._maneuver.activity == "driving"
+        if model.has_rolled(driving):
+            return MotionFailed("the robot is stuck", "blocked", self._maneuver.covered)
+        if not self._wheels.matching.exists():
+            return MotionFailed("no base receives the commands", "does_not_move", Atom("unmatched"))
+        return MotionFailed(
+            f"odometry shows no reaction to commands ({model})", "does_not_move", Atom("no_reaction")
+        )
+
+    def _unsettled(self) -> MotionFailed:
+        """Return the failure of a robot that cannot be placed within the tolerance."""
+        model = self._wheels.model
+        text = f"the robot cannot be placed exactly enough ({model})"
+        if model.is_late:
+            return MotionFailed(text, "late", round(model.delay, 3))
+        return MotionFailed(text, "does_not_move", Atom("dead_band"))
 
 
 def _lack(odometer: Odometer) -> str:

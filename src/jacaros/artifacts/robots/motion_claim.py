@@ -1,15 +1,20 @@
-"""The motions of a robot: to abort them, and to wake the one that waits or drives.
+"""The motions of a robot: who drives, who waits, and what ends or interrupts them.
 
 The arbiter of resources (`jacaros.env.resources.arbiter`) decides which of them drives: all use ``wheels``.
 """
 
 import asyncio
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
+from typing import Any, Protocol, Self
 from weakref import WeakKeyDictionary
 
+from jacaros.artifacts.robots.control import Velocity
+from jacaros.artifacts.robots.drive_model import DriveModel
 from jacaros.clock import Clock
+from jacaros.env.resources.resource import Use
 from jacaros.env.values import Atom, Structure
 from jacaros.ros.backend import Backend
+from jacaros.ros.guarded import guarded_by
 
 GAP = 0.5
 """Seconds by which a motion may be late, or the clock be set. More is a gap: the robot was not watched for longer
@@ -90,17 +95,133 @@ class Motions:
     Attributes:
         stops: how often the robot was stopped; a command that is still waiting to be sent must not follow.
         claims: motions that are neither suspended nor finished.
+        models: what is known of the robot, for each artifact that drives it.
     """
 
     def __init__(self) -> None:
         self.stops = 0
         self.claims: dict[Claim, None] = {}
+        self.models: list[DriveModel] = []
+
+    def commanded(self, velocity: Velocity, now: float) -> None:
+        """Note a command: all artifacts that drive the robot see its effect in odometry."""
+        for model in self.models:
+            model.commanded(velocity, now)
 
     def abort(self) -> None:
         """Abort the motion that drives and all that wait, except suspended ones."""
         self.stops += 1
         for claim in list(self.claims):
             claim.abort()
+
+
+class Aborted(Exception):
+    """Raised in a motion that was aborted."""
+
+
+class Mover(Protocol):
+    """The artifact of a motion, as used by `Driving`."""
+
+    clock: Any
+
+    @property
+    def ros(self) -> Backend:
+        """The graph."""
+
+    @property
+    def current(self) -> Any:
+        """The running operation."""
+
+    def step(self, awaitable: Any) -> Awaitable[Any]:
+        """Release the artifact while waiting."""
+
+
+class Driving:
+    """One motion of an operation: it waits for its turn, and stops whatever ends or interrupts it.
+
+    A context manager: the motion begins when it is entered, and stops when it is left.
+
+    Args:
+        mover: the artifact of the operation.
+        motions: the motions of the robot.
+        use: what the motion needs.
+        stop: stops the robot.
+        show: shows ``waiting`` or ``paused`` to observers.
+    """
+
+    def __init__(
+        self,
+        mover: Mover,
+        motions: Motions,
+        use: Use,
+        stop: Callable[[], None],
+        show: Callable[[str], None] = lambda state: None,
+    ) -> None:
+        self._mover, self._motions, self._stop, self._show = mover, motions, stop, show
+        self._execution = mover.current
+        self._holding = self._execution.hold((use,))
+        self._claims_itself = not self._holding.entered
+        self._hooks: list[Callable[[], None]] = []
+        self.claim = Claim(self.halt)
+
+    @property
+    def paused(self) -> bool:
+        """Whether the agent has suspended the motion, or another one drives."""
+        paused: bool = self._execution.paused
+        return paused
+
+    def halt(self) -> None:
+        """Stop the robot immediately if this motion drives; otherwise another one may be driving it."""
+        if self._holding.holds:
+            self._stop()
+
+    def __enter__(self) -> Self:
+        claim, guarded = self.claim, guarded_by(self._mover.ros)
+        self._hooks = [
+            self._execution.on_pause(self._on_pause),
+            self._holding.watch(claim.wake),
+            guarded.on_interruption(lambda: claim.interrupt(GUARD_TRIPPED)),
+        ]
+        return self
+
+    def _on_pause(self) -> None:
+        self.halt()
+        self.claim.wake()
+
+    def __exit__(self, *_: object) -> None:
+        for forget in self._hooks:
+            forget()
+        self.halt()
+        self._motions.claims.pop(self.claim, None)
+        if self._claims_itself:
+            self._holding.leave()
+
+    async def ready(self) -> None:
+        """Wait until this motion may drive. While it is suspended, `Motions.abort` does not end it."""
+        execution, claims = self._execution, self._motions.claims
+        self._holding.enter()
+        claims[self.claim] = None
+        while execution.paused:
+            suspended = execution.suspended
+            if suspended:
+                claims.pop(self.claim, None)
+            else:
+                claims[self.claim] = None
+            self._show("paused" if suspended else "waiting")
+            self._holding.rest()
+            if execution.paused:
+                await self.wait(None)
+        claims[self.claim] = None
+
+    async def wait(self, seconds: float | None) -> None:
+        """Wait until this motion is woken or the time is over.
+
+        Raises:
+            Aborted: the motion was aborted.
+        """
+        await self._mover.step(self.claim.wait(self._mover.clock, seconds))
+        if self.claim.aborted:
+            raise Aborted
 
 
 _motions: WeakKeyDictionary[Backend, dict[str, Motions]] = WeakKeyDictionary()

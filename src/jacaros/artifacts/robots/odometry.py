@@ -122,6 +122,11 @@ class Odometer:
         """The frame of the newest poses; empty while it is unknown."""
         return self._header.frame
 
+    @property
+    def late(self) -> float:
+        """Seconds by which the newest message arrived later than earlier ones."""
+        return self._header.late
+
     def take(self, sample: Sample) -> None:
         """Handle a message; the callback of the subscription."""
         wrong = not_finite(sample)

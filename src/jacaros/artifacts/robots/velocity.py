@@ -6,6 +6,7 @@ robot exclude each other, whichever artifact they belong to.
 
 import math
 from collections.abc import Callable
+from pathlib import Path
 from typing import ClassVar
 
 from jacaros.artifacts.kit.connection import MATCH_OPTIONS, Matching
@@ -13,12 +14,14 @@ from jacaros.artifacts.kit.options import positive, text
 from jacaros.artifacts.kit.reading import READING_OPTIONS, Reading, ReadingPolicy
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.artifacts.robots.control import STANDSTILL, Limits, Velocity
+from jacaros.artifacts.robots.drive_model import DriveModel
 from jacaros.artifacts.robots.driving_frame import DrivingFrame
 from jacaros.artifacts.robots.journey import DriveTo, TurnTo, go_to
 from jacaros.artifacts.robots.maneuver import Maneuver, Straight, Timed, Turn
 from jacaros.artifacts.robots.motion import Motion, MotionFailed, MotionSettings
 from jacaros.artifacts.robots.motion_claim import Motions, motions_of
 from jacaros.artifacts.robots.odometry import ODOMETRY, Odometer, Odometry, pose_values
+from jacaros.artifacts.robots.quality_file import read_quality, write_quality
 from jacaros.env.artifact import Out, operation
 from jacaros.env.resources.resource import WHEELS
 from jacaros.env.values import Atom, Structure
@@ -57,11 +60,15 @@ class WheeledArtifact(RosArtifact):
         unmatched(W): effect of a base that has not subscribed by then: ``warn`` (default; the motion begins) or
             ``fail``, with ``unmatched(Topic)``.
         odometry_frame(F): the only frame in which odometry is accepted; default: that of the first message.
+        quality_file(F): keep what is measured of the robot in this file, for the next run.
         frame(F): the frame of all poses, such as ``map``: motions use odometry corrected by localisation on tf, so
             that errors of slipping wheels do not add up; default: odometry's own frame.
 
     Properties:
         moving(State): ``stopped``, ``driving``, ``turning``, ``waiting`` or ``paused``.
+        drive_quality(Delay, Acceleration, DeadBand): what was measured of the robot, after the first motion: seconds from
+            a command until odometry shows its effect, m/s2 (at most the declared one), and the least speed that
+            rolls, in m/s (0 while none was found).
 
     Signals:
         motion_interrupted(Why): the robot was not watched for a while and has been stopped. Why is
@@ -90,6 +97,7 @@ class WheeledArtifact(RosArtifact):
         "odometry_topic": text,
         "odometry_frame": text,
         "frame": text,
+        "quality_file": text,
         **MATCH_OPTIONS,
     }
     robot_in_properties = True
@@ -99,6 +107,7 @@ class WheeledArtifact(RosArtifact):
     motions: Motions
     matching: Matching
     odometer: Odometer
+    model: DriveModel
     settings: MotionSettings
     newest_pose: Reading
 
@@ -110,12 +119,17 @@ class WheeledArtifact(RosArtifact):
         """Open the command topic and odometry; nothing is published before the first motion."""
         self.settings = self._settings()
         self._motions: dict[Motion, str] = {}
+        self._shown: tuple[float, float, float] | None = None
         self.define_property(self.robot_property("moving"), Atom("stopped"))
         self.motions = motions_of(self.ros, self.robot_prefix)
         self.newest_pose = Reading(ReadingPolicy(on_demand=True), self.clock)
         self._commands = self.publisher(str(self.options.get("command_topic", self.command_topic)), TWIST)
         self.matching = self.matching_of(self._commands)
         topic = str(self.options.get("odometry_topic", "odom"))
+        self.model = DriveModel(self.settings.limits)
+        self._read_quality()
+        self.motions.models.append(self.model)
+        self.at_dispose(lambda: self.motions.models.remove(self.model))
         self.odometer = Odometer(
             self.faults_of(topic),
             self.clock,
@@ -141,6 +155,8 @@ class WheeledArtifact(RosArtifact):
 
     def on_odometry(self, odometry: Odometry) -> None:
         """Handle every odometry message."""
+        late = self.odometer.late
+        self.model.observed(odometry.pose, odometry.velocity, self.clock.elapsed, late)
         self.newest_pose.take(pose_values(odometry))
 
     def _option(self, name: str, default: float) -> float:
@@ -170,16 +186,13 @@ class WheeledArtifact(RosArtifact):
 
     # The interface that a motion uses.
 
-    def on_interruption(self, callback: Callable[[], None]) -> Callable[[], None]:
-        """Call *callback* when a guard has stopped the robot. Return a function that removes it."""
-        return guarded_by(self.ros).on_interruption(callback)
-
     def interrupted(self, why: Structure | Atom) -> None:
         """Signal `motion_interrupted`."""
         self.signal("motion_interrupted", why)
 
     def command(self, velocity: Velocity) -> None:
         """Publish one velocity command."""
+        self.motions.commanded(velocity, self.clock.elapsed)
         if velocity != STANDSTILL:
             self._drove = True
         twist = self._commands.message()
@@ -190,6 +203,7 @@ class WheeledArtifact(RosArtifact):
         """Show in ``moving`` the state of *motion*; None: it has ended."""
         if state is None:
             self._motions.pop(motion, None)
+            self._show_quality()
         else:
             self._motions[motion] = state
         states = self._motions.values()
@@ -197,6 +211,38 @@ class WheeledArtifact(RosArtifact):
         name = self.robot_property("moving")
         if shown != self.value(name):
             self.update_property(name, Atom(shown))
+
+    def _show_quality(self) -> None:
+        """Show what was measured, and keep it."""
+        quality = self.model.quality
+        if quality is None:
+            return
+        name = self.robot_property("drive_quality")
+        values = (round(quality.delay, 2), round(quality.acceleration, 2), round(quality.least, 3))
+        if values == self._shown:
+            return
+        if self._shown is None:
+            self.define_property(name, *values)
+        else:
+            self.update_property(name, *values)
+        self._shown = values
+        if "quality_file" in self.options:
+            try:
+                write_quality(Path(str(self.options["quality_file"])), quality)
+            except OSError as error:
+                self.log(f"warning: what was measured of the robot cannot be kept: {error}")
+
+    def _read_quality(self) -> None:
+        """Begin with what an earlier run has measured."""
+        if "quality_file" not in self.options:
+            return
+        try:
+            quality = read_quality(Path(str(self.options["quality_file"])))
+        except (OSError, ValueError) as error:
+            self.log(f"warning: {self.options['quality_file']}: {error}; the robot is measured anew")
+            return
+        if quality is not None:
+            self.model.expect(quality)
 
     def _halt(self) -> None:
         for motion in list(self._motions):
@@ -215,8 +261,8 @@ class WheeledArtifact(RosArtifact):
         """Drive *maneuver* to its end; for operations marked as pausable.
 
         Raises:
-            OperationFailed: ``aborted(Covered)``, ``blocked(Covered)``, ``interrupted(Covered)``,
-                ``no_odometry(Seconds)``, ``no_transform(Seconds)`` or ``timeout(Seconds)``.
+            OperationFailed: ``aborted(Covered)``, ``blocked(Covered)``, ``does_not_move(Cause)``, ``late(Delay)``,
+                ``interrupted(Covered)``, ``no_odometry(Seconds)``, ``no_transform(Seconds)`` or ``timeout(Seconds)``.
         """
         motion = Motion(self, maneuver)
         try:
@@ -242,11 +288,12 @@ class ArtCmdVel(WheeledArtifact):
     Lengths are in metres, angles in degrees (positive counter-clockwise), poses in odometry's frame, or in the frame
     of the option ``frame(F)``. Every motion waits until no other motion drives the robot, and always ends with zero
     velocity. It stops while its intention is suspended, and then continues with the rest. It fails with one of the
-    reasons ``aborted(Covered)``, ``blocked(Covered)``, ``interrupted(Covered)``, ``no_odometry(Seconds)``,
-    ``no_transform(Seconds)`` (with ``frame(F)``: localisation publishes nothing) and ``timeout(Seconds)``; Covered is
-    the distance driven (metres) or the angle turned (degrees).
+    reasons ``aborted(Covered)``, ``blocked(Covered)``, ``does_not_move(Cause)`` (``unmatched``, ``no_reaction`` or
+    ``dead_band``), ``late(Delay)``, ``interrupted(Covered)``, ``no_odometry(Seconds)``, ``no_transform(Seconds)`` (with
+    ``frame(F)``: localisation publishes nothing) and ``timeout(Seconds)``; Covered is the distance driven (metres) or
+    the angle turned (degrees). The delay and the abilities of the robot are measured while it drives.
 
-    Options and the property ``moving``: those of `WheeledArtifact`.
+    Options and the properties ``moving`` and ``drive_quality``: those of `WheeledArtifact`.
     """
 
     @operation(pausable=True)

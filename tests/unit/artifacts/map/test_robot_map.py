@@ -169,7 +169,7 @@ DRIFTING = WALLED.replace(
 
 
 @pytest.mark.parametrize(
-    ("pose_from", "least", "most"), [("scans", 0.0, 0.06), ("amcl", 0.0, 0.15), ("odometry", 0.25, 9.0)]
+    ("pose_from", "least", "most"), [("scans", 0.0, 0.06), ("amcl", 0.0, 0.15), ("odometry", 0.18, 9.0)]
 )
 def test_drift_of_odometry_is_corrected(pose_from: str, least: float, most: float) -> None:
     """`/amcl_pose` comes each 25 cm; between two of them the wheels are trusted."""
