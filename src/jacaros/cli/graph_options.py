@@ -76,8 +76,8 @@ noise_option = click.option(
     "--noise",
     type=NoiseFactor(0.0, 100.0),
     metavar="FACTOR",
-    help="Factor for the noise of the embedded world's odometry and lasers: off (0), on (1, that of the world file, or that of "
-    "slipping wheels if it has none) or a number (default: as in the world file; off if no world is named).",
+    help="Factor for the noise of the embedded world's odometry and lasers: off (0), on (1, that of the world file, or "
+    "that of slipping wheels if it has none) or a number (default: as in the world file; off if no world is named).",
 )
 
 faults_option = click.option(

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 from jacaros.excerpts import help_line, printable
+from jacaros.sim.interface import EVERYTHING, Interface
 from jacaros.sim.trigonometry import PI, radians
 from jacaros.yaml_nodes import Problem, YamlFileError
 
@@ -245,7 +246,7 @@ class RobotDescription:
 
     ``footprint`` is the length and width of a rectangular robot; ``radius`` is then that of the circumscribed circle, which
     other robots, lasers and navigation use. ``gripper_reach`` is the reach of the gripper, in metres from the robot's
-    centre; 0 without a gripper.
+    centre; 0 without a gripper. ``interface`` has the names of its topics, services and actions.
     """
 
     name: str = "turtlebot"
@@ -260,6 +261,7 @@ class RobotDescription:
     tools: tuple[CleaningTool, ...] = ()
     gripper_reach: float = 0.0
     footprint: tuple[float, float] | None = None
+    interface: Interface = EVERYTHING
 
 
 @dataclass(frozen=True, slots=True)

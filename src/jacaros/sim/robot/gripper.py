@@ -25,7 +25,7 @@ class Gripper:
     def __init__(self, at: RobotOnGraph) -> None:
         self._at, self._objects = at, at.time.world.objects
         self._opening = OPENING
-        self._servers = Servers(at.backend, at.prefix)
+        self._servers = Servers(at.backend, at.robot.description)
         if at.robot.description.gripper_reach:
             self._servers.action(
                 "/gripper_controller/gripper_cmd", "control_msgs/action/GripperCommand", self._move, _refuse

@@ -20,14 +20,17 @@ The other topics are listed in the modules of `jacaros.sim.robot.sensors`, and i
 
 import math
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from typing import Final
 
 from jacaros.ros.backend import Backend, Sample, Subscription
+from jacaros.ros.errors import UnknownInterface
 from jacaros.sim.navigation.frames import MAP, pose_fault, pose_of
 from jacaros.sim.navigation.localisation import Localisation
 from jacaros.sim.robot.gripper import Gripper
 from jacaros.sim.robot.lights import LightsAndSound
 from jacaros.sim.robot.on_graph import Actuator, RobotOnGraph, Sensor
+from jacaros.sim.robot.own_interfaces import OwnInterfaces
 from jacaros.sim.robot.robot import Robot
 from jacaros.sim.robot.sensors.battery import BatterySensor
 from jacaros.sim.robot.sensors.camera import CameraSensor
@@ -38,6 +41,7 @@ from jacaros.sim.robot.sensors.laser_scan import LaserSensor
 from jacaros.sim.robot.sensors.odometry import OdometrySensor
 from jacaros.sim.robot.sensors.recognition import ObjectRecognition
 from jacaros.sim.robot.sensors.sonar import SonarSensor
+from jacaros.sim.robot.transforms import TYPE as POSE
 from jacaros.sim.robot.transforms import AmclPose, RobotTransforms
 from jacaros.sim.world_time import WorldTime
 
@@ -53,6 +57,7 @@ SENSORS: Final[Sequence[Callable[[RobotOnGraph], Sensor]]] = (
     SonarSensor,
     CameraSensor,
     ObjectRecognition,
+    OwnInterfaces,
 )
 """Sensors of every robot, in publishing order."""
 
@@ -85,24 +90,23 @@ class RobotNode:
         self._at = RobotOnGraph(time, robot, backend, self.localisation)
         self.prefix = self._at.prefix
         self._ticks = 0
-        self._sensors = [sensor(self._at) for sensor in sensors]
+        self._sensors: list[Sensor] = []
+        for sensor in sensors:
+            with suppress(UnknownInterface):  # of another kind of robot
+                self._sensors.append(sensor(self._at))
         self._actuators = [actuator(self._at) for actuator in ACTUATORS]
         self._subscriptions = self._subscribe()
 
     def _subscribe(self) -> list[Subscription]:
         twist, text = "geometry_msgs/msg/Twist", "std_msgs/msg/String"
-        heard = [
-            *(self.backend.subscription(self.prefix + topic, twist, self._command) for topic in COMMANDS),
-            self.backend.subscription(self.prefix + "/cleaning/task", text, self._task),
-            self.backend.subscription(
-                self.prefix + "/initialpose",
-                "geometry_msgs/msg/PoseWithCovarianceStamped",
-                self._receive_pose,
-            ),
+        heard: list[tuple[str, str, Callable[[Sample], None]]] = [
+            *((topic, twist, self._command) for topic in COMMANDS),
+            ("/cleaning/task", text, self._task),
+            ("/initialpose", POSE, self._receive_pose),
         ]
         if self.robot.description.tools:
-            heard.append(self.backend.subscription(self.prefix + "/cleaning/tool", text, self._use_tool))
-        return heard
+            heard.append(("/cleaning/tool", text, self._use_tool))
+        return [made for each in heard if (made := self._at.subscription_if_known(*each)) is not None]
 
     def _command(self, sample: Sample) -> None:
         self.time.catch_up()

@@ -47,12 +47,22 @@ class RobotOnGraph:
         namespace = self.robot.description.namespace
         return f"{namespace}/" if namespace else ""
 
+    def _name(self, topic: str) -> str:
+        name = self.robot.description.interface.name_of(topic, self.prefix)
+        if name is None:
+            raise UnknownInterface(f"robots of this kind have no {topic}")
+        return name
+
     def publisher(self, topic: str, type_name: str, qos: QoS = DEFAULT_QOS) -> Publisher:
-        """Make a publisher in the robot's namespace, reliable by default."""
-        return self.backend.publisher(self.prefix + topic, type_name, qos)
+        """Make a publisher under the robot's name for *topic*, reliable by default.
+
+        Raises:
+            UnknownInterface: the type is not installed, or the robot's kind does not have the topic.
+        """
+        return self.backend.publisher(self._name(topic), type_name, qos)
 
     def publisher_if_known(self, topic: str, type_name: str) -> Publisher | None:
-        """Make a publisher; return None where the type is not installed."""
+        """Make a publisher; return None where the type is not installed, or for another kind of robot."""
         try:
             return self.publisher(topic, type_name)
         except UnknownInterface:
@@ -61,9 +71,9 @@ class RobotOnGraph:
     def subscription_if_known(
         self, topic: str, type_name: str, callback: Callable[[Sample], None]
     ) -> Subscription | None:
-        """Subscribe in the robot's namespace; return None where the type is not installed."""
+        """Subscribe; return None where the type is not installed, or for another kind of robot."""
         try:
-            return self.backend.subscription(self.prefix + topic, type_name, callback)
+            return self.backend.subscription(self._name(topic), type_name, callback)
         except UnknownInterface:
             return None
 
