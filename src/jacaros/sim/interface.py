@@ -4,78 +4,43 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Final
 
-TOPICS: Final = (
-    "amcl_pose",
-    "battery_state",
-    "camera/camera_info",
-    "camera/depth/image_raw",
-    "camera/image_raw",
-    "cleaning/task",
-    "cleaning/tool",
-    "cmd_audio",
-    "cmd_lightring",
-    "cmd_vel",
-    "cmd_vel_mux/input/navi",
-    "dock_status",
-    "goal_pose",
-    "hazard_detection",
-    "imu",
-    "initialpose",
-    "jason/perception",
-    "mobile_base/commands/velocity",
-    "mobile_base/events/bumper",
-    "mobile_base/events/cliff",
-    "mobile_base/events/wheel_drop",
-    "mobile_base/sensors/core",
-    "move_base_simple/goal",
-    "odom",
-    "scan",
-    "sensor_state",
-    "sonar",
+
+def _names(text: str) -> tuple[str, ...]:
+    return tuple(text.split())
+
+
+TOPICS: Final = _names(
+    """
+    amcl_pose battery_state camera/camera_info camera/depth/image_raw camera/image_raw cleaning/task
+    cleaning/tool cmd_audio cmd_lightring cmd_vel cmd_vel_mux/input/navi dock_status goal_pose
+    hazard_detection imu initialpose jason/perception mobile_base/commands/velocity
+    mobile_base/events/bumper mobile_base/events/cliff mobile_base/events/wheel_drop
+    mobile_base/sensors/core move_base_simple/goal odom scan sensor_state sonar
+    """
 )
-SERVICES: Final = (
-    "global_costmap/clear_entirely_global_costmap",
-    "local_costmap/clear_entirely_local_costmap",
-    "move_base/clear_costmaps",
+SERVICES: Final = _names(
+    """
+    global_costmap/clear_entirely_global_costmap local_costmap/clear_entirely_local_costmap
+    move_base/clear_costmaps
+    """
 )
-ACTIONS: Final = (
-    "dock",
-    "dock_drive_action",
-    "dock_robot",
-    "drive_distance",
-    "follow_waypoints",
-    "gripper_controller/gripper_cmd",
-    "move_base",
-    "navigate_through_poses",
-    "navigate_to_pose",
-    "rotate_angle",
-    "undock",
-    "undock_robot",
+ACTIONS: Final = _names(
+    """
+    dock dock_drive_action dock_robot drive_distance follow_waypoints gripper_controller/gripper_cmd
+    move_base navigate_through_poses navigate_to_pose rotate_angle undock undock_robot
+    """
 )
 """All that the simulator can offer below a robot's namespace."""
 
 KOBUKI: Final = frozenset(
-    {
-        "cmd_vel_mux/input/navi",
-        "dock_drive_action",
-        *(name for name in TOPICS if name.startswith("mobile_base/")),
-    }
+    name for name in TOPICS + ACTIONS if name.startswith(("mobile_base/", "cmd_vel_mux/", "dock_drive"))
 )
 CREATE3: Final = frozenset(
-    (
-        "cmd_audio",
-        "cmd_lightring",
-        "dock",
-        "dock_status",
-        "drive_distance",
-        "hazard_detection",
-        "rotate_angle",
-        "undock",
-    )
+    _names("cmd_audio cmd_lightring dock dock_status drive_distance hazard_detection rotate_angle undock")
 )
-TURTLEBOT3: Final = frozenset(("sensor_state",))
+TURTLEBOT3: Final = frozenset(_names("sensor_state"))
 CAMERA: Final = frozenset(name for name in TOPICS if name.startswith("camera/"))
-SONAR: Final = frozenset(("sonar",))
+SONAR: Final = frozenset(_names("sonar"))
 """Names that only some robots have: those of a base or of its driver, and of optional sensors."""
 
 

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Callable
-from typing import Any
 from weakref import WeakSet
 
 from jacaros.artifacts.robots.control import Pose, heading_of
@@ -45,7 +44,8 @@ class Drift:
         found = sample.message.pose.pose
         if at is None or self._ros in _advised:
             return
-        place = Pose(float(found.position.x), float(found.position.y), heading_of(*_quaternion(found)))
+        q = found.orientation
+        place = Pose(found.position.x, found.position.y, heading_of(q.x, q.y, q.z, q.w))
         correction = followed_by(place, inverse(at))
         if (
             self._first is None
@@ -83,11 +83,6 @@ class Drift:
         """Return how far two corrections put the robot apart: metres and radians."""
         a, b = followed_by(one, at), followed_by(other, at)
         return math.dist(a[:2], b[:2]), abs(math.remainder(a.heading - b.heading, math.tau))
-
-
-def _quaternion(pose: Any) -> tuple[float, float, float, float]:
-    q = pose.orientation
-    return q.x, q.y, q.z, q.w
 
 
 def _exceeds(apart: tuple[float, float], limits: tuple[float, float]) -> bool:

@@ -1,35 +1,18 @@
-"""The ROS topics of one robot of the world.
+"""The ROS topics of one robot of the world; docs/reference/worlds.md lists them with types and rates.
 
-=========================================== ============================= ==========================
-topic (below the robot's namespace)         type                          direction and rate
-=========================================== ============================= ==========================
-``/odom``                                   ``nav_msgs/msg/Odometry``     out, 20 Hz
-``/battery_state``                          ``sensor_msgs/msg/BatteryState`` out, 1 Hz and on changes
-``/scan``                                   ``sensor_msgs/msg/LaserScan`` out, 5 Hz when subscribed
-``/cmd_vel``, ``/cmd_vel_mux/input/navi``   ``geometry_msgs/msg/Twist``   in, the last message wins
-``/mobile_base/commands/velocity``          the same                      in, the same
-``/cleaning/task``                          ``std_msgs/msg/String``       in, logged with the true pose, starts a tool
-``/cleaning/tool``                          ``std_msgs/msg/String``       in, starts a tool, "" stops; with tools only
-``/initialpose``                            ``geometry_msgs/msg/PoseWithCovarianceStamped`` in, for localisation
-``/amcl_pose``                              the same                      out, latched, see `jacaros.sim.robot.transforms`
-=========================================== ============================= ==========================
-
-The other topics are listed in the modules of `jacaros.sim.robot.sensors`, and in `jacaros.sim.robot.transforms`,
-`jacaros.sim.robot.lights` and `jacaros.sim.robot.gripper`; navigation and docking are in `jacaros.sim.navigation`.
+Navigation and docking are in `jacaros.sim.navigation`.
 """
 
 import math
 from collections.abc import Callable, Sequence
-from contextlib import suppress
 from typing import Final
 
-from jacaros.ros.backend import Backend, Sample, Subscription
-from jacaros.ros.errors import UnknownInterface
+from jacaros.ros.backend import Backend, Sample
 from jacaros.sim.navigation.frames import MAP, pose_fault, pose_of
 from jacaros.sim.navigation.localisation import Localisation
 from jacaros.sim.robot.gripper import Gripper
 from jacaros.sim.robot.lights import LightsAndSound
-from jacaros.sim.robot.on_graph import Actuator, RobotOnGraph, Sensor
+from jacaros.sim.robot.on_graph import RobotOnGraph, Sensor
 from jacaros.sim.robot.own_interfaces import OwnInterfaces
 from jacaros.sim.robot.robot import Robot
 from jacaros.sim.robot.sensors.battery import BatterySensor
@@ -61,9 +44,6 @@ SENSORS: Final[Sequence[Callable[[RobotOnGraph], Sensor]]] = (
 )
 """Sensors of every robot, in publishing order."""
 
-ACTUATORS: Final[Sequence[Callable[[RobotOnGraph], Actuator]]] = (LightsAndSound, Gripper)
-"""Other ROS interfaces of every robot, besides driving and cleaning."""
-
 COMMANDS: Final = ("/cmd_vel", "/cmd_vel_mux/input/navi", "/mobile_base/commands/velocity")
 """Topics of velocity commands: those of most robots, of the Kobuki's multiplexer, and of its base."""
 
@@ -90,23 +70,15 @@ class RobotNode:
         self._at = RobotOnGraph(time, robot, backend, self.localisation)
         self.prefix = self._at.prefix
         self._ticks = 0
-        self._sensors: list[Sensor] = []
-        for sensor in sensors:
-            with suppress(UnknownInterface):  # of another kind of robot
-                self._sensors.append(sensor(self._at))
-        self._actuators = [actuator(self._at) for actuator in ACTUATORS]
-        self._subscriptions = self._subscribe()
-
-    def _subscribe(self) -> list[Subscription]:
-        twist, text = "geometry_msgs/msg/Twist", "std_msgs/msg/String"
-        heard: list[tuple[str, str, Callable[[Sample], None]]] = [
-            *((topic, twist, self._command) for topic in COMMANDS),
-            ("/cleaning/task", text, self._task),
-            ("/initialpose", POSE, self._receive_pose),
-        ]
-        if self.robot.description.tools:
-            heard.append(("/cleaning/tool", text, self._use_tool))
-        return [made for each in heard if (made := self._at.subscription_if_known(*each)) is not None]
+        self._sensors = [sensor(self._at) for sensor in sensors]
+        for device in (LightsAndSound, Gripper):
+            device(self._at)
+        for topic in COMMANDS:
+            self._at.subscribe(topic, "geometry_msgs/msg/Twist", self._command)
+        self._at.subscribe("/cleaning/task", "std_msgs/msg/String", self._task)
+        self._at.subscribe("/initialpose", POSE, self._receive_pose)
+        if robot.description.tools:
+            self._at.subscribe("/cleaning/tool", "std_msgs/msg/String", self._use_tool)
 
     def _command(self, sample: Sample) -> None:
         self.time.catch_up()
@@ -146,7 +118,4 @@ class RobotNode:
 
     def close(self) -> None:
         """Withdraw all topics."""
-        for subscription in self._subscriptions:
-            subscription.close()
-        for part in (*self._sensors, *self._actuators):
-            part.close()
+        self._at.close()

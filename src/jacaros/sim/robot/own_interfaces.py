@@ -1,7 +1,7 @@
 """Topics and services that a world file adds to a robot: constant messages, received ones, constant responses."""
 
 from jacaros.errors import UsageError
-from jacaros.ros.backend import Publisher, Sample, Service, Subscription
+from jacaros.ros.backend import Publisher, Sample
 from jacaros.ros.errors import MessageMismatch, UnknownInterface
 from jacaros.ros.message import plain
 from jacaros.ros.names import response_type
@@ -19,29 +19,29 @@ class OwnInterfaces:
     def __init__(self, at: RobotOnGraph) -> None:
         self._at = at
         self._published: list[tuple[int, OwnTopic, Publisher]] = []
-        self._open: list[Publisher | Subscription | Service] = []
         interface = at.robot.description.interface
         added: list[OwnTopic | OwnService] = [*interface.topics, *interface.services]
         for each in added:
             name = absolute(each.name, at.prefix)
             try:
-                self._open.append(
-                    self._topic(each, name) if isinstance(each, OwnTopic) else self._service(each, name)
-                )
+                if isinstance(each, OwnTopic):
+                    self._topic(each, name)
+                else:
+                    self._service(each, name)
             except (UnknownInterface, MessageMismatch) as error:
                 raise UsageError(f"`{each.name}` of the robot `{at.robot.name}`: {error}") from None
 
-    def _topic(self, topic: OwnTopic, name: str) -> Publisher | Subscription:
+    def _topic(self, topic: OwnTopic, name: str) -> None:
         if not topic.rate:
-            return self._at.backend.subscription(name, topic.type_name, self._receive)
-        publisher = self._at.backend.publisher(name, topic.type_name)
+            self._at.keep(self._at.backend.subscription(name, topic.type_name, self._receive))
+            return
+        publisher = self._at.keep(self._at.backend.publisher(name, topic.type_name))
         publisher.message(**topic.message)
         self._published.append((max(1, round(TICKS_PER_SECOND / topic.rate)), topic, publisher))
-        return publisher
 
-    def _service(self, service: OwnService, name: str) -> Service:
+    def _service(self, service: OwnService, name: str) -> None:
         self._at.backend.message(response_type(service.type_name), **service.response)
-        return self._at.backend.service(name, service.type_name, lambda request: service.response)
+        self._at.keep(self._at.backend.service(name, service.type_name, lambda request: service.response))
 
     def _receive(self, sample: Sample) -> None:
         self._at.time.catch_up()
@@ -56,8 +56,3 @@ class OwnInterfaces:
                 if hasattr(message, "header"):
                     self._at.fill_header(message.header, message.header.frame_id or "base_link")
                 publisher.publish(message)
-
-    def close(self) -> None:
-        """Withdraw the topics and services."""
-        for each in self._open:
-            each.close()
