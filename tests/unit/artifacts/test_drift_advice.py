@@ -60,7 +60,7 @@ def test_a_robot_that_stands_gets_no_advice_whatever_moves_it() -> None:
     assert not advice(in_lab(body, SLIPPERY))
 
 
-def test_a_pose_that_is_set_by_hand_is_no_drift() -> None:
+def test_a_pose_that_is_set_by_hand_does_not_count_as_drift() -> None:
     async def body(lab: Lab) -> None:
         wheels = await lab.make(ArtCmdVel)
         await lab.do(wheels, "moveForward", 0.5)
@@ -103,7 +103,7 @@ class Wheels:
 
 
 class Graph:
-    """A graph that can be told from others."""
+    """A graph, by its identity."""
 
 
 @pytest.mark.parametrize("late", [0.0, 0.1, 0.2])

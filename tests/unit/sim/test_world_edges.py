@@ -36,7 +36,7 @@ def test_wheels_that_stall_at_a_wall_are_not_counted(speed: float) -> None:
     assert robot.odometer == pytest.approx(abs(robot.x), abs=0.01)
 
 
-def test_a_robot_whose_wheels_are_both_blocked_stays_whatever_it_is_told() -> None:
+def test_a_robot_whose_wheels_are_both_blocked_stays_whatever_the_commands_are() -> None:
     world = World.load("patrol", faults="faults:\n  f: {kind: blocked_wheel, wheel: both, at: 0}\n")
     before = world.robot().pose
     for turn_rate in (0.0, 1.0, -1.0):
