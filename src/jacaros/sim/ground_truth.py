@@ -177,6 +177,9 @@ class GroundTruth:
     def record_event(self, event: Event) -> None:
         """Record an event; one of `FIELDS` has the data of its kind."""
         assert event.data.keys() >= set(FIELDS.get(event.kind, ())), event
+        self._add(event)
+
+    def _add(self, event: Event) -> None:
         self.events.append(event)
         if event.kind == "cleaned":
             self.dirt[event.data["room"], event.data["dirt"]] = event.data["grams"]
@@ -239,7 +242,7 @@ class GroundTruth:
             self.record_sample(record["robot"], Sample(*(record[name] for name in Sample._fields)))
         elif record["kind"] == "event":
             record = {**record, "kind": present_kind(record["event"], record["data"])}
-            self.record_event(Event(*(record[name] for name in Event._fields)))
+            self._add(Event(*(record[name] for name in Event._fields)))
         elif record["kind"] == "end":
             self.dirt |= {(room, kind): grams for room, kind, grams in record.get("dirt", ())}
 

@@ -76,8 +76,10 @@ def test_older_recordings_in_which_both_had_one_name_are_read(tmp_path: Path) ->
     truth = tmp_path / "truth.jsonl"
     place = {"time": 1.0, "robot": "turtlebot", "x": 0.5, "y": 0.5, "yaw": 0.0}
     of_truth = {"kind": "event", "event": "placed", **place, "data": {"x": 0.5, "y": 0.5, "yaw": 0.0}}
-    truth.write_text(f"{json.dumps(header)}\n{json.dumps(of_truth)}\n", encoding="utf-8")
-    assert [event.kind for event in GroundTruth.read(truth).events] == ["robot_placed"]
+    bare = {**of_truth, "event": "docked", "data": {}}
+    lines = "".join(json.dumps(each) + "\n" for each in (header, of_truth, bare))
+    truth.write_text(lines, encoding="utf-8")
+    assert [event.kind for event in GroundTruth.read(truth).events] == ["robot_placed", "docked"]
 
 
 def test_an_event_that_lacks_what_its_readers_need_is_skipped_with_a_warning(tmp_path: Path) -> None:
