@@ -7,7 +7,7 @@ from typing import ClassVar
 
 from jacaros.artifacts.kit.faults import Header
 from jacaros.artifacts.kit.options import positive, text
-from jacaros.artifacts.kit.reading import READING_OPTIONS, Reading, ReadingPolicy
+from jacaros.artifacts.kit.reading import READING_OPTIONS, Reading, ReadingPolicy, not_finite
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.env.artifact import Out, operation
 from jacaros.ros.backend import Sample
@@ -57,7 +57,10 @@ class ArtBaseScan(RosArtifact):
         assert isinstance(longest, float)
         if len(scan.ranges) and self._header.accepts(sample):
             values = sampled(scan.ranges, longest, scan.range_min)
-            self.take_together(sample.cause, *((reading, values) for reading in self._ranges))
+            if not_finite(values) is None:
+                self.take_together(sample.cause, *((reading, values) for reading in self._ranges))
+            else:
+                self._ranges[0].take(values, sample.cause)  # which reports it, once
 
     @operation(name="getCurrentBaseScan")
     async def get_current_base_scan(self) -> None:
