@@ -15,7 +15,7 @@ recharges(0).
 !start.
 
 +!start
-  <- !use_artifact("wheels", "ArtCmdVelMuxAndOdometry");
+  <- !use_artifact("wheels", "ArtCmdVelMuxAndOdometry", [frame(map)]);  // wheels slip
      !use_artifact("battery", "ArtSimBattery", [source(robot)]).
 
 /* Visiting a room for the dispatcher */

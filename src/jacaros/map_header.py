@@ -23,6 +23,30 @@ from jacaros.yaml_nodes import Node
 KEYS: Final = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh", "mode")
 _REQUIRED: Final = ("image", "resolution", "origin")
 
+FREE, OCCUPIED, UNKNOWN = 0, 1, 2
+"""What a cell of a map is."""
+_OCCUPIED_FROM, _FREE_TO = 65, 25
+CELLS: Final = bytes(
+    FREE if value <= _FREE_TO else OCCUPIED if _OCCUPIED_FROM <= value <= 100 else UNKNOWN
+    for value in range(256)
+)
+"""What the occupancy of a cell (percent) means: the thresholds of both ``map_saver``; negative numbers count from 256."""
+
+BLACK, WHITE, GREY = 0, 254, 205
+"""Pixels of occupied, free and unknown cells in a written map."""
+
+
+def header_text(image: str, resolution: float, x: float, y: float) -> str:
+    """Return the file of a map that is not rotated; *x* and *y* are the lower left corner, in metres.
+
+    As in ROS 1, the threshold of free cells is just below `GREY`: with the 0.25 of Nav2 a map server takes unknown cells
+    for free.
+    """
+    return (
+        f"image: {image}\nmode: trinary\nresolution: {resolution:g}\norigin: [{x:g}, {y:g}, 0]\nnegate: 0\n"
+        "occupied_thresh: 0.65\nfree_thresh: 0.196\n"
+    )
+
 
 @dataclass(frozen=True, slots=True)
 class MapHeader:
@@ -33,7 +57,7 @@ class MapHeader:
         image: path of the image, relative to the file; empty after a mistake.
         resolution: side of a pixel, in metres.
         origin: x and y (metres) and heading (radians) of the lower left corner.
-        occupancy: percent occupied for each of the 256 values of a pixel: 100, 0, or -1 (unknown).
+        occupancy: percent occupied for each of the 256 values of a pixel, or -1 (unknown).
         places: x and y by name, in metres.
     """
 
@@ -81,9 +105,9 @@ def _occupancy(nodes: Mapping[str, Node]) -> tuple[int, ...]:
         )
 
     def percent(pixel: int) -> int:
-        if raw and pixel > 100:
-            return -1
-        dark = pixel / 100 if raw else (pixel if inverted else 255 - pixel) / 255
+        if raw:
+            return pixel if pixel <= 100 else -1
+        dark = (pixel if inverted else 255 - pixel) / 255
         return 100 if dark > occupied else 0 if dark < free else -1
 
     return tuple(percent(pixel) for pixel in range(256))

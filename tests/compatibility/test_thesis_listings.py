@@ -11,11 +11,11 @@ from jacaros.mas.launch import launch
 from jacaros.mas.options import RunOptions
 from jacaros.mas.system import System
 from jacaros.sim import GroundTruth
-from jacaros.sim.files.world import find_world
 from jacaros.testing import RunResult, run_project
 from jacaros.testing.paths import angle_between, distance, turns
 
 HERE = Path(__file__).parent
+SEEDS = pytest.mark.parametrize("seed", range(5))
 
 
 def run(name: str, seconds: float, **options: Any) -> RunResult:
@@ -26,13 +26,19 @@ def run(name: str, seconds: float, **options: Any) -> RunResult:
     return result
 
 
-def exact(folder: Path, world: str) -> Path:
-    """A shipped world whose wheels do not slip: the thesis's programs drive by odometry alone."""
-    text = find_world(world).read_text(encoding="utf-8")
-    assert "    odometry: {noise" in text
-    path = folder / f"{world}.yaml"
-    path.write_text(re.sub(r"    odometry: .*\n", "", text), encoding="utf-8")
-    return path
+def in_the_map(name: str, folder: Path) -> Path:
+    """The same program with the option that its drives follow the map."""
+    text = (HERE / f"{name}.asl").read_text(encoding="utf-8")
+    if "[]," in text and name != "house":
+        changed = text.replace("[],", "[frame(map)],")
+    else:  # the plan of the included library
+        make = 'makeArtifact("Cmd_vel_mux_odom", "ArtCmdVelMuxAndOdometry", [frame(map)], _);'
+        changed = text.replace("!create_cmd_vel_mux_odom;", make)
+    assert changed != text
+    (folder / f"{name}.asl").write_text(changed, encoding="utf-8")
+    project = (HERE / f"{name}.mas2j").read_text(encoding="utf-8")
+    (folder / f"{name}.mas2j").write_text(project, encoding="utf-8")
+    return folder / f"{name}.mas2j"
 
 
 def is_back(truth: GroundTruth) -> bool:
@@ -63,46 +69,49 @@ def test_each_robot_has_odometry_of_its_own() -> None:
     ]
 
 
-def test_out_and_back_by_time(tmp_path: Path) -> None:
-    truth = run("out_and_back", 30.0, world=exact(tmp_path, "empty")).ground_truth
+@SEEDS
+def test_out_and_back_by_time(seed: int) -> None:
+    truth = run("out_and_back", 30.0, seed=seed).ground_truth
     assert max(sample.x for sample in truth.path()) > 1.0
     assert is_back(truth)
 
 
-@pytest.mark.parametrize("seed", range(5))
+@SEEDS
 @pytest.mark.parametrize("name", ["out_and_back", "square"])
 def test_one_word_makes_a_program_robust_where_wheels_slip(name: str, seed: int, tmp_path: Path) -> None:
-    text = (HERE / f"{name}.asl").read_text(encoding="utf-8")
-    assert text.count(", [],") == 1
-    (tmp_path / f"{name}.asl").write_text(text.replace(", [],", ", [frame(map)],"), encoding="utf-8")
-    (tmp_path / f"{name}.mas2j").write_text(
-        (HERE / f"{name}.mas2j").read_text(encoding="utf-8"), encoding="utf-8"
-    )
-    result = run_project(tmp_path / f"{name}.mas2j", seconds=40.0, seed=seed)
+    result = run_project(in_the_map(name, tmp_path), seconds=40.0, seed=seed, noise=1.0)
     assert result.errors == []
     assert max(sample.x for sample in result.ground_truth.path()) > 0.9
     assert is_back(result.ground_truth)
 
 
-def test_a_square_by_odometry(tmp_path: Path) -> None:
-    truth = run("square", 40.0, world=exact(tmp_path, "empty")).ground_truth
-    corners = [(turn.x, turn.y) for turn in turns(truth.path())]
-    for corner, wanted in zip(corners, [(1, 0), (1, 1), (0, 1), (0, 0)], strict=True):
-        assert math.dist(corner, wanted) <= 0.05
+def corners(truth: GroundTruth, *wanted: tuple[float, float]) -> None:
+    """The first corners of the path are these, to 5 cm."""
+    found = [(turn.x, turn.y) for turn in turns(truth.path())][: len(wanted)]
+    assert [math.dist(*pair) <= 0.05 for pair in zip(found, wanted, strict=True)] == [True] * len(wanted), (
+        found
+    )
+
+
+@SEEDS
+def test_a_square_by_odometry(seed: int) -> None:
+    truth = run("square", 40.0, seed=seed).ground_truth
+    assert len(turns(truth.path())) == 4
+    corners(truth, (1, 0), (1, 1), (0, 1), (0, 0))
     assert is_back(truth)
 
 
-def test_the_diagnoses_of_the_battery() -> None:
-    assert run("battery", 110.0).lines == [
+@SEEDS
+def test_the_diagnoses_of_the_battery(seed: int) -> None:
+    assert run("battery", 110.0, seed=seed).lines == [
         "[robot] Full Battery",
         "[robot] Medium Battery",
         "[robot] Low Battery",
     ]
 
 
-@pytest.mark.slow
-def test_patrol_and_recharge(tmp_path: Path) -> None:
-    result = run("patrol", 300.0, world=exact(tmp_path, "empty"))
+def patrols(result: RunResult) -> None:
+    """The robot patrols, recharges and resumes its patrol, twice."""
     told = [line.removeprefix("[robot] ") for line in result.lines]
     story = re.sub(r"(side )+", "sides ", " ".join(line.replace(" ", "_") for line in told) + " ")
     cycle = (
@@ -111,9 +120,21 @@ def test_patrol_and_recharge(tmp_path: Path) -> None:
     )
     assert story.startswith(f"Current_Diagnostic:_Full_Battery sides {cycle}{cycle}")
     # Before the first stop, the corners are those of the square; afterwards the relative moves lead elsewhere.
-    first = [(turn.x, turn.y) for turn in turns(result.ground_truth.path())][:8]
-    for corner, wanted in zip(first, [(2, 0), (2, 2), (0, 2), (0, 0)] * 2, strict=True):
-        assert math.dist(corner, wanted) <= 0.05
+    corners(result.ground_truth, *[(2, 0), (2, 2), (0, 2), (0, 0)] * 2)
+
+
+@SEEDS
+@pytest.mark.slow
+def test_patrol_and_recharge(seed: int) -> None:
+    patrols(run("patrol", 300.0, seed=seed))
+
+
+@SEEDS
+@pytest.mark.slow
+def test_patrol_and_recharge_in_the_map_where_wheels_slip(seed: int, tmp_path: Path) -> None:
+    result = run_project(in_the_map("patrol", tmp_path), seconds=300.0, seed=seed, noise=1.0)
+    assert result.errors == []
+    patrols(result)
 
 
 class Odometer:
@@ -153,9 +174,8 @@ def test_the_patrol_stands_still_while_it_is_suspended() -> None:
     assert driven == pytest.approx(4.0, abs=0.3)
 
 
-@pytest.mark.slow
-def test_the_household() -> None:
-    result = run("house", 200.0)
+def keeps_house(result: RunResult) -> None:
+    """The robot does the tasks of each room in the room, and resumes them after it has recharged."""
     tasks = [event.data["task"] for event in result.ground_truth.events_of("task")]
     of_a_round = [
         "vacuum carpet living_room",
@@ -172,6 +192,20 @@ def test_the_household() -> None:
     assert "[robot] returned" in result.lines
     after = result.lines[result.lines.index("[robot] returned") :]
     assert any("Vacuum" in line or "Mop" in line for line in after)
+
+
+@SEEDS
+@pytest.mark.slow
+def test_the_household(seed: int) -> None:
+    keeps_house(run("house", 200.0, seed=seed))
+
+
+@SEEDS
+@pytest.mark.slow
+def test_the_household_in_the_map_where_wheels_slip(seed: int, tmp_path: Path) -> None:
+    result = run_project(in_the_map("house", tmp_path), seconds=200.0, seed=seed, noise=1.0)
+    assert result.errors == []
+    keeps_house(result)
 
 
 def test_the_range_of_view_and_the_way_to_the_goal() -> None:

@@ -260,7 +260,7 @@ def in_lab(
     """
     clock = VirtualClock()
     robot_clock = clock if simulated is None else SimulatorClock(clock, simulated)
-    lab = Lab(clock, robot_clock, MemoryGraph(), World(load_world(world).without_noise(), 0))
+    lab = Lab(clock, robot_clock, MemoryGraph(), World(load_world(world).with_noise(0.0), 0))
     time: Clock = (
         clock if simulated is None or not followed else RosClock(lambda text: lab.log(f"[ros] {text}"))
     )

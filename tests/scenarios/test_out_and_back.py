@@ -1,6 +1,7 @@
 """Scenario 1: drive out by time, turn around, come back."""
 
 import math
+import re
 
 from examples_lab import checker, falsified, run, run_of
 
@@ -22,7 +23,11 @@ def test_the_agent_prints_what_it_does() -> None:
 
 def test_the_program_alone_runs_in_the_default_world() -> None:
     alone = run("01_out_and_back/robot.asl")
-    assert alone.lines == run_of(PROJECT).lines
+    # Its floor is exact, that of the project's world is not: the millimetres differ.
+    said, in_the_project = (
+        [re.sub(r"\d+ mm", "N mm", line) for line in each.lines] for each in (alone, run_of(PROJECT))
+    )
+    assert said == in_the_project
     assert check(alone.ground_truth).passed
 
 

@@ -56,6 +56,30 @@ def ros_option(
     )
 
 
+class NoiseFactor(click.FloatRange):
+    """Accepts ``off`` (0), ``on`` (1), or a factor."""
+
+    name = "factor"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Return the factor."""
+        try:
+            return super().convert({"off": 0.0, "on": 1.0}.get(value, value), param, ctx)
+        except click.BadParameter:
+            raise usage_error(
+                f"invalid value of --noise: expected off, on or a factor up to 100, found `{value}`",
+                "--noise 0.5",
+            ) from None
+
+
+noise_option = click.option(
+    "--noise",
+    type=NoiseFactor(0.0, 100.0),
+    metavar="FACTOR",
+    help="Factor for the noise of the embedded world's odometry and lasers: off (0), on (1, that of the world file, or "
+    "that of slipping wheels if it has none) or a number (default: as in the world file; off if no world is named).",
+)
+
 faults_option = click.option(
     "--faults",
     type=click.Path(path_type=Path),

@@ -14,6 +14,7 @@ from jacaros.bdi.mind import Mind
 from jacaros.cli.graph_options import (
     faults_option,
     graph_options,
+    noise_option,
     orphan_policy,
     orphans_option,
     parameter_options,
@@ -73,6 +74,7 @@ SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
     show_envvar=True,
     help="World file, or the name of a shipped world; `none` for a graph without robots.",
 )
+@noise_option
 @faults_option
 @click.option(
     "--mapping",

@@ -7,7 +7,7 @@ from typing import Any
 
 import click
 
-from jacaros.cli.graph_options import faults_option, read_remaps, ros_option, world_options
+from jacaros.cli.graph_options import faults_option, noise_option, read_remaps, ros_option, world_options
 from jacaros.cli.outputs import check_output
 from jacaros.cli.usage import examples, usage_error
 from jacaros.clock import Clock, VirtualClock, WallClock, run
@@ -36,6 +36,7 @@ from jacaros.text_files import is_file
     help="Write the ground truth of the world to FILE (JSON lines).",
 )
 @click.option("--seed", type=int, help="Seed for the noise of the sensors.")
+@noise_option
 @faults_option
 @click.option("--full-battery", is_flag=True, help="Keep all batteries full.")
 @click.option(
@@ -70,6 +71,7 @@ def command(
     seconds: float | None,
     ground_truth: Path | None,
     seed: int | None,
+    noise: float | None,
     faults: Path | None,
     only_hash: bool,
     full_battery: bool,
@@ -81,7 +83,7 @@ def command(
     """Run WORLD (a world file, or the name of a shipped world) as a ROS node, until you press Ctrl+C."""  # fmt: skip
     from jacaros.sim import World
 
-    loaded = World.load(Path(world) if is_file(Path(world)) else world, seed, faults)
+    loaded = World.load(Path(world) if is_file(Path(world)) else world, seed, faults, noise)
     if full_battery:
         loaded = World(with_full_batteries(loaded.description), faults=loaded.faults.by_name.values())
     if only_hash:

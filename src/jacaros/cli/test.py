@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from jacaros.cli.graph_options import noise_option
 from jacaros.cli.outputs import check_output
 from jacaros.cli.usage import examples, usage_error
 
@@ -78,6 +79,7 @@ MOST_NAMES = 8
     metavar="FILE",
     help="World file or name of a shipped world, instead of the project's; `none` for a graph without robots.",
 )
+@noise_option
 @click.option(
     "--mapping",
     "mappings",

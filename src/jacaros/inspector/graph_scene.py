@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any
 
+from jacaros.artifacts.robots.charge import Charge
 from jacaros.artifacts.robots.odometry import not_finite
 from jacaros.clock import Clock
 from jacaros.inspector.map_drawing import can_be_drawn, map_drawing
@@ -49,6 +50,8 @@ class SeenRobot:
         self.name = name
         self.odometry: Any = None
         self.battery: Any = None
+        self._charge = Charge()
+        self._share: float | None = None
 
     def hear_odometry(self, sample: Sample) -> bool:
         """Keep the newest message unless it contains NaN or infinity; return whether it was kept."""
@@ -60,6 +63,7 @@ class SeenRobot:
     def hear_battery(self, sample: Sample) -> None:
         """Keep the newest message."""
         self.battery = sample.message
+        self._share = self._charge.share(float(self.battery.percentage))
 
     def pose(self, backend: Backend) -> Transform:
         """Return the pose: odometry, corrected by localisation if there is one."""
@@ -80,11 +84,7 @@ class SeenRobot:
         return RobotView(self.name, x, y, pose.yaw, self._percent(), self._charging())
 
     def _percent(self) -> float:
-        share = UNKNOWN if self.battery is None else float(self.battery.percentage)
-        if not math.isfinite(share) or share < 0.0:
-            return UNKNOWN
-        # The definition says 0 to 1, but some drivers publish percent.
-        return min(100.0, share if share > 1.0 else 100.0 * share)
+        return UNKNOWN if self._share is None else min(100.0, 100.0 * self._share)
 
     def _charging(self) -> bool:
         message = self.battery

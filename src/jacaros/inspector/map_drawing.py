@@ -3,12 +3,9 @@
 import math
 from typing import Any
 
+from jacaros.map_header import CELLS
 from jacaros.sim.description import Rectangle, Segment, WorldDescription
-from jacaros.sim.files.map import FREE, OCCUPIED, UNKNOWN, OccupancyMap
-
-SOLID = 50
-"""Certainty in percent above which a cell counts as occupied."""
-_MEANINGS = bytes(UNKNOWN if value > 127 else OCCUPIED if value > SOLID else FREE for value in range(256))
+from jacaros.sim.files.map import OccupancyMap
 
 
 def can_be_drawn(message: Any) -> bool:
@@ -28,7 +25,7 @@ def map_drawing(message: Any, name: str = "") -> dict[str, Any]:
     only outlines, because boxes are axis-aligned.
     """
     info = message.info
-    cells = OccupancyMap(1.0, 0.0, 0.0, info.width, info.height, _bytes_of(message.data).translate(_MEANINGS))
+    cells = OccupancyMap(1.0, 0.0, 0.0, info.width, info.height, _bytes_of(message.data).translate(CELLS))
     size = float(info.resolution)
     place, turn = info.origin.position, info.origin.orientation
     yaw = 2.0 * math.atan2(turn.z, turn.w)

@@ -9,6 +9,7 @@ from jacaros.errors import JacarosError
 from jacaros.excerpts import printable
 from jacaros.inspector.line_format import MAGIC, unpacked
 from jacaros.sim import GroundTruth, Sample
+from jacaros.sim.ground_truth import FIELDS, present_kind
 from jacaros.text_files import file_bytes, text_of
 
 VERSION = 2
@@ -147,7 +148,17 @@ class Recording:
         elif kind == "text":
             self.texts.append((_number(record["t"]), _text(record["agent"]), _text(record["text"])))
         elif kind == "event":
-            self.events.append((_number(record["t"]), _text(record["event"]), _mapping(record["data"])))
+            self._take_event(_number(record["t"]), _text(record["event"]), _mapping(record["data"]))
+
+    def _take_event(self, t: float, kind: str, data: dict[str, Any]) -> None:
+        kind = present_kind(kind, data)
+        missing = [name for name in FIELDS.get(kind, ()) if name not in data]
+        if not missing:
+            self.events.append((t, kind, data))
+        elif not self.warnings:
+            self.warnings.append(
+                f"events without data are skipped: `{kind}` at {t:g} s without `{missing[0]}`"
+            )
 
     @classmethod
     def of_ground_truth(cls, truth: GroundTruth) -> "Recording":

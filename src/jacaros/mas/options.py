@@ -21,6 +21,8 @@ class RunOptions(GraphAddress):
         fast: whether to use the virtual clock, as fast as possible, instead of real time.
         seed: seed of all random numbers, including the world's. None for different numbers in each run.
         world: world file, or name of a world of JaCaROS, instead of the project's own.
+        noise: factor for the noise of the world's odometry and lasers: 0 for exact ones. None: that in the world file, or
+            0 if no world is named.
         faults: fault file: faults in the embedded world, and their times.
         keep_ground_truth: keep everything that happens in the embedded world in memory, not only the last minutes.
         show_world: create the world at the start, even if no artifact needs it yet.
@@ -40,6 +42,7 @@ class RunOptions(GraphAddress):
     fast: bool = False
     seed: int | None = None
     world: str | Path | None = None
+    noise: float | None = None
     faults: str | Path | None = None
     show_world: bool = False
     keep_ground_truth: bool = False

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from jacaros.trace import Tracer
 
 DEFAULT_WORLD = "empty"
-"""The world of a project that does not name one: an open floor with one robot."""
+"""The world of a project that does not name one: an open floor with one robot, whose odometry is exact."""
 
 
 NO_WORLD = "none"
@@ -92,11 +92,12 @@ class RosGraph:
             BackendUnavailable: the library for the graph is missing. The text has help.
             WorldError: the world file is invalid.
             ProjectError: the project names a world that does not exist.
-            UsageError: there are faults, but no world.
+            UsageError: there are faults or noise, but no world.
         """
         made = self._options.world is not None if self._options.ros != "memory" else self._source != NO_WORLD
-        if self._options.faults is not None and not made:
-            raise UsageError("--faults needs an embedded world; add --world")
+        for option in ("faults", "noise"):
+            if getattr(self._options, option) is not None and not made:
+                raise UsageError(f"--{option} needs an embedded world; add --world")
         if self._options.ros != "memory":
             backend = self._open()
             self._backend = backend
@@ -244,9 +245,12 @@ class RosGraph:
         from jacaros.sim.node import SimNode
         from jacaros.sim.world import World
 
-        source = self._source if self._source is not None else DEFAULT_WORLD
+        source, options, noise = self._source, self._options, self._options.noise
+        if source is None:
+            # A robot that misses its goal surprises users who have not asked for slipping wheels.
+            source, noise = DEFAULT_WORLD, noise or 0.0
         try:
-            self.world = World.load(source, self._options.seed, self._options.faults)
+            self.world = World.load(source, options.seed, options.faults, noise)
         except UnknownWorld as unknown:
             if self._source_span is None:
                 raise

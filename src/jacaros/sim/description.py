@@ -9,7 +9,8 @@ from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 from jacaros.excerpts import help_line, printable
-from jacaros.sim.trigonometry import PI
+from jacaros.sim.interface import EVERYTHING, Interface
+from jacaros.sim.trigonometry import PI, radians
 from jacaros.yaml_nodes import Problem, YamlFileError
 
 
@@ -168,6 +169,16 @@ class OdometrySettings:
         """Whether any error is not zero."""
         return self.per_metre > 0.0 or self.per_radian > 0.0 or self.turn_per_metre > 0.0
 
+    def with_noise(self, factor: float) -> "OdometrySettings":
+        """Return the same odometry with its errors times *factor*, or with those of `SLIPPING` if it has none."""
+        known = self if self.noisy else SLIPPING
+        errors = known.per_metre, known.per_radian, known.turn_per_metre
+        return OdometrySettings(self.from_start, *(factor * each for each in errors))
+
+
+SLIPPING = OdometrySettings(False, 0.02, radians(2.0) / math.sqrt(2.0 * PI), radians(1.0))
+"""Odometry of wheels that slip as a TurtleBot's: 2 % in a metre, 2 degrees in a turn, 1 degree per metre."""
+
 
 @dataclass(frozen=True, slots=True)
 class LaserSettings:
@@ -235,7 +246,7 @@ class RobotDescription:
 
     ``footprint`` is the length and width of a rectangular robot; ``radius`` is then that of the circumscribed circle, which
     other robots, lasers and navigation use. ``gripper_reach`` is the reach of the gripper, in metres from the robot's
-    centre; 0 without a gripper.
+    centre; 0 without a gripper. ``interface`` has the names of its topics, services and actions.
     """
 
     name: str = "turtlebot"
@@ -250,6 +261,7 @@ class RobotDescription:
     tools: tuple[CleaningTool, ...] = ()
     gripper_reach: float = 0.0
     footprint: tuple[float, float] | None = None
+    interface: Interface = EVERYTHING
 
 
 @dataclass(frozen=True, slots=True)
@@ -307,13 +319,16 @@ class WorldDescription:
     people: tuple[PersonDescription, ...] = ()
     seed: int = 0
 
-    def without_noise(self) -> "WorldDescription":
-        """Return the same world with exact sensors, for tests to the millimetre."""
+    def with_noise(self, factor: float) -> "WorldDescription":
+        """Return the same world with the noise of its robots' sensors times *factor*; 0 for exact sensors.
+
+        A robot whose odometry has no noise gets that of `SLIPPING`, times *factor*.
+        """
         robots = (
             replace(
                 robot,
-                odometry=OdometrySettings(from_start=robot.odometry.from_start),
-                laser=replace(robot.laser, noise=0.0),
+                odometry=robot.odometry.with_noise(factor),
+                laser=replace(robot.laser, noise=min(1.0, factor * robot.laser.noise)),
             )
             for robot in self.robots
         )

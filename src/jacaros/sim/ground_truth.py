@@ -7,9 +7,9 @@ checker evaluates both kinds of runs.
 
 import hashlib
 import json
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, Final, NamedTuple
 
 from jacaros.errors import JacarosError
 from jacaros.sim.description import Pose
@@ -20,17 +20,9 @@ Record = dict[str, Any]
 
 
 class Event(NamedTuple):
-    """An event of a robot, ``time`` seconds after the start of the world, with the true pose.
+    """An event of a robot (``""`` for none), ``time`` seconds after the start of the world, with the true pose.
 
-    Kinds, with their data: ``docked`` and ``undocked`` (dock), ``charging``, ``charged``, ``battery_empty`` and
-    ``battery`` at each whole percent (level), ``bump`` against a wall (side), ``collision`` (with, side),
-    ``command_timeout`` and ``bad_command`` (speed, turn_rate), ``task`` (task as text, room), ``tool_started`` and
-    ``tool_stopped`` (tool), ``cleaned`` at each whole percent of a room's dirt, and when the tool stops (room, dirt,
-    and the rest: grams, percent), ``fell`` down a cliff (no data), ``lights`` (colors) and ``sound`` (notes, append),
-    ``picked`` and ``placed`` (object, and its place: x, y). Events without a robot (``""``): ``door_opened`` and
-    ``door_closed`` (door), at the middle of the door; ``person_walks`` (velocity: vx, vy), ``person_stands``
-    (waits_for: a robot, a door or ""), ``person_comes`` and ``person_goes``, each with person, x and y. Before its
-    first event a person stands at the start of its path.
+    The kinds, with the names in their data, are those of `FIELDS`.
     """
 
     time: float
@@ -40,6 +32,53 @@ class Event(NamedTuple):
     y: float
     yaw: float
     data: dict[str, Any]
+
+
+FIELDS: Final[Mapping[str, tuple[str, ...]]] = {
+    "docked": ("dock",),
+    "undocked": ("dock",),
+    "charging": ("level",),
+    "charged": ("level",),
+    "battery": ("level",),  # at each whole percent
+    "battery_empty": ("level",),
+    "battery_set": ("level",),  # by hand
+    "robot_placed": ("x", "y", "yaw"),  # by hand
+    "bump": ("side",),  # against a wall
+    "collision": ("with", "side"),
+    "command_timeout": ("speed", "turn_rate"),
+    "bad_command": ("speed", "turn_rate"),
+    "task": ("task", "room"),
+    "tool_started": ("tool",),
+    "tool_stopped": ("tool",),
+    "cleaned": (
+        "room",
+        "dirt",
+        "grams",
+        "percent",
+    ),  # the rest, at each whole percent and when the tool stops
+    "fell": (),  # down a cliff
+    "lights": ("colors",),
+    "sound": ("notes", "append"),
+    "picked": ("object", "x", "y"),  # by a gripper, and the place of the object
+    "placed": ("object", "x", "y"),
+    "received": ("topic", "message"),  # on a topic that the world file adds
+    "fault": ("fault", "kind", "state"),
+    # Without a robot:
+    "door_opened": ("door",),  # at the middle of the door
+    "door_closed": ("door",),
+    "obstacle_placed": ("obstacle", "x", "y", "radius"),
+    "obstacle_removed": ("obstacle",),
+    "person_walks": ("person", "x", "y", "vx", "vy"),
+    "person_stands": ("person", "x", "y", "waits_for"),  # a robot, a door or ""
+    "person_comes": ("person", "x", "y", "name", "radius", "color", "path", "loop"),
+    "person_goes": ("person", "x", "y"),
+}
+"""The kinds of events with the data that every event of the kind has: for writers, readers, pages and pictures."""
+
+
+def present_kind(kind: str, data: Mapping[str, Any]) -> str:
+    """Return the kind of a recorded event; in older recordings, that of a robot moved by hand was ``placed``, too."""
+    return "robot_placed" if kind == "placed" and "object" not in data else kind
 
 
 class Sample(NamedTuple):
@@ -136,7 +175,11 @@ class GroundTruth:
         return lambda: self._event_listeners.remove(listener)
 
     def record_event(self, event: Event) -> None:
-        """Record an event."""
+        """Record an event; one of `FIELDS` has the data of its kind."""
+        assert event.data.keys() >= set(FIELDS.get(event.kind, ())), event
+        self._add(event)
+
+    def _add(self, event: Event) -> None:
         self.events.append(event)
         if event.kind == "cleaned":
             self.dirt[event.data["room"], event.data["dirt"]] = event.data["grams"]
@@ -198,8 +241,8 @@ class GroundTruth:
         if record["kind"] == "sample":
             self.record_sample(record["robot"], Sample(*(record[name] for name in Sample._fields)))
         elif record["kind"] == "event":
-            record = {**record, "kind": record["event"]}
-            self.record_event(Event(*(record[name] for name in Event._fields)))
+            record = {**record, "kind": present_kind(record["event"], record["data"])}
+            self._add(Event(*(record[name] for name in Event._fields)))
         elif record["kind"] == "end":
             self.dirt |= {(room, kind): grams for room, kind, grams in record.get("dirt", ())}
 

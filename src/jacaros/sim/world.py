@@ -81,19 +81,28 @@ class World:
         self.faults.step(self.time)
 
     @classmethod
-    def load(cls, source: str | Path, seed: int | None = None, faults: str | Path | None = None) -> "World":
+    def load(
+        cls,
+        source: str | Path,
+        seed: int | None = None,
+        faults: str | Path | None = None,
+        noise: float | None = None,
+    ) -> "World":
         """Make a world from a file, from the name of a shipped world, or from the text of a world file.
 
         Args:
             source: path, name or text of the world.
             seed: seed for noise, instead of that in the file.
             faults: path or text of a fault file; None for no faults.
+            noise: factor for the noise of the sensors, see `WorldDescription.with_noise`; None for that in the file.
 
         Raises:
             WorldError: a file does not exist or has mistakes.
         """
         text = isinstance(source, str) and "\n" in source
         description = read_world(str(source)) if text else load_world(str(source))
+        if noise is not None:
+            description = description.with_noise(noise)
         if faults is None:
             return cls(description, seed)
         from jacaros.sim.faults.file import load_faults, read_faults
@@ -251,7 +260,7 @@ class World:
         robot = self.robot(name)
         self.check_room(x, y, robot.description.radius, robot.name)
         robot.put_down(Pose(x, y, robot.yaw if yaw is None else yaw))
-        self._note(robot, "placed", {"x": x, "y": y, "yaw": robot.yaw})
+        self._note(robot, "robot_placed", {"x": x, "y": y, "yaw": robot.yaw})
         self._sample_robots(all_of_them=True)
 
     def add_obstacle(self, x: float, y: float, radius: float) -> Obstacle:

@@ -170,7 +170,7 @@ def in_lab(body: Callable[[Lab], Awaitable[Any]], world: str | None = "empty") -
             if world is None
             else World.load(world)
             if "\n" in world
-            else World(load_world(world).without_noise())
+            else World(load_world(world).with_noise(0.0))
         )
         lab = Lab(clock, backend, made)
         labs.append(lab)

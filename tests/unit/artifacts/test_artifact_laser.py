@@ -67,9 +67,10 @@ def test_the_scan_of_the_world_is_seen_and_given_on_request() -> None:
         outs = [Out() for _ in range(5)]
         await lab.do(artifact, "getCurrentBaseScan", *outs)
         assert all(0.1 < float(str(out.value)) <= 10 for out in outs)
-        assert len(watcher.changes) == 1
+        assert len(watcher.changes) == 2, "the values before the first scan"
         await lab.do(artifact, "getCurrentBaseScan")
         assert watcher.holds("laserrange") == [pytest.approx(tuple(out.value for out in outs))]
+        assert watcher.holds("base_scan") == watcher.holds("laserrange"), "its name in the original system"
 
     in_lab(body, "house")
 
@@ -80,3 +81,13 @@ def test_a_missing_scan_fails_as_no_scan() -> None:
         assert (await lab.call(artifact, "getCurrentBaseScan")).reason == "no_scan(5)"
 
     in_lab(body, None)
+
+
+def test_the_artifact_of_the_thesis_has_the_property_of_the_thesis_only() -> None:
+    async def body(lab: Lab) -> None:
+        watcher = lab.watch(await lab.make(ArtScan))
+        await lab.sleep(1.0)
+        assert watcher.holds("laserrange")
+        assert not watcher.holds("base_scan")
+
+    in_lab(body, "house")

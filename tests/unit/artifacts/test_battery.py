@@ -1,5 +1,7 @@
 """ArtSimBattery: the thesis's timer, and a robot's own battery."""
 
+import math
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -8,6 +10,7 @@ from robot_lab import Lab, in_lab
 from jacaros.artifacts.robots.battery import ArtSimBattery, diagnosis
 from jacaros.artifacts.robots.velocity import ArtCmdVelMuxAndOdometry
 from jacaros.env import Out, Structure
+from jacaros.inspector.graph_scene import SeenRobot
 from jacaros.ros.backend import Backend
 
 FULL, MEDIUM, LOW = "Full Battery", "Medium Battery", "Low Battery"
@@ -315,5 +318,49 @@ def test_a_driver_that_counts_in_percent_is_understood() -> None:
         assert watcher.values("diagnostics")[-1] == (LOW,)
         assert len(lab.logged) == 1
         assert "assuming percent" in lab.logged[0]
+
+    in_lab(body, None)
+
+
+def test_the_levels_of_the_diagnoses_are_options() -> None:
+    async def body(lab: Lab) -> None:
+        watcher = lab.watch(await lab.make(ArtSimBattery, option("medium", 90), option("low", 80)))
+        await lab.sleep(9.5)
+        assert watcher.holds("diagnostics") == [(FULL,)]
+        await lab.sleep(1.0)
+        assert watcher.holds("diagnostics") == [(MEDIUM,)]
+        await lab.sleep(10.0)
+        assert watcher.holds("diagnostics") == [(LOW,)]
+
+    in_lab(body, None)
+
+
+def test_a_low_level_above_the_medium_one_is_rejected() -> None:
+    async def body(lab: Lab) -> None:
+        with pytest.raises(Exception, match=r"low\(60\) is above medium\(50\)"):
+            await lab.make(ArtSimBattery, option("low", 60))
+
+    in_lab(body, None)
+
+
+def test_agent_and_page_read_the_charge_of_a_driver_alike() -> None:
+    seen = SeenRobot("r")
+
+    async def body(lab: Lab) -> None:
+        publisher = lab.backend.publisher("/battery_state", "sensor_msgs/msg/BatteryState")
+        lab.backend.subscription("/battery_state", "sensor_msgs/msg/BatteryState", seen.hear_battery)
+        watcher = lab.watch(await lab.make(ArtSimBattery, option("source", "robot")))
+        pose = SimpleNamespace(
+            position=SimpleNamespace(x=0.0, y=0.0, z=0.0),
+            orientation=SimpleNamespace(x=0.0, y=0.0, z=0.0, w=1.0),
+        )
+        seen.odometry = SimpleNamespace(
+            header=SimpleNamespace(frame_id="odom"), pose=SimpleNamespace(pose=pose)
+        )
+        for told, percent in ((0.5, 50), (1.2, 100), (80.0, 80), (1.4, 1), (1.0, 1)):
+            publisher.publish(publisher.message(percentage=told))
+            await lab.sleep(1.0)
+            assert watcher.holds("battery") == [(percent,)]
+            assert math.floor(seen.view(lab.backend).battery) == percent
 
     in_lab(body, None)

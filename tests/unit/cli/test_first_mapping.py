@@ -5,10 +5,15 @@ from pathlib import Path
 import pytest
 
 from jacaros.artifacts.mapping.checking import check_mapping
+from jacaros.artifacts.mapping.declared import FieldPart, Place
 from jacaros.artifacts.mapping.file import read_mapping
-from jacaros.artifacts.mapping.interfaces import StoredInterfaces
+from jacaros.artifacts.mapping.interfaces import StoredInterfaces, stored_interfaces
+from jacaros.artifacts.mapping.manual import word_for_field
+from jacaros.artifacts.mapping.paths import read_path
 from jacaros.cli.graph.standard_topics import robots
 from jacaros.cli.graph.suggestions import Entry, acting, calling, looking, plain_name, property_of, publishing
+from jacaros.cli.graph.values import values_of
+from jacaros.ros.fields import FieldType
 from jacaros.ros.graph import Endpoint, GraphContents, TopicInfo
 from jacaros.ros.qos import QoS
 
@@ -206,3 +211,22 @@ def test_an_aborted_goal_has_a_named_code_if_the_result_has_constants(types: Sto
     line = "code: {path: error_code, as: name}"
     assert line in checked(types, acting(types, "follow", "arm/follow", "odd_msgs/action/Follow"))
     assert line not in checked(types, acting(types, "sort", "sort", "odd_msgs/action/Sort"))
+
+
+@pytest.mark.parametrize(
+    ("type_name", "field"),
+    [
+        ("geometry_msgs/msg/Accel", "linear.x"),
+        ("geometry_msgs/msg/Wrench", "force.x"),
+        ("sensor_msgs/msg/MagneticField", "magnetic_field.x"),
+        ("sensor_msgs/msg/BatteryState", "charge"),
+        ("sensor_msgs/msg/BatteryState", "voltage"),
+        ("sensor_msgs/msg/Range", "range"),
+        ("sensor_msgs/msg/Illuminance", "illuminance"),
+    ],
+)
+def test_a_first_mapping_names_units_as_describe_does(type_name: str, field: str) -> None:
+    interfaces = stored_interfaces(())
+    value = next(each for each in values_of(interfaces, type_name) if each.path == field)
+    part = FieldPart(read_path(field), Place(1, 1), name="v")
+    assert word_for_field(part, FieldType(type_name), None, interfaces) == f"number in {value.unit.word}"

@@ -244,7 +244,7 @@ def test_a_robot_is_moved() -> None:
         await done(page, "move_robot", robot="turtlebot", x=2, y=1, yaw=1.5)
         assert (robot.x, robot.y, robot.yaw) == (2.0, 1.0, 1.5)
         await page.event("intervention", what="turtlebot moved to (2, 1)")
-        await page.event("placed", robot="turtlebot", x=2.0, y=1.0)
+        await page.event("robot_placed", robot="turtlebot", x=2.0, y=1.0)
         await page.until(
             lambda: any(each["kind"] == "frame" and each["robots"][0][:2] == [2, 1] for each in page.records)
         )

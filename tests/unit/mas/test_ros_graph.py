@@ -177,7 +177,7 @@ def test_the_ground_truth_is_kept_only_on_request(asked: bool, kept: int) -> Non
         assert ros.world is not None
         truth = ros.world.ground_truth
         for number in range(3000):
-            truth.record_event(Event(number, "", "door_opened", 0.0, 0.0, 0.0, {}))
+            truth.record_event(Event(number, "", "door_opened", 0.0, 0.0, 0.0, {"door": "gate"}))
         assert (len(truth.events) >= 3000) == asked
         assert len(truth.events) <= kept
         await ros.close()

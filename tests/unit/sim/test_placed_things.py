@@ -31,7 +31,11 @@ def test_a_robot_is_put_down_elsewhere_and_the_ground_truth_records_it(world: Wo
     world.place("one", 2.0, 0.0, math.pi)
     robot = world.robot("one")
     assert (robot.x, robot.y, robot.yaw, robot.speed) == (2.0, 0.0, math.pi, 0.0)
-    assert world.ground_truth.events_of("placed", robot="one")[0].data == {"x": 2.0, "y": 0.0, "yaw": math.pi}
+    assert world.ground_truth.events_of("robot_placed", robot="one")[0].data == {
+        "x": 2.0,
+        "y": 0.0,
+        "yaw": math.pi,
+    }
     assert world.ground_truth.path("one")[-1].x == 2.0
 
 
@@ -54,7 +58,7 @@ def test_places_without_room_are_rejected(world: World, place: tuple[float, floa
     with pytest.raises(UsageError, match=why):
         world.place("one", *place)
     assert (world.robot("one").x, world.robot("one").y) == (-1.0, 0.0)
-    assert not world.ground_truth.events_of("placed")
+    assert not world.ground_truth.events_of("robot_placed")
 
 
 def test_a_robot_may_be_put_at_its_own_place(world: World) -> None:

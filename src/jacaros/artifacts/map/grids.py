@@ -7,12 +7,7 @@ from typing import Any
 
 from jacaros.artifacts.map.cells import FREE, OBSTACLE, Cell
 from jacaros.artifacts.robots.control import Pose, heading_of
-
-OCCUPIED = 65
-"""Occupancy in percent from which a cell is an obstacle: map_server's threshold."""
-
-CLEAR = 25
-"""Occupancy in percent below which a cell is free: map_server's threshold."""
+from jacaros.map_header import CELLS, OCCUPIED, UNKNOWN
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,13 +43,14 @@ class Grid:
         corner, step = self.origin, self.resolution / size
         sine, cosine = step * math.sin(corner.heading), step * math.cos(corner.heading)
         for index, percent in enumerate(self.occupancy):
-            if percent >= OCCUPIED or 0 <= percent < CLEAR:
+            meaning = CELLS[percent & 255]
+            if meaning != UNKNOWN:
                 row, column = divmod(index, self.width)
                 u, v = column + 0.5, row + 0.5
                 x = corner.x / size + cosine * u - sine * v
                 y = corner.y / size + sine * u + cosine * v
                 cell = (math.floor(x + 0.5), math.floor(y + 0.5))
-                if percent >= OCCUPIED:
+                if meaning == OCCUPIED:
                     found[cell] = OBSTACLE
                 else:
                     found.setdefault(cell, FREE)

@@ -3,8 +3,8 @@
 import math
 from collections import deque
 
-from jacaros.artifacts.map.poses import ORIGIN, between, followed_by, inverse
 from jacaros.artifacts.robots.control import Pose
+from jacaros.artifacts.robots.poses import ORIGIN, between, followed_by, inverse
 
 REMEMBERED = 40
 """Number of odometry poses that are stored: two seconds at 20 Hz, for sensors that arrive late."""

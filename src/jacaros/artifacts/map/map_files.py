@@ -12,22 +12,9 @@ from jacaros.artifacts.map.grids import Grid
 from jacaros.artifacts.robots.control import Pose
 from jacaros.errors import JacarosError
 from jacaros.grey_images import GreyImage, ImageError, pgm_bytes, read_image
-from jacaros.map_header import read_header
+from jacaros.map_header import BLACK, GREY, WHITE, header_text, read_header
 from jacaros.text_files import file_text
 from jacaros.yaml_nodes import Problem, YamlFileError, read_document
-
-_BLACK, _WHITE, _GREY = 0, 254, 205
-"""Grey values of obstacles, free cells and unknown cells, as map_saver writes them."""
-
-_YAML = """\
-image: {image}
-mode: trinary
-resolution: {resolution:g}
-origin: [{x:g}, {y:g}, 0]
-negate: 0
-occupied_thresh: 0.65
-free_thresh: 0.196
-"""
 
 
 class MapFileError(JacarosError):
@@ -50,15 +37,11 @@ def save(file: Path, size: float, labels: Mapping[Cell, str], places: Mapping[st
     left, right = min(x for x, _ in cells), max(x for x, _ in cells)
     bottom, top = min(y for _, y in cells), max(y for _, y in cells)
     width, height = right - left + 1, top - bottom + 1
-    pixels = bytearray([_GREY]) * (width * height)
+    pixels = bytearray([GREY]) * (width * height)
     for (x, y), label in labels.items():
-        pixels[(top - y) * width + x - left] = _WHITE if label == FREE else _BLACK
-    text = _YAML.format(
-        image=file.with_suffix(".pgm").name,
-        resolution=size,
-        x=round((left - 0.5) * size, 9),
-        y=round((bottom - 0.5) * size, 9),
-    )
+        pixels[(top - y) * width + x - left] = WHITE if label == FREE else BLACK
+    corner = [round((side - 0.5) * size, 9) for side in (left, bottom)]
+    text = header_text(file.with_suffix(".pgm").name, size, *corner)
     if places:
         text += "places:\n"
         text += "".join(

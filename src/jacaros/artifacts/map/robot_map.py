@@ -13,11 +13,11 @@ from jacaros.artifacts.map.grids import Grid
 from jacaros.artifacts.map.legs import Leg, next_leg
 from jacaros.artifacts.map.mapper import Mapper
 from jacaros.artifacts.map.occupancy import OccupancyCells
-from jacaros.artifacts.map.poses import ORIGIN
 from jacaros.artifacts.map.scans import ScanOptions
 from jacaros.artifacts.map.slam_data import ArtSlamData
 from jacaros.artifacts.robots.control import Pose, heading_of
 from jacaros.artifacts.robots.odometry import ODOMETRY, Odometer, Odometry
+from jacaros.artifacts.robots.poses import ORIGIN
 from jacaros.env.artifact import Out, internal_operation, operation
 from jacaros.ros.backend import Sample
 from jacaros.ros.message import to_seconds

@@ -4,8 +4,8 @@ import math
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from jacaros.artifacts.map.poses import transformed
 from jacaros.artifacts.robots.control import Pose
+from jacaros.artifacts.robots.poses import transformed
 
 Point = tuple[float, float]
 

@@ -30,7 +30,7 @@ from jacaros.artifacts.mapping.interfaces import (
     constants_by_field,
     stored_interfaces,
 )
-from jacaros.artifacts.mapping.message_units import unit_at
+from jacaros.artifacts.mapping.message_units import UNIT_WORDS, unit_at
 from jacaros.artifacts.mapping.operation_methods import unlike, values_of
 from jacaros.artifacts.mapping.paths import Path, WrongPath, follow
 from jacaros.artifacts.mapping.read_fields import ANGLES
@@ -257,28 +257,6 @@ _SMALL = ("byte", "char", "int8", "uint8", "int16", "uint16")
 _FEW = 8
 """Number of constants that are listed."""
 
-_UNIT_WORDS = {
-    "m": "metres",
-    "rad or m": "radians or metres",
-    "rad/s or m/s": "radians or metres per second",
-    "N m": "newton metres",
-    "N m or N": "newton metres or newtons",
-    "T": "teslas",
-    "Ah": "ampere hours",
-    "s": "seconds",
-    "m/s": "metres per second",
-    "m/s²": "metres per second squared",
-    "rad": "radians",
-    "rad/s": "radians per second",
-    "N": "newtons",
-    "V": "volts",
-    "A": "amperes",
-    "Pa": "pascals",
-    "lx": "lux",
-    "°C": "degrees Celsius",
-}
-"""Names of message units; others stay unchanged."""
-
 
 def word_for_field(
     field: FieldPart, message: FieldType, element: FieldType | None, interfaces: Interfaces
@@ -339,7 +317,7 @@ def _converted(
     if kind == "count":
         return "whole number"
     unit = "radians" if kind in ANGLES else unit_at(path, root, interfaces)
-    unit = _UNIT_WORDS.get(unit, unit)
+    unit = UNIT_WORDS.get(unit, unit)
     word = _kind(leaf.base, conversion, "number" if kind in (*ANGLES, "mean") else "", unit)
     limited = not kind and not unit and conversion.line is None and not leaf.is_message
     return word + _limits(path, leaf, root, interfaces) if limited else word

@@ -55,6 +55,29 @@ _UNITS: Mapping[str, Mapping[str, str]] = {
 """Units of fields, from the comments of the definitions and REP 103; the parts of a vector have its unit."""
 
 
+UNIT_WORDS: Mapping[str, str] = {
+    "m": "metres",
+    "rad or m": "radians or metres",
+    "rad/s or m/s": "radians or metres per second",
+    "N m": "newton metres",
+    "N m or N": "newton metres or newtons",
+    "T": "teslas",
+    "Ah": "ampere hours",
+    "s": "seconds",
+    "m/s": "metres per second",
+    "m/s²": "metres per second squared",
+    "rad": "radians",
+    "rad/s": "radians per second",
+    "N": "newtons",
+    "V": "volts",
+    "A": "amperes",
+    "Pa": "pascals",
+    "lx": "lux",
+    "°C": "degrees Celsius",
+}
+"""Names of message units; others stay unchanged."""
+
+
 def unit_of(type_name: str, field: str) -> str:
     """Return the unit of a field; empty if none exists, or it is unknown."""
     return _UNITS.get(type_name, {}).get(field, "")

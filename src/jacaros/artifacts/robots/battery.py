@@ -7,6 +7,7 @@ from typing import ClassVar
 from jacaros.artifacts.kit.options import not_negative, number, one_of, positive, text
 from jacaros.artifacts.kit.reading import Outlet, Reading, ReadingPolicy
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
+from jacaros.artifacts.robots.charge import Charge
 from jacaros.env.artifact import Out, internal_operation, operation
 from jacaros.ros.backend import Sample
 from jacaros.ros.message import constant
@@ -18,10 +19,6 @@ FULL, MEDIUM, LOW = 100, 50, 20
 CHARGE_STEP, CHARGE_PERIOD = 10, 0.5
 """A timer battery gains this percentage each period in seconds, as in the thesis."""
 
-MORE_THAN_FULL = 1.5
-"""A driver that reports more than this uses percent: the message type defines a fraction of 1, but some drivers
-ignore that."""
-
 AS_GOOD_AS_FULL = 0.995
 """Fraction from which a charge that no longer rises counts as full: old batteries never report 1."""
 
@@ -32,11 +29,11 @@ UNKNOWN = -1
 """Percentage before the robot's first message."""
 
 
-def diagnosis(percent: float) -> str:
-    """Return the thesis's words for a charge: "Low Battery" up to 20 %, "Medium Battery" up to 50 %."""
-    if percent <= LOW:
+def diagnosis(percent: float, medium: float = MEDIUM, low: float = LOW) -> str:
+    """Return the thesis's words for a charge: "Low Battery" up to *low* percent, "Medium Battery" up to *medium*."""
+    if percent <= low:
         return "Low Battery"
-    return "Medium Battery" if percent <= MEDIUM else "Full Battery"
+    return "Medium Battery" if percent <= medium else "Full Battery"
 
 
 class ArtSimBattery(RosArtifact):
@@ -50,6 +47,7 @@ class ArtSimBattery(RosArtifact):
     Options:
         drain(P): percent per second of the timer (1); 0: it never drains.
         level(N): initial percentage (100) of the timer battery.
+        medium(P), low(P): percent up to which the diagnosis is "Medium Battery" (50) and "Low Battery" (20).
         source(S): ``timer`` or ``robot``.
         topic(T): another topic than ``battery_state``.
         expire(S): seconds without a message after which the robot's charge is unknown again.
@@ -57,13 +55,15 @@ class ArtSimBattery(RosArtifact):
 
     Properties:
         battery(N): whole percent, 0 to 100; a robot's charge is rounded down, so that 100 means full.
-        diagnostics(Text): "Full Battery", "Medium Battery" (50 % and less) or "Low Battery" (20 % and less). Before a
-            robot's first message neither property exists.
+        diagnostics(Text): "Full Battery", "Medium Battery" (50 % and less) or "Low Battery" (20 % and less), or
+            as the options say. Before a robot's first message neither property exists.
     """
 
     known_options: ClassVar = {
         "drain": not_negative,
         "level": number,
+        "medium": not_negative,
+        "low": not_negative,
         "source": one_of("timer", "robot"),
         "topic": text,
         "dock_timeout": positive,
@@ -73,10 +73,13 @@ class ArtSimBattery(RosArtifact):
     def open(self) -> None:
         """Start the timer, or subscribe to the robot's battery."""
         self._level: int = UNKNOWN
+        self._levels = self._option("medium", MEDIUM), self._option("low", LOW)
+        if self._levels[1] > self._levels[0]:
+            self.fail("low({1:g}) is above medium({0:g})".format(*self._levels), "wrong_option", "low")
         self._charging = False
         self._draining = False
         self._share = math.inf
-        self._in_percent = False
+        self._charge = Charge()
         self._fed_at = -math.inf
         self._full_since = math.inf
         expire = self.options.get("expire")
@@ -109,12 +112,15 @@ class ArtSimBattery(RosArtifact):
         """Show a charge; update the diagnosis only if it changes."""
         if self._level == UNKNOWN:
             self.define_property("battery", level)
-            self.define_property("diagnostics", diagnosis(level))
+            self.define_property("diagnostics", self._diagnosis(level))
         elif level != self._level:
             self.update_property("battery", level)
-            if diagnosis(level) != self.value("diagnostics"):
-                self.update_property("diagnostics", diagnosis(level))
+            if self._diagnosis(level) != self.value("diagnostics"):
+                self.update_property("diagnostics", self._diagnosis(level))
         self._level = level
+
+    def _diagnosis(self, level: int) -> str:
+        return diagnosis(level, *self._levels)
 
     # The timer.
 
@@ -153,7 +159,7 @@ class ArtSimBattery(RosArtifact):
         status = int(state.power_supply_status)
         charging = status == constant(state, "POWER_SUPPLY_STATUS_CHARGING")
         full = status == constant(state, "POWER_SUPPLY_STATUS_FULL")
-        told = self._charge(float(state.percentage))
+        told = self._told(float(state.percentage))
         share = self._share if told is None else told
         # Many drivers report no status; a rising charge then shows that there is current.
         rises = share > self._share
@@ -169,18 +175,16 @@ class ArtSimBattery(RosArtifact):
             self.start(self.show_battery, level, charging, cause=sample.cause)
             self._reported.take((level,))
 
-    def _charge(self, told: float) -> float | None:
-        """Return the charge as a fraction of 1; None if the message has none."""
-        if not math.isfinite(told):
-            self._faulty.not_finite("percentage", told)
-            return None
-        if told < 0.0:
-            self._faulty.out_of_range("percentage", told)
-            return None
-        if told > MORE_THAN_FULL and not self._in_percent:
-            self._in_percent = True
+    def _told(self, told: float) -> float | None:
+        """Return the charge as a fraction of 1; None, after reporting it, if the message has none."""
+        known = self._charge.in_percent
+        share = self._charge.share(told)
+        if share is None:
+            report = self._faulty.out_of_range if math.isfinite(told) else self._faulty.not_finite
+            report("percentage", told)
+        elif self._charge.in_percent and not known:
             self.log(f"the robot reports a charge of {told:g}; expected 0 to 1, assuming percent")
-        return told / 100.0 if self._in_percent else told
+        return share
 
     @internal_operation
     def show_battery(self, level: int, charging: bool) -> None:

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 from jacaros.artifacts.kit.faults import Header
 from jacaros.artifacts.kit.options import positive, text
-from jacaros.artifacts.kit.reading import READING_OPTIONS, Reading, ReadingPolicy
+from jacaros.artifacts.kit.reading import READING_OPTIONS, Reading, ReadingPolicy, not_finite
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.env.artifact import Out, operation
 from jacaros.ros.backend import Sample
@@ -32,17 +32,22 @@ class ArtBaseScan(RosArtifact):
     Properties:
         laserrange(R0, R25, R50, R75, R100): metres; all 0 before the first scan. With `expire` the property does not
             exist then.
+        base_scan(R0, R25, R50, R75, R100): the same, under its name in the original system (not of `ArtScan`).
     """
 
     known_options: ClassVar = {**READING_OPTIONS, "topic": text, "max": positive, "frame": text}
 
-    _ranges: Reading
+    names: ClassVar[tuple[str, ...]] = ("laserrange", "base_scan")
+
+    _ranges: tuple[Reading, ...]
 
     def open(self) -> None:
-        """Define the property and subscribe."""
+        """Define the properties and subscribe."""
         topic = str(self.options.get("topic", "scan"))
         policy = ReadingPolicy.from_options(self.options)
-        self._ranges = self.reading("laserrange", policy, *[0] * len(SHARES), topic=topic)
+        self._ranges = tuple(
+            self.reading(name, policy, *[0] * len(SHARES), topic=topic) for name in self.names
+        )
         self._header = Header(self.faults_of(topic), self.clock, str(self.options.get("frame", "")))
         self.subscription(topic, "sensor_msgs/msg/LaserScan", self._take, SENSOR_DATA)
 
@@ -51,22 +56,29 @@ class ArtBaseScan(RosArtifact):
         longest = self.options.get("max", float(scan.range_max))
         assert isinstance(longest, float)
         if len(scan.ranges) and self._header.accepts(sample):
-            self._ranges.take(sampled(scan.ranges, longest, scan.range_min), sample.cause)
+            values = sampled(scan.ranges, longest, scan.range_min)
+            if not_finite(values) is None:
+                self.take_together(sample.cause, *((reading, values) for reading in self._ranges))
+            else:
+                self._ranges[0].take(values, sample.cause)  # which reports it, once
 
     @operation(name="getCurrentBaseScan")
     async def get_current_base_scan(self) -> None:
-        """Update the property to the newest ranges; fails with ``no_scan(5)`` if none arrive for 5 s."""
-        await self.refresh("laserrange", self._ranges, "no_scan")
+        """Update the properties to the newest ranges; fails with ``no_scan(5)`` if none arrive for 5 s."""
+        for reading in self._ranges:
+            await self.refresh(reading.name, reading, "no_scan")
 
     @operation(name="getCurrentBaseScan")
     async def give_current_base_scan(self, a: Out, b: Out, c: Out, d: Out, e: Out) -> None:
         """Give the newest five ranges to the caller."""
-        for out, value in zip((a, b, c, d, e), await self.newest(self._ranges, "no_scan"), strict=True):
+        for out, value in zip((a, b, c, d, e), await self.newest(self._ranges[0], "no_scan"), strict=True):
             out.set(value)
 
 
 class ArtScan(ArtBaseScan):
-    """`ArtBaseScan` under its name in the thesis's chapter on architecture."""
+    """`ArtBaseScan` under its name in the thesis's chapter on architecture, with the property of that chapter."""
+
+    names = ("laserrange",)
 
 
 def sampled(ranges: Sequence[float], longest: float, shortest: float = 0.0) -> tuple[float, ...]:

@@ -14,6 +14,7 @@ from jacaros.artifacts.kit.options import positive, text
 from jacaros.artifacts.kit.reading import READING_OPTIONS, Reading, ReadingPolicy
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.artifacts.robots.control import STANDSTILL, Limits, Velocity
+from jacaros.artifacts.robots.drift import LOCALISED, Drift
 from jacaros.artifacts.robots.drive_model import DriveModel
 from jacaros.artifacts.robots.driving_frame import DrivingFrame
 from jacaros.artifacts.robots.journey import DriveTo, TurnTo, go_to
@@ -138,6 +139,10 @@ class WheeledArtifact(RosArtifact):
             self._placed(),
         )
         self.subscription(topic, ODOMETRY, self.odometer.take, SENSOR_DATA)
+        if "frame" not in self.options:
+            drift = Drift(self.ros, self.odometer, lambda: bool(self._motions), self.log)
+            localised = self.robot_topic("amcl_pose")
+            self.kept(self.ros.subscription(localised, LOCALISED, drift.take, SENSOR_DATA))
         self._drove = False
         self.at_dispose(self.ros.add_exit_hook(self._stand))
         self.at_dispose(guarded_by(self.ros).on_standstill(self._stand))

@@ -6,7 +6,7 @@ from itertools import zip_longest
 from typing import Any
 
 from jacaros.artifacts.mapping.interfaces import Interfaces, chosen, constants, constants_by_field
-from jacaros.artifacts.mapping.message_units import unit_of
+from jacaros.artifacts.mapping.message_units import UNIT_WORDS, unit_of
 from jacaros.ros.fields import DURATION, FLOATS, INTEGER_RANGES, TIME, FieldType
 from jacaros.ros.names import feedback_type, goal_type, request_type, response_type, result_type
 
@@ -69,22 +69,26 @@ class Unit:
 _NO_NUMBER = Unit()
 _DEGREES = Unit("degrees", 1, 1.0)
 _DEGREES_PER_SECOND = Unit("degrees per second", 1, 1.0)
-_SPEED = Unit("metres per second", 2, 0.02)
-_UNITS = {
-    "": Unit("", 3),
-    "m": Unit("metres", 2, 0.02),
-    "s": Unit("seconds", 2),
-    "m/s": _SPEED,
-    "rad": _DEGREES,
-    "rad/s": _DEGREES_PER_SECOND,
-    "V": Unit("volts", 2, 0.02),
-    "A": Unit("amperes", 2, 0.02),
-    "°C": Unit("degrees Celsius", 1, 0.1),
-    "degrees": Unit("degrees", 7, 0.00001),  # of latitude and longitude: a metre
-    "Pa": Unit("pascals", 0, 1.0),
-    "lx": Unit("lux", 0, 1.0),
-    "0 to 1": Unit("0 to 1", 2),
+_PRECISION: Mapping[str, tuple[int, float]] = {
+    "m": (2, 0.02),
+    "s": (2, 0.0),
+    "m/s": (2, 0.02),
+    "V": (2, 0.02),
+    "A": (2, 0.02),
+    "°C": (1, 0.1),
+    "degrees": (7, 0.00001),  # of latitude and longitude: a metre
+    "Pa": (0, 1.0),
+    "lx": (0, 1.0),
+    "0 to 1": (2, 0.0),
 }
+"""Significant decimals and dead band by the unit of a message; other numbers have 3 decimals."""
+
+
+def _shown(unit: str) -> Unit:
+    """Return how to show values in a unit of messages; angles are shown in degrees."""
+    if unit in ("rad", "rad/s"):
+        return _DEGREES if unit == "rad" else _DEGREES_PER_SECOND
+    return Unit(UNIT_WORDS.get(unit, unit), *_PRECISION.get(unit, (3,)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,7 +137,7 @@ def quoted(path: str) -> str:
 def values_of(types: Interfaces, type_name: str) -> list[Value]:
     """Return the values of a message that agents need, without lists and headers. Raises `UnknownInterface`."""
     if is_time(FieldType(type_name)):
-        return [Value(".", "seconds", "", _UNITS["s"])]
+        return [Value(".", "seconds", "", _shown("s"))]
     return _with_own_names(list(_walk(types, type_name, "", "")))
 
 
@@ -169,7 +173,7 @@ def _walk(types: Interfaces, type_name: str, path: str, unit: str) -> Iterator[V
             yield Value(here, "yaw", "as: yaw, unit: degrees", _DEGREES)
         elif kind.is_message and not is_time(kind):
             if type_name == "geometry_msgs/msg/Twist" and name == "linear":
-                yield Value(f"{here}.x", "speed", "", _SPEED)
+                yield Value(f"{here}.x", "speed", "", _shown("m/s"))
             elif name in _TURNS:
                 yield Value(f"{here}.z", "turn", "unit: degrees", _DEGREES_PER_SECOND)
             else:
@@ -182,10 +186,10 @@ def _single(types: Interfaces, type_name: str, name: str, kind: FieldType, path:
     """Return the value of a plain field."""
     word = "yaw" if name == "theta" else name.lower()
     if is_time(kind):
-        return Value(path, word, "", _UNITS["s"])
+        return Value(path, word, "", _shown("s"))
     if kind.base in FLOATS:
         conversion = "unit: degrees" if unit in ("rad", "rad/s") else ""
-        return Value(path, word, conversion, _UNITS.get(unit, Unit(unit, 3)))
+        return Value(path, word, conversion, _shown(unit))
     if kind.base in INTEGER_RANGES and _is_named(types, type_name, name):
         names = list(chosen(constants(types, type_name), name, ""))
         return Value(path, word, "as: name", limits=", ".join(names[:_FEW]) + ", ..." * (len(names) > _FEW))

@@ -10,6 +10,7 @@ const WORDS = {
   person_comes: (d) => `${d.person} comes`, person_goes: (d) => `${d.person} goes`,
   obstacle_placed: (d) => `${spaced(d.obstacle)} placed`, obstacle_removed: (d) => `${spaced(d.obstacle)} removed`,
   picked: (d) => `picked up ${d.object}`, placed: (d) => `put down ${d.object}`,
+  robot_placed: (d) => `moved by hand to (${d.x}, ${d.y})`, battery_set: (d) => `battery set to ${Math.round(d.level)} %`,
   fault: (d) => `fault ${d.fault} (${spaced(d.kind)}) ${d.state}${d.why ? `: ${d.why}` : ""}`,
   fell: () => "fell down a cliff",
   battery_empty: () => "battery empty", command_timeout: () => "stopped: no commands received",

@@ -11,13 +11,23 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from jacaros.grey_images import GreyImage, ImageError, pgm_bytes, read_image
-from jacaros.map_header import KEYS, MapHeader, read_header
+from jacaros.map_header import (
+    BLACK,
+    CELLS,
+    FREE,
+    KEYS,
+    OCCUPIED,
+    UNKNOWN,
+    WHITE,
+    MapHeader,
+    header_text,
+    read_header,
+)
 from jacaros.sim.description import Rectangle, Segment, WorldDescription
 from jacaros.sim.navigation.grid import Grid
 from jacaros.yaml_nodes import Node, Problem, read_document
 from jacaros.yaml_syntax import read_text, top_keys
 
-FREE, OCCUPIED, UNKNOWN = 0, 1, 2
 _ROOM_FOR_ROBOT = 0.4
 """Metres of free floor around an automatically placed robot."""
 _LATTICE = 0.25
@@ -180,12 +190,9 @@ def _map(header: MapHeader, folder: Path) -> OccupancyMap | None:
     image = _image(header.nodes["image"], folder / header.image) if header.image else None
     if image is None:
         return None
-    meant = image.pixels.translate(bytes(_CELLS[percent] for percent in header.occupancy))
+    meant = image.pixels.translate(bytes(CELLS[percent & 255] for percent in header.occupancy))
     rows = [meant[row * image.width : (row + 1) * image.width] for row in range(image.height)]
     return OccupancyMap(header.resolution, x_min, y_min, image.width, image.height, b"".join(reversed(rows)))
-
-
-_CELLS = {100: OCCUPIED, 0: FREE, -1: UNKNOWN}
 
 
 def free_place(found: OccupancyMap | None, problems: list[Problem]) -> tuple[float, float] | None:
@@ -225,10 +232,7 @@ def map_of_world(world: WorldDescription, image: str) -> tuple[str, bytes]:
     """Return the map of a world with open doors: the text of its YAML file, and the bytes of the image named *image*."""
     grid = Grid(world)
     width, height = grid.width - 2, grid.height - 2
-    shades = bytes(0 if value else 254 for value in grid.occupancy())
+    shades = bytes(BLACK if value else WHITE for value in grid.occupancy())
     rows = [shades[row * width : (row + 1) * width] for row in reversed(range(height))]
-    text = (
-        f"image: {image}\nmode: trinary\nresolution: {grid.resolution:g}\n"
-        f"origin: [{grid.x_min:g}, {grid.y_min:g}, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.25\n"
-    )
+    text = header_text(image, grid.resolution, grid.x_min, grid.y_min)
     return text, pgm_bytes(GreyImage(width, height, b"".join(rows)))

@@ -18,6 +18,7 @@ All keys are optional; these are the defaults, except for the noise of odometry 
       navigation: {enabled: true, speed: 0.4}    # or true, or false
       gripper: {reach: 0.35}        # or true, or false, the default
       tools: {vacuum: {removes: [dust], rate: 5, reach: 0.3}}    # no tools by default
+      topics, services, actions: see `jacaros.sim.files.interface`
 """
 
 import math
@@ -33,6 +34,7 @@ from jacaros.sim.description import (
     RobotDescription,
     RobotLimits,
 )
+from jacaros.sim.files.interface import SECTIONS, read_interface
 from jacaros.sim.robot.kinds import KINDS, USUAL
 from jacaros.sim.trigonometry import TWO_PI, radians
 from jacaros.yaml_nodes import Node
@@ -59,6 +61,7 @@ def read_robot(node: Node) -> RobotDescription:
         "navigation",
         "tools",
         "gripper",
+        *SECTIONS,
     )
     usual = KINDS[entries["kind"].choice(*KINDS)] if "kind" in entries else KINDS[USUAL]
     footprint = _footprint(entries["footprint"]) if "footprint" in entries else None
@@ -76,6 +79,7 @@ def read_robot(node: Node) -> RobotDescription:
         laser=_laser(entries.get("laser"), usual.laser),
         navigation=_navigation(entries.get("navigation"), usual.navigation),
         gripper_reach=_gripper_reach(entries.get("gripper")),
+        interface=read_interface(entries, usual.interface),
         tools=tuple(_tool(name, tool) for name, tool in entries["tools"].entries())
         if "tools" in entries
         else (),

@@ -86,8 +86,9 @@ class NavigationServers:
         return {}
 
     def _hear(self, topic: str) -> None:
-        name = self.servers.prefix + topic
-        self._subscriptions.append(self._backend.subscription(name, POSE, self._simple_goal))
+        name = self.servers.name(topic)
+        if name is not None:
+            self._subscriptions.append(self._backend.subscription(name, POSE, self._simple_goal))
 
     @contextmanager
     def _navigating(self, navigator: str, goal: Goal) -> Iterator[None]:

@@ -42,14 +42,13 @@ class RobotNavigation:
         grid: Callable[[], Grid],
     ) -> None:
         namespace = robot.description.namespace
-        prefix = f"/{namespace}" if namespace else ""
         self.name = robot.name
-        self._wheels = Wheels(backend, f"{prefix}/cmd_vel", time.clock)
+        self._servers = Servers(backend, robot.description)
+        self._wheels = Wheels(backend, self._servers.name("/cmd_vel") or "/cmd_vel", time.clock)
         self._navigator = navigator = Navigator(
             time, robot, localisation, self._wheels, lambda: Planner(grid(), robot.description.radius)
         )
         frames = Frames(backend, namespace, localisation)
-        self._servers = Servers(backend, prefix)
         self._navigation = NavigationServers(navigator, frames, self._servers)
         docks = DockServers(Docking(navigator), frames, self._servers)
         if backend.ros_version == 2:

@@ -10,6 +10,7 @@ from jacaros.ros.action import Abort, Accept, ActionPolicy, ActionServer, GoalSt
 from jacaros.ros.backend import ACTIONS, Backend, Handler, Service
 from jacaros.ros.errors import RosError, UnknownInterface
 from jacaros.ros.names import result_type
+from jacaros.sim.description import RobotDescription
 from jacaros.sim.navigation.wheels import OVERTAKEN, Overtaken
 
 Execute = Callable[["Goal"], Awaitable[Mapping[str, Any]]]
@@ -43,12 +44,17 @@ class Servers:
 
     Args:
         backend: graph.
-        prefix: prefix of the robot's names: "" or "/robot_1".
+        robot: has these servers, as far as its kind has them.
     """
 
-    def __init__(self, backend: Backend, prefix: str) -> None:
-        self.backend, self.prefix = backend, prefix
+    def __init__(self, backend: Backend, robot: RobotDescription) -> None:
+        self.backend, self._robot = backend, robot
         self._servers: list[ActionServer | Service] = []
+
+    def name(self, name: str) -> str | None:
+        """Return the robot's name for a topic, service or action; None if its kind does not have it."""
+        namespace = self._robot.namespace
+        return self._robot.interface.name_of(name, f"/{namespace}" if namespace else "")
 
     def action(
         self,
@@ -62,7 +68,8 @@ class Servers:
 
         If the type of the action is unknown, log a warning instead.
         """
-        if ACTIONS not in self.backend.capabilities:
+        offered = self.name(name)
+        if offered is None or ACTIONS not in self.backend.capabilities:
             return
 
         async def carry_out(served: ServerGoal) -> Any:
@@ -74,18 +81,21 @@ class Servers:
 
         policy = ActionPolicy(accept=accept, preempt=True, overtaken=overtaken)
         try:
-            server = self.backend.action_server(self.prefix + name, type_name, carry_out, policy)
+            server = self.backend.action_server(offered, type_name, carry_out, policy)
         except UnknownInterface:
-            self.left_out(f"action {self.prefix}{name}", type_name)
+            self.left_out(f"action {offered}", type_name)
             return
         self._servers.append(server)
 
     def service(self, name: str, type_name: str, handler: Handler) -> None:
         """Offer a service; if its type is unknown, log a warning instead."""
+        offered = self.name(name)
+        if offered is None:
+            return
         try:
-            self._servers.append(self.backend.service(self.prefix + name, type_name, handler))
+            self._servers.append(self.backend.service(offered, type_name, handler))
         except UnknownInterface:
-            self.left_out(f"service {self.prefix}{name}", type_name)
+            self.left_out(f"service {offered}", type_name)
 
     def left_out(self, what: str, type_name: str) -> None:
         """Log a warning about a server that cannot be offered."""

@@ -25,9 +25,9 @@ class Gripper:
     def __init__(self, at: RobotOnGraph) -> None:
         self._at, self._objects = at, at.time.world.objects
         self._opening = OPENING
-        self._servers = Servers(at.backend, at.prefix)
+        servers = at.keep(Servers(at.backend, at.robot.description))
         if at.robot.description.gripper_reach:
-            self._servers.action(
+            servers.action(
                 "/gripper_controller/gripper_cmd", "control_msgs/action/GripperCommand", self._move, _refuse
             )
 
@@ -68,10 +68,6 @@ class Gripper:
             return None
         found = self._objects.before(self._at.robot)
         return found if found is not None and opening <= found.width <= self._opening else None
-
-    def close(self) -> None:
-        """Withdraw the action."""
-        self._servers.close()
 
 
 def _refuse(request: Any) -> str | None:

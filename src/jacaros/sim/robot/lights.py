@@ -1,12 +1,4 @@
-"""Lights and loudspeaker of a robot, as on a Create 3 (TurtleBot 4); their commands are recorded in the ground truth.
-
-=========================== ========================================= ====================================
-topic (below the namespace) type                                      event of the ground truth
-=========================== ========================================= ====================================
-``/cmd_lightring``          ``irobot_create_msgs/msg/LightringLeds``   ``lights`` (colors), on changes
-``/cmd_audio``              ``irobot_create_msgs/msg/AudioNoteVector`` ``sound`` (notes, append)
-=========================== ========================================= ====================================
-"""
+"""Lights and loudspeaker of a robot, as on a Create 3 (TurtleBot 4); their commands are recorded in the ground truth."""
 
 from jacaros.ros.backend import Sample
 from jacaros.ros.message import to_seconds
@@ -19,11 +11,8 @@ class LightsAndSound:
     def __init__(self, at: RobotOnGraph) -> None:
         self._at = at
         self._colors: list[str] = []
-        heard = (
-            at.subscription_if_known("/cmd_lightring", "irobot_create_msgs/msg/LightringLeds", self._light),
-            at.subscription_if_known("/cmd_audio", "irobot_create_msgs/msg/AudioNoteVector", self._play),
-        )
-        self._subscriptions = [each for each in heard if each is not None]
+        at.subscribe("/cmd_lightring", "irobot_create_msgs/msg/LightringLeds", self._light)
+        at.subscribe("/cmd_audio", "irobot_create_msgs/msg/AudioNoteVector", self._play)
 
     def _light(self, sample: Sample) -> None:
         """Record colours as ``#rrggbb``, counter-clockwise from the front; none if the robot controls its lights."""
@@ -42,8 +31,3 @@ class LightsAndSound:
     def _note(self, kind: str, data: dict[str, object]) -> None:
         self._at.time.catch_up()
         self._at.time.world.note(self._at.robot.name, kind, data)
-
-    def close(self) -> None:
-        """Withdraw the topics."""
-        for subscription in self._subscriptions:
-            subscription.close()

@@ -1,33 +1,19 @@
-"""The ROS topics of one robot of the world.
+"""The ROS topics of one robot of the world; docs/reference/worlds.md lists them with types and rates.
 
-=========================================== ============================= ==========================
-topic (below the robot's namespace)         type                          direction and rate
-=========================================== ============================= ==========================
-``/odom``                                   ``nav_msgs/msg/Odometry``     out, 20 Hz
-``/battery_state``                          ``sensor_msgs/msg/BatteryState`` out, 1 Hz and on changes
-``/scan``                                   ``sensor_msgs/msg/LaserScan`` out, 5 Hz when subscribed
-``/cmd_vel``, ``/cmd_vel_mux/input/navi``   ``geometry_msgs/msg/Twist``   in, the last message wins
-``/mobile_base/commands/velocity``          the same                      in, the same
-``/cleaning/task``                          ``std_msgs/msg/String``       in, logged with the true pose, starts a tool
-``/cleaning/tool``                          ``std_msgs/msg/String``       in, starts a tool, "" stops; with tools only
-``/initialpose``                            ``geometry_msgs/msg/PoseWithCovarianceStamped`` in, for localisation
-``/amcl_pose``                              the same                      out, latched, see `jacaros.sim.robot.transforms`
-=========================================== ============================= ==========================
-
-The other topics are listed in the modules of `jacaros.sim.robot.sensors`, and in `jacaros.sim.robot.transforms`,
-`jacaros.sim.robot.lights` and `jacaros.sim.robot.gripper`; navigation and docking are in `jacaros.sim.navigation`.
+Navigation and docking are in `jacaros.sim.navigation`.
 """
 
 import math
 from collections.abc import Callable, Sequence
 from typing import Final
 
-from jacaros.ros.backend import Backend, Sample, Subscription
+from jacaros.ros.backend import Backend, Sample
 from jacaros.sim.navigation.frames import MAP, pose_fault, pose_of
 from jacaros.sim.navigation.localisation import Localisation
 from jacaros.sim.robot.gripper import Gripper
 from jacaros.sim.robot.lights import LightsAndSound
-from jacaros.sim.robot.on_graph import Actuator, RobotOnGraph, Sensor
+from jacaros.sim.robot.on_graph import RobotOnGraph, Sensor
+from jacaros.sim.robot.own_interfaces import OwnInterfaces
 from jacaros.sim.robot.robot import Robot
 from jacaros.sim.robot.sensors.battery import BatterySensor
 from jacaros.sim.robot.sensors.camera import CameraSensor
@@ -38,6 +24,7 @@ from jacaros.sim.robot.sensors.laser_scan import LaserSensor
 from jacaros.sim.robot.sensors.odometry import OdometrySensor
 from jacaros.sim.robot.sensors.recognition import ObjectRecognition
 from jacaros.sim.robot.sensors.sonar import SonarSensor
+from jacaros.sim.robot.transforms import TYPE as POSE
 from jacaros.sim.robot.transforms import AmclPose, RobotTransforms
 from jacaros.sim.world_time import WorldTime
 
@@ -53,11 +40,9 @@ SENSORS: Final[Sequence[Callable[[RobotOnGraph], Sensor]]] = (
     SonarSensor,
     CameraSensor,
     ObjectRecognition,
+    OwnInterfaces,
 )
 """Sensors of every robot, in publishing order."""
-
-ACTUATORS: Final[Sequence[Callable[[RobotOnGraph], Actuator]]] = (LightsAndSound, Gripper)
-"""Other ROS interfaces of every robot, besides driving and cleaning."""
 
 COMMANDS: Final = ("/cmd_vel", "/cmd_vel_mux/input/navi", "/mobile_base/commands/velocity")
 """Topics of velocity commands: those of most robots, of the Kobuki's multiplexer, and of its base."""
@@ -86,23 +71,14 @@ class RobotNode:
         self.prefix = self._at.prefix
         self._ticks = 0
         self._sensors = [sensor(self._at) for sensor in sensors]
-        self._actuators = [actuator(self._at) for actuator in ACTUATORS]
-        self._subscriptions = self._subscribe()
-
-    def _subscribe(self) -> list[Subscription]:
-        twist, text = "geometry_msgs/msg/Twist", "std_msgs/msg/String"
-        heard = [
-            *(self.backend.subscription(self.prefix + topic, twist, self._command) for topic in COMMANDS),
-            self.backend.subscription(self.prefix + "/cleaning/task", text, self._task),
-            self.backend.subscription(
-                self.prefix + "/initialpose",
-                "geometry_msgs/msg/PoseWithCovarianceStamped",
-                self._receive_pose,
-            ),
-        ]
-        if self.robot.description.tools:
-            heard.append(self.backend.subscription(self.prefix + "/cleaning/tool", text, self._use_tool))
-        return heard
+        for device in (LightsAndSound, Gripper):
+            device(self._at)
+        for topic in COMMANDS:
+            self._at.subscribe(topic, "geometry_msgs/msg/Twist", self._command)
+        self._at.subscribe("/cleaning/task", "std_msgs/msg/String", self._task)
+        self._at.subscribe("/initialpose", POSE, self._receive_pose)
+        if robot.description.tools:
+            self._at.subscribe("/cleaning/tool", "std_msgs/msg/String", self._use_tool)
 
     def _command(self, sample: Sample) -> None:
         self.time.catch_up()
@@ -142,7 +118,4 @@ class RobotNode:
 
     def close(self) -> None:
         """Withdraw all topics."""
-        for subscription in self._subscriptions:
-            subscription.close()
-        for part in (*self._sensors, *self._actuators):
-            part.close()
+        self._at.close()

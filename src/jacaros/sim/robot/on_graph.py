@@ -1,14 +1,15 @@
 """A robot's access to the ROS graph, and the interfaces of its sensors and actuators.
 
-A sensor is a class with `publish` and `close`, made from a `RobotOnGraph`.  To add one, write the class and list it in
+A sensor is a class with `publish`, made from a `RobotOnGraph`.  To add one, write the class and list it in
 `jacaros.sim.robot.node.SENSORS`.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Any, Protocol
+from contextlib import suppress
+from dataclasses import dataclass, field
+from typing import Any, Protocol, TypeVar, cast
 
-from jacaros.ros.backend import Backend, Publisher, Sample, Subscription
+from jacaros.ros.backend import Backend, Publisher, Sample
 from jacaros.ros.errors import UnknownInterface
 from jacaros.ros.message import stamp
 from jacaros.ros.qos import DEFAULT_QOS, QoS
@@ -17,6 +18,16 @@ from jacaros.sim.robot.robot import Robot
 from jacaros.sim.world_time import WorldTime
 
 TICKS_PER_SECOND = 20
+
+
+class Entity(Protocol):
+    """A part of the graph that the robot withdraws at its end."""
+
+    def close(self) -> None:
+        """Withdraw it."""
+
+
+E = TypeVar("E", bound=Entity)
 
 
 @dataclass(frozen=True)
@@ -34,6 +45,7 @@ class RobotOnGraph:
     robot: Robot
     backend: Backend
     localisation: Localisation
+    _entities: list[Entity] = field(default_factory=list, init=False)
 
     @property
     def prefix(self) -> str:
@@ -47,25 +59,36 @@ class RobotOnGraph:
         namespace = self.robot.description.namespace
         return f"{namespace}/" if namespace else ""
 
-    def publisher(self, topic: str, type_name: str, qos: QoS = DEFAULT_QOS) -> Publisher:
-        """Make a publisher in the robot's namespace, reliable by default."""
-        return self.backend.publisher(self.prefix + topic, type_name, qos)
+    def publisher(
+        self, topic: str, type_name: str, qos: QoS = DEFAULT_QOS, optional: bool = False
+    ) -> Publisher:
+        """Make a publisher under the robot's name for *topic*, reliable by default, that closes with the robot.
 
-    def publisher_if_known(self, topic: str, type_name: str) -> Publisher | None:
-        """Make a publisher; return None where the type is not installed."""
-        try:
-            return self.publisher(topic, type_name)
-        except UnknownInterface:
-            return None
+        If the robot's kind does not have the topic, or the type of an *optional* one is not installed, it has no
+        subscriptions, and nothing may be published.
+        """
+        name = self.robot.description.interface.name_of(topic, self.prefix)
+        with suppress(*((UnknownInterface,) if optional else ())):
+            if name is not None:
+                return self.keep(self.backend.publisher(name, type_name, qos))
+        return cast(Publisher, _Silent())
 
-    def subscription_if_known(
-        self, topic: str, type_name: str, callback: Callable[[Sample], None]
-    ) -> Subscription | None:
-        """Subscribe in the robot's namespace; return None where the type is not installed."""
-        try:
-            return self.backend.subscription(self.prefix + topic, type_name, callback)
-        except UnknownInterface:
-            return None
+    def subscribe(self, topic: str, type_name: str, callback: Callable[[Sample], None]) -> None:
+        """Subscribe, unless the type is not installed or the robot's kind does not have the topic."""
+        name = self.robot.description.interface.name_of(topic, self.prefix)
+        with suppress(UnknownInterface):
+            if name is not None:
+                self.keep(self.backend.subscription(name, type_name, callback))
+
+    def keep(self, entity: E) -> E:
+        """Close an entity of the graph with the robot; return it."""
+        self._entities.append(entity)
+        return entity
+
+    def close(self) -> None:
+        """Withdraw all interfaces of the robot."""
+        for entity in self._entities:
+            entity.close()
 
     def fill_header(self, header: Any, frame: str) -> None:
         """Fill a header with the time of the world and a frame of the robot."""
@@ -73,18 +96,14 @@ class RobotOnGraph:
         header.frame_id = self.frame_prefix + frame
 
 
+class _Silent:
+    """Stands for the publisher of a topic that a robot does not have."""
+
+    subscription_count = 0
+
+
 class Sensor(Protocol):
     """A publisher of a robot's state or measurements."""
 
     def publish(self, ticks: int) -> None:
         """Publish if due at this 20 Hz tick, after the world has caught up."""
-
-    def close(self) -> None:
-        """Withdraw the topics."""
-
-
-class Actuator(Protocol):
-    """A device of a robot that is commanded through the graph."""
-
-    def close(self) -> None:
-        """Withdraw its interfaces."""

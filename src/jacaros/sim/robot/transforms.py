@@ -33,18 +33,18 @@ class RobotTransforms:
         self._time, self._robot, self._backend = at.time, at.robot, at.backend
         self._localisation = at.localisation
         self._prefix = at.frame_prefix
-        self._publisher = self._join()
+        self._publisher = self._join(at)
         self._static_is_out = False
         if at.backend.name != "memory":
             # Other graphs do not report subscriptions to /tf_static alone.
             self._publish_static()
 
-    def _join(self) -> Publisher | None:
+    def _join(self, at: RobotOnGraph) -> Publisher | None:
         if TRANSFORMS not in self._backend.capabilities:
             return None
         # Not `tf_broadcast`, which does not report subscriptions.
         try:
-            return self._backend.publisher("/tf", "tf2_msgs/msg/TFMessage", QoS(depth=100))
+            return at.keep(self._backend.publisher("/tf", "tf2_msgs/msg/TFMessage", QoS(depth=100)))
         except UnknownInterface:  # not every ROS 2 installation has tf2_msgs
             return None
 
@@ -93,11 +93,6 @@ class RobotTransforms:
         translation.x, translation.y = place.x, place.y
         rotation.z, rotation.w = place.quaternion()
         return message
-
-    def close(self) -> None:
-        """Leave the topic."""
-        if self._publisher is not None:
-            self._publisher.close()
 
 
 UPDATE_DISTANCE = 0.25
@@ -156,7 +151,3 @@ class AmclPose:
         pose.position.x, pose.position.y = place.x, place.y
         pose.orientation.z, pose.orientation.w = place.quaternion()
         self._publisher.publish(message)
-
-    def close(self) -> None:
-        """Leave the topic."""
-        self._publisher.close()

@@ -6,9 +6,9 @@ import random
 import pytest
 
 from jacaros.artifacts.map.occupancy import Point
-from jacaros.artifacts.map.poses import followed_by, inverse, transformed
 from jacaros.artifacts.map.scan_matching import Surfaces, match
 from jacaros.artifacts.robots.control import Pose
+from jacaros.artifacts.robots.poses import followed_by, inverse, transformed
 
 
 def room(noise: float = 0.01) -> list[Point]:

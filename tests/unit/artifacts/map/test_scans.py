@@ -5,9 +5,9 @@ from types import SimpleNamespace
 
 import pytest
 
-from jacaros.artifacts.map.poses import ORIGIN
 from jacaros.artifacts.map.scans import ScanOptions, moved, read_scan
 from jacaros.artifacts.robots.control import Pose
+from jacaros.artifacts.robots.poses import ORIGIN
 
 
 def message(ranges: list[float], increment: float = math.pi / 2.0) -> SimpleNamespace:

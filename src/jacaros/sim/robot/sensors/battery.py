@@ -35,7 +35,3 @@ class BatterySensor:
         if self._robot.battery.charging:
             return "CHARGING"
         return "FULL" if self._robot.fed else "DISCHARGING"
-
-    def close(self) -> None:
-        """Leave the topic."""
-        self._publisher.close()

@@ -102,11 +102,6 @@ class CameraSensor:
         rotation[0] = rotation[4] = rotation[8] = 1.0
         self._info.publish(message)
 
-    def close(self) -> None:
-        """Leave the topics."""
-        for publisher in (self._image, self._depth, self._info):
-            publisher.close()
-
 
 def _matrix(message: Any, name: str) -> Any:
     """Return a matrix of a ``CameraInfo``, whose name is in capitals on ROS 1."""

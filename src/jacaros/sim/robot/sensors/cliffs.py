@@ -1,12 +1,5 @@
 """The cliff and wheel-drop sensors of a Kobuki (TurtleBot 2).
 
-======================================= ================================= ==========
-topic (below the namespace)             type
-======================================= ================================= ==========
-``/mobile_base/events/cliff``           ``kobuki_msgs/msg/CliffEvent``     on changes
-``/mobile_base/events/wheel_drop``      ``kobuki_msgs/msg/WheelDropEvent`` on changes
-======================================= ================================= ==========
-
 A Create 3 publishes cliffs on ``/hazard_detection`` instead, see `jacaros.sim.robot.sensors.contacts`.  Nothing is
 computed without subscribers.
 """
@@ -38,8 +31,10 @@ class CliffSensors:
 
     def __init__(self, at: RobotOnGraph) -> None:
         self._robot, self._cliffs = at.robot, at.time.world.description.cliffs
-        self._cliff = at.publisher_if_known("/mobile_base/events/cliff", "kobuki_msgs/msg/CliffEvent")
-        self._drop = at.publisher_if_known("/mobile_base/events/wheel_drop", "kobuki_msgs/msg/WheelDropEvent")
+        self._cliff = at.publisher("/mobile_base/events/cliff", "kobuki_msgs/msg/CliffEvent", optional=True)
+        self._drop = at.publisher(
+            "/mobile_base/events/wheel_drop", "kobuki_msgs/msg/WheelDropEvent", optional=True
+        )
         self._seen: frozenset[str] = frozenset()
         self._dropped = False
 
@@ -48,14 +43,9 @@ class CliffSensors:
         del ticks
         if not self._cliffs:
             return
-        if self._cliff is not None and self._cliff.subscription_count:
+        if self._cliff.subscription_count:
             self._publish_cliffs(self._cliff)
-        if (
-            self._robot.fallen
-            and not self._dropped
-            and self._drop is not None
-            and self._drop.subscription_count
-        ):
+        if self._robot.fallen and not self._dropped and self._drop.subscription_count:
             self._dropped = True
             for wheel in ("LEFT", "RIGHT"):
                 message = self._drop.message()
@@ -72,9 +62,3 @@ class CliffSensors:
             message.state = constant(message, "CLIFF" if side in seen else "FLOOR")
             publisher.publish(message)
         self._seen = seen
-
-    def close(self) -> None:
-        """Leave the topics."""
-        for publisher in (self._cliff, self._drop):
-            if publisher is not None:
-                publisher.close()

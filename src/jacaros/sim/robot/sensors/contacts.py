@@ -1,22 +1,11 @@
 """Bumpers, cliffs and docks, in the message types of the robots that have these sensors.
 
-=================================== ================================================= ===================
-topic (below the namespace)         type                                              like a
-=================================== ================================================= ===================
-``/hazard_detection``               ``irobot_create_msgs/msg/HazardDetectionVector``  TurtleBot 4, 10 Hz
-``/dock_status``                    ``irobot_create_msgs/msg/DockStatus``             TurtleBot 4, 2 Hz
-``/sensor_state``                   ``turtlebot3_msgs/msg/SensorState``               TurtleBot 3, 20 Hz
-``/mobile_base/events/bumper``      ``kobuki_msgs/msg/BumperEvent``                   TurtleBot 2, on changes
-``/mobile_base/sensors/core``       ``kobuki_msgs/msg/SensorState``                   TurtleBot 2, 2 Hz
-=================================== ================================================= ===================
-
 Nothing is computed without subscribers.
 """
 
 import math
 from typing import Any
 
-from jacaros.ros.backend import Publisher
 from jacaros.ros.message import constant
 from jacaros.sim.navigation.laser_perception import hidden
 from jacaros.sim.robot.on_graph import RobotOnGraph
@@ -40,6 +29,13 @@ _CLIFFS = {
 """Frames of its cliff sensors, with their bearings in degrees from straight ahead."""
 _WHEELS = ("wheel_drop_left", "wheel_drop_right")
 _KOBUKI = {"left": "LEFT", "front": "CENTER", "right": "RIGHT"}
+_TOPICS = (
+    ("/hazard_detection", "irobot_create_msgs/msg/HazardDetectionVector"),  # TurtleBot 4, 10 Hz
+    ("/dock_status", "irobot_create_msgs/msg/DockStatus"),  # TurtleBot 4, 2 Hz
+    ("/sensor_state", "turtlebot3_msgs/msg/SensorState"),  # TurtleBot 3, 20 Hz
+    ("/mobile_base/events/bumper", "kobuki_msgs/msg/BumperEvent"),  # TurtleBot 2, on changes
+    ("/mobile_base/sensors/core", "kobuki_msgs/msg/SensorState"),  # TurtleBot 2, 2 Hz
+)
 
 
 class RobotContacts:
@@ -47,32 +43,28 @@ class RobotContacts:
 
     def __init__(self, at: RobotOnGraph) -> None:
         self._at, self._time, self._robot = at, at.time, at.robot
-        self._hazards = at.publisher_if_known(
-            "/hazard_detection", "irobot_create_msgs/msg/HazardDetectionVector"
+        self._hazards, self._dock, self._state, self._bumper, self._core = (
+            at.publisher(topic, type_name, optional=True) for topic, type_name in _TOPICS
         )
-        self._dock = at.publisher_if_known("/dock_status", "irobot_create_msgs/msg/DockStatus")
-        self._state = at.publisher_if_known("/sensor_state", "turtlebot3_msgs/msg/SensorState")
-        self._bumper = at.publisher_if_known("/mobile_base/events/bumper", "kobuki_msgs/msg/BumperEvent")
-        self._core = at.publisher_if_known("/mobile_base/sensors/core", "kobuki_msgs/msg/SensorState")
         self._pressed: frozenset[str] = frozenset()
         self._docked: bool | None = None
 
     def publish(self, ticks: int) -> None:
         """Publish if due at this tick of 20 Hz."""
         pressed = frozenset(self._robot.contacts.values()) - {""}
-        if _wanted(self._hazards) and (ticks % _TICKS_PER_HAZARD == 0 or pressed != self._pressed):
+        if self._hazards.subscription_count and (ticks % _TICKS_PER_HAZARD == 0 or pressed != self._pressed):
             self._publish_hazards(self._hazards, pressed)
-        if _wanted(self._state):
+        if self._state.subscription_count:
             self._publish_state(self._state, pressed)
         if pressed != self._pressed:
-            if _wanted(self._bumper):
+            if self._bumper.subscription_count:
                 self._publish_bumpers(self._bumper, pressed)
             self._pressed = pressed
         docked = self._robot.dock is not None
-        if _wanted(self._dock) and (ticks % _TICKS_PER_DOCK == 0 or docked != self._docked):
+        if self._dock.subscription_count and (ticks % _TICKS_PER_DOCK == 0 or docked != self._docked):
             self._publish_dock(self._dock, docked)
         self._docked = docked
-        if _wanted(self._core) and ticks % _TICKS_PER_CORE == 0:
+        if self._core.subscription_count and ticks % _TICKS_PER_CORE == 0:
             self._publish_core(self._core, docked)
 
     def _publish_core(self, publisher: Any, docked: bool) -> None:
@@ -143,16 +135,6 @@ class RobotContacts:
             message.bumper = constant(message, _KOBUKI[side])
             message.state = constant(message, "PRESSED" if side in pressed else "RELEASED")
             publisher.publish(message)
-
-    def close(self) -> None:
-        """Leave the topics."""
-        for publisher in (self._hazards, self._dock, self._state, self._bumper, self._core):
-            if publisher is not None:
-                publisher.close()
-
-
-def _wanted(publisher: Publisher | None) -> bool:
-    return publisher is not None and publisher.subscription_count > 0
 
 
 def _int32(value: float) -> int:

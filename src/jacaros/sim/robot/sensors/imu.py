@@ -43,7 +43,3 @@ class ImuSensor:
         passed, gained = now - self._time, speed - self._speed
         self._time, self._speed = now, speed
         return gained / passed if 0.0 < passed <= _LONGEST_STEP else 0.0
-
-    def close(self) -> None:
-        """Leave the topic."""
-        self._publisher.close()

@@ -34,8 +34,3 @@ class LaserSensor:
         message.scan_time = _TICKS_PER_SCAN / TICKS_PER_SECOND
         message.range_min, message.range_max = laser.settings.range_min, laser.settings.range_max
         publisher.publish(message)
-
-    def close(self) -> None:
-        """Leave the topic."""
-        if self._publisher is not None:
-            self._publisher.close()

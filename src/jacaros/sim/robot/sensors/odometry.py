@@ -28,7 +28,3 @@ class OdometrySensor:
         pose.orientation.z, pose.orientation.w = sine_cosine(0.5 * odometry.yaw)
         twist.linear.x, twist.angular.z = robot.speed, robot.turn_rate
         self._publisher.publish(message)
-
-    def close(self) -> None:
-        """Leave the topic."""
-        self._publisher.close()

@@ -20,12 +20,12 @@ class ObjectRecognition:
 
     def __init__(self, at: RobotOnGraph) -> None:
         self._world, self._robot = at.time.world, at.robot
-        self._publisher = at.publisher_if_known("/jason/perception", "perception_msgs/msg/perception")
+        self._publisher = at.publisher("/jason/perception", "perception_msgs/msg/perception", optional=True)
 
     def publish(self, ticks: int) -> None:
         """Publish if due."""
         publisher = self._publisher
-        if publisher is None or ticks % _TICKS_PER_MESSAGE or not publisher.subscription_count:
+        if ticks % _TICKS_PER_MESSAGE or not publisher.subscription_count:
             return
         publisher.publish(publisher.message(perception=list(self._in_view())))
 
@@ -39,8 +39,3 @@ class ObjectRecognition:
             in_image = 0.0 < ahead <= RANGE and abs(left) * FOCAL_LENGTH <= 0.5 * WIDTH * ahead
             if in_image and not hidden(self._world.segments, robot.x, robot.y, x, y):
                 yield f"{each.name},{ahead:.2f},{left:.2f},0.00"
-
-    def close(self) -> None:
-        """Leave the topic."""
-        if self._publisher is not None:
-            self._publisher.close()

@@ -83,7 +83,3 @@ class SonarSensor:
         message.field_of_view, message.min_range, message.max_range = FIELD, RANGE_MIN, RANGE_MAX
         message.range = found if found <= RANGE_MAX else math.inf  # REP 117: no echo
         self._publisher.publish(message)
-
-    def close(self) -> None:
-        """Leave the topic."""
-        self._publisher.close()

@@ -1,0 +1,89 @@
+"""Advice for robots that drive by odometry although a localisation finds them elsewhere."""
+
+import math
+from collections.abc import Callable
+from weakref import WeakSet
+
+from jacaros.artifacts.robots.control import Pose, heading_of
+from jacaros.artifacts.robots.odometry import Odometer
+from jacaros.artifacts.robots.poses import followed_by, inverse
+from jacaros.ros.backend import Backend, Sample
+from jacaros.ros.message import to_seconds
+
+LOCALISED = "geometry_msgs/msg/PoseWithCovarianceStamped"
+TOLERANCE = (0.05, math.radians(3.0))
+"""Metres and radians that odometry may drift: the accuracy of a navigation goal."""
+LEAP = (0.5, math.radians(30.0))
+"""A larger change between two poses is a new estimate, as after a pose from rviz, and not a drift."""
+OUTDATED = 1.0
+"""Seconds between a pose and the newest odometry over which the motion is extrapolated."""
+
+_advised: WeakSet[Backend] = WeakSet()
+
+
+class Drift:
+    """Compare odometry with localised poses (``amcl_pose``), and log once per run that they drift apart.
+
+    Args:
+        ros: the graph.
+        odometer: odometry of the robot in its own frame.
+        driving: whether a motion relies on that odometry now.
+        log: takes the advice.
+    """
+
+    def __init__(
+        self, ros: Backend, odometer: Odometer, driving: Callable[[], bool], log: Callable[[str], None]
+    ) -> None:
+        self._ros, self._odometer, self._driving, self._log = ros, odometer, driving, log
+        self._first: Pose | None = None
+        self._last: Pose | None = None
+
+    def take(self, sample: Sample) -> None:
+        """Handle a localised pose; the callback of the subscription."""
+        at = self._odometry_at(to_seconds(sample.message.header.stamp))
+        found = sample.message.pose.pose
+        if at is None or self._ros in _advised:
+            return
+        q = found.orientation
+        place = Pose(found.position.x, found.position.y, heading_of(q.x, q.y, q.z, q.w))
+        correction = followed_by(place, inverse(at))
+        if (
+            self._first is None
+            or self._last is None
+            or _exceeds(self._apart(self._last, correction, at), LEAP)
+        ):
+            self._first = correction
+        self._last = correction
+        metres, angle = self._apart(self._first, correction, at)
+        if _exceeds((metres, angle), TOLERANCE) and self._driving():
+            _advised.add(self._ros)
+            self._log(
+                f"note: odometry and localisation have drifted {metres:.2f} m and {math.degrees(angle):.1f} degrees "
+                "apart; the option `frame(map)` corrects it"
+            )
+
+    def _odometry_at(self, stamp: float) -> Pose | None:
+        """Return the pose in odometry at *stamp*, extrapolated from the newest: localisation is late by its computation."""
+        newest = self._odometer.newest
+        if newest is None:
+            return None
+        late = to_seconds(newest.sample.message.header.stamp) - stamp
+        if not abs(late) <= OUTDATED:
+            return None
+        ahead = newest.pose.heading - 0.5 * late * newest.velocity.angular
+        metres = late * newest.velocity.linear
+        return Pose(
+            newest.pose.x - metres * math.cos(ahead),
+            newest.pose.y - metres * math.sin(ahead),
+            newest.pose.heading - late * newest.velocity.angular,
+        )
+
+    @staticmethod
+    def _apart(one: Pose, other: Pose, at: Pose) -> tuple[float, float]:
+        """Return how far two corrections put the robot apart: metres and radians."""
+        a, b = followed_by(one, at), followed_by(other, at)
+        return math.dist(a[:2], b[:2]), abs(math.remainder(a.heading - b.heading, math.tau))
+
+
+def _exceeds(apart: tuple[float, float], limits: tuple[float, float]) -> bool:
+    return any(value > limit for value, limit in zip(apart, limits, strict=True))
