@@ -108,13 +108,20 @@ class ConnectedArtifact(Artifact):
         return "".join(f"/{part}" for part in parts if part)
 
     def robot_topic(self, name: str) -> str:
-        """Return the robot's own topic *name*; a leading slash makes no difference."""
-        return f"{self.robot_prefix}/{name.lstrip('/')}"
+        """Return a name below the robot's namespace, which is below that of the node; an absolute name stays."""
+        if name.startswith(("/", "~")) or not self.robot_prefix:
+            return name
+        return f"{self.robot_prefix.lstrip('/')}/{name}"
+
+    @property
+    def robot_namespace(self) -> str:
+        """Absolute namespace of the robot's topics, including that of the node; empty for the root."""
+        return self.ros.resolve(self.robot_topic("name")).rpartition("/")[0]
 
     @property
     def frame_prefix(self) -> str:
-        """Prefix of the robot's frames: the prefix of its topics, including the node's namespace."""
-        return self.ros.resolve(self.robot_topic("frame")).rpartition("/")[0].strip("/")
+        """Prefix of the robot's frames: the namespace of its topics, without leading slash."""
+        return self.robot_namespace.lstrip("/")
 
     def robot_property(self, name: str) -> str:
         """Return the name of a property, prefixed with the robot's name where the thesis does so."""
@@ -204,7 +211,9 @@ class ConnectedArtifact(Artifact):
             on_event: called with problems of the topic; without it they are logged.
         """
         name = self.robot_topic(topic)
-        listener = Listener(name, callback, partial(self._steps.setting.log_error, self.name))
+        listener = Listener(
+            self.ros.resolve(name), callback, partial(self._steps.setting.log_error, self.name)
+        )
         watch = self.options.get("watch_connection", False)
         if watch is False:
             made = self.kept(self.ros.subscription(name, type_name, listener, qos, on_event))

@@ -1,14 +1,18 @@
 """Publishers and subscribers at the other end: the property ``connected(Topic)``, a warning about topics without a
 publisher, and the wait for the first subscriber. Messages sent before that are lost without an error."""
 
+import asyncio
 import math
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from weakref import WeakKeyDictionary, WeakSet
 
 from jacaros.artifacts.kit.options import Reader, one_of, positive
 from jacaros.clock import Clock
 from jacaros.ros.backend import Backend, Publisher, Sample, Subscription
+from jacaros.ros.errors import RosError
+from jacaros.ros.names import message_type
 from jacaros.ros.waiting import MISSING_AFTER
 
 LOOK = 0.5
@@ -119,6 +123,7 @@ class MissingTopic:
         self._subscription, self._type_name = subscription, type_name
         self._log = log
         self._connected = backend.connected
+        self._search: asyncio.Task[None] | None = None
         self._wait()
 
     def _wait(self) -> None:
@@ -129,14 +134,28 @@ class MissingTopic:
         if not (connected_before and self._connected):
             self._wait()  # discovery is incomplete just after the graph was found
         elif self._subscription.publisher_count == 0:
-            self._log(
-                f"no publisher on topic {self._subscription.topic} ({self._type_name}); still listening; "
-                "is the node that publishes it running?"
+            self._search = asyncio.ensure_future(self._report())
+
+    async def _report(self) -> None:
+        topic, near = self._subscription.topic, list[str]()
+        with suppress(RosError):
+            contents = await self._backend.contents()
+            near = contents.near_topics(topic, message_type(self._type_name), "publishers")
+        means = " or ".join(f"`{name}`" for name in near)
+        self._log(
+            f"no publisher on topic {topic} ({self._type_name}); still listening"
+            + (
+                f"\n  help: did you mean {means}? `--namespace NAME` and `--remap OLD:=NEW` change the names of a run"
+                if near
+                else "; is the node that publishes it running?"
             )
+        )
 
     def close(self) -> None:
         """Stop logging."""
         self._timer.cancel()
+        if self._search is not None:
+            self._search.cancel()
 
 
 MATCH_TIMEOUT = 3.0

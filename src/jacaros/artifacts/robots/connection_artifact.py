@@ -90,7 +90,9 @@ class ArtRos(RosArtifact):
 
         Fails with ``parameter_unknown(Name)`` if the node has no such parameter.
         """
-        found = await self._asked(self.ros.parameters(self._node(node)).get(name, self._patience), node, name)
+        found = await self._asked(
+            self.ros.parameters(self.robot_topic(node)).get(name, self._patience), node, name
+        )
         value.set(list(found) if isinstance(found, bytes) else found)
 
     @operation
@@ -99,7 +101,7 @@ class ArtRos(RosArtifact):
 
         Fails with ``parameter_unknown(Name)``, or with ``parameter_refused(Name)`` if the node refuses the value.
         """
-        parameters = self.ros.parameters(self._node(node))
+        parameters = self.ros.parameters(self.robot_topic(node))
         wanted = _parameter_value(value)
         if wanted is None:
             self.fail(
@@ -114,7 +116,7 @@ class ArtRos(RosArtifact):
     @operation
     async def list_parameters(self, node: str, names: Out) -> None:
         """Give the names of a node's parameters, as a list of texts."""
-        names.set(await self._asked(self.ros.parameters(self._node(node)).names(self._patience), node))
+        names.set(await self._asked(self.ros.parameters(self.robot_topic(node)).names(self._patience), node))
 
     # ---- the graph
 
@@ -172,9 +174,6 @@ class ArtRos(RosArtifact):
         patience = self.options.get("timeout", PATIENCE)
         assert isinstance(patience, float)
         return patience
-
-    def _node(self, name: str) -> str:
-        return str(name) if name.startswith(("/", "~")) else f"{self.robot_prefix}/{name}"
 
     async def _asked(self, question: Awaitable[T], whom: str, what: str = "") -> T:
         """Wait for an answer; a step boundary."""
