@@ -115,6 +115,10 @@ class Subscription(Protocol):
     def publisher_count(self) -> int:
         """Number of connected publishers."""
 
+    @property
+    def latched(self) -> bool:
+        """Whether stored messages are received, which may be old; False if unknown."""
+
     def close(self) -> None:
         """Leave the topic; the callback is no longer called."""
 

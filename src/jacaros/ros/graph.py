@@ -37,6 +37,17 @@ class TopicInfo:
     subscriptions: tuple[Endpoint, ...] = ()
 
 
+def latching(topic: TopicInfo | None) -> str:
+    """Return the nodes whose publishers store messages for late subscriptions; empty if none is known."""
+    ends = () if topic is None else topic.publishers
+    names = {
+        each.node or "an unknown node"
+        for each in ends
+        if each.qos is not None and each.qos.durability == "transient_local"
+    }
+    return ", ".join(sorted(names))
+
+
 @dataclass(frozen=True, slots=True)
 class GraphContents:
     """A snapshot of the graph.

@@ -36,7 +36,7 @@ class _TopicEnd(Generic[N]):
 
     @property
     def latched(self) -> bool:
-        """Whether late subscriptions receive the last message."""
+        """Whether messages are stored for late subscriptions, or received from before this one."""
         return self.qos.durability == "transient_local"
 
     def close(self) -> None:

@@ -220,7 +220,7 @@ class ConnectedArtifact(Artifact):
         else:
             expire = None if watch is True else float(str(watch))
             made = self._watched(name, type_name, listener, qos, on_event, expire)
-        self.kept(MissingTopic(self.ros, self.clock, made, type_name, self.log))
+        self.kept(MissingTopic(self.ros, self.clock, made, type_name, self.log, lambda: listener.heard))
         return made
 
     def _watched(

@@ -12,6 +12,7 @@ from jacaros.artifacts.kit.options import Reader, one_of, positive
 from jacaros.clock import Clock
 from jacaros.ros.backend import Backend, Publisher, Sample, Subscription
 from jacaros.ros.errors import RosError
+from jacaros.ros.graph import GraphContents, latching
 from jacaros.ros.names import message_type
 from jacaros.ros.waiting import MISSING_AFTER
 
@@ -99,7 +100,7 @@ def _watch(backend: Backend, connection: Connection) -> None:
 
 
 class MissingTopic:
-    """Log a warning if no node publishes a topic after `MISSING_AFTER` seconds.
+    """Log a warning if a topic has no publisher after `MISSING_AFTER` seconds, or one whose latched message was missed.
 
     Nothing is logged while the graph cannot be reached; the backend reports that.
 
@@ -109,6 +110,7 @@ class MissingTopic:
         subscription: subscription of the topic.
         type_name: message type.
         log: called with one line.
+        heard: returns whether a message has arrived.
     """
 
     def __init__(
@@ -118,10 +120,11 @@ class MissingTopic:
         subscription: Subscription,
         type_name: str,
         log: Callable[[str], None],
+        heard: Callable[[], bool],
     ) -> None:
         self._backend, self._clock = backend, clock
         self._subscription, self._type_name = subscription, type_name
-        self._log = log
+        self._log, self._heard = log, heard
         self._connected = backend.connected
         self._search: asyncio.Task[None] | None = None
         self._wait()
@@ -133,14 +136,30 @@ class MissingTopic:
         connected_before, self._connected = self._connected, self._backend.connected
         if not (connected_before and self._connected):
             self._wait()  # discovery is incomplete just after the graph was found
-        elif self._subscription.publisher_count == 0:
+        elif not self._heard():
             self._search = asyncio.ensure_future(self._report())
 
     async def _report(self) -> None:
-        topic, near = self._subscription.topic, list[str]()
+        contents = GraphContents()
         with suppress(RosError):
             contents = await self._backend.contents()
-            near = contents.near_topics(topic, message_type(self._type_name), "publishers")
+        if self._subscription.publisher_count == 0:
+            self._report_missing(contents)
+        elif not self._subscription.latched:
+            self._report_latched(contents)
+
+    def _report_latched(self, contents: GraphContents) -> None:
+        topic = self._subscription.topic
+        nodes = latching(contents.topics.get(topic))
+        if nodes:
+            self._log(
+                f"no message on topic {topic}: {nodes} latches its messages, and earlier ones were not requested\n"
+                "  help: write `qos: latched` (in Python: qos=LATCHED)"
+            )
+
+    def _report_missing(self, contents: GraphContents) -> None:
+        topic = self._subscription.topic
+        near = contents.near_topics(topic, message_type(self._type_name), "publishers")
         means = " or ".join(f"`{name}`" for name in near)
         self._log(
             f"no publisher on topic {topic} ({self._type_name}); still listening"

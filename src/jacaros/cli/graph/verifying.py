@@ -18,9 +18,9 @@ from jacaros.cli.graph.listening import root
 from jacaros.cli.usage import did_you_mean
 from jacaros.ros.backend import PARAMETERS
 from jacaros.ros.errors import RosError
-from jacaros.ros.graph import Endpoint, TopicInfo, alike
+from jacaros.ros.graph import Endpoint, TopicInfo, alike, latching
 from jacaros.ros.names import frame_name, near_names
-from jacaros.ros.qos import DEFAULT_QOS, SENSOR_DATA, QoS, incompatibility
+from jacaros.ros.qos import DEFAULT_QOS, SENSOR_DATA, STATE, QoS, incompatibility
 from jacaros.yaml_nodes import Problem
 
 MOST_NAMES = 8
@@ -114,7 +114,12 @@ def _of_topic(names: Names, topic: TopicPart) -> Iterator[Problem]:
         except RosError as error:
             found.append(written.place.problem(str(error), "install the package of this type"))
         yield from found
-    yield from _of_qos(written.place, info, topic.qos or SENSOR_DATA)
+    requested = topic.qos or (SENSOR_DATA if topic.signal else STATE)
+    yield from _of_qos(written.place, info, requested)
+    nodes = latching(info)
+    if nodes and requested.durability == "volatile" and not topic.signal:
+        text = f"{nodes} latches its messages on {name}, and earlier ones are not requested"
+        yield written.place.problem(text, "write qos: latched")
 
 
 def _of_qos(place: Place, info: TopicInfo, requested: QoS) -> Iterator[Problem]:
