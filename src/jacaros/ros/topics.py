@@ -65,6 +65,11 @@ class TopicPublisher(_TopicEnd[N]):
         super().__init__(node, topic, type_name, qos)
         self._class = node.factory.message_class(type_name)
 
+    @property
+    def sent_topic(self) -> str:
+        """Absolute name of the topic that this publishes on, see `Node.other_publishers`."""
+        return self.topic
+
     def message(self, **fields: Any) -> Any:
         """Make a message of the topic's type."""
         return self._node.factory.make(self.type_name, fields)

@@ -8,6 +8,7 @@ from typing import Any, ClassVar, Protocol, TypeVar
 from jacaros.artifacts.kit.connection import MATCH_TIMEOUT, Connection, Matching, MissingTopic
 from jacaros.artifacts.kit.faults import Faults, Listener
 from jacaros.artifacts.kit.options import Reader, WrongOption, read_arguments, text, watching
+from jacaros.artifacts.kit.other_publishers import OtherPublishers
 from jacaros.artifacts.kit.services import ServedOperation
 from jacaros.env.artifact import Artifact, internal_operation
 from jacaros.env.errors import InvalidArtifact
@@ -128,12 +129,25 @@ class ConnectedArtifact(Artifact):
         return f"{self.robot}_{name}" if self.robot and self.robot_in_properties else name
 
     def publisher(self, topic: str, type_name: str, qos: QoS = DEFAULT_QOS) -> Publisher:
-        """Publish on the robot's *topic* until the artifact is disposed."""
+        """Publish on the robot's *topic* until the artifact is disposed.
+
+        Of a topic of velocities, the property ``other_publisher(Topic,Node)`` shows other nodes that publish on it.
+        """
         made = self.kept(self.ros.publisher(self.robot_topic(topic), type_name, qos))
         full = message_type(type_name)
         if full in VELOCITIES:
             self.at_dispose(guarded_by(self.ros).add_topic(made.topic, full))
+            changed = partial(self.start, self.show_other_publisher, made.topic)
+            self.kept(OtherPublishers(self.ros, self.clock, made.topic, changed, self.log))
         return made
+
+    @internal_operation
+    def show_other_publisher(self, topic: str, node: str, publishes: bool) -> None:
+        """Show the property ``other_publisher(Topic,Node)``, or remove it."""
+        if publishes:
+            self.define_property("other_publisher", topic, node)
+        else:
+            self.remove_property("other_publisher", topic, node)
 
     def matching_of(
         self,

@@ -19,6 +19,7 @@ from jacaros.cli.usage import did_you_mean
 from jacaros.ros.backend import PARAMETERS
 from jacaros.ros.errors import RosError
 from jacaros.ros.graph import Endpoint, TopicInfo, alike, latching
+from jacaros.ros.guarded import VELOCITIES
 from jacaros.ros.names import frame_name, near_names
 from jacaros.ros.qos import DEFAULT_QOS, SENSOR_DATA, STATE, QoS, incompatibility
 from jacaros.yaml_nodes import Problem
@@ -87,6 +88,19 @@ async def problems_of(joined: Joined, part: ArtifactPart, frames: dict[str, str]
     for node, parameter, place in nodes:
         found += await _of_parameter(names, node, parameter, place)
     return sorted(set(found), key=lambda problem: (problem.line, problem.column, problem.message))
+
+
+def warnings_of(joined: Joined, part: ArtifactPart) -> Iterator[Problem]:
+    """Yield a warning for each topic of velocities that another node publishes on, too."""
+    names = Names(joined, part)
+    for operation in part.operations:
+        info = joined.contents.topics.get(names.resolve(operation.target.text))
+        velocity = info is not None and any(each in VELOCITIES for each in info.types)
+        if operation.kind is OperationKind.PUBLISH and velocity and info is not None and info.publishers:
+            yield operation.target.place.problem(
+                f"{_nodes(info.publishers)} also publishes on {info.name}: the robot follows whichever command came last",
+                "give every source a topic of its own, and let twist_mux choose between them",
+            )
 
 
 def _of_topic(names: Names, topic: TopicPart) -> Iterator[Problem]:

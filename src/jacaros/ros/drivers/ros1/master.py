@@ -119,6 +119,8 @@ class MasterLink:
         self._unheard: dict[tuple[str, str], int] = {}
         """Topic and publisher → number of consecutive checks without a connection."""
         self.services: frozenset[str] = frozenset()
+        self.publishers: Mapping[str, Collection[str]] = {}
+        """Nodes that publish, by topic."""
 
     def start(self) -> None:
         """Start the thread."""
@@ -170,6 +172,7 @@ class MasterLink:
         except ServiceError:
             return None
         self.services = frozenset(name for name, _ in state[2])
+        self.publishers = dict(state[0])
         return state
 
     def _look_at_types(self, known: list[Any]) -> None:
