@@ -12,7 +12,9 @@ from jacaros.env.values import Structure
 from jacaros.ros.backend import Backend
 from jacaros.ros.open import open_backend
 
-MAPPING = "operations:\n  roll: {parameters: [v], publish: cmd_vel, type: geometry_msgs/msg/Twist, fields: {linear.x: $v}}\n"
+MAPPING = """operations:
+  roll: {parameters: [v], publish: cmd_vel, type: geometry_msgs/msg/Twist, fields: {linear.x: $v}}
+"""
 
 
 async def other_node(lab: Lab, name: str) -> Backend:

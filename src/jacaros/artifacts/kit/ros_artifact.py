@@ -61,8 +61,8 @@ class RosArtifact(SensingArtifact):
             fields: fields of the request.
 
         Raises:
-            OperationFailed: ``service_unavailable(Name)``, ``service_timeout(Seconds)``, ``service_failed(Name)``,
-                ``refused(Text)``, or ``wrong_value(Field)`` if the fields do not match the type.
+            OperationFailed: ``service_unavailable(Name)``, ``service_timeout(Seconds)``, ``server_lost``,
+                ``service_failed(Name)``, ``refused(Text)``, or ``wrong_value(Field)`` if the fields do not match the type.
         """
         try:
             return await self.step(call(client, timeout, fields, must_succeed))

@@ -6,15 +6,14 @@ from typing import ClassVar, NoReturn, TypeVar
 
 from jacaros.artifacts.kit.options import positive
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
+from jacaros.artifacts.kit.services import failure_reason
 from jacaros.env.artifact import Out, internal_operation, operation
 from jacaros.env.values import Atom, Structure
 from jacaros.ros.errors import (
-    CallTimedOut,
     ParameterRefused,
     ParameterUnknown,
     RosError,
     ServiceError,
-    ServiceUnavailable,
     TransformUnavailable,
 )
 from jacaros.ros.parameter import ParameterValue
@@ -32,7 +31,7 @@ class ArtRos(RosArtifact):
     """Shows the connection to ROS, and lets agents query the graph.
 
     Names of nodes are below the robot's name, if the artifact was made with one; with a leading slash they are
-    absolute.  An operation that gets no answer fails with ``service_unavailable(Name)``, ``service_timeout(Seconds)`` or
+    absolute.  An operation that gets no answer fails with ``service_unavailable(Name)``, ``service_timeout(Seconds)``, ``server_lost`` or
     ``service_failed(Name)``.
 
     Options:
@@ -190,12 +189,8 @@ class ArtRos(RosArtifact):
                 self.fail(str(error), "parameter_refused", what or whom)
             case TransformUnavailable():
                 self.fail(str(error), "transform_unavailable", Atom(error.reason))
-            case ServiceUnavailable():
-                self.fail(str(error), "service_unavailable", whom)
-            case CallTimedOut():
-                self.fail(str(error), "service_timeout", self._patience)
             case ServiceError():
-                self.fail(str(error), "service_failed", whom)
+                self.fail(str(error), *failure_reason(error, whom, self._patience))
         self.fail(str(error), "ros_error", type(error).__name__)
 
 
