@@ -31,8 +31,8 @@ class ArtRos(RosArtifact):
     """Shows the connection to ROS, and lets agents query the graph.
 
     Names of nodes are below the robot's name, if the artifact was made with one; with a leading slash they are
-    absolute.  An operation that gets no answer fails with ``service_unavailable(Name)``, ``service_timeout(Seconds)``, ``server_lost`` or
-    ``service_failed(Name)``.
+    absolute.  An operation that gets no answer fails with ``service_unavailable(Name)``, ``service_timeout(Seconds)``,
+    ``server_lost`` or ``service_failed(Name)``.
 
     Options:
         timeout(S): seconds that operations wait for an answer (5).
