@@ -23,7 +23,7 @@ def test_a_wake_up_before_the_wait_is_not_lost() -> None:
     run(main, clock)
 
 
-def test_the_first_message_of_clock_is_no_jump_and_a_later_one_is() -> None:
+def test_the_first_message_of_clock_does_not_count_as_a_jump() -> None:
     async def main() -> None:
         clock = RosClock(lambda text: None)
         stopped: list[bool] = []

@@ -1,4 +1,4 @@
-"""Calls of servers that go: a short absence is none, a long one ends the call; and how often waiting is logged."""
+"""Calls of servers that go: a short absence is ignored, a long one ends the call; and how often waiting is logged."""
 
 import asyncio
 

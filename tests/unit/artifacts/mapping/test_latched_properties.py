@@ -32,7 +32,7 @@ def test_messages_of_volatile_publishers_arrive_beside_it() -> None:
     in_lab(body, None)
 
 
-def test_the_old_stamp_of_a_latched_message_is_no_fault() -> None:
+def test_the_old_stamp_of_a_latched_message_is_accepted() -> None:
     async def body(lab: Lab) -> None:
         message = {"header": {"stamp": lab.clock.now() - 3600.0}, "point": {"x": 2.0}}
         lab.backend.publisher("/pose", "geometry_msgs/msg/PointStamped", LATCHED).publish(message)
