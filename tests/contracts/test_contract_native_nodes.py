@@ -65,6 +65,15 @@ def test_a_plain_nodes_latched_map_reaches_us(graph: Any, pair: Pair, native: No
     assert right.received("/native/map")[0]["data"] == [0, 100, -1]
 
 
+def test_a_plain_nodes_map_reaches_a_subscription_that_asks_for_what_is_available(
+    graph: Any, pair: Pair, native: None
+) -> None:
+    _, right = pair
+    right.subscribe("/native/map", "nav_msgs/msg/OccupancyGrid", durability="best_available")
+    graph.wait_until(lambda: right.received("/native/map"), "the map arrives")
+    assert right.received("/native/map")[0]["data"] == [0, 100, -1]
+
+
 def test_we_call_a_plain_nodes_service(graph: Any, pair: Pair, native: None) -> None:
     left, _ = pair
     answers: list[Any] = []

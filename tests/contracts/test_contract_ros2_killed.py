@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 from losses import lose_a_call
 
-from jacaros.ros.errors import CallFailed, ServerLost
+from jacaros.ros.errors import ServerGone, ServerLost
 
 Pair = tuple[Any, Any]
 pytestmark = pytest.mark.only("ros2")
@@ -45,7 +45,7 @@ def test_a_call_of_a_service_that_is_killed_fails(graph: Any, pair: Pair, topic:
     left, _ = pair
     lose_a_call(graph, left, topic, LOST)
     assert left.ready(topic), "the graph has noticed it first"
-    with pytest.raises(CallFailed, match=topic):
+    with pytest.raises(ServerGone, match=topic):
         left.end_call(topic)
 
 

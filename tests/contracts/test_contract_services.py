@@ -9,6 +9,7 @@ from jacaros.ros.errors import (
     CallFailed,
     CallTimedOut,
     MessageMismatch,
+    ServerGone,
     ServiceUnavailable,
     UnknownInterface,
 )
@@ -201,5 +202,5 @@ def test_an_unknown_service_type_is_refused(graph: Any, pair: Pair, topic: str) 
 def test_a_call_whose_server_dies_fails(graph: Any, pair: Pair, topic: str) -> None:
     left, _ = pair
     lose_a_call(graph, left, topic)
-    with pytest.raises(CallFailed, match=topic):
+    with pytest.raises(ServerGone, match=topic):
         left.end_call(topic)

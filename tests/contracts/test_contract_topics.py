@@ -133,6 +133,38 @@ def test_a_latched_message_waits_for_late_subscriptions(graph: Any, pair: Pair, 
     assert right.received(topic + "#2") == [{"data": "map"}]
 
 
+@pytest.mark.parametrize("first", ["publisher", "subscription"])
+def test_the_best_available_durability_gets_what_a_publisher_stores(
+    graph: Any, pair: Pair, topic: str, first: str
+) -> None:
+    left, right = pair
+    topic = f"{topic}/{first}"
+    if first == "subscription":
+        right.subscribe(topic, "std_msgs/msg/String", durability="best_available")
+        graph.pass_time(0.5)
+    left.advertise(topic, "std_msgs/msg/String", durability="transient_local", depth=1)
+    left.publish(topic, {"data": "map"})
+    if first == "publisher":
+        right.subscribe(topic, "std_msgs/msg/String", durability="best_available")
+    graph.wait_until(lambda: {"data": "map"} in right.received(topic), "the stored message arrives")
+
+
+@pytest.mark.only("memory", "ros1", "ros2")  # over rosbridge the server chooses the durability, once
+def test_the_best_available_durability_excludes_no_publisher(graph: Any, pair: Pair, topic: str) -> None:
+    left, right = pair
+    left.advertise(topic, "std_msgs/msg/String", durability="transient_local", depth=1)
+    left.publish(topic, {"data": "stored"})
+    right.subscribe(topic, "std_msgs/msg/String", durability="best_available")
+    graph.wait_until(lambda: {"data": "stored"} in right.received(topic), "the stored message arrives")
+    right.advertise(topic, "std_msgs/msg/String")
+
+    def heard() -> bool:
+        right.publish(topic, {"data": "passing"})
+        return {"data": "passing"} in right.received(topic)
+
+    graph.wait_until(heard, "the message of a publisher that stores nothing arrives")
+
+
 def test_a_volatile_topic_shows_nothing_of_the_past(graph: Any, pair: Pair, topic: str) -> None:
     left, right = pair
     connected(graph, (left, left), topic, "std_msgs/msg/String")

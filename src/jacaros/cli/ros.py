@@ -198,27 +198,29 @@ def map_command(
 def check_command(file: Path, **graph: Any) -> int:
     """Check that the topics, servers, frames and parameters in the mapping FILE exist in the graph, with the same types.
 
-    Each problem is reported with its line, what was found, and a suggested fix. The exit code is 1 if there is one.
+    Each problem is reported with its line, what was found, and a suggested fix. The exit code is 1 if there is one. A
+    warning names other nodes that publish velocities to the same robot.
     """  # fmt: skip
     from jacaros.artifacts.mapping.file import find_mapping, load_mapping
     from jacaros.cli.graph import listening
     from jacaros.cli.graph.joining import Joined
-    from jacaros.cli.graph.verifying import problems_of
+    from jacaros.cli.graph.verifying import problems_of, warnings_of
     from jacaros.yaml_nodes import Problem, shown
 
     mapping = load_mapping(find_mapping(str(file)) or file)
 
-    async def look(joined: Joined) -> list[Problem]:
-        wanted = any(part.frames for part in mapping.artifacts.values())
-        frames = await listening.frames(joined) if wanted else {}
-        return [
-            each for part in mapping.artifacts.values() for each in await problems_of(joined, part, frames)
-        ]
+    async def look(joined: Joined) -> tuple[list[Problem], list[Problem]]:
+        parts = mapping.artifacts.values()
+        frames = await listening.frames(joined) if any(part.frames for part in parts) else {}
+        problems = [each for part in parts for each in await problems_of(joined, part, frames)]
+        return problems, list(dict.fromkeys(each for part in parts for each in warnings_of(joined, part)))
 
-    problems = _in_graph(look, **graph)
+    problems, warnings = _in_graph(look, **graph)
     lines = mapping.text.splitlines()
     for problem in problems:
         click.echo(shown(mapping.file, lines, problem))
+    for warning in warnings:
+        click.echo(shown(mapping.file, lines, warning, "warning: "))
     count = f"{len(problems)} problem{'s' if len(problems) != 1 else ''}"
     click.echo(f"{count} with this graph" if problems else f"{file} matches this graph", err=bool(problems))
     return 1 if problems else 0

@@ -204,11 +204,16 @@ class Interruption:
     def _interrupt(self, number: int, frame: FrameType | None) -> NoReturn:
         del number
         if not self._told:
-            from jacaros.mas.watchdog import current_step, task_of  # here: most runs end without it
+            from jacaros.mas.watchdog import (  # here: most runs end without it
+                current_step,
+                is_of_user,
+                task_of,
+            )
 
             self._told = True
             if task_of(frame) is not None:
-                self._tell(f"interrupted in the middle of a step: {current_step(frame)}")
+                if is_of_user(frame):  # a second Ctrl+C, or a busy machine: the run itself is at work
+                    self._tell(f"interrupted in the middle of a step: {current_step(frame)}")
             elif self._ending:  # otherwise an import was interrupted, as at the start: nothing is abandoned
                 self._tell("the run has ended; abandoning an operation that did not stop")
         # The exception may occur between the creation of a coroutine and its first step. The process ends anyway.

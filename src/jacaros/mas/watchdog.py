@@ -2,10 +2,12 @@
 run's thread.
 """
 
+import asyncio
 import os
 import sys
 import threading
 from collections.abc import Callable, Iterator, Sequence
+from itertools import takewhile
 from pathlib import Path
 from types import FrameType
 
@@ -101,7 +103,7 @@ def task_of(frame: FrameType | None) -> FrameType | None:
 
 def current_step(frame: FrameType | None) -> str:
     """Return what is being done, for messages: ``agent bob, plan +!find(X) (bob.asl:7)``."""
-    frames = list(_outwards(frame))
+    frames = list(_in_turn(frame))
     host = next((found for found in map(_host, frames) if found is not None), None)
     places = [found for each in frames if (found := _place_in_program(each)) is not None]
     place = "{}:{}".format(*places[0]) if places else _place_of_python(frames)
@@ -112,6 +114,16 @@ def current_step(frame: FrameType | None) -> str:
     called = _own_python(frames) if places else None
     inside = f", in {_place(called)}" if called is not None else ""
     return f"agent {host.name}{doing} ({place}{inside})"
+
+
+def is_of_user(frame: FrameType | None) -> bool:
+    """Return whether an agent's cycle or the user's own Python runs, and not the run itself."""
+    return any(_host(each) is not None or not _is_library(each) for each in _in_turn(frame))
+
+
+def _in_turn(frame: FrameType | None) -> Iterator[FrameType]:
+    """Iterate over the frames in a turn of the event loop, without the program that started the loop."""
+    return takewhile(lambda each: each.f_code is not asyncio.Handle._run.__code__, _outwards(frame))
 
 
 def _outwards(frame: FrameType | None) -> Iterator[FrameType]:

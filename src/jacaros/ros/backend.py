@@ -115,6 +115,10 @@ class Subscription(Protocol):
     def publisher_count(self) -> int:
         """Number of connected publishers."""
 
+    @property
+    def latched(self) -> bool:
+        """Whether stored messages are received, which may be old; False if unknown."""
+
     def close(self) -> None:
         """Leave the topic; the callback is no longer called."""
 
@@ -247,6 +251,13 @@ class Backend(Protocol):
 
     def receivers(self, topic: str) -> int:
         """Return the number of subscriptions of this node that receive the messages of a topic (absolute name)."""
+
+    async def other_publishers(self, topic: str) -> list[str]:
+        """Return the other nodes that publish a topic (absolute name), sorted; over rosbridge those beside the server.
+
+        Raises:
+            ServiceError: as `contents`.
+        """
 
     def publisher(self, topic: str, type_name: str, qos: QoS = DEFAULT_QOS) -> Publisher:
         """Make a publisher. Raises `NameInvalid` or `UnknownInterface`."""

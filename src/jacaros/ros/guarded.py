@@ -26,6 +26,7 @@ class Guarded:
         self._actions: Counter[Named] = Counter()
         self._motions: list[Callable[[], None]] = []
         self._drives: list[Callable[[], None]] = []
+        self._reported: set[Named] = set()
 
     @property
     def topics(self) -> list[Named]:
@@ -56,6 +57,12 @@ class Guarded:
         if group[item] == 1:
             self.on_change()
         return remove
+
+    def is_news(self, publisher: Named) -> bool:
+        """Return whether a topic and another node that publishes on it are reported for the first time."""
+        news = publisher not in self._reported
+        self._reported.add(publisher)
+        return news
 
     def on_standstill(self, command: Callable[[], None]) -> Callable[[], None]:
         """Call *command*, which commands zero velocity, when the run is paused. Return a function that removes it."""

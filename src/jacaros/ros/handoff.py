@@ -89,7 +89,7 @@ class Handoff(Generic[T]):
         self._deliver(item)
 
 
-def post(loop: asyncio.AbstractEventLoop, callback: Callable[..., None], *arguments: Any) -> bool:
+def post(loop: asyncio.AbstractEventLoop, callback: Callable[..., object], *arguments: Any) -> bool:
     """Call *callback* on *loop*, from any thread. Return False if the loop has ended."""
     try:
         loop.call_soon_threadsafe(callback, *arguments)

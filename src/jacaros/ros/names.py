@@ -3,8 +3,9 @@
 Every backend passes absolute names to its middleware, so namespaces and remapping need no support there.
 """
 
+import difflib
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Iterable, Mapping
 from functools import cache
 
 from jacaros.ros.errors import NameInvalid
@@ -86,6 +87,21 @@ def result_type(action: str) -> str:
 def feedback_type(action: str) -> str:
     """Return the feedback message of an action type given in full form."""
     return f"{action}_Feedback"
+
+
+def near_names(name: str, names: Iterable[str], alike: Collection[str] = ()) -> list[str]:
+    """Return up to three names that *name* may mean: with the same last part, or a similar spelling.
+
+    Args:
+        name: the unknown name.
+        names: the known names.
+        alike: those of the same type; if there are any, only they are returned, and any of them if none is similar.
+    """
+    known = list(alike or names)
+    last = name.rpartition("/")[2]
+    same = [each for each in known if each.rpartition("/")[2] == last]
+    spelt = difflib.get_close_matches(name, known, n=3, cutoff=0.7)
+    return (list(dict.fromkeys([*same, *spelt])) or list(alike))[:3]
 
 
 class NodeNames:

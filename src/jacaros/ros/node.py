@@ -2,6 +2,7 @@
 
 import asyncio
 import sys
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -243,6 +244,17 @@ class Node:
     def receivers(self, topic: str) -> int:
         """Return the number of subscriptions of this node that receive the messages of a topic (absolute name)."""
         return sum(getattr(member, "received_topic", None) == topic for member in self.members)
+
+    async def other_publishers(self, topic: str) -> list[str]:
+        """Return the other nodes that publish a topic; also one of our own name, if it has more than we opened."""
+        nodes = Counter(await self._publishers(topic))
+        nodes[self.node_name] -= sum(getattr(member, "sent_topic", None) == topic for member in self.members)
+        return sorted(node or "an unknown node" for node, number in nodes.items() if number > 0)
+
+    async def _publishers(self, topic: str) -> list[str]:
+        """Return the node of each publisher of a topic, as the graph reports them."""
+        info = (await self.contents()).topics.get(topic)
+        return [] if info is None else [each.node for each in info.publishers]
 
     def close_actions(self) -> None:
         """Close the clients and servers of actions, which inform their peers."""

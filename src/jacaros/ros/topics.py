@@ -36,7 +36,7 @@ class _TopicEnd(Generic[N]):
 
     @property
     def latched(self) -> bool:
-        """Whether late subscriptions receive the last message."""
+        """Whether messages are stored for late subscriptions, or received from before this one."""
         return self.qos.durability == "transient_local"
 
     def close(self) -> None:
@@ -64,6 +64,11 @@ class TopicPublisher(_TopicEnd[N]):
     def __init__(self, node: N, topic: str, type_name: str, qos: QoS) -> None:
         super().__init__(node, topic, type_name, qos)
         self._class = node.factory.message_class(type_name)
+
+    @property
+    def sent_topic(self) -> str:
+        """Absolute name of the topic that this publishes on, see `Node.other_publishers`."""
+        return self.topic
 
     def message(self, **fields: Any) -> Any:
         """Make a message of the topic's type."""

@@ -1,11 +1,15 @@
 """Operations over services: outputs, reasons, refusals, and requests that do not fit."""
 
+import asyncio
 from typing import Any
 
+import pytest
 from robot_lab import Lab, in_lab
 
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.env import Out, operation
+from jacaros.ros.action import SERVER_LOST_AFTER
+from jacaros.ros.open import open_backend
 
 TRIGGER, SET_BOOL = "std_srvs/srv/Trigger", "std_srvs/srv/SetBool"
 
@@ -30,6 +34,11 @@ class Arm(RosArtifact):
         response = await self.call(self.starter, 2.0)
         success.set(response.success)
         message.set(response.message)
+
+    @operation
+    async def ask_slowly(self) -> None:
+        """Wait for an answer for up to a minute."""
+        await self.call(self.client("/slow", TRIGGER), 60.0)
 
     @operation
     async def empty(self) -> None:
@@ -61,6 +70,25 @@ def test_a_service_that_refuses_fails_the_operation_that_wants_success() -> None
         out = Out()
         await lab.do(artifact, "grip", True, out)
         assert out.value == "closed"
+
+    in_lab(body, None)
+
+
+def test_a_server_that_disappears_during_a_call_is_lost_and_not_late() -> None:
+    async def body(lab: Lab) -> None:
+        graph: Any = lab.backend
+        base = open_backend("memory", lab.clock, "base", log=lambda text: None, graph=graph.graph)
+        await base.start()
+        never = asyncio.get_running_loop().create_future()
+        base.service("/slow", TRIGGER, lambda request: never)
+        arm = await lab.make(Arm)
+        waiting = lab.begin(arm, "ask_slowly")
+        await lab.sleep(1)
+        graph.graph.vanish("/base")
+        began = lab.clock.elapsed
+        await waiting.done
+        assert waiting.reason == "server_lost"
+        assert lab.clock.elapsed - began == pytest.approx(SERVER_LOST_AFTER)
 
     in_lab(body, None)
 

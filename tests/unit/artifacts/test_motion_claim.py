@@ -1,8 +1,12 @@
 """The motions of a robot: no wake-up is lost, and all that drive or wait can be aborted."""
 
+import asyncio
+
 from jacaros.artifacts.robots.motion_claim import Claim, Motions, motions_of
-from jacaros.clock import VirtualClock, run
+from jacaros.clock import VirtualClock, WallClock, run
+from jacaros.env.values import Structure
 from jacaros.ros.open import open_backend
+from jacaros.ros.ros_clock import RosClock
 
 
 def test_a_wake_up_before_the_wait_is_not_lost() -> None:
@@ -17,6 +21,23 @@ def test_a_wake_up_before_the_wait_is_not_lost() -> None:
         assert clock.elapsed == 1
 
     run(main, clock)
+
+
+def test_the_first_message_of_clock_does_not_count_as_a_jump() -> None:
+    async def main() -> None:
+        clock = RosClock(lambda text: None)
+        stopped: list[bool] = []
+        claim = Claim(lambda: stopped.append(True))
+        for time, gap in ((1000.0, None), (990.0, Structure("clock_jumped", (-10.0,)))):
+            waiting = asyncio.ensure_future(claim.wait(clock, 60.0))
+            await asyncio.sleep(0)
+            clock.move_to(time)
+            claim.wake()
+            await waiting
+            assert claim.gap == gap
+        assert stopped == [True]
+
+    run(main, WallClock())
 
 
 def test_abort_stops_and_wakes_all_motions() -> None:

@@ -203,8 +203,8 @@ def test_a_topic_without_publishers_is_logged_after_some_seconds() -> None:
         await lab.sleep(10)
         [told] = lab.logged
         assert told == (
-            "[compass] no publisher on topic /odomm (nav_msgs/msg/Odometry); still listening; "
-            "is the node that publishes it running?"
+            "[compass] no publisher on topic /odomm (nav_msgs/msg/Odometry); still listening\n"
+            "  help: did you mean `/odom`? `--namespace NAME` and `--remap OLD:=NEW` change the names of a run"
         )
 
     in_lab(body)

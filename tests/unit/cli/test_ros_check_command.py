@@ -39,6 +39,16 @@ def test_an_unknown_type_is_reported_once(capsys: pytest.CaptureFixture[str], tm
             "did you mean `odom`?",
         ),
         (
+            "properties:\n  pose: {topic: wheels, type: nav_msgs/msg/Odometry}\n",
+            "no node publishes `/wheels`",
+            "did you mean `odom`?",
+        ),
+        (
+            "operations:\n  go: {action: navigate, type: irobot_create_msgs/action/Undock}\n",
+            "no node offers the action `/navigate`",
+            "did you mean `undock`?",
+        ),
+        (
             "properties:\n  pose: {topic: cmd_vel}\n",
             "robot.yaml:2:17: no node publishes `/cmd_vel`; it has only subscriptions, by /world",
             "`publish`",

@@ -231,3 +231,17 @@ def test_a_timeout_that_is_the_answer_is_not_taken_for_having_to_wait() -> None:
             await in_thread(loop, asking, "asking")
 
     run(main, WallClock())
+
+
+def test_a_closed_handoff_delivers_nothing_that_comes_later() -> None:
+    async def main() -> list[int]:
+        got: list[int] = []
+        handoff = Handoff[int](asyncio.get_running_loop(), 10, got.append)
+        handoff.close()
+        in_other_thread(lambda: handoff.put(1))
+        handoff.put_here(2)
+        for _ in range(5):
+            await asyncio.sleep(0)
+        return got
+
+    assert run(main, WallClock()) == []

@@ -391,3 +391,30 @@ def _after(steps: int, call: Callable[[], None], intervene: Callable[[], None]) 
     finally:
         sys.settrace(before)
     return seen >= steps
+
+
+def test_a_velocity_that_a_signal_overtakes_is_followed_by_zero() -> None:
+    sent: list[str] = []
+    lifetime = Lifetime(sent.append)
+    lifetime.add(lambda: sent.append("zero"))
+
+    def publish(velocity: str) -> None:
+        lifetime.stop()  # a signal comes between the check and the publishing
+        sent.append(velocity)
+
+    lifetime.send(publish, "old velocity")
+    assert sent == ["zero", "old velocity", "zero"]
+    lifetime.left()
+
+
+def test_a_hook_that_is_removed_while_the_node_leaves_stops_its_robot_once_more() -> None:
+    sent: list[str] = []
+    lifetime = Lifetime(sent.append)
+    remove = lifetime.add(lambda: sent.append("zero"))
+    lifetime.stop()
+    sent.clear()  # as if the velocity of another thread had followed
+    remove()
+    assert sent == ["zero"]
+    remove()
+    assert sent == ["zero"]
+    lifetime.left()

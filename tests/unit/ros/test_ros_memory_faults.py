@@ -267,3 +267,49 @@ def test_parameters_cannot_be_reached_in_an_interrupted_graph() -> None:
         assert await here.parameters("/there").get("speed", timeout=1.0) == 1.0
 
     play(scene)
+
+
+def test_two_delays_add_up() -> None:
+    lab = Lab()
+
+    async def main() -> None:
+        await lab.open()
+        lab.graph.disturb("/n", both(delayed(1.0), delayed(2.0)))
+        await lab.publish(1)
+        await lab.clock.sleep(5.0)
+
+    run(main, lab.clock)
+    assert lab.got == [(3.0, 0)]
+
+
+def test_what_is_late_does_not_reach_a_closed_subscription() -> None:
+    lab = Lab()
+
+    async def main() -> None:
+        _, there = await lab.open()
+        got: list[Any] = []
+        subscription = there.subscription("/n", INT, got.append)
+        lab.graph.disturb("/n", delayed(1.0))
+        await lab.publish(1)
+        subscription.close()
+        await lab.clock.sleep(5.0)
+        assert got == []
+
+    run(main, lab.clock)
+    assert lab.got, "the other subscription has heard it"
+
+
+def test_one_silence_is_logged_once_however_many_deadlines_pass() -> None:
+    lab = Lab()
+
+    async def main() -> None:
+        here, there = await lab.open()
+        quality = QoS(deadline=0.5)
+        there.subscription("/d", INT, lambda sample: None, quality)
+        publisher = here.publisher("/d", INT, quality)
+        for _ in range(2):
+            publisher.publish(publisher.message(data=1))
+            await lab.clock.sleep(10.0)
+
+    run(main, lab.clock)
+    assert sum("deadline" in line for line in lab.log) == 2

@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from jacaros.ros.errors import NameInvalid
-from jacaros.ros.names import NodeNames, message_type, service_type
+from jacaros.ros.names import NodeNames, message_type, near_names, service_type
 
 segments = st.builds(str.__add__, st.sampled_from("abZ_"), st.text("abZ_09", max_size=6))
 
@@ -65,3 +65,11 @@ def test_resolving_twice_changes_nothing(name: list[str], node: str, namespace: 
     absolute = names.resolve("/".join(name))
     assert names.resolve(absolute) == absolute
     assert absolute == "".join(f"/{part}" for part in [*namespace, *name])
+
+
+def test_a_name_of_the_same_type_is_suggested_before_one_of_a_similar_spelling() -> None:
+    known = ["/odometry", "/camera/info", "/base/wheels", "/robot_1/odom"]
+    assert near_names("/odom", known) == ["/robot_1/odom", "/odometry"]
+    assert near_names("/odom", known, alike=["/base/wheels"]) == ["/base/wheels"]
+    assert near_names("/odom", known, alike=["/base/wheels", "/robot_1/odom"]) == ["/robot_1/odom"]
+    assert near_names("/nothing", known) == []

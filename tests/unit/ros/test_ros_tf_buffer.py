@@ -219,3 +219,22 @@ def test_a_restart_of_time_clears_the_past() -> None:
     ]
     with pytest.raises(TransformUnavailable, match="unknown frame map"):
         known.lookup("map", "base")
+
+
+def test_between_two_parents_the_old_one_is_valid() -> None:
+    known = buffer()
+    known.insert("left", "box", at(1.0, stamp=1.0))
+    known.insert("right", "box", at(5.0, stamp=2.0))
+    assert known.lookup("left", "box", 1.5).translation == (1.0, 0.0, 0.0)
+    with pytest.raises(TransformUnavailable, match="not connected"):
+        known.lookup("right", "box", 1.5)
+
+
+def test_a_way_up_and_down_turns_at_the_common_ancestor() -> None:
+    known = buffer()
+    known.insert("map", "camera", at(1.0, 0.0, math.pi / 2, stamp=1.0))
+    known.insert("map", "box", at(1.0, 2.0, stamp=1.0))
+    found = known.lookup("camera", "box", 1.0)
+    assert found.translation == pytest.approx((2.0, 0.0, 0.0)), (
+        "two metres in front of a camera that looks along y"
+    )

@@ -8,6 +8,7 @@ from typing import Any, ClassVar, Protocol, TypeVar
 from jacaros.artifacts.kit.connection import MATCH_TIMEOUT, Connection, Matching, MissingTopic
 from jacaros.artifacts.kit.faults import Faults, Listener
 from jacaros.artifacts.kit.options import Reader, WrongOption, read_arguments, text, watching
+from jacaros.artifacts.kit.other_publishers import OtherPublishers
 from jacaros.artifacts.kit.services import ServedOperation
 from jacaros.env.artifact import Artifact, internal_operation
 from jacaros.env.errors import InvalidArtifact
@@ -108,25 +109,45 @@ class ConnectedArtifact(Artifact):
         return "".join(f"/{part}" for part in parts if part)
 
     def robot_topic(self, name: str) -> str:
-        """Return the robot's own topic *name*; a leading slash makes no difference."""
-        return f"{self.robot_prefix}/{name.lstrip('/')}"
+        """Return a name below the robot's namespace, which is below that of the node; an absolute name stays."""
+        if name.startswith(("/", "~")) or not self.robot_prefix:
+            return name
+        return f"{self.robot_prefix.lstrip('/')}/{name}"
+
+    @property
+    def robot_namespace(self) -> str:
+        """Absolute namespace of the robot's topics, including that of the node; empty for the root."""
+        return self.ros.resolve(self.robot_topic("name")).rpartition("/")[0]
 
     @property
     def frame_prefix(self) -> str:
-        """Prefix of the robot's frames: the prefix of its topics, including the node's namespace."""
-        return self.ros.resolve(self.robot_topic("frame")).rpartition("/")[0].strip("/")
+        """Prefix of the robot's frames: the namespace of its topics, without leading slash."""
+        return self.robot_namespace.lstrip("/")
 
     def robot_property(self, name: str) -> str:
         """Return the name of a property, prefixed with the robot's name where the thesis does so."""
         return f"{self.robot}_{name}" if self.robot and self.robot_in_properties else name
 
     def publisher(self, topic: str, type_name: str, qos: QoS = DEFAULT_QOS) -> Publisher:
-        """Publish on the robot's *topic* until the artifact is disposed."""
+        """Publish on the robot's *topic* until the artifact is disposed.
+
+        Of a topic of velocities, the property ``other_publisher(Topic,Node)`` shows other nodes that publish on it.
+        """
         made = self.kept(self.ros.publisher(self.robot_topic(topic), type_name, qos))
         full = message_type(type_name)
         if full in VELOCITIES:
             self.at_dispose(guarded_by(self.ros).add_topic(made.topic, full))
+            changed = partial(self.start, self.show_other_publisher, made.topic)
+            self.kept(OtherPublishers(self.ros, self.clock, made.topic, changed, self.log))
         return made
+
+    @internal_operation
+    def show_other_publisher(self, topic: str, node: str, publishes: bool) -> None:
+        """Show the property ``other_publisher(Topic,Node)``, or remove it."""
+        if publishes:
+            self.define_property("other_publisher", topic, node)
+        else:
+            self.remove_property("other_publisher", topic, node)
 
     def matching_of(
         self,
@@ -204,14 +225,16 @@ class ConnectedArtifact(Artifact):
             on_event: called with problems of the topic; without it they are logged.
         """
         name = self.robot_topic(topic)
-        listener = Listener(name, callback, partial(self._steps.setting.log_error, self.name))
+        listener = Listener(
+            self.ros.resolve(name), callback, partial(self._steps.setting.log_error, self.name)
+        )
         watch = self.options.get("watch_connection", False)
         if watch is False:
             made = self.kept(self.ros.subscription(name, type_name, listener, qos, on_event))
         else:
             expire = None if watch is True else float(str(watch))
             made = self._watched(name, type_name, listener, qos, on_event, expire)
-        self.kept(MissingTopic(self.ros, self.clock, made, type_name, self.log))
+        self.kept(MissingTopic(self.ros, self.clock, made, type_name, self.log, lambda: listener.heard))
         return made
 
     def _watched(

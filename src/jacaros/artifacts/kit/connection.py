@@ -1,14 +1,19 @@
 """Publishers and subscribers at the other end: the property ``connected(Topic)``, a warning about topics without a
 publisher, and the wait for the first subscriber. Messages sent before that are lost without an error."""
 
+import asyncio
 import math
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from weakref import WeakKeyDictionary, WeakSet
 
 from jacaros.artifacts.kit.options import Reader, one_of, positive
 from jacaros.clock import Clock
 from jacaros.ros.backend import Backend, Publisher, Sample, Subscription
+from jacaros.ros.errors import RosError
+from jacaros.ros.graph import GraphContents, latching
+from jacaros.ros.names import message_type
 from jacaros.ros.waiting import MISSING_AFTER
 
 LOOK = 0.5
@@ -95,7 +100,7 @@ def _watch(backend: Backend, connection: Connection) -> None:
 
 
 class MissingTopic:
-    """Log a warning if no node publishes a topic after `MISSING_AFTER` seconds.
+    """Log a warning if a topic has no publisher after `MISSING_AFTER` seconds, or one whose latched message was missed.
 
     Nothing is logged while the graph cannot be reached; the backend reports that.
 
@@ -105,6 +110,7 @@ class MissingTopic:
         subscription: subscription of the topic.
         type_name: message type.
         log: called with one line.
+        heard: returns whether a message has arrived.
     """
 
     def __init__(
@@ -114,11 +120,13 @@ class MissingTopic:
         subscription: Subscription,
         type_name: str,
         log: Callable[[str], None],
+        heard: Callable[[], bool],
     ) -> None:
         self._backend, self._clock = backend, clock
         self._subscription, self._type_name = subscription, type_name
-        self._log = log
+        self._log, self._heard = log, heard
         self._connected = backend.connected
+        self._search: asyncio.Task[None] | None = None
         self._wait()
 
     def _wait(self) -> None:
@@ -128,15 +136,45 @@ class MissingTopic:
         connected_before, self._connected = self._connected, self._backend.connected
         if not (connected_before and self._connected):
             self._wait()  # discovery is incomplete just after the graph was found
-        elif self._subscription.publisher_count == 0:
+        elif not self._heard():
+            self._search = asyncio.ensure_future(self._report())
+
+    async def _report(self) -> None:
+        contents = GraphContents()
+        with suppress(RosError):
+            contents = await self._backend.contents()
+        if self._subscription.publisher_count == 0:
+            self._report_missing(contents)
+        elif not self._subscription.latched:
+            self._report_latched(contents)
+
+    def _report_latched(self, contents: GraphContents) -> None:
+        topic = self._subscription.topic
+        nodes = latching(contents.topics.get(topic))
+        if nodes:
             self._log(
-                f"no publisher on topic {self._subscription.topic} ({self._type_name}); still listening; "
-                "is the node that publishes it running?"
+                f"no message on topic {topic}: {nodes} latches its messages, and earlier ones were not requested\n"
+                "  help: write `qos: latched` (in Python: qos=LATCHED)"
             )
+
+    def _report_missing(self, contents: GraphContents) -> None:
+        topic = self._subscription.topic
+        near = contents.near_topics(topic, message_type(self._type_name), "publishers")
+        means = " or ".join(f"`{name}`" for name in near)
+        self._log(
+            f"no publisher on topic {topic} ({self._type_name}); still listening"
+            + (
+                f"\n  help: did you mean {means}? `--namespace NAME` and `--remap OLD:=NEW` change the names of a run"
+                if near
+                else "; is the node that publishes it running?"
+            )
+        )
 
     def close(self) -> None:
         """Stop logging."""
         self._timer.cancel()
+        if self._search is not None:
+            self._search.cancel()
 
 
 MATCH_TIMEOUT = 3.0

@@ -150,11 +150,14 @@ class Listener:
     """
 
     def __init__(self, topic: str, callback: Callable[[Sample], None], complain: Complain) -> None:
+        self.heard = False
+        """Whether a message has arrived."""
         self._topic, self._callback, self._complain = topic, callback, complain
         self._faults: dict[str, int] = {}
 
     def __call__(self, sample: Sample) -> None:
         """Handle a message."""
+        self.heard = True
         try:
             self._callback(sample)
         except Exception as error:

@@ -40,6 +40,9 @@ class RosArtifact(SensingArtifact):
         connected(Topic): a node publishes the topic, as far as is known; one for each topic that the artifact
             subscribes to, with its absolute name as text. Only with `watch_connection`.
 
+        other_publisher(Topic, Node): another node publishes on the topic of velocities that this artifact publishes
+            on, so the robot follows both; one for each node. The run's own guard does not count.
+
     Signals:
         bad_message(Topic, Why): a message was bad; sent on the first, 10th, 100th, … occurrence of a kind. Why is
             ``not_finite(What)``, ``out_of_range(What)``, ``wrong_frame(Frame)``, ``out_of_order(Seconds)``,
@@ -58,8 +61,8 @@ class RosArtifact(SensingArtifact):
             fields: fields of the request.
 
         Raises:
-            OperationFailed: ``service_unavailable(Name)``, ``service_timeout(Seconds)``, ``service_failed(Name)``,
-                ``refused(Text)``, or ``wrong_value(Field)`` if the fields do not match the type.
+            OperationFailed: ``service_unavailable(Name)``, ``service_timeout(Seconds)``, ``server_lost``,
+                ``service_failed(Name)``, ``refused(Text)``, or ``wrong_value(Field)`` if the fields do not match the type.
         """
         try:
             return await self.step(call(client, timeout, fields, must_succeed))

@@ -7,6 +7,7 @@ R                             meaning
 ============================  ======================================================================================
 service_unavailable(Name)     no node offers the service
 service_timeout(S)            the server exists, but did not answer within S seconds
+server_lost                   the server disappeared during the call; it is unknown whether it was executed
 service_failed(Name)          the server failed, or the connection to it broke
 refused(Text)                 it answered ``success: false``, and the operation treats that as a failure
 ============================  ======================================================================================
@@ -38,7 +39,7 @@ from jacaros.env.operation import OperationOutcome, OperationRequest
 from jacaros.env.values import Atom, Structure
 from jacaros.ros.action import Abort, ServerGoal
 from jacaros.ros.backend import Backend, Client, Handler
-from jacaros.ros.errors import CallTimedOut, RosError, ServiceError, ServiceUnavailable
+from jacaros.ros.errors import CallTimedOut, RosError, ServerGone, ServiceError, ServiceUnavailable
 from jacaros.ros.message import field_names
 from jacaros.ros.names import response_type, result_type
 
@@ -163,6 +164,18 @@ class CallFailure(Exception):
         self.functor, self.arguments = functor, arguments
 
 
+def failure_reason(error: RosError, name: object, timeout: object) -> tuple[str, *tuple[object, ...]]:
+    """Return the functor and arguments of the reason for a call that failed, with the name of what was called."""
+    match error:
+        case ServiceUnavailable():
+            return "service_unavailable", name
+        case CallTimedOut():
+            return "service_timeout", timeout
+        case ServerGone():
+            return ("server_lost",)
+    return "service_failed", name
+
+
 async def call(client: Client, timeout: float, fields: Mapping[str, Any], must_succeed: bool) -> Any:
     """Call a service and return its response.
 
@@ -179,12 +192,8 @@ async def call(client: Client, timeout: float, fields: Mapping[str, Any], must_s
     name = Atom(client.name.lstrip("/"))
     try:
         response = await client.call(fields, timeout)
-    except ServiceUnavailable as error:
-        raise CallFailure(str(error), "service_unavailable", name) from None
-    except CallTimedOut as error:
-        raise CallFailure(str(error), "service_timeout", timeout) from None
     except ServiceError as error:
-        raise CallFailure(str(error), "service_failed", name) from None
+        raise CallFailure(str(error), *failure_reason(error, name, timeout)) from None
     if must_succeed and not succeeded(client, response):
         text = next((str(getattr(response, each)) for each in MESSAGES if getattr(response, each, "")), "")
         told = f": {text}" if text else ""

@@ -107,12 +107,6 @@ class MappedArtifact(RosArtifact):
         given = super().robot_prefix
         return given or (f"/{self.part.namespace}" if self.part.namespace else "")
 
-    def robot_topic(self, name: str) -> str:
-        """Return a name below the robot's namespace, which is below that of the node; an absolute name stays."""
-        if name.startswith(("/", "~")) or not self.robot_prefix:
-            return name
-        return f"{self.robot_prefix.lstrip('/')}/{name}"
-
     @property
     def tf_prefix(self) -> str:
         """Prefix of frame names."""

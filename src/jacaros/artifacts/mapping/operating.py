@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from typing import Any, Protocol
 
 from jacaros.artifacts.kit.acting import error_code, error_text
-from jacaros.artifacts.kit.services import MESSAGES
+from jacaros.artifacts.kit.services import MESSAGES, failure_reason
 from jacaros.artifacts.mapping.checking import check_answer, message_types
 from jacaros.artifacts.mapping.declared import FieldPart, OperationKind, OperationPart, Source, Success
 from jacaros.artifacts.mapping.decoding import Read, Unshowable, reader
@@ -22,13 +22,11 @@ from jacaros.env.values import Atom, plain
 from jacaros.ros.action import ActionClient
 from jacaros.ros.backend import Client
 from jacaros.ros.errors import (
-    CallTimedOut,
     CapabilityMissing,
     NameInvalid,
     ParameterRefused,
     ParameterUnknown,
     RosError,
-    ServiceUnavailable,
 )
 from jacaros.ros.fields import FieldType
 from jacaros.yaml_nodes import Problem
@@ -270,16 +268,11 @@ class _ParameterOperation:
 
     def _fail(self, error: RosError) -> None:
         node = Atom(self._parameters.node.lstrip("/"))
-        timeout = self._part.timeout
         if isinstance(error, ParameterUnknown):
             self._host.fail(str(error), "parameter_unknown", Atom(self._name))
         if isinstance(error, ParameterRefused):
             self._host.fail(str(error), "parameter_refused", Atom(self._name))
-        if isinstance(error, ServiceUnavailable):
-            self._host.fail(str(error), "service_unavailable", node)
-        if isinstance(error, CallTimedOut):
-            self._host.fail(str(error), "service_timeout", timeout)
-        self._host.fail(str(error), "service_failed", node)
+        self._host.fail(str(error), *failure_reason(error, node, self._part.timeout))
 
 
 class _SetParameter(_ParameterOperation):

@@ -18,10 +18,10 @@ from jacaros.artifacts.mapping.rows import Extract, Row, extractor
 from jacaros.artifacts.mapping.type_search import TypeSearch
 from jacaros.clock import Timer
 from jacaros.env.values import Structure
-from jacaros.ros.backend import Sample
+from jacaros.ros.backend import Sample, Subscription
 from jacaros.ros.errors import CapabilityMissing
 from jacaros.ros.message import to_seconds
-from jacaros.ros.qos import SENSOR_DATA, QoS
+from jacaros.ros.qos import SENSOR_DATA, STATE, QoS
 from jacaros.trace import Cause
 from jacaros.yaml_nodes import Problem
 
@@ -33,7 +33,8 @@ class TopicMultiplexer:
         host: the artifact.
         written: the topic.
         type_name: message type; None: found at run time.
-        qos: the quality of service in the mapping.
+        qos: the quality of service in the mapping; None: that of a sensor, and a property also receives stored
+            messages.
         updaters: receive the messages.
     """
 
@@ -47,8 +48,9 @@ class TopicMultiplexer:
     ) -> None:
         self.updaters = updaters
         self._host, self._written, self._type_name = host, written, type_name
-        self._qos = qos if qos is not None else SENSOR_DATA
+        self._qos = qos
         self._stamps: Stamps | None = None
+        self._subscription: Subscription | None = None
 
     def begin(self, search: TypeSearch) -> None:
         """Subscribe as soon as the type is known."""
@@ -67,27 +69,27 @@ class TopicMultiplexer:
         self.updaters = [updater for updater in self.updaters if updater.ready]
         if not self.updaters:
             return
-        kept = (
-            self._qos.durability == "transient_local"
-        )  # latched messages are old when they arrive, and valid
-        if (
-            not kept
-            and "header" in host.ros.fields(type_name)
-            and any(updater.is_state for updater in self.updaters)
-        ):
+        if "header" in host.ros.fields(type_name) and any(updater.is_state for updater in self.updaters):
             topic = host.ros.resolve(host.robot_topic(written.text))
             self._stamps = Stamps(host.faults_at(topic), host.clock)
         report = host.on_topic_event(written.text, written.place)
         try:
-            host.subscription(written.text, type_name, self._take, self._qos, report)
+            states = any(not updater.part.signal for updater in self.updaters)
+            qos = self._qos or (STATE if states else SENSOR_DATA)
+            self._subscription = host.subscription(written.text, type_name, self._take, qos, report)
         except CapabilityMissing as error:
             host.fail(f"{host.mapping.where(written.place)}: {error}", "ros_error", host.name)
 
     def _take(self, sample: Sample) -> None:
-        old = self._stamps is not None and not self._stamps.accept(_stamp_of(sample.message), sample.stamp)
+        stamps = self._stamps
+        # Latched messages are old when they arrive, and valid.
+        latched = self._subscription is not None and self._subscription.latched
+        old = (
+            not latched and stamps is not None and not stamps.accept(_stamp_of(sample.message), sample.stamp)
+        )
         for updater in self.updaters:
             if not (old and updater.is_state):
-                updater.take(sample)
+                updater.take(sample, latched)
 
 
 def _stamp_of(message: Any) -> float:
@@ -112,7 +114,7 @@ class Updater:
         self._held: tuple[list[Row], Cause | None] | None = None
         self._pause: Timer | None = None
         self._taps = host.taps.get(part.name, ())
-        self._latched = part.qos is not None and part.qos.durability == "transient_local"
+        self._latched = False
         host.at_dispose(self._end_pause)
         if part.each is not None and not part.signal:
             host.elements[part.name] = Elements(host, part)
@@ -150,8 +152,9 @@ class Updater:
         """Prepare for messages of a type; *problems* receives mismatches."""
         self._extract = extractor(self.part, type_name, self._host.ros, problems)
 
-    def take(self, sample: Sample) -> None:
-        """Handle a message."""
+    def take(self, sample: Sample, latched: bool) -> None:
+        """Handle a message; *latched*: its stamp may be old."""
+        self._latched = latched
         if self._frame is None or self._is_in_frame(sample, self._frame):
             self.take_message(sample.message, sample.cause, sample.topic)
 

@@ -6,15 +6,14 @@ from typing import ClassVar, NoReturn, TypeVar
 
 from jacaros.artifacts.kit.options import positive
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
+from jacaros.artifacts.kit.services import failure_reason
 from jacaros.env.artifact import Out, internal_operation, operation
 from jacaros.env.values import Atom, Structure
 from jacaros.ros.errors import (
-    CallTimedOut,
     ParameterRefused,
     ParameterUnknown,
     RosError,
     ServiceError,
-    ServiceUnavailable,
     TransformUnavailable,
 )
 from jacaros.ros.parameter import ParameterValue
@@ -32,8 +31,8 @@ class ArtRos(RosArtifact):
     """Shows the connection to ROS, and lets agents query the graph.
 
     Names of nodes are below the robot's name, if the artifact was made with one; with a leading slash they are
-    absolute.  An operation that gets no answer fails with ``service_unavailable(Name)``, ``service_timeout(Seconds)`` or
-    ``service_failed(Name)``.
+    absolute.  An operation that gets no answer fails with ``service_unavailable(Name)``, ``service_timeout(Seconds)``,
+    ``server_lost`` or ``service_failed(Name)``.
 
     Options:
         timeout(S): seconds that operations wait for an answer (5).
@@ -90,7 +89,9 @@ class ArtRos(RosArtifact):
 
         Fails with ``parameter_unknown(Name)`` if the node has no such parameter.
         """
-        found = await self._asked(self.ros.parameters(self._node(node)).get(name, self._patience), node, name)
+        found = await self._asked(
+            self.ros.parameters(self.robot_topic(node)).get(name, self._patience), node, name
+        )
         value.set(list(found) if isinstance(found, bytes) else found)
 
     @operation
@@ -99,7 +100,7 @@ class ArtRos(RosArtifact):
 
         Fails with ``parameter_unknown(Name)``, or with ``parameter_refused(Name)`` if the node refuses the value.
         """
-        parameters = self.ros.parameters(self._node(node))
+        parameters = self.ros.parameters(self.robot_topic(node))
         wanted = _parameter_value(value)
         if wanted is None:
             self.fail(
@@ -114,7 +115,7 @@ class ArtRos(RosArtifact):
     @operation
     async def list_parameters(self, node: str, names: Out) -> None:
         """Give the names of a node's parameters, as a list of texts."""
-        names.set(await self._asked(self.ros.parameters(self._node(node)).names(self._patience), node))
+        names.set(await self._asked(self.ros.parameters(self.robot_topic(node)).names(self._patience), node))
 
     # ---- the graph
 
@@ -173,9 +174,6 @@ class ArtRos(RosArtifact):
         assert isinstance(patience, float)
         return patience
 
-    def _node(self, name: str) -> str:
-        return str(name) if name.startswith(("/", "~")) else f"{self.robot_prefix}/{name}"
-
     async def _asked(self, question: Awaitable[T], whom: str, what: str = "") -> T:
         """Wait for an answer; a step boundary."""
         try:
@@ -191,12 +189,8 @@ class ArtRos(RosArtifact):
                 self.fail(str(error), "parameter_refused", what or whom)
             case TransformUnavailable():
                 self.fail(str(error), "transform_unavailable", Atom(error.reason))
-            case ServiceUnavailable():
-                self.fail(str(error), "service_unavailable", whom)
-            case CallTimedOut():
-                self.fail(str(error), "service_timeout", self._patience)
             case ServiceError():
-                self.fail(str(error), "service_failed", whom)
+                self.fail(str(error), *failure_reason(error, whom, self._patience))
         self.fail(str(error), "ros_error", type(error).__name__)
 
 

@@ -68,6 +68,7 @@ class Claim:
             return
         waiting = self._waiting = asyncio.get_running_loop().create_future()
         began, set_to = clock.elapsed, clock.now() - clock.elapsed
+        unknown = clock.now() == 0.0  # a clock that follows /clock before its first message
         timer = None if seconds is None else clock.call_later(seconds, self.wake)
         try:
             await waiting
@@ -76,7 +77,8 @@ class Claim:
             if timer is not None:
                 timer.cancel()
         if seconds is not None:
-            self._look_for_gap(clock.elapsed - began - seconds, clock.now() - clock.elapsed - set_to)
+            moved = 0.0 if unknown else clock.now() - clock.elapsed - set_to
+            self._look_for_gap(clock.elapsed - began - seconds, moved)
 
     def _look_for_gap(self, late: float, moved: float) -> None:
         """Detect that the process was frozen or stuck, or that the clock was set."""

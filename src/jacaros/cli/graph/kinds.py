@@ -1,6 +1,5 @@
 """Find the topic, service, action, node or type that a name means."""
 
-import difflib
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -9,6 +8,7 @@ from jacaros.cli.usage import did_you_mean, usage_error
 from jacaros.errors import UsageError
 from jacaros.ros.errors import NameInvalid
 from jacaros.ros.graph import GraphContents
+from jacaros.ros.names import near_names
 
 
 class Kind(StrEnum):
@@ -82,13 +82,6 @@ def find_mappable(joined: Joined, written: str) -> list[Thing]:
 def suggestion(name: str, names: list[str]) -> str:
     """Return the help for an unknown name."""
     return did_you_mean(near_names(name, names)) or "`jacaros ros list` shows all names"
-
-
-def near_names(name: str, names: list[str]) -> list[str]:
-    """Return up to three similar names: similar spelling, or the same last part in another namespace."""
-    last = name.rpartition("/")[2]
-    same = [each for each in names if each.rpartition("/")[2] == last]
-    return list(dict.fromkeys([*same, *difflib.get_close_matches(name, names, n=3, cutoff=0.7)]))[:3]
 
 
 def _type_names(written: str) -> list[str]:

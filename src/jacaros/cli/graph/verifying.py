@@ -14,14 +14,14 @@ from jacaros.artifacts.mapping.declared import (
     Written,
 )
 from jacaros.cli.graph.joining import Joined
-from jacaros.cli.graph.kinds import near_names
 from jacaros.cli.graph.listening import root
 from jacaros.cli.usage import did_you_mean
 from jacaros.ros.backend import PARAMETERS
 from jacaros.ros.errors import RosError
-from jacaros.ros.graph import Endpoint, TopicInfo
-from jacaros.ros.names import frame_name
-from jacaros.ros.qos import DEFAULT_QOS, SENSOR_DATA, QoS, incompatibility
+from jacaros.ros.graph import Endpoint, TopicInfo, alike, latching
+from jacaros.ros.guarded import VELOCITIES
+from jacaros.ros.names import frame_name, near_names
+from jacaros.ros.qos import DEFAULT_QOS, SENSOR_DATA, STATE, QoS, incompatibility
 from jacaros.yaml_nodes import Problem
 
 MOST_NAMES = 8
@@ -90,13 +90,27 @@ async def problems_of(joined: Joined, part: ArtifactPart, frames: dict[str, str]
     return sorted(set(found), key=lambda problem: (problem.line, problem.column, problem.message))
 
 
+def warnings_of(joined: Joined, part: ArtifactPart) -> Iterator[Problem]:
+    """Yield a warning for each topic of velocities that another node publishes on, too."""
+    names = Names(joined, part)
+    for operation in part.operations:
+        info = joined.contents.topics.get(names.resolve(operation.target.text))
+        velocity = info is not None and any(each in VELOCITIES for each in info.types)
+        if operation.kind is OperationKind.PUBLISH and velocity and info is not None and info.publishers:
+            yield operation.target.place.problem(
+                f"{_nodes(info.publishers)} also publishes on {info.name}: the robot follows whichever command came last",
+                "give every source a topic of its own, and let twist_mux choose between them",
+            )
+
+
 def _of_topic(names: Names, topic: TopicPart) -> Iterator[Problem]:
     written = topic.topic
     assert written is not None
     name = names.resolve(written.text)
     info = names.joined.contents.topics.get(name)
     if info is None:
-        yield _absent(names, written, name, "no node publishes", names.joined.contents.topics)
+        near = names.joined.contents.near_topics(name, _text(topic.type_name), "publishers")
+        yield _absent(names, written, f"no node publishes `{name}`", near)
         return
     if not info.publishers:
         who = _nodes(info.subscriptions)
@@ -114,7 +128,12 @@ def _of_topic(names: Names, topic: TopicPart) -> Iterator[Problem]:
         except RosError as error:
             found.append(written.place.problem(str(error), "install the package of this type"))
         yield from found
-    yield from _of_qos(written.place, info, topic.qos or SENSOR_DATA)
+    requested = topic.qos or (SENSOR_DATA if topic.signal else STATE)
+    yield from _of_qos(written.place, info, requested)
+    nodes = latching(info)
+    if nodes and requested.durability == "volatile" and not topic.signal:
+        text = f"{nodes} latches its messages on {name}, and earlier ones are not requested"
+        yield written.place.problem(text, "write qos: latched")
 
 
 def _of_qos(place: Place, info: TopicInfo, requested: QoS) -> Iterator[Problem]:
@@ -166,7 +185,9 @@ def _of_operation(names: Names, operation: OperationPart) -> Iterator[Problem]:
             if name in things:
                 yield from _of_type(operation.type_name, [things[name]], written.place)
             else:
-                yield _absent(names, written, name, f"no node {_VERBS[operation.kind]}", things)
+                types = {each: (type_name,) for each, type_name in things.items()}
+                near = near_names(name, things, alike(_text(operation.type_name), types))
+                yield _absent(names, written, f"no node {_VERBS[operation.kind]} `{name}`", near)
 
 
 def _of_publishing(names: Names, operation: OperationPart) -> Iterator[Problem]:
@@ -174,8 +195,8 @@ def _of_publishing(names: Names, operation: OperationPart) -> Iterator[Problem]:
     name = names.resolve(written.text)
     info = names.joined.contents.topics.get(name)
     if info is None or not info.subscriptions:
-        listened = [each for each, about in names.joined.contents.topics.items() if about.subscriptions]
-        yield _absent(names, written, name, "no node subscribes to", listened)
+        near = names.joined.contents.near_topics(name, _text(operation.type_name), "subscriptions")
+        yield _absent(names, written, f"no node subscribes to `{name}`", near)
         return
     yield from _of_type(operation.type_name, info.types, written.place)
     for subscription in info.subscriptions:
@@ -188,14 +209,14 @@ def _of_publishing(names: Names, operation: OperationPart) -> Iterator[Problem]:
             yield written.place.problem(f"incompatible QoS with {node} on {name}: {why}", f"write {help}")
 
 
-def _absent(names: Names, written: Written, name: str, what: str, things: Iterable[str]) -> Problem:
-    """Return the problem for a missing name, with similar names."""
-    near = near_names(name, list(things))
-    if near:
-        help = did_you_mean([_as_written(names, each) for each in near])
-    else:
-        help = "start its node; `jacaros ros list` shows all names"
-    return written.place.problem(f"{what} `{name}`", help)
+def _absent(names: Names, written: Written, what: str, near: Iterable[str]) -> Problem:
+    """Return the problem for a missing name, with the names that it may mean."""
+    help = did_you_mean([_as_written(names, each) for each in near])
+    return written.place.problem(what, help or "start its node; `jacaros ros list` shows all names")
+
+
+def _text(type_name: Written | None) -> str:
+    return "" if type_name is None else type_name.text
 
 
 def _as_written(names: Names, name: str) -> str:

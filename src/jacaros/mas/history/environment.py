@@ -189,17 +189,14 @@ def robot_finder(robots: Callable[[], Mapping[str, str]]) -> Callable[[object], 
         if not isinstance(prefix, str):
             return None
         known = robots()
-        if prefix in known:
-            return known[prefix] if prefix or _has_robot_topics(artifact) else None
-        return prefix.strip("/") or None
+        if prefix and prefix in known:
+            return known[prefix]
+        names: Iterable[str] = getattr(artifact, "ros_names", ())
+        own = [name for name in names if not name.lstrip("/").startswith(_NOT_OF_A_ROBOT)]
+        spaces = [space for space in known if any(name.startswith(f"{space}/") for name in own)]
+        return known[max(spaces, key=len)] if spaces else prefix.strip("/") or None
 
     return robot_of
 
 
 _NOT_OF_A_ROBOT = ("map", "door", "fault")
-
-
-def _has_robot_topics(artifact: object) -> bool:
-    """Return whether an artifact without a robot's name uses topics or services of the only robot."""
-    names: Iterable[str] = getattr(artifact, "ros_names", ())
-    return any(not name.lstrip("/").startswith(_NOT_OF_A_ROBOT) for name in names)

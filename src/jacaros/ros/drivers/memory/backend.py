@@ -105,5 +105,8 @@ class MemoryBackend(MemoryNode):
             raise ServiceUnavailable("the graph is interrupted")
         return self.graph.contents()
 
+    async def _publishers(self, topic: str) -> list[str]:
+        return [publisher.node_name for publisher in self.graph.topic(topic).publishers]
+
 
 BACKEND: type[Backend] = MemoryBackend

@@ -43,7 +43,7 @@ class MemoryPublisher(TopicPublisher[MemoryNode]):
     def connect(self, subscription: GraphSubscription) -> None:
         """Send to a new subscription from now on, and send it the latched messages immediately."""
         self._receivers.append(subscription)
-        if subscription.qos.durability == "transient_local":
+        if subscription.qos.durability != "volatile":
             for message in self.kept:
                 subscription.arrive(message)
 
@@ -90,6 +90,14 @@ class MemorySubscription(TopicSubscription[MemoryNode]):
         if not self._node.graph.up:
             return 0
         return sum(1 for publisher in self._shared.publishers if self.fits(publisher))
+
+    @property
+    def latched(self) -> bool:
+        """Whether stored messages are received."""
+        if self.qos.durability != "best_available":
+            return super().latched
+        offers = [publisher.qos.durability for publisher in self._shared.publishers if self.fits(publisher)]
+        return all(offer == "transient_local" for offer in offers)
 
     def meet(self, publisher: GraphPublisher) -> None:
         """Connect to a publisher, or report why that is impossible."""

@@ -104,6 +104,9 @@ class Ros1Backend(Ros1Node):
         """Return the contents of the graph."""
         return await graph_contents(self, timeout)
 
+    async def _publishers(self, topic: str) -> list[str]:
+        return list(self.link.publishers.get(topic, ()))
+
 
 ACTION_TOPICS = ("goal", "cancel", "status", "feedback", "result")
 LOG_TOPICS = frozenset({"/rosout", "/rosout_agg"})

@@ -18,6 +18,7 @@ from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from jacaros.ros.calling import server_gone
 from jacaros.ros.errors import CallFailed, MessageMismatch, ServiceError, ServiceUnavailable
 
 PUBLICATION, SUBSCRIPTION, SERVICE = range(3)
@@ -119,6 +120,8 @@ class MasterLink:
         self._unheard: dict[tuple[str, str], int] = {}
         """Topic and publisher → number of consecutive checks without a connection."""
         self.services: frozenset[str] = frozenset()
+        self.publishers: Mapping[str, Collection[str]] = {}
+        """Nodes that publish, by topic."""
 
     def start(self) -> None:
         """Start the thread."""
@@ -170,6 +173,7 @@ class MasterLink:
         except ServiceError:
             return None
         self.services = frozenset(name for name, _ in state[2])
+        self.publishers = dict(state[0])
         return state
 
     def _look_at_types(self, known: list[Any]) -> None:
@@ -239,6 +243,8 @@ def call_failure(service: str, problem: BaseException | None) -> Exception | Non
     missing = "unavailable" in text or "unable to contact master" in text
     if missing or ("unable to connect to service" in text and "md5sum" not in text):
         return ServiceUnavailable(f"no node offers service {service}")
+    if "transport error" in text:
+        return server_gone(service)
     if type(problem).__name__ == "ROSSerializationException":
         return MessageMismatch(f"service {service}: {text}")
     return CallFailed(f"service {service}: {text}")

@@ -144,6 +144,11 @@ class Ros1Subscription(SharedSubscription[Ros1Node]):
         if self._multiplexer is not None:
             self._multiplexer.see_type(node.types.get(self.topic))
 
+    @property
+    def latched(self) -> bool:
+        """Whether a publisher stores its last message; on ROS 1 every subscription receives it."""
+        return self._multiplexer is not None and bool(tuple(self._multiplexer.latched(self)))
+
     def put(self, message: Any) -> None:
         """Queue a message, from any thread of rospy's."""
         self.queue.put(message)

@@ -120,5 +120,8 @@ class Ros2Backend(Ros2Node):
         except RCLError as problem:  # a node that left during the query
             raise CallFailed(f"rclpy cannot return the contents of the graph: {problem}") from None
 
+    async def _publishers(self, topic: str) -> list[str]:
+        return [ros2_graph.endpoint(info).node for info in self.rcl.get_publishers_info_by_topic(topic)]
+
 
 BACKEND: type[Backend] = Ros2Backend

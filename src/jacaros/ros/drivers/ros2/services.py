@@ -20,7 +20,7 @@ COMPARING = 1.0
 """Seconds between two checks of who offers a called service."""
 
 
-DOUBTED, DOUBTED_AGAIN = 2.0, 30.0
+DOUBTED, DOUBTED_AGAIN = 2.0, 5.0
 """Seconds without an answer after which the server's liveness is checked, and then between checks."""
 
 

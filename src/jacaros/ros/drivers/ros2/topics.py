@@ -3,6 +3,7 @@
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from typing import Any
 
 import rclpy.duration  # type: ignore[import-not-found]
@@ -23,7 +24,7 @@ from jacaros.ros.drivers.ros2.receiving import RCLError
 from jacaros.ros.errors import RosError
 from jacaros.ros.handoff import Handoff, post
 from jacaros.ros.node import Wanted
-from jacaros.ros.qos import QoS, incompatibility
+from jacaros.ros.qos import QoS, available, incompatibility
 from jacaros.ros.topics import TopicPublisher, TopicSubscription
 
 LOOKING = 2.0
@@ -103,18 +104,40 @@ class Ros2Subscription(TopicSubscription[Ros2Node]):
         self._missing: frozenset[bytes] = frozenset()
         self._trusted_until = 0.0
         self._deadline_missed = False
-        kind = node.factory.message_class(self.type_name)
+        self._requested = self.qos
+        self.qos = available(self._requested, self._offers())
+        self._subscription = self._subscribe()
+        self._timer = node.loop.call_later(LOOKING, self._look)
+
+    def _subscribe(self) -> Any:
+        node = self._node
         with _at_topic(node, self.topic, self.type_name):
-            self._subscription: Any = node.rcl.create_subscription(
-                kind,
+            made = node.rcl.create_subscription(
+                node.factory.message_class(self.type_name),
                 self.topic,
                 self._queue.put,
                 profile(self.qos),
                 callback_group=node.receiver.group,
                 event_callbacks=self._events(),
             )
-        node.receiver.add(self._subscription, self._queue.put)
-        self._timer = node.loop.call_later(LOOKING, self._look)
+        node.receiver.add(made, self._queue.put)
+        return made
+
+    def _offers(self) -> list[QoS | None]:
+        return [endpoint(info).qos for info in self._node.rcl.get_publishers_info_by_topic(self.topic)]
+
+    def _adapt(self) -> bool:
+        """Subscribe again if the publishers now offer another durability. Return whether that was so."""
+        if self._closed or self._node.ended or self._requested.durability != "best_available":
+            return False
+        offers = self._offers()
+        qos = available(self._requested, offers)
+        if not offers or qos == self.qos:
+            return False
+        old, self.qos = self._subscription, qos
+        self._node.receiver.remove(old, partial(self._destroy, old))
+        self._subscription = self._subscribe()
+        return True
 
     @property
     def publisher_count(self) -> int:
@@ -136,13 +159,13 @@ class Ros2Subscription(TopicSubscription[Ros2Node]):
     def _leave(self) -> None:
         self._queue.close()
         self._timer.cancel()
-        self._node.receiver.remove(self._subscription, self._destroy)
+        self._node.receiver.remove(self._subscription, partial(self._destroy, self._subscription))
 
-    def _destroy(self) -> None:
-        self._node.destroy_entity(self._node.rcl.destroy_subscription, self._subscription)
+    def _destroy(self, subscription: Any) -> None:
+        self._node.destroy_entity(self._node.rcl.destroy_subscription, subscription)
 
     def _events(self) -> Any:
-        def on_loop(action: Callable[[], None]) -> Callable[[Any], None]:
+        def on_loop(action: Callable[[], object]) -> Callable[[Any], None]:
             def event(_: Any) -> None:
                 post(self._node.loop, action)
 
@@ -151,6 +174,7 @@ class Ros2Subscription(TopicSubscription[Ros2Node]):
         return SubscriptionEventCallbacks(
             deadline=on_loop(self._miss_deadline) if self.qos.deadline is not None else None,
             incompatible_qos=on_loop(self._compare_qos),
+            matched=on_loop(self._adapt) if self._requested.durability == "best_available" else None,
             use_default_callbacks=False,
         )
 
@@ -161,7 +185,7 @@ class Ros2Subscription(TopicSubscription[Ros2Node]):
 
     def _compare_qos(self) -> None:
         """Find the incompatible publisher; the event itself names only one of the reasons."""
-        if self._closed:
+        if self._closed or self._adapt():
             return
         found = False
         for info in self._node.rcl.get_publishers_info_by_topic(self.topic):
@@ -179,6 +203,7 @@ class Ros2Subscription(TopicSubscription[Ros2Node]):
         """Check whether a silent topic carries another type: then no message ever arrives, without an error."""
         if self._closed or self._node.ended:
             return
+        self._adapt()  # the event of a match may come before the middleware knows what is offered
         if self._silent and self.publisher_count:
             for other, who in foreign_types(self._node, self.topic, self.type_name).items():
                 self.report_type_mismatch(who, other)

@@ -23,12 +23,20 @@ from jacaros.ros.backend import (
 from jacaros.ros.drivers.rosbridge.actions import BridgeActionClient, BridgeActionServer
 from jacaros.ros.drivers.rosbridge.link import checked_url
 from jacaros.ros.drivers.rosbridge.node import BridgeNode
-from jacaros.ros.drivers.rosbridge.services import BridgeClient, BridgeParameters, BridgeService, look, read
+from jacaros.ros.drivers.rosbridge.services import (
+    BridgeClient,
+    BridgeParameters,
+    BridgeService,
+    absolute,
+    look,
+    read,
+)
 from jacaros.ros.drivers.rosbridge.topics import BridgePublisher, BridgeSubscription
 from jacaros.ros.errors import CapabilityMissing
 from jacaros.ros.graph import GraphContents
 from jacaros.ros.node import NodeSettings, Parts
 from jacaros.ros.parameter_events import ParameterEvents
+from jacaros.ros.protocols.rosbridge_requests import PATIENCE
 
 DEFAULT_URL = "ws://127.0.0.1:9090"
 
@@ -76,6 +84,11 @@ class RosbridgeBackend(BridgeNode):
     async def contents(self, timeout: float = 5.0) -> GraphContents:
         """Return the contents of the graph."""
         return await look(self, timeout)
+
+    async def _publishers(self, topic: str) -> list[str]:
+        answer = await self.rosapi("publishers", {"topic": topic}, PATIENCE)
+        # The server publishes for its clients, and does not tell which.
+        return [name for name in absolute(answer["publishers"]) if "rosbridge" not in name]
 
     # Messages of the server:
 

@@ -178,7 +178,7 @@ class _Look:
             {info.name: info for info in infos},
             {name: _full(service_type, kind) for name, kind in zip(plain, kinds, strict=True)},
             {name: kind for name, kind, served in found if served},
-            tuple(sorted(_absolute(nodes["nodes"]))),
+            tuple(sorted(absolute(nodes["nodes"]))),
         )
 
     async def _topic(self, name: str, kind: str) -> TopicInfo:
@@ -188,8 +188,8 @@ class _Look:
         return TopicInfo(
             name,
             tuple(sorted(_full(message_type, each) for each in kind.split(",") if each)),
-            tuple(Endpoint(node) for node in _absolute(publishers["publishers"])),
-            tuple(Endpoint(node) for node in _absolute(subscribers["subscribers"])),
+            tuple(Endpoint(node) for node in absolute(publishers["publishers"])),
+            tuple(Endpoint(node) for node in absolute(subscribers["subscribers"])),
         )
 
     async def _action_servers(self) -> list[str]:
@@ -225,7 +225,8 @@ def _full(form: Any, name: str) -> str:
     return str(form(name)) if name else ""
 
 
-def _absolute(names: Iterable[str]) -> list[str]:
+def absolute(names: Iterable[str]) -> list[str]:
+    """Return names with the slash that rosapi omits."""
     return [name if name.startswith("/") else f"/{name}" for name in names]
 
 

@@ -2,13 +2,15 @@
 
 from collections import deque
 from collections.abc import Callable, Iterable
+from functools import partial
 from typing import Any
 
+from jacaros.clock import Timer
 from jacaros.ros.backend import Sample, TopicTrouble
 from jacaros.ros.drivers.rosbridge.node import BridgeNode
 from jacaros.ros.node import Wanted
 from jacaros.ros.orphans import Orphans
-from jacaros.ros.protocols.rosbridge_requests import Polled
+from jacaros.ros.protocols.rosbridge_requests import LOOK_STEADILY, Polled
 from jacaros.ros.qos import DEFAULT_QOS, QoS
 from jacaros.ros.topics import SharedSubscription, TopicMultiplexer, TopicPublisher
 
@@ -96,6 +98,7 @@ class BridgeMultiplexer(TopicMultiplexer["BridgeSubscription"]):
         self._number = node.number("subscribe", topic)
         self._node = node
         self._last: Any = None
+        self._late: Timer | None = None
         self._depth = 0
         self._publishers = Polled(
             node.requests, "/rosapi/publishers", {"topic": topic}, lambda seen: len(seen["publishers"]), 0
@@ -117,7 +120,7 @@ class BridgeMultiplexer(TopicMultiplexer["BridgeSubscription"]):
 
     def latched(self, reader: "BridgeSubscription") -> Iterable[Any]:
         """Return the latched message."""
-        return (self._last,) if reader.latched and self._last is not None else ()
+        return (self._last,) if reader.qos.durability != "volatile" and self._last is not None else ()
 
     def join(self) -> None:
         """Subscribe at a server that does not know us yet."""
@@ -134,8 +137,22 @@ class BridgeMultiplexer(TopicMultiplexer["BridgeSubscription"]):
         # misses what they publish before they discover it.
         if self._node.ros_version == 2 and any(reader.latched for reader in self.readers):
             operation["qos"] = _quality(QoS(durability="transient_local", depth=self._depth))
+        elif self._node.ros_version == 2 and any(
+            reader.qos.durability == "best_available" for reader in self.readers
+        ):
+            self._late = self._node.clock.call_later(LOOK_STEADILY, partial(self._look_for_late, operation))
         self._node.send(operation)
         self._node.admission.expect(self)
+
+    def _look_for_late(self, operation: dict[str, Any]) -> None:
+        """Subscribe again when the first publisher has appeared: then the server requests its stored message."""
+        if self._last is None and self._node.attached and self.readers:
+            if self.publisher_count:
+                self._node.send(operation)
+            else:
+                self._late = self._node.clock.call_later(
+                    LOOK_STEADILY, partial(self._look_for_late, operation)
+                )
 
     def written_type(self) -> str:
         """The type as the server writes it."""
@@ -144,6 +161,7 @@ class BridgeMultiplexer(TopicMultiplexer["BridgeSubscription"]):
     def lost(self) -> None:
         """Forget the latched message."""
         self._last = None
+        self._stop_looking()
 
     def put(self, message: Any) -> None:
         """Handle a message of the server."""
@@ -154,7 +172,12 @@ class BridgeMultiplexer(TopicMultiplexer["BridgeSubscription"]):
         """Report that the server refuses the topic."""
         self.report(text)
 
+    def _stop_looking(self) -> None:
+        if self._late is not None:
+            self._late.cancel()
+
     def _leave(self) -> None:
+        self._stop_looking()
         self._node.admission.forget(self)
         self._node.send({"op": "unsubscribe", "id": self._number, "topic": self.topic})
 
