@@ -1,6 +1,8 @@
 """Contract: the last messages of a process."""
 
 import signal
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import pytest
@@ -21,6 +23,17 @@ def driving(graph: Any, watcher: Any, topic: str) -> Any:
     driver.keep_publishing(topic, FAST)
     graph.wait_until(lambda: len(watcher.received(topic)) > 3, "the robot drives")
     return driver
+
+
+@contextmanager
+def late(graph: Any, receiver: Any) -> Iterator[None]:
+    """Keep *receiver* from receiving meanwhile, and for a moment longer, as a busy machine or a poor network does."""
+    receiver.signal(signal.SIGSTOP)
+    try:
+        yield
+        graph.pass_time(0.3)
+    finally:
+        receiver.signal(signal.SIGCONT)
 
 
 def assert_stopped(graph: Any, watcher: Any, topic: str) -> None:
@@ -99,3 +112,67 @@ def test_a_closed_node_costs_nothing(graph: Any, pair: Pair, topic: str) -> None
     before = node.processor_seconds()
     graph.pass_time(1.0)
     assert node.processor_seconds() - before < 0.2
+
+
+@pytest.mark.only("ros1", "ros2", "rosbridge-ros2")
+def test_the_last_message_reaches_a_late_receiver_although_its_publisher_is_closed(
+    graph: Any, pair: Pair, topic: str
+) -> None:
+    left, watcher = pair
+    watcher.subscribe(topic, TWIST)
+    for number in range(1, 6):  # whether it is lost otherwise is a race in the receiver
+        left.advertise(topic, TWIST)
+        graph.wait_until(lambda: left.subscription_count(topic) == 1, "they know each other")
+        left.publish(topic, FAST, times=2)
+        last = {"linear": {"x": 0.0}, "angular": {"z": float(number)}}
+        with late(graph, watcher):
+            left.publish(topic, last)
+            left.unadvertise(topic)
+        graph.wait_until(
+            lambda last=last: last["angular"]["z"] in [m["angular"]["z"] for m in watcher.received(topic)],
+            f"message {number} arrives",
+        )
+
+
+@pytest.mark.only("ros1", "ros2", "rosbridge-ros2")
+def test_a_signal_stops_a_robot_that_receives_late(graph: Any, pair: Pair, topic: str) -> None:
+    _, watcher = pair
+    for name in ("first", "second", "third"):
+        driver = driving(graph, watcher, f"{topic}/{name}")
+        with late(graph, watcher):
+            driver.signal(signal.SIGTERM)
+        assert driver.wait() == 143
+        assert_stopped(graph, watcher, f"{topic}/{name}")
+
+
+@pytest.mark.only("ros1", "ros2", "rosbridge-ros2")
+def test_a_signal_cancels_goals_of_a_server_that_receives_late(graph: Any, topic: str) -> None:
+    server = graph.peer("late_server")
+    server.serve_action(topic)
+    for target in (1001, 1002, 1003):
+        driver = graph.peer(f"sender_{target}")
+        driver.send_goal("goal", topic, {"target": target, "period": 0.05}, timeout=30)
+        with late(graph, server):
+            driver.signal(signal.SIGTERM)
+        assert driver.wait() == 143
+        end = ["end", target, True]
+        graph.wait_until(lambda end=end: end in server.deeds(topic), "the goal is cancelled")
+
+
+@pytest.mark.only("ros2")
+def test_the_last_line_of_the_log_reaches_a_late_receiver(graph: Any, pair: Pair) -> None:
+    _, watcher = pair
+    watcher.subscribe("/rosout", "rcl_interfaces/msg/Log", depth=1000, durability="transient_local")
+
+    def heard(text: str) -> bool:
+        return any(message["msg"] == text for message in watcher.received("/rosout"))
+
+    for number in range(3):
+        speaker = graph.peer(f"speaker_{number}")
+        speaker.rosout("info", f"first line {number}")
+        graph.wait_until(lambda number=number: heard(f"first line {number}"), "they know each other")
+        with late(graph, watcher):
+            speaker.rosout("info", f"last line {number}")
+            speaker.signal(signal.SIGTERM)
+        assert speaker.wait() == 143
+        graph.wait_until(lambda number=number: heard(f"last line {number}"), "the last line arrives")

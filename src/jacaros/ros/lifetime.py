@@ -65,6 +65,8 @@ class Lifetime:
         log: called with one line about a failed hook.
         finish: blocks until the messages published so far are sent, and releases everything that would keep the
             process from ending. It runs on any thread, and must not touch the loop.
+        insist: blocks until the last messages have arrived; called in a thread after a signal has stopped the robots,
+            because the run may take long until it calls `leave`.
         threaded: run the hooks in a thread if the loop is stuck or its thread has ended. In the in-process graph
             robots and agents share the loop, so a thread could stop no robot.
 
@@ -73,12 +75,17 @@ class Lifetime:
     """
 
     def __init__(
-        self, log: Callable[[str], None], finish: Callable[[], None] = lambda: None, threaded: bool = False
+        self,
+        log: Callable[[str], None],
+        finish: Callable[[], None] = lambda: None,
+        threaded: bool = False,
+        insist: Callable[[], None] = lambda: None,
     ) -> None:
         self.state = State.JOINING
         self.threaded = threaded
         self._log = log
         self._finish = finish
+        self._insist = insist
         self._hooks: list[Callable[[], None]] = []
         self._open = True
         self._hooking: set[int] = set()
@@ -184,6 +191,11 @@ class Lifetime:
                 self.stop()
             else:
                 self._stopped.put(None)  # for the next signal
+
+    def insist(self) -> None:
+        """Deliver the last messages after a signal; in a thread."""
+        if self.state is State.LEAVING:
+            self._insist()
 
     def leave_if_orphaned(self) -> None:
         """Leave, in a thread, if the loop's thread has ended without closing the node."""
@@ -319,6 +331,8 @@ class _Process:
                 deadline = time.monotonic() + PATIENCE
                 for lifetime in self._threaded():
                     lifetime.stop_if_late(deadline)
+                for lifetime in self._threaded():
+                    lifetime.insist()
             with self._lock:
                 if not any(lifetime.threaded for lifetime in self._watched):
                     self._watcher = None

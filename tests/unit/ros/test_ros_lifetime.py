@@ -117,6 +117,22 @@ def test_a_stuck_loop_leaves_the_hooks_to_a_thread() -> None:
     assert lines[:2] == ["zero True thread", "stuck until here"]
 
 
+@POSIX
+def test_the_last_messages_are_delivered_soon_after_a_signal_however_long_closing_takes() -> None:
+    body = """delivered = asyncio.Event()
+    loop = asyncio.get_running_loop()
+    lifetime._insist = lambda: (say("delivered"), loop.call_soon_threadsafe(delivered.set))
+    try:
+        os.kill(os.getpid(), signal.SIGTERM)
+    except SystemExit:
+        pass
+    await delivered.wait()  # closing has not begun
+    await lifetime.leave()"""
+    code, lines = run_program(body, True)
+    assert code == 0
+    assert lines.index("zero True loop") < lines.index("delivered") < lines.index("sent")
+
+
 def test_a_thread_that_never_ends_keeps_no_hook_back() -> None:
     body = "threading.Thread(target=threading.Event().wait).start(); say('begin'); raise ValueError"
     code = PROGRAM.format(threaded=True, body=body)

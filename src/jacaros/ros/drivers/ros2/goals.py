@@ -8,13 +8,14 @@ from typing import Any
 from action_msgs.msg import GoalInfo, GoalStatusArray  # type: ignore[import-not-found]
 from action_msgs.srv import CancelGoal  # type: ignore[import-not-found]
 from rclpy.event_handler import SubscriptionEventCallbacks  # type: ignore[import-not-found]
+from rclpy.qos import QoSProfile  # type: ignore[import-not-found]
 
 from jacaros.ros.action import Outcome
 from jacaros.ros.action_calling import GoalSender
 from jacaros.ros.action_serving import text_of
 from jacaros.ros.drivers.ros2.actions import goal_id, id_message
 from jacaros.ros.drivers.ros2.graph import action_mismatch, action_servers, action_servers_in, profile
-from jacaros.ros.drivers.ros2.node import Ros2Node
+from jacaros.ros.drivers.ros2.node import STOPPING_ROBOTS, Ros2Node
 from jacaros.ros.drivers.ros2.services import SETTLING
 from jacaros.ros.errors import CallFailed, ServerLost
 from jacaros.ros.handoff import Handoff, post
@@ -36,8 +37,10 @@ LOOKING = 0.1
 """Seconds between two checks of the server, while a goal is active or a caller waits for the server."""
 COMPARING = 0.5
 """Seconds between two checks of the types in the graph, while there is no server."""
-REPEATING = 1.0
-"""Seconds after which an unanswered request is repeated."""
+REPEATING, REPEATING_LAST = 1.0, 0.04
+"""Seconds after which an unanswered request is repeated: while the client is open, and a last one to cancel."""
+CANCEL_DEPTH = 3
+"""Length of the queue of requests to cancel; in older versions of Fast DDS, a full queue makes lost ones noticed."""
 FEEDBACK_WAITING = 100
 """Number of feedback messages that may wait for the loop; the oldest is dropped first."""
 
@@ -53,7 +56,7 @@ class _SentGoal:
         self.repeated = False
         self.over = False
         self.result_asked = 0.0
-        self.cancel_asked: float | None = None
+        self.cancel_asked = 0.0
 
 
 class Ros2GoalWire:
@@ -73,6 +76,8 @@ class Ros2GoalWire:
         self._type_name = type_name
         self._impl: Any = node.schema.message_class(type_name).Impl
         self._goals: dict[str, _SentGoal] = {}
+        self._cancelling: dict[str, _SentGoal] = {}
+        """Goals with an unanswered request to cancel; used by any thread."""
         self._there = False
         self._there_since = 0.0
         self._mismatch: str | None = None
@@ -86,7 +91,9 @@ class Ros2GoalWire:
         self._closed = False
         rcl, impl = node.rcl, self._impl
         self._goal_client: Any = rcl.create_client(impl.SendGoalService, name + SEND_GOAL)
-        self._cancel_client: Any = rcl.create_client(CancelGoal, name + CANCEL_GOAL)
+        self._cancel_client: Any = rcl.create_client(
+            CancelGoal, name + CANCEL_GOAL, qos_profile=QoSProfile(depth=CANCEL_DEPTH)
+        )
         self._result_client: Any = rcl.create_client(impl.GetResultService, name + GET_RESULT)
         self._feedback: Handoff[Any] = Handoff(node.loop, FEEDBACK_WAITING, self._take_feedback)
         self._subscriptions = [
@@ -104,7 +111,7 @@ class Ros2GoalWire:
             ),
         ]
         self._forget_hook = node.add_exit_hook(self._cancel_all)
-        node.shutdown_steps[self._before_shutdown] = None
+        node.unsent[self._cancelled] = STOPPING_ROBOTS
 
     @classmethod
     def client(cls, node: Ros2Node, name: str, type_name: str) -> GoalSender:
@@ -141,12 +148,8 @@ class Ros2GoalWire:
 
     def cancel_goal(self, goal_id: str) -> None:
         """Ask the server to cancel a goal."""
-        goal = self._goals.get(goal_id)
-        if goal is not None:
-            goal.cancel_asked = time.monotonic()
-            self._keep_looking()
-        request = CancelGoal.Request(goal_info=GoalInfo(goal_id=id_message(goal_id)))
-        self._call(self._cancel_client, request, lambda answer: self._cancel_answered(goal_id, answer))
+        self._keep_looking()
+        self._ask_to_cancel(self._goals.get(goal_id) or _SentGoal(goal_id, None))
 
     def adopt_goal(self, identity: str) -> None:
         """Follow a goal of an earlier run."""
@@ -169,29 +172,46 @@ class Ros2GoalWire:
             return
         self._closed = True
         self._forget_hook()
-        del self._node.shutdown_steps[self._before_shutdown]
         self._feedback.close()
         for timer in (self._looking, self._sending):
             if timer is not None:
                 timer.cancel()
         node = self._node
         for client in (self._goal_client, self._cancel_client, self._result_client):
-            node.destroy_entity_later(node.rcl.destroy_client, client)
+            node.destroy_entity_later(node.rcl.destroy_client, client, self._cancelled)
         for subscription in self._subscriptions:
             node.destroy_entity_later(node.rcl.destroy_subscription, subscription)
         node.forget(self)
 
-    def _before_shutdown(self, seconds: float) -> None:
-        """Wait until requests to cancel have arrived."""
-        if self._goals:
-            time.sleep(min(0.1, seconds))
+    def _cancelled(self, patience: float = REPEATING_LAST) -> bool:
+        """Repeat requests to cancel that are not answered after *patience* seconds. Return whether all are answered."""
+        late = time.monotonic() - patience
+        for goal in list(self._cancelling.values()):
+            if goal.cancel_asked < late:
+                self._ask_to_cancel(goal)
+        return not self._cancelling
 
     def _cancel_all(self) -> None:
         """Exit hook: cancel the active goals, because after the client's end nothing watches the robot."""
         for goal in list(self._goals.values()):
-            if not goal.over:
-                info = GoalInfo(goal_id=id_message(goal.identity))
-                self._cancel_client.call_async(CancelGoal.Request(goal_info=info))
+            if goal.sent and not goal.over and goal.identity not in self._cancelling:
+                self._ask_to_cancel(goal)
+
+    def _ask_to_cancel(self, goal: _SentGoal) -> None:
+        goal.cancel_asked = time.monotonic()
+        self._cancelling[goal.identity] = goal
+        request = CancelGoal.Request(goal_info=GoalInfo(goal_id=id_message(goal.identity)))
+        self._cancel_client.call_async(request).add_done_callback(partial(self._cancel_answered, goal))
+
+    def _cancel_answered(self, goal: _SentGoal, call: Any) -> None:
+        """Handle an answer, on the executor's thread: the loop may no longer run."""
+        if call.exception() is not None or (answer := call.result()) is None:
+            return
+        agreed = any(goal_id(info.goal_id) == goal.identity for info in answer.goals_canceling)
+        # A request to cancel may overtake its goal.
+        if agreed or goal.accepted or answer.return_code != CancelGoal.Response.ERROR_UNKNOWN_GOAL_ID:
+            self._cancelling.pop(goal.identity, None)
+        self._post(self._take_answer, partial(self.sender.cancel_answered, goal.identity), agreed)
 
     # Answers, on the loop:
 
@@ -227,6 +247,7 @@ class Ros2GoalWire:
         self._call(self._result_client, request, lambda answer: self._take_result(goal.identity, answer))
 
     def _take_result(self, identity: str, answer: Any) -> None:
+        self._cancelling.pop(identity, None)
         if identity not in self._goals:
             return
         self._feedback.deliver_all()
@@ -236,13 +257,6 @@ class Ros2GoalWire:
             self.sender.fail(identity, ServerLost(text))
         else:
             self.sender.ended(identity, Outcome(status, answer.result, text_of(answer.result)))
-
-    def _cancel_answered(self, identity: str, answer: Any) -> None:
-        goal = self._goals.get(identity)
-        if goal is not None:
-            goal.cancel_asked = None
-        agreed = any(goal_id(info.goal_id) == identity for info in answer.goals_canceling)
-        self.sender.cancel_answered(identity, agreed)
 
     def _take_feedback(self, message: Any) -> None:
         identity = goal_id(message.goal_id)
@@ -287,8 +301,7 @@ class Ros2GoalWire:
         for goal in list(self._goals.values()):
             if goal.accepted and goal.over and now > goal.result_asked + REPEATING:
                 self._ask_for_result(goal)
-            if goal.cancel_asked is not None and now > goal.cancel_asked + REPEATING:
-                self.cancel_goal(goal.identity)
+        self._cancelled(REPEATING)
         if self._there:
             goals = self._goals.values()
             self._detector.check(
@@ -364,15 +377,15 @@ class Ros2GoalWire:
         if goal is None:
             return
         if self.sender.wants(identity):
-            goal.sent = True
-            take = partial(self._answered, identity)
-            self._node.lifetime.send(
-                lambda request: self._call(self._goal_client, request, take), goal.request
-            )
+            self._node.lifetime.send(self._send_now, goal)
         elif not goal.sent:
             self.sender.fail(
                 identity, CallFailed(f"action {self.name}: the goal was dropped before it was sent")
             )
+
+    def _send_now(self, goal: _SentGoal) -> None:
+        goal.sent = True
+        self._call(self._goal_client, goal.request, partial(self._answered, goal.identity))
 
     def _probe(self) -> None:
         """Send a request that every server answers immediately: the result of an unknown goal."""

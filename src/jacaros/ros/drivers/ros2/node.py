@@ -32,14 +32,19 @@ from jacaros.ros.lifetime import Lifetime
 from jacaros.ros.node import Node, NodeSettings
 from jacaros.ros.ros_clock import RosClock
 
-SENDING = 0.5
-"""Seconds that closing waits for acknowledgement of the last messages; a dead receiver never sends it."""
+SENDING, STOPPING_ROBOTS = 0.5, 1.5
+"""Seconds that closing waits until the last messages have arrived, and those that stop robots; a dead receiver acknowledges
+nothing."""
+AGAIN = 0.02
+"""Seconds between two attempts to deliver the last messages."""
 STOPPING = 1.0
 """Seconds that closing waits for each of rclpy's threads."""
 AFTER_FAULT = 0.05
 """Pause in seconds after a fault: a recurring one must not use a whole core."""
-LINGERING = 0.5
-"""Seconds that a closed entity stays in the graph while its last message may be on its way."""
+LINGERING, LINGERING_LONGEST = 0.5, 4.0
+"""Minimum and maximum number of seconds that a closed entity stays in the graph while its last message may be on its way.
+Until version 2.14.5 of Fast DDS, receivers learn only every 3 s that a message was lost.
+"""
 
 
 class Ros2Node(Node):
@@ -54,7 +59,7 @@ class Ros2Node(Node):
 
     def __init__(self, settings: NodeSettings, domain_id: int | None = None) -> None:
         self.schema = RosidlSchema()
-        super().__init__(settings, self.schema, Lifetime(settings.log, self._leave, threaded=True))
+        super().__init__(settings, self.schema, Lifetime(settings.log, self._leave, True, self._send_rest))
         self._domain_id = domain_id
         # As for every node that uses simulated time: tools query it.
         self._simulated = {"use_sim_time": True} if isinstance(settings.clock, RosClock) else {}
@@ -67,8 +72,10 @@ class Ros2Node(Node):
         self.rcl: Any = None
         self.receiver: Receiver
         self._liveness_checks: list[LivenessCheck] = []
-        self.shutdown_steps: dict[Callable[[float], None], None] = {}
-        """Called in any thread with a number of seconds: wait at most that long until sent messages have arrived."""
+        self.unsent: dict[Callable[[], bool], float] = {}
+        """Functions that deliver again what was lost, and return whether all messages have arrived; on any thread. The end
+        of the node waits for each at most this number of seconds."""
+        self._sending_since = 0.0
 
     @property
     def ended(self) -> bool:
@@ -106,12 +113,24 @@ class Ros2Node(Node):
         else:
             self._executor.create_task(now)
 
-    def destroy_entity_later(self, destroy: Callable[[Any], Any], thing: Any) -> None:
-        """As `destroy_entity`, after the last messages have arrived."""
-        if self._ended:
-            self.destroy_entity(destroy, thing)
-        else:
-            self.loop.call_later(LINGERING, self.destroy_entity, destroy, thing)
+    def destroy_entity_later(
+        self, destroy: Callable[[Any], Any], thing: Any, sent: Callable[[], bool] = lambda: True
+    ) -> None:
+        """As `destroy_entity`, after the last messages have arrived according to *sent*, see `unsent`.
+
+        The middleware drops what a destroyed entity has sent if the receiver has not taken it or asks for it again.
+        """
+        began = time.monotonic()
+
+        def look() -> None:
+            waited = time.monotonic() - began
+            if self._ended or (_arrived(sent) and waited >= LINGERING) or waited >= LINGERING_LONGEST:
+                self.unsent.pop(sent, None)
+                self.destroy_entity(destroy, thing)
+            else:
+                self.loop.call_later(AGAIN, look)
+
+        look()
 
     def check_liveness(
         self, find: Find, suspects: frozenset[bytes], report: Callable[[frozenset[bytes]], None]
@@ -198,14 +217,22 @@ class Ros2Node(Node):
         self._context.try_shutdown()
 
     def _send_rest(self) -> None:
-        """Wait until the last messages have arrived."""
+        """Deliver the last messages again and again until they have arrived, on any thread."""
         if self.rcl is None:
             return
-        deadline = time.monotonic() + SENDING
-        for shutdown_step in list(self.shutdown_steps):
-            with suppress(Exception):  # a failure of one must not affect the others
-                shutdown_step(max(0.0, deadline - time.monotonic()))
-        time.sleep(0.02)  # best-effort messages are never acknowledged
+        self._sending_since = self._sending_since or time.monotonic()
+        arrived = [False]
+        while not all(arrived):
+            waited = time.monotonic() - self._sending_since
+            arrived = [_arrived(sent) or waited > longest for sent, longest in list(self.unsent.items())]
+            time.sleep(AGAIN)  # best-effort messages are never acknowledged
+
+
+def _arrived(sent: Callable[[], bool]) -> bool:
+    try:
+        return sent()
+    except Exception:  # destroyed meanwhile; a failure of one must not affect the others
+        return True
 
 
 PROFILES = "FASTRTPS_DEFAULT_PROFILES_FILE"

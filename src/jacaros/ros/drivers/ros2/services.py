@@ -209,5 +209,5 @@ class Ros2Client(AttemptingClient):
         self._pending.close()
         if not self._closed:
             self._closed = True
-            self._node.destroy_entity(self._node.rcl.destroy_client, self._client)
+            self._node.destroy_entity_later(self._node.rcl.destroy_client, self._client)
             self._node.forget(self)

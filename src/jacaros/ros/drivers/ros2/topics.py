@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from functools import partial
 from typing import Any
 
-import rclpy.duration  # type: ignore[import-not-found]
+from rclpy.duration import Duration  # type: ignore[import-not-found]
 from rclpy.event_handler import (  # type: ignore[import-not-found]
     PublisherEventCallbacks,
     SubscriptionEventCallbacks,
@@ -19,14 +19,18 @@ from jacaros.ros.drivers.ros2.graph import (
     profile,
     publishers_in,
 )
-from jacaros.ros.drivers.ros2.node import Ros2Node
+from jacaros.ros.drivers.ros2.node import AGAIN, SENDING, STOPPING_ROBOTS, Ros2Node
 from jacaros.ros.drivers.ros2.receiving import RCLError
 from jacaros.ros.errors import RosError
+from jacaros.ros.guarded import VELOCITIES
 from jacaros.ros.handoff import Handoff, post
 from jacaros.ros.node import Wanted
 from jacaros.ros.qos import QoS, available, incompatibility
 from jacaros.ros.topics import TopicPublisher, TopicSubscription
 
+NO_TIME = Duration()
+REPETITIONS = 4
+"""Minimum number of repetitions of the zero velocity that ends a run."""
 LOOKING = 2.0
 """Seconds between two checks of the publishers of a silent topic: ROS 2 does not report other types."""
 
@@ -62,7 +66,11 @@ class Ros2Publisher(TopicPublisher[Ros2Node]):
             self._publisher: Any = node.rcl.create_publisher(
                 self._class, topic, profile(qos), event_callbacks=events
             )
-        node.shutdown_steps[self._before_shutdown] = None
+        self._last: Any = None
+        """The last message, if it is a velocity."""
+        self._repeated, self._repeat_at = 0, 0.0
+        self._stops_robots = type_name in VELOCITIES
+        node.unsent[self._sent] = STOPPING_ROBOTS if self._stops_robots else SENDING
 
     @property
     def subscription_count(self) -> int:
@@ -71,14 +79,28 @@ class Ros2Publisher(TopicPublisher[Ros2Node]):
 
     def _send(self, message: Any) -> None:
         self._publisher.publish(message)
+        if self._stops_robots:
+            self._last, self._repeated = message, 0
 
-    def _before_shutdown(self, seconds: float) -> None:
-        """Wait at most *seconds* until the reliable subscriptions have received all messages."""
-        self._publisher.wait_for_all_acked(rclpy.duration.Duration(seconds=seconds))
+    def _sent(self) -> bool:
+        """Return whether all messages have arrived; while the node is leaving, repeat a zero velocity that may be lost.
+
+        Receivers notice a lost message by a later one. Best-effort receivers acknowledge nothing.
+        """
+        acknowledged = bool(self._publisher.wait_for_all_acked(NO_TIME))
+        velocity = getattr(self._last, "twist", self._last)
+        stops = velocity is not None and velocity == type(velocity)()
+        if not stops or not self._node.lifetime.leaving or (acknowledged and self._repeated >= REPETITIONS):
+            return acknowledged
+        now = time.monotonic()
+        if now >= self._repeat_at:
+            self._repeated, self._repeat_at = self._repeated + 1, now + AGAIN
+            self._publisher.publish(self._last)
+        return False
 
     def _leave(self) -> None:
-        del self._node.shutdown_steps[self._before_shutdown]
-        self._node.destroy_entity(self._node.rcl.destroy_publisher, self._publisher)
+        node = self._node
+        node.destroy_entity_later(node.rcl.destroy_publisher, self._publisher, self._sent)
 
     def _compare_qos(self) -> None:
         """Log which subscriptions request more than is offered."""
