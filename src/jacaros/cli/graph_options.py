@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from jacaros.cli.usage import usage_error
+from jacaros.cli.variables import VariableOption
 from jacaros.ros.middleware import ROS_KINDS
 
 if TYPE_CHECKING:
@@ -46,6 +47,7 @@ def ros_option(
 
     return click.option(
         "--ros",
+        cls=VariableOption,
         type=RosKind(kinds),
         default=None if required else "memory",
         callback=needed,
@@ -53,6 +55,13 @@ def ros_option(
         show_default=not required,
         show_envvar=True,
         help=help,
+    )
+
+
+def world_option(help: str) -> Callable[[F], F]:
+    """Return the option ``--world``."""
+    return click.option(
+        "--world", cls=VariableOption, metavar="FILE", envvar="JACAROS_WORLD", show_envvar=True, help=help
     )
 
 

@@ -6,15 +6,18 @@ Exit codes: 0 after a normal end, 1 for an error in a program or project, 2 for 
 
 import io
 import os
+import re
 import sys
 import threading
 import traceback
+from collections.abc import Mapping
 from importlib import import_module
 
 import click
 
 from jacaros.cli.outputs import OUTPUT_GONE
 from jacaros.cli.usage import did_you_mean, examples, in_our_form, usage_error
+from jacaros.cli.variables import note
 from jacaros.errors import JacarosError, UsageError
 from jacaros.excerpts import help_line
 from jacaros.output import PLAIN
@@ -139,19 +142,20 @@ def _threads_are_left() -> bool:
 
 def call(arguments: list[str] | None = None) -> int:
     """Run a command; return its exit code."""
+    by_variable: dict[str, str] = {}
     try:
         arguments = _own(sys.argv[1:] if arguments is None else arguments)
-        result = jacaros.main(args=arguments, prog_name="jacaros", standalone_mode=False)
+        result = jacaros.main(args=arguments, prog_name="jacaros", standalone_mode=False, obj=by_variable)
     except click.exceptions.Exit as end:
         return end.exit_code
     except click.exceptions.Abort:
         return 130
     except click.ClickException as wrong:
-        return _report(in_our_form(wrong), 2)
+        return _report(in_our_form(wrong), 2, by_variable)
     except UsageError as wrong:
-        return _report(wrong, 2)
+        return _report(wrong, 2, by_variable)
     except JacarosError as wrong:
-        return _report(wrong, 1)
+        return _report(wrong, 1, by_variable)
     except BrokenPipeError:
         return OUTPUT_GONE
     except Exception as defect:
@@ -174,9 +178,14 @@ def _own(arguments: list[str]) -> list[str]:
     return as_options(arguments, lambda line: print(f"warning: {line}", file=sys.stderr))
 
 
-def _report(error: JacarosError, code: int) -> int:
+def _report(error: JacarosError, code: int, by_variable: Mapping[str, str]) -> int:
     # Diagnostics begin with the file and line, where editors look for them.
     located = hasattr(error, "diagnostics") or hasattr(error, "problems")
     prefix = "" if located or str(error).startswith("error: ") else "error: "
     print(f"{prefix}{error}", file=sys.stderr)
+    for option, variable in by_variable.items():
+        words = option[2:].replace("-", "[- ]")
+        about = re.search(rf"\b{words}\b", str(error)) or os.environ[variable] in str(error)
+        if about or (code == 1 and not located):
+            print(note(option, variable), file=sys.stderr)
     return code
