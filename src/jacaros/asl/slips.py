@@ -1,10 +1,11 @@
 """Similarity of words, and mistakes known from other languages, for better messages than "expected X, found Y"."""
 
 from collections.abc import Iterable, Iterator, Sequence
-from itertools import islice, pairwise
+from itertools import pairwise
 from typing import Final, NamedTuple
 
 from jacaros.asl.lexer import RESERVED, Token
+from jacaros.suggestions import did_you_mean
 from jacaros.terms.operators import WORDS, symbols_of
 from jacaros.terms.values import ARITHMETIC
 
@@ -199,7 +200,7 @@ def _meant(word: Token, wanted: Sequence[str]) -> Slip | None:
         return None
     for each in wanted:
         if is_slip_of(word.text, each):
-            return Slip("misspelt-word", f"unexpected `{word.text}`", f"did you mean `{each}`?", word)
+            return Slip("misspelt-word", f"unexpected `{word.text}`", did_you_mean([each]), word)
     return None
 
 
@@ -216,17 +217,6 @@ def _opening(tokens: Sequence[Token], index: int) -> int:
 
 MOST_ASKED: Final = 25
 """Mistakes of one kind for which a similar word is searched: comparing words is slow."""
-MOST_KNOWN: Final = 2000
-"""Maximum number of words that one word is compared with."""
-
-
-def close_matches(word: str, known: Iterable[str], cutoff: float = 0.6) -> list[str]:
-    """Return the one of the first `MOST_KNOWN` *known* words most similar to *word*, in a list; empty below
-    *cutoff*.
-    """
-    from difflib import get_close_matches  # imported here: only incorrect programs need it
-
-    return get_close_matches(word, list(islice(known, MOST_KNOWN)), 1, cutoff)
 
 
 class Slips:

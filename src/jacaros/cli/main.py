@@ -16,11 +16,12 @@ from importlib import import_module
 import click
 
 from jacaros.cli.outputs import OUTPUT_GONE
-from jacaros.cli.usage import did_you_mean, examples, in_our_form, usage_error
+from jacaros.cli.usage import examples, in_our_form, usage_error
 from jacaros.cli.variables import note
 from jacaros.errors import JacarosError, UsageError
 from jacaros.excerpts import help_line
 from jacaros.output import PLAIN
+from jacaros.suggestions import suggestion
 
 ENDED_BY_SIGNAL = (129, 130, 143, 149)
 """Exit codes of runs ended by SIGHUP, Ctrl+C, SIGTERM or Ctrl+Break (Windows)."""
@@ -77,12 +78,8 @@ class Commands(click.Group):
 
 
 def _unknown_command(name: str) -> UsageError:
-    import difflib  # here: only for a command that does not exist
-
-    near = difflib.get_close_matches(name, COMMANDS, 1)
-    return usage_error(
-        f"unknown command: `{name}`", did_you_mean(near) or "`jacaros --help` lists the commands"
-    )
+    help = suggestion(name, COMMANDS, "`jacaros --help` lists the commands")
+    return usage_error(f"unknown command: `{name}`", help)
 
 
 def _print_version(ctx: click.Context, _: click.Parameter, wanted: bool) -> None:

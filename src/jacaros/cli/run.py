@@ -11,6 +11,7 @@ from typing import Any
 import click
 
 from jacaros.bdi.mind import Mind
+from jacaros.cli.files import not_found
 from jacaros.cli.graph_options import (
     faults_option,
     graph_options,
@@ -22,7 +23,7 @@ from jacaros.cli.graph_options import (
     world_option,
 )
 from jacaros.cli.outputs import OUTPUT_GONE, RECORD_LIMIT, Outputs
-from jacaros.cli.usage import did_you_mean, examples, usage_error
+from jacaros.cli.usage import examples, usage_error
 from jacaros.cli.variables import VariableOption, settled, variables
 from jacaros.cli.view_options import ViewCommand, view_options
 from jacaros.mas.agent_host import AgentHost
@@ -336,9 +337,4 @@ def check_file(file: Path) -> None:
         return
     if file.is_dir():
         raise usage_error(f"`{file}` is a folder", "name a .asl, .py, .mas2j or .jcm file in it")
-    beside = [each.name for each in file.parent.glob("*.*") if each.suffix in SUFFIXES]
-    import difflib  # here: only for a missing file
-
-    near = [f"{file.name}{suffix}" for suffix in SUFFIXES if f"{file.name}{suffix}" in beside]
-    near = near or difflib.get_close_matches(file.name, beside, n=2)
-    raise usage_error(f"file not found: `{file}`", did_you_mean([str(file.parent / name) for name in near]))
+    raise not_found(file, [each for each in file.parent.glob("*.*") if each.suffix in SUFFIXES])

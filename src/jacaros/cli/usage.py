@@ -4,6 +4,7 @@ import click
 
 from jacaros.errors import UsageError
 from jacaros.excerpts import help_line, printable
+from jacaros.suggestions import did_you_mean
 
 
 def usage_error(what: str, help: str = "") -> UsageError:
@@ -17,11 +18,6 @@ def usage_error(what: str, help: str = "") -> UsageError:
     if help:
         lines.append(help_line(help))
     return UsageError("\n".join(lines))
-
-
-def did_you_mean(names: list[str]) -> str:
-    """Return the help that names what may have been meant; empty without names."""
-    return f"did you mean {' or '.join(f'`{name}`' for name in names)}?" if names else ""
 
 
 def in_our_form(wrong: click.ClickException) -> UsageError:

@@ -3,7 +3,6 @@
 From strong to weak: the command line, the project file, the environment.
 """
 
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -58,7 +57,7 @@ def settled(
     """
     by_variable, notes = variables(), list[str]()
 
-    def ignored(name: str, because: str, instead: object) -> RunOptions:
+    def ignored(name: str, because: str, instead: Any) -> RunOptions:
         value = getattr(options, name)
         variable = by_variable.pop(f"--{name}")
         notes.append(f"note: {because}; {variable}={value} is ignored (to use it: --{name} {value})")

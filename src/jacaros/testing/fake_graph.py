@@ -1,6 +1,5 @@
 """The rest of the ROS graph in a test: publishes messages, receives what the run publishes, and answers services."""
 
-import difflib
 import math
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -14,6 +13,7 @@ from jacaros.ros.errors import RosError
 from jacaros.ros.message import to_seconds
 from jacaros.ros.names import message_type, request_type, response_type, service_type
 from jacaros.ros.qos import LATCHED, QoS
+from jacaros.suggestions import suggestion
 from jacaros.yaml_nodes import Problem, read_document
 
 NODE = "test"
@@ -139,8 +139,7 @@ class FakeGraph:
         topics: dict[str, str] = self.node.graph.topics()
         if found := topics.get(name):
             return found
-        near = difflib.get_close_matches(name, topics, 2)
-        help = f"did you mean {' or '.join(near)}?" if near else "pass its type as the second argument"
+        help = suggestion(name, topics, "pass its type as the second argument", 2)
         raise ValueError(f"unknown type of {name}, which has no subscription; {help}")
 
     def _fields(self, fields: str | Mapping[str, Any], type_name: str) -> dict[str, Any]:

@@ -113,7 +113,7 @@ def test_an_unhandled_failure_logs_a_warning_with_a_suggestion(
     )
     code, output, errors = outcome(capsys, "run", "a.asl", "--clock", "fast", "--until-idle")
     assert (code, output) == (0, "")
-    assert "did you mean moveForward/1 of 'm'" in errors
+    assert "did you mean `moveForward/1` of 'm'" in errors
 
 
 def test_a_run_can_be_recorded_and_replayed(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -30,7 +30,9 @@ def outcome(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, s
 
 def world_of(capsys: pytest.CaptureFixture[str], project: str, *options: str) -> tuple[str, str]:
     """The name of the world that a run takes place in, and the standard error output of the run."""
-    code, errors = outcome(capsys, "run", project, "--ground-truth", "truth.jsonl", "--clock", "fast", *options)
+    code, errors = outcome(
+        capsys, "run", project, "--ground-truth", "truth.jsonl", "--clock", "fast", *options
+    )
     assert code == 0, errors
     name: str = json.loads(Path("truth.jsonl").read_text().splitlines()[0])["world"]["name"]
     return name, errors

@@ -153,7 +153,7 @@ def test_a_missing_message_is_reported_with_the_published_ones(run: Run) -> None
     [
         (
             '!fake_message("odm", "")',
-            "unknown type of /odm, which has no subscription; did you mean /odom?",
+            "unknown type of /odm, which has no subscription; did you mean `/odom`?",
         ),
         ('!fake_message("a", "")', "pass its type as the second argument"),
         ('!fake_message("odom", "pose.x: 1")', "has no field `x`"),
@@ -191,7 +191,7 @@ def test_an_invalid_mapping_is_reported(run: Run, files: Path) -> None:
     assert "mapping file not found: robt.yaml" in told(outcome)
     (files / "robot.yaml").write_text("properties: {a: {topik: b}}\n", encoding="utf-8")
     outcomes = run("true", "true")
-    assert all("did you mean 'topic'?" in told(each) for each in outcomes)
+    assert all("did you mean `topic`?" in told(each) for each in outcomes)
 
 
 def test_a_label_without_a_file_is_an_error(files: Path) -> None:

@@ -8,7 +8,8 @@ from jacaros.asl import nodes
 from jacaros.asl.checks.formulas import conditions, parts_of
 from jacaros.asl.declaration import UNDECLARED, Declaration
 from jacaros.asl.diagnostics import Diagnostic
-from jacaros.asl.slips import MOST_ASKED, close_matches, is_slip_of
+from jacaros.asl.slips import MOST_ASKED, is_slip_of
+from jacaros.suggestions import did_you_mean, suggestion
 from jacaros.terms.functions import ARITIES
 
 _PERFORMATIVES: Final = (
@@ -73,8 +74,7 @@ def unknown_actions(
 
 
 def _meant_action(name: str, known: KnownActions) -> str | None:
-    close = close_matches(name, known.declared)
-    return known.help(name) or (f"did you mean `{close[0]}`?" if close else None)
+    return known.help(name) or suggestion(name, known.declared) or None
 
 
 def _wrong_function(node: nodes.InternalAction) -> Diagnostic:
@@ -148,6 +148,6 @@ def unknown_performatives(found: Sequence[nodes.Node], known: KnownActions) -> I
                 "warning",
                 f"unknown performative `{word.functor}`",
                 word.span,
-                f"did you mean `{meant[0]}`?",
+                did_you_mean(meant[:1]),
                 "unknown-performative",
             )

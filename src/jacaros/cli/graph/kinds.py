@@ -1,14 +1,14 @@
 """Find the topic, service, action, node or type that a name means."""
 
-import difflib
 from dataclasses import dataclass
 from enum import StrEnum
 
 from jacaros.cli.graph.joining import Joined
-from jacaros.cli.usage import did_you_mean, usage_error
+from jacaros.cli.usage import usage_error
 from jacaros.errors import UsageError
 from jacaros.ros.errors import NameInvalid
 from jacaros.ros.graph import GraphContents
+from jacaros.suggestions import close_matches, did_you_mean
 
 
 class Kind(StrEnum):
@@ -59,7 +59,10 @@ def find(joined: Joined, written: str) -> list[Thing]:
     things = all_things(joined.contents)
     found = [thing for thing in things if thing.name == name]
     if not found:
-        raise usage_error(f"unknown name: `{name}`", suggestion(name, [t.name for t in things]))
+        raise usage_error(
+            f"unknown name: `{name}`",
+            did_you_mean(near_names(name, [t.name for t in things]), "`jacaros ros list` shows all names"),
+        )
     return found
 
 
@@ -79,16 +82,11 @@ def find_mappable(joined: Joined, written: str) -> list[Thing]:
     return mappable
 
 
-def suggestion(name: str, names: list[str]) -> str:
-    """Return the help for an unknown name."""
-    return did_you_mean(near_names(name, names)) or "`jacaros ros list` shows all names"
-
-
 def near_names(name: str, names: list[str]) -> list[str]:
     """Return up to three similar names: similar spelling, or the same last part in another namespace."""
     last = name.rpartition("/")[2]
     same = [each for each in names if each.rpartition("/")[2] == last]
-    return list(dict.fromkeys([*same, *difflib.get_close_matches(name, names, n=3, cutoff=0.7)]))[:3]
+    return list(dict.fromkeys([*same, *close_matches(name, names, 3)]))[:3]
 
 
 def _type_names(written: str) -> list[str]:

@@ -16,12 +16,12 @@ from jacaros.artifacts.mapping.declared import (
 from jacaros.cli.graph.joining import Joined
 from jacaros.cli.graph.kinds import near_names
 from jacaros.cli.graph.listening import root
-from jacaros.cli.usage import did_you_mean
 from jacaros.ros.backend import PARAMETERS
 from jacaros.ros.errors import RosError
 from jacaros.ros.graph import Endpoint, TopicInfo
 from jacaros.ros.names import frame_name
 from jacaros.ros.qos import DEFAULT_QOS, SENSOR_DATA, QoS, incompatibility
+from jacaros.suggestions import did_you_mean
 from jacaros.yaml_nodes import Problem
 
 MOST_NAMES = 8
@@ -190,11 +190,8 @@ def _of_publishing(names: Names, operation: OperationPart) -> Iterator[Problem]:
 
 def _absent(names: Names, written: Written, name: str, what: str, things: Iterable[str]) -> Problem:
     """Return the problem for a missing name, with similar names."""
-    near = near_names(name, list(things))
-    if near:
-        help = did_you_mean([_as_written(names, each) for each in near])
-    else:
-        help = "start its node; `jacaros ros list` shows all names"
+    near = [_as_written(names, each) for each in near_names(name, list(things))]
+    help = did_you_mean(near, "start its node; `jacaros ros list` shows all names")
     return written.place.problem(f"{what} `{name}`", help)
 
 
@@ -234,9 +231,7 @@ async def _of_parameter(names: Names, node: str, parameter: str, place: Place) -
     if name not in known:
         near = near_names(name, list(known))
         return [
-            place.problem(
-                f"unknown node `{name}`", did_you_mean(near) or "`jacaros ros list` shows all nodes"
-            )
+            place.problem(f"unknown node `{name}`", did_you_mean(near, "`jacaros ros list` shows all nodes"))
         ]
     try:
         there = await joined.backend.parameters(name).names(joined.timeout)
