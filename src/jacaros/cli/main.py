@@ -148,6 +148,9 @@ def call(arguments: list[str] | None = None) -> int:
     except click.exceptions.Abort:
         return 130
     except click.ClickException as wrong:
+        if type(wrong).__name__ == "NoArgsIsHelpError":  # a command alone, such as `jacaros`
+            click.echo(wrong.format_message())
+            return 0
         return _report(in_our_form(wrong), 2, by_variable)
     except UsageError as wrong:
         return _report(wrong, 2, by_variable)

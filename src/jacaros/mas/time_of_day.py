@@ -39,16 +39,12 @@ def readings(files: Iterable[Path]) -> Iterator[Diagnostic]:
 
 def _calls(text: str) -> Iterator[tuple[ast.expr, str]]:
     """Yield the calls of functions of `time`, however imported, with their names there."""
-    modules, names = {""}, dict[str, str]()
+    names: dict[str, str] = {}
     for node in ast.walk(ast.parse(text)):
         if isinstance(node, ast.Import):
-            modules |= {each.asname or each.name for each in node.names if each.name == "time"}
+            modules = [each.asname or each.name for each in node.names if each.name == "time"]
+            names |= {f"{module}.{name}": name for module in modules for name in _INSTEAD}
         elif isinstance(node, ast.ImportFrom) and node.module == "time":
             names |= {each.asname or each.name: each.name for each in node.names if each.name in _INSTEAD}
-        elif isinstance(node, ast.Call):
-            called = node.func
-            if isinstance(called, ast.Name) and called.id in names:
-                yield called, names[called.id]
-            elif isinstance(called, ast.Attribute) and isinstance(called.value, ast.Name):
-                if called.value.id in modules and called.attr in _INSTEAD:
-                    yield called, called.attr
+        elif isinstance(node, ast.Call) and (name := names.get(ast.unparse(node.func))):
+            yield node.func, name

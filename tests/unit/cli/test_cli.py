@@ -241,3 +241,12 @@ def test_low_batteries_are_logged_by_sim(folder: Path, capsys: pytest.CaptureFix
     assert "`turtlebot` is empty" in errors
     assert "--full-battery" in errors
     assert outcome(capsys, *world, "--full-battery")[2] == ""
+
+
+@pytest.mark.parametrize("arguments", [[], ["ros"], ["world"]])
+def test_a_command_alone_prints_its_help(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert call(arguments) == 0
+    printed = capsys.readouterr()
+    assert printed.err == ""
+    assert printed.out.startswith(" ".join(["Usage: jacaros", *arguments]))
+    assert "Commands:" in printed.out

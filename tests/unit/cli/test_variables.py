@@ -99,7 +99,8 @@ def test_an_error_in_a_variable_names_it(
     code, errors = outcome(capsys, *arguments.split())
     assert code in (1, 2)
     note = f"note: {option} was set by the environment variable {variable}; to ignore it, unset {variable}\n"
-    assert errors.startswith("error: ") and errors.endswith(note)
+    assert errors.startswith("error: ")
+    assert errors.endswith(note)
     assert "short" not in errors, "a token is a secret"
 
 

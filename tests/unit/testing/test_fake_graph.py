@@ -222,3 +222,10 @@ def test_python_tests_play_the_graph_of_a_whole_run(files: Path) -> None:
     assert [message.linear.x for message in held[0].published("cmd_vel")] == [-0.5] * 10 + [0.0]
     assert [request.data for request in held[0].asked("light")] == [True]
     assert result.ground_truth is None
+
+
+def test_a_fake_service_that_no_artifact_can_call_is_reported(run: Run) -> None:
+    serve = '!fake_service("{}", "std_srvs/srv/SetBool", "success: true")'
+    [unused, misspelt] = run(serve.format("light"), serve.format("lihgt"))
+    assert unused.problems == []
+    assert "no artifact calls the service /lihgt of fake_service; did you mean `/light`?" in told(misspelt)
