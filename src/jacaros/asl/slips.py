@@ -60,6 +60,8 @@ def known_slip(tokens: Sequence[Token], index: int) -> Slip | None:
     """Return the likely mistake where the token at *index* does not fit, if it is a known one."""
     return (
         _misspelt(tokens, index)
+        or _bare_goal(tokens, index)
+        or _prefixed_string(tokens, index)
         or _foreign_word(tokens, index)
         or _python(tokens, index)
         or _open_block(tokens, index)
@@ -69,6 +71,31 @@ def known_slip(tokens: Sequence[Token], index: int) -> Slip | None:
         or _fused(tokens, index)
         or _missing_blank(tokens, index)
     )
+
+
+def _bare_goal(tokens: Sequence[Token], index: int) -> Slip | None:
+    """``!start <- steps.``: a plan without the `+` of its trigger."""
+    if tokens[index].kind not in ("<-", ":"):
+        return None
+    start = next((at for at in range(index, 0, -1) if tokens[at - 1].kind == "."), 0)
+    if tokens[start].kind not in ("!", "?") or tokens[start + 1].kind != "atom":
+        return None
+    goal = f"{tokens[start].kind}{tokens[start + 1].text}"
+    return Slip(
+        "missing-trigger", f"`{goal}` is a goal, not the trigger of a plan", f"write `+{goal}`", tokens[start]
+    )
+
+
+def _prefixed_string(tokens: Sequence[Token], index: int) -> Slip | None:
+    """``f"at {X}"``."""
+    token, before = tokens[index], tokens[max(index - 1, 0)]
+    joined = before.line == token.line and before.end == token.column
+    if token.kind != "string" or not joined or before.text.lower() not in ("f", "r", "b", "u"):
+        return None
+    help = (
+        'write values between strings, as in `.print("at ", X)`, or join them with `.concat("at ", X, Text)`'
+    )
+    return Slip("foreign-word", f"strings have no prefix such as `{before.text}` in Python", help, before)
 
 
 def _reserved(token: Token) -> Slip | None:

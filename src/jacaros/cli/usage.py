@@ -4,7 +4,7 @@ import click
 
 from jacaros.errors import UsageError
 from jacaros.excerpts import help_line, printable
-from jacaros.suggestions import did_you_mean
+from jacaros.suggestions import suggestion
 
 
 def usage_error(what: str, help: str = "") -> UsageError:
@@ -25,8 +25,10 @@ def in_our_form(wrong: click.ClickException) -> UsageError:
     path = wrong.ctx.command_path if isinstance(wrong, click.UsageError) and wrong.ctx else "jacaros"
     overview = f"`{path} --help` lists the options"
     if isinstance(wrong, click.NoSuchOption):
-        near = sorted(wrong.possibilities or ())
-        return usage_error(f"unknown option: `{wrong.option_name}`", did_you_mean(near) or overview)
+        known = [opt for each in wrong.ctx.command.params for opt in each.opts] if wrong.ctx else []
+        return usage_error(
+            f"unknown option: `{wrong.option_name}`", suggestion(wrong.option_name, known, overview, 3)
+        )
     if isinstance(wrong, click.MissingParameter) and wrong.param is not None:
         is_option = isinstance(wrong.param, click.Option)
         name = (

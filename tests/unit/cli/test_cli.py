@@ -250,3 +250,8 @@ def test_a_command_alone_prints_its_help(arguments: list[str], capsys: pytest.Ca
     assert printed.err == ""
     assert printed.out.startswith(" ".join(["Usage: jacaros", *arguments]))
     assert "Commands:" in printed.out
+
+
+def test_the_most_similar_option_is_suggested_first(capsys: pytest.CaptureFixture[str]) -> None:
+    assert call(["run", "hello.asl", "--maping", "robot.yaml"]) == 2
+    assert "= help: did you mean `--mapping` or" in capsys.readouterr().err

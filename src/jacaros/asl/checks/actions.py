@@ -130,6 +130,28 @@ def acting_conditions(found: Sequence[nodes.Node], known: KnownActions) -> Itera
                     )
 
 
+_PRINTING: Final = frozenset({".print", ".println", ".printf"})
+_SHORT: Final = 10
+"""Milliseconds: a shorter `.wait` was probably meant in seconds."""
+
+
+def doubtful_values(found: Sequence[nodes.Node]) -> Iterator[Diagnostic]:
+    """Note waits that are probably meant in seconds, and atoms that are probably meant as texts."""
+    for node in found:
+        if not isinstance(node, nodes.InternalAction):
+            continue
+        first = node.arguments[0] if node.arguments else None
+        if node.name == ".wait" and isinstance(first, nodes.Number) and 0 < first.value < _SHORT:
+            time = f"{first.value:g}"
+            help = f"for {time} s write `.wait({first.value * 1000:g})`"
+            yield Diagnostic("note", f"`.wait({time})` waits for {time} ms", first.span, help, "short-wait")
+        for word in node.arguments if node.name in _PRINTING else ():
+            if isinstance(word, nodes.Literal) and word.functor.startswith("'") and not word.arguments:
+                text = word.functor.strip("'")
+                message = f"`{word.functor}` is an atom, which is printed with its quotes"
+                yield Diagnostic("note", message, word.span, f'write a text as `"{text}"`', "quoted-atom")
+
+
 def unknown_performatives(found: Sequence[nodes.Node], known: KnownActions) -> Iterator[Diagnostic]:
     """Warn of misspelt performatives; a word that is not similar to one may be the program's own."""
     for node in found:
