@@ -18,6 +18,12 @@ _UNSAFE: Final = re.compile(
 """Characters that a terminal obeys or hides: control characters, direction marks, parts of surrogate pairs."""
 
 
+def is_worth_a_line(count: int, more: int = 1) -> bool:
+    """Return whether a repeated message is printed: it is the 1st, 10th, 100th, … or one of the *more* last ones was."""
+    before = count - more
+    return not before or len(str(before)) < len(str(count))
+
+
 def escaped(text: str) -> str:
     r"""Return *text* with unsafe characters replaced by escapes such as ``\x1b`` and ``\u202e``."""
     return _UNSAFE.sub(_escape, text)

@@ -13,11 +13,11 @@ The keys and their meaning are those of Nav2's ``map_server`` and ROS 1's ``map_
 Other keys are allowed, such as ``places`` (names and positions in metres), which map servers ignore.
 """
 
-import difflib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
 
+from jacaros.suggestions import close_matches
 from jacaros.yaml_nodes import Node
 
 KEYS: Final = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh", "mode")
@@ -73,7 +73,7 @@ def read_header(document: Node) -> MapHeader:
     """Read the header of a map; mistakes are noted at the nodes of the *document*."""
     # Map servers ignore unknown keys; an unknown key that resembles a known one is a mistake.
     given = document.value if isinstance(document.value, dict) else {}
-    others = [str(key) for key in given if not difflib.get_close_matches(str(key), KEYS, 1)]
+    others = [str(key) for key in given if not close_matches(str(key), KEYS)]
     nodes = document.mapping(*KEYS, *others, required=_REQUIRED)
     places = nodes["places"].entries() if "places" in nodes else ()
     return MapHeader(

@@ -19,6 +19,8 @@ from collections import deque
 from collections.abc import Callable
 from typing import Any, Protocol, TextIO
 
+from jacaros.excerpts import is_worth_a_line
+
 LIMIT = 8 << 20
 """Maximum number of bytes waiting for a sink."""
 PATIENCE = 0.2
@@ -262,7 +264,7 @@ class Output:
             told()
             return
         self._failures += 1
-        if _worth_telling(self._failures):
+        if is_worth_a_line(self._failures):
             why = "the reader accepts nothing" if error is None else _said(error)
             self._report(f"cannot write to {self._name}: {why}; dropping lines until it works again")
 
@@ -271,7 +273,7 @@ class Output:
         if self._retry_at is None and not self._blocked:
             return
         self._retry_at, self._blocked = None, False
-        if _worth_telling(self._failures) and self._lost:
+        if is_worth_a_line(self._failures) and self._lost:
             self._report(f"{self._name} works again; {_lines(self._lost)} lost")
             self._lost = 0
 
@@ -523,11 +525,6 @@ def _descriptor_of(stream: Stream | None) -> _Sink | None:
 
 def _line_ends(text: str | bytes) -> int:
     return text.count(b"\n") if isinstance(text, bytes) else text.count("\n")
-
-
-def _worth_telling(times: int) -> bool:
-    """Return whether this is the first, 10th, 100th … time."""
-    return str(times).rstrip("0") == "1"
 
 
 def _said(error: Exception) -> str:

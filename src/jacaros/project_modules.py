@@ -99,6 +99,11 @@ class ProjectModules:
             self.unseen.add(file)
             raise NotImported(f"{file} is not imported, so {name} is not known; --import imports it")
 
+    def loaded_files(self) -> list[Path]:
+        """Return the files that have been loaded, each once."""
+        files = (getattr(module, "__file__", None) for module in self._modules.values())
+        return [Path(file) for file in dict.fromkeys(files) if file]
+
     def name_of(self, module: ModuleType) -> str:
         """The name by which the project knows a module, such as ``my.geometry``."""
         return module.__name__.removeprefix(f"{self._prefix}.")

@@ -3,7 +3,6 @@
 World files and mapping files are read with it.
 """
 
-import difflib
 import math
 import warnings
 from collections.abc import Iterator
@@ -18,6 +17,7 @@ from ruamel.yaml.nodes import MappingNode, SequenceNode
 
 from jacaros.errors import JacarosError
 from jacaros.excerpts import MOST, escaped, help_line, marked, printable
+from jacaros.suggestions import suggestion
 from jacaros.yaml_syntax import Problem, syntax_problem
 
 __all__ = ["Node", "Problem", "YamlFileError", "plain_values", "read_document", "shown"]
@@ -108,8 +108,7 @@ class Node:
     def _unknown_key(self, key: object, known: tuple[str, ...]) -> None:
         known_at = (self.value.lc.data or {}).get(key)  # None: a YAML merge (<<) brought it in
         line, column = (self.line - 1, self.column - 1) if known_at is None else known_at[:2]
-        near = difflib.get_close_matches(str(key), known, 1)
-        help = f"did you mean '{near[0]}'?" if near else f"known keys: {', '.join(known)}"
+        help = suggestion(str(key), known, f"known keys: {', '.join(known)}")
         self.problems.append(Problem(line + 1, column + 1, f"{self.what} has no key '{key}'", help))
 
     def entries(self) -> Iterator[tuple["Node", "Node"]]:

@@ -283,7 +283,7 @@ def test_a_message_of_another_type_is_refused(graph: Any, pair: Pair, topic: str
 def test_wrong_fields_are_named(graph: Any, pair: Pair, topic: str) -> None:
     left, _ = pair
     left.advertise(topic, "geometry_msgs/msg/Twist")
-    with pytest.raises(MessageMismatch, match=r"no field 'liner'.*did you mean linear.*angular"):
+    with pytest.raises(MessageMismatch, match=r"no field 'liner'.*did you mean `linear`.*angular"):
         left.publish(topic, {"liner": {"x": 1}})
     with pytest.raises(MessageMismatch, match=r"linear\.x is float64, but 'fast' is given"):
         left.publish(topic, {"linear": {"x": "fast"}})

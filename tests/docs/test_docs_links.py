@@ -53,8 +53,8 @@ def test_the_first_screen_of_the_readme_has_the_picture_and_the_first_commands()
     first_screen = "\n".join((ROOT / "README.md").read_text(encoding="utf-8").splitlines()[:40])
     assert "docs/images/page.png" in first_screen
     commands = re.findall(r"^(?:make|jacaros|pip install) \w+", first_screen, flags=re.MULTILINE)
-    assert commands == ["pip install jacaros", "jacaros demo", "make demo", "make test"]
-    for needed in ("git", "make", "3.11", "venv"):
+    assert commands == ["make demo", "jacaros demo", "make test"]
+    for needed in ("git", "make", "3.11", "venv", ". .venv/bin/activate", "pip install jacaros"):
         assert needed in first_screen
 
 

@@ -180,7 +180,7 @@ def test_an_unknown_operation(project: Project) -> None:
     assert project.run_file("robot.asl") == told(
         0,
         "[robot] warning: the goal !start failed and has no plan for its failure: action_failed, "
-        "no artifact of workspace /main has an operation chek/1; did you mean check/1 of 'visitors'? "
+        "no artifact of workspace /main has an operation chek/1; did you mean `check/1` of 'visitors'? "
         "(robot.asl:4)\n"
         '  step: chek(3)\n  reason: env_failure_detail(unknown_operation("chek/1"))\n',
     )
@@ -348,7 +348,7 @@ def test_a_mistake_in_a_world_file(project: Project) -> None:
         "yard.yaml:3:5: error: item 1 of 'robots' has no key 'pos'\n"
         "    3 |     pos: {x: 1}\n"
         "            ^\n"
-        "  = help: did you mean 'pose'?\n",
+        "  = help: did you mean `pose`?\n",
     )
 
 

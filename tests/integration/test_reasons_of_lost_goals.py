@@ -118,7 +118,7 @@ def test_servers_that_are_not_there(tmp_path: Path) -> None:
 def test_an_unknown_operation(tmp_path: Path) -> None:
     assert told(tmp_path, "cuont(5)") == [
         (
-            f"{FAILED}no artifact of workspace /main has an operation cuont/1; did you mean count/1 of 'robot'? "
+            f"{FAILED}no artifact of workspace /main has an operation cuont/1; did you mean `count/1` of 'robot'? "
             "(robot.asl:3)"
         ),
         "  step: cuont(5), for !visit(kitchen), !patrol",

@@ -25,6 +25,7 @@ from jacaros.artifacts.tools import Barrier, Clock, Latch
 from jacaros.env import Artifact, InvalidArtifact, UnknownArtifactType
 from jacaros.env.standard_artifacts import Blackboard, Console
 from jacaros.project_modules import ModuleUnreadable, NotImported, ProjectModules
+from jacaros.text_files import shown_from
 
 LATE = {
     "ArtMap": "jacaros.artifacts.map.robot_map",
@@ -128,6 +129,8 @@ def type_finder(project: ProjectModules | Path | str | None) -> Callable[[str], 
         except UnknownArtifactType:
             for module in near:
                 own.require_seen(module, name.rpartition(".")[2])
+            if (source := _java_source(name, own.folders)) is not None:
+                raise UnknownArtifactType(name, (), _in_java(name, source)) from None
             if not by_path and _is_installed(name):
                 raise NotImported(f"{name} is not imported") from None
             raise
@@ -203,6 +206,26 @@ def _beside(name: str, project: ProjectModules) -> Sequence[ModuleType]:
     return project.load(path) if path and project.place(path) is not None else ()
 
 
+_JAVA_FOLDERS = ("", "src", "src/env", "src/java", "src/main/java", "src/agt")
+"""Folders of a JaCaMo project in which Java classes are."""
+
+
+def _java_source(name: str, folders: Iterable[Path]) -> Path | None:
+    """Return the Java file of a class; None without one."""
+    file = f"{name.replace('.', '/')}.java"
+    paths = (folder / inner / file for folder in folders for inner in _JAVA_FOLDERS)
+    return next(filter(Path.is_file, paths), None)
+
+
+def _in_java(name: str, source: Path) -> str:
+    path, _, last = name.rpartition(".")
+    file = f"{path.replace('.', '/') or ARTIFACTS}.py"
+    return (
+        f"artifact type `{name}` is in Java ({shown_from(Path.cwd(), source)}), which JaCaROS does not run; port it to "
+        f"`class {last}(Artifact)` in {file}, as docs/how-to/come_from_cartago.md shows"
+    )
+
+
 def _is_installed(name: str) -> bool:
     """Return whether a dotted name begins with an installed package, which is not imported."""
     top, dot, _ = name.partition(".")
@@ -246,8 +269,12 @@ def _artifact_type(candidate: object) -> type[Artifact] | None:
 
 
 def _candidates(name: str, modules: Iterable[ModuleType], built_in: Mapping[str, object]) -> list[str]:
-    """Return similar names, with the package of *name* in front."""
+    """Return the names of all types that may be meant; those of the project also with the package of *name*."""
     own = {key for module in modules for key, value in vars(module).items() if _artifact_type(value)}
-    known = sorted(own | set(built_in))
     package = name.rpartition(".")[0]
-    return known + [f"{package}.{each}" for each in known if package]
+    within = own | set(built_in) if f"{package}." in ALIASES else own
+    return [
+        *sorted(own | set(built_in)),
+        *TOOLS,
+        *(f"{package}.{each}" for each in sorted(within) if package),
+    ]

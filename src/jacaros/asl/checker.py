@@ -8,6 +8,7 @@ from jacaros.asl import nodes
 from jacaros.asl.checks.actions import (
     KnownActions,
     acting_conditions,
+    doubtful_values,
     unknown_actions,
     unknown_performatives,
     wrong_arguments,
@@ -44,6 +45,7 @@ def check(program: nodes.Program, known: KnownActions, errors: Sequence[Diagnost
             because a definition that seems to be missing may be in a clause with errors.
     """
     warnings = _mistakes(program, known, errors)
+    warnings += doubtful_values([*walk(*_sound(program, errors))])
     for clause in _sound(program, errors):
         warnings += singletons(clause)
     facts = (belief for belief in program.beliefs if not isinstance(belief, nodes.Rule))

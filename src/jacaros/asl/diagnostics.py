@@ -192,6 +192,8 @@ KINDS: Final[dict[str, Kind]] = {
     "wrong-arguments": Kind("warning", "an internal action with too few or too many arguments"),
     "wrong-belief-change": Kind("error", "an operator that does not change beliefs, or no belief after it"),
     "wrong-directive": Kind("error", "a directive with invalid arguments"),
+    "short-wait": Kind("note", "a wait of less than 10 ms"),
+    "quoted-atom": Kind("note", "a quoted atom that is printed"),
     "wrong-escape": Kind("error", "an invalid escape in a string"),
     "wrong-goal": Kind("error", "something that cannot be a goal"),
     "wrong-label": Kind("error", "something that cannot be a label"),

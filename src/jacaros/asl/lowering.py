@@ -162,7 +162,7 @@ def _external(node: nodes.ExternalAction, lookup: Lookup) -> Term:
 
 _LOWER: dict[type, Callable[..., Term]] = {
     nodes.Constant: lambda node, _: node.value,
-    nodes.Number: lambda node, _: float(node.value),
+    nodes.Number: lambda node, _: node.value,
     nodes.String: lambda node, _: String(node.value),
     nodes.Variable: _variable,
     nodes.Literal: _literal,

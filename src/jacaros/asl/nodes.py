@@ -78,7 +78,7 @@ def replace(node: Some, **parts: Any) -> Some:
 
 
 class Number(Node):
-    """A number literal; all numbers are doubles."""
+    """A number literal: a double, or an integer that no double is equal to (`jacaros.terms.values.number`)."""
 
     value: float
 

@@ -17,6 +17,7 @@ from jacaros.terms.values import (
     FUNCTION,
     LOGIC,
     NIL,
+    NUMBERS,
     RELATION,
     Annotated,
     Functor,
@@ -45,7 +46,7 @@ class Reflection:
         """Convert any term."""
         term = deref(term)
         kind = term.__class__
-        if kind is float:
+        if kind in NUMBERS:
             return nodes.Number(term)
         if kind is String:
             return nodes.String(str(term))

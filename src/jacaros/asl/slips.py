@@ -1,10 +1,11 @@
 """Similarity of words, and mistakes known from other languages, for better messages than "expected X, found Y"."""
 
 from collections.abc import Iterable, Iterator, Sequence
-from itertools import islice, pairwise
+from itertools import pairwise
 from typing import Final, NamedTuple
 
 from jacaros.asl.lexer import RESERVED, Token
+from jacaros.suggestions import did_you_mean
 from jacaros.terms.operators import WORDS, symbols_of
 from jacaros.terms.values import ARITHMETIC
 
@@ -59,6 +60,8 @@ def known_slip(tokens: Sequence[Token], index: int) -> Slip | None:
     """Return the likely mistake where the token at *index* does not fit, if it is a known one."""
     return (
         _misspelt(tokens, index)
+        or _bare_goal(tokens, index)
+        or _prefixed_string(tokens, index)
         or _foreign_word(tokens, index)
         or _python(tokens, index)
         or _open_block(tokens, index)
@@ -68,6 +71,31 @@ def known_slip(tokens: Sequence[Token], index: int) -> Slip | None:
         or _fused(tokens, index)
         or _missing_blank(tokens, index)
     )
+
+
+def _bare_goal(tokens: Sequence[Token], index: int) -> Slip | None:
+    """``!start <- steps.``: a plan without the `+` of its trigger."""
+    if tokens[index].kind not in ("<-", ":"):
+        return None
+    start = next((at for at in range(index, 0, -1) if tokens[at - 1].kind == "."), 0)
+    if tokens[start].kind not in ("!", "?") or tokens[start + 1].kind != "atom":
+        return None
+    goal = f"{tokens[start].kind}{tokens[start + 1].text}"
+    return Slip(
+        "missing-trigger", f"`{goal}` is a goal, not the trigger of a plan", f"write `+{goal}`", tokens[start]
+    )
+
+
+def _prefixed_string(tokens: Sequence[Token], index: int) -> Slip | None:
+    """``f"at {X}"``."""
+    token, before = tokens[index], tokens[max(index - 1, 0)]
+    joined = before.line == token.line and before.end == token.column
+    if token.kind != "string" or not joined or before.text.lower() not in ("f", "r", "b", "u"):
+        return None
+    help = (
+        'write values between strings, as in `.print("at ", X)`, or join them with `.concat("at ", X, Text)`'
+    )
+    return Slip("foreign-word", f"strings have no prefix such as `{before.text}` in Python", help, before)
 
 
 def _reserved(token: Token) -> Slip | None:
@@ -199,7 +227,7 @@ def _meant(word: Token, wanted: Sequence[str]) -> Slip | None:
         return None
     for each in wanted:
         if is_slip_of(word.text, each):
-            return Slip("misspelt-word", f"unexpected `{word.text}`", f"did you mean `{each}`?", word)
+            return Slip("misspelt-word", f"unexpected `{word.text}`", did_you_mean([each]), word)
     return None
 
 
@@ -216,17 +244,6 @@ def _opening(tokens: Sequence[Token], index: int) -> int:
 
 MOST_ASKED: Final = 25
 """Mistakes of one kind for which a similar word is searched: comparing words is slow."""
-MOST_KNOWN: Final = 2000
-"""Maximum number of words that one word is compared with."""
-
-
-def close_matches(word: str, known: Iterable[str], cutoff: float = 0.6) -> list[str]:
-    """Return the one of the first `MOST_KNOWN` *known* words most similar to *word*, in a list; empty below
-    *cutoff*.
-    """
-    from difflib import get_close_matches  # imported here: only incorrect programs need it
-
-    return get_close_matches(word, list(islice(known, MOST_KNOWN)), 1, cutoff)
 
 
 class Slips:

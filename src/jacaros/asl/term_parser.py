@@ -6,16 +6,18 @@ from typing import Final
 from jacaros.asl import nodes
 from jacaros.asl.lexer import Token
 from jacaros.asl.literal_parser import LiteralParser
-from jacaros.asl.slips import close_matches
 from jacaros.asl.source import Span
+from jacaros.suggestions import close_matches, did_you_mean
 from jacaros.terms.functions import ARITIES
 from jacaros.terms.operators import AND, BINARY, NOT, OR, PREFIX, SUM, Operator
 from jacaros.terms.text import unquoted
-from jacaros.terms.values import ARITHMETIC, RELATION
+from jacaros.terms.values import ARITHMETIC, RELATION, number
 
 MAX_CHAIN: Final = 250
 """Maximum number of operators in a row: each adds a level of recursion for code that walks the term."""
 
+_MOST_DIGITS: Final = 400
+"""Longer numbers are infinite, as all doubles of their size."""
 _NUMERIC: Final = (nodes.Number, nodes.Variable, nodes.Arithmetic, nodes.FunctionCall)
 
 
@@ -89,7 +91,7 @@ class TermParser(LiteralParser):
             return self.variable(formula)
         if kind == "number":
             self.advance()
-            return nodes.Number(float(token.text), span=self.span_of(token))
+            return nodes.Number(_value(token.text), span=self.span_of(token))
         if kind == "string":
             self.advance()
             return nodes.String(unquoted(token.text), span=self.span_of(token))
@@ -158,7 +160,7 @@ class TermParser(LiteralParser):
             what = f"unknown function `{operand.name}/{len(operand.arguments)}`"
             close = close_matches(operand.name, [*ARITIES, *self.names.functions])
             if close and close[0] != operand.name:
-                help = f"did you mean `{close[0]}`?"
+                help = did_you_mean(close)
             elif close:
                 help = f"{close[0]} takes {_arity_text(close[0])}"
         else:
@@ -210,3 +212,8 @@ def _arity_text(name: str) -> str:
     if fewest == most:
         return "no argument" if fewest == 0 else f"{fewest} argument{'s' if fewest > 1 else ''}"
     return f"{fewest} or more arguments"
+
+
+def _value(written: str) -> float:
+    """Return the value of a number as written; whole numbers of any size are exact."""
+    return number(int(written)) if written.isdecimal() and len(written) < _MOST_DIGITS else float(written)

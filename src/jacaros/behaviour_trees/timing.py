@@ -1,8 +1,11 @@
-"""Waiting and time-outs on the run's clock: those of py_trees use the time of day."""
+"""Waiting and time-outs on the run's clock, and those of py_trees made to follow it: they use the time of day."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from types import FunctionType, MethodType, SimpleNamespace
 from typing import Any
 
+import py_trees.decorators
+import py_trees.timers
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 from py_trees.decorators import Decorator
@@ -91,3 +94,46 @@ class Timeout(Decorator):
     def _ring(self) -> None:
         self._over = True
         self.wake()
+
+
+_OF_PY_TREES = (py_trees.timers.Timer, py_trees.decorators.Timeout)
+_METHODS = ("initialise", "update")
+"""The methods in which they read the time."""
+
+
+def follow(clock: Clock, behaviours: Iterable[Behaviour]) -> Callable[[], None]:
+    """Let timers and time-outs of py_trees read *clock*, each object for itself; return a function that ends this.
+
+    Raises:
+        TypeError: a class derived from one of them has a method of its own there, so that it cannot follow a virtual clock.
+    """
+    bound: list[Behaviour] = []
+    for behaviour in behaviours:
+        kind = next((each for each in _OF_PY_TREES if isinstance(behaviour, each)), None)
+        if kind is None:
+            continue
+        if all(getattr(type(behaviour), name) is getattr(kind, name) for name in _METHODS):
+            _bind(behaviour, clock)
+            bound.append(behaviour)
+        elif clock.virtual:
+            ours = f"jacaros.behaviour_trees.{kind.__name__}"
+            raise TypeError(
+                f"the behaviour `{behaviour.name}` ({type(behaviour).__name__}) follows the time of day, not the virtual "
+                f"clock of the run; derive it from {ours}"
+            )
+
+    def end() -> None:
+        for behaviour in bound:
+            for name in _METHODS:
+                delattr(behaviour, name)
+
+    return end
+
+
+def _bind(behaviour: Behaviour, clock: Clock) -> None:
+    """Replace the module `time`, as the methods of one object see it."""
+    reading = SimpleNamespace(time=lambda: clock.elapsed, monotonic=lambda: clock.elapsed)
+    for name in _METHODS:
+        method = getattr(type(behaviour), name)
+        function = FunctionType(method.__code__, {**method.__globals__, "time": reading}, name)
+        setattr(behaviour, name, MethodType(function, behaviour))

@@ -11,6 +11,7 @@ from py_trees.trees import BehaviourTree
 
 from jacaros.behaviour_trees.act import Act
 from jacaros.behaviour_trees.artifact_behaviour import ArtifactBehaviour
+from jacaros.behaviour_trees.timing import follow
 from jacaros.env import Session
 from jacaros.env.session.account import Observer
 
@@ -76,21 +77,27 @@ class TreeRunner:
 
         Raises:
             RuntimeError: it is already running.
+            TypeError: a timer in the tree cannot follow the virtual clock (`follow`).
             Exception: an exception of the author's own behaviours.
         """
         if self._running:
             raise RuntimeError(f"the tree `{self.tree.root.name}` is already running")
+        unbind = follow(self.session.clock, self.tree.root.iterate())
         self._running, self._ends, self._due = True, False, False
-        off = (self.session.on_change(lambda _: self.wake()), self.session.on_signal(lambda _: self.wake()))
+        off = (
+            self.session.on_change(lambda _: self.wake()),
+            self.session.on_signal(lambda _: self.wake()),
+            unbind,
+        )
         try:
             self.tree.setup(**self._setup)
             await self._tick(forever)
             return self.tree.root.status
         finally:
             self._running = False
+            self._release()
             for each in off:
                 each()
-            self._release()
 
     def stop(self) -> None:
         """End `run` before the next tick; if called during a tick, after it."""

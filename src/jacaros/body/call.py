@@ -7,10 +7,11 @@ from dataclasses import dataclass
 
 from jacaros.bdi.state.act import Act
 from jacaros.body.values import symbol_name, unquoted
-from jacaros.env.errors import OperationFailed, suggestion
+from jacaros.env.errors import OperationFailed
 from jacaros.env.ids import ArtifactId
 from jacaros.env.ports import Workspace
 from jacaros.env.values import Atom, Structure
+from jacaros.suggestions import aside
 from jacaros.terms.text import text
 from jacaros.terms.values import Annotated, Functor, Reference, String, Term, Var, atom, bare, deref, functor
 
@@ -91,7 +92,7 @@ def _direction(act: Act) -> Direction:
             continue
         if len(annotation) != 2 or (name not in _BY_ARTIFACT and name not in _BY_WORKSPACE):
             message = f"unknown annotation `{text(annotation)}` of action `{act.functor}`"
-            help = suggestion(name, _DIRECTIONS)
+            help = aside(name, _DIRECTIONS)
             raise unknown_annotation(
                 act, annotation, f"{message}{help or f'; the annotations of actions are {_DIRECTING}'}"
             )

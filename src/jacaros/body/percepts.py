@@ -3,13 +3,13 @@
 from collections.abc import Callable
 
 from jacaros.bdi.state.act import Percept
-from jacaros.body.values import References, atom_of, number_to_term, symbol_of, to_term
+from jacaros.body.values import References, atom_of, symbol_of, to_term
 from jacaros.env.ids import ArtifactId
 from jacaros.env.observation import Observation
 from jacaros.env.property import ObservableProperty
 from jacaros.env.values import Atom, Out, Structure
 from jacaros.terms.order import annotation_set
-from jacaros.terms.values import SOURCE_PERCEPT, String, Term, atom, functor
+from jacaros.terms.values import SOURCE_PERCEPT, String, Term, atom, functor, number
 
 ADD, REMOVE, SIGNAL = "add", "remove", "signal"
 
@@ -159,7 +159,7 @@ class PerceptWriter:
             if kind is float:
                 written.append(value)
             elif kind is int:
-                written.append(number_to_term(value))
+                written.append(number(value))  # type: ignore[arg-type]
             else:
                 written.append(to_term(_complete(value), self._references))
         return tuple(written)

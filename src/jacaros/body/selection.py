@@ -6,7 +6,6 @@ namespace come first. Otherwise the workspaces are searched: the current one of 
 the others that it has joined (see `jacaros.env.lookup` for several candidates in one).
 """
 
-import difflib
 from collections.abc import Callable, Iterator, Sequence
 
 from jacaros.bdi.actions.internal_action import STANDARD
@@ -23,6 +22,7 @@ from jacaros.env.lookup import artifact_named, chosen_artifact, in_order, joined
 from jacaros.env.ports import Environment, Workspace
 from jacaros.env.standard_artifacts import DEFAULT_TYPES
 from jacaros.env.values import Structure
+from jacaros.suggestions import aside, close_matches
 
 
 class JoinedWorkspaces:
@@ -265,7 +265,7 @@ class Selection:
         if not near:
             if f".{call.name}" in STANDARD:
                 return f"; write the internal action with a dot: .{call.name}"
-            near = difflib.get_close_matches(call.key, offers, n=3, cutoff=0.7)
+            near = close_matches(call.key, offers, 3)
         if not near:
             if (forgotten := _without_mark(call.name, places)) is not None:
                 return (
@@ -273,7 +273,7 @@ class Selection:
                 )
             nothing = all(a.type_name in DEFAULT_TYPES for w in places for a in w.artifacts())
             return "; the workspace has no artifacts yet (makeArtifact, or --mapping FILE)" if nothing else ""
-        return f"; did you mean {' or '.join(key + offers[key] for key in near[:3])}?"
+        return f"; did you mean {' or '.join(f'`{key}`{offers[key]}' for key in near[:3])}?"
 
 
 def _without_mark(name: str, places: Sequence[Workspace]) -> ArtifactId | None:
@@ -286,5 +286,4 @@ def _without_mark(name: str, places: Sequence[Workspace]) -> ArtifactId | None:
 
 
 def _internal_action_hint(name: str) -> str:
-    near = difflib.get_close_matches(name, STANDARD, n=1, cutoff=0.75)
-    return f"; unknown internal action {name}" + (f", did you mean {near[0]}?" if near else "")
+    return f"; unknown internal action `{name}`{aside(name, STANDARD)}"

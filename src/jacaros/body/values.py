@@ -47,6 +47,7 @@ from jacaros.terms.values import (
     deref,
     functor,
     make_list,
+    number,
     parted,
 )
 
@@ -65,6 +66,8 @@ def to_value(term: Term, outputs: Outputs | None = None) -> Any:
     kind = term.__class__
     if kind is float:
         return int(term) if term.is_integer() else term
+    if kind is int:
+        return term
     if kind is String:
         return str(term)
     if kind is Var:
@@ -199,14 +202,6 @@ def to_term(value: Any, references: References) -> Term:
     return _other_to_term(value, references)
 
 
-def number_to_term(value: Any) -> float:
-    """Convert an `int` or `float` of any size to a number."""
-    try:
-        return float(value)
-    except OverflowError:
-        return float("inf") if value > 0 else float("-inf")
-
-
 @lru_cache(4096)
 def symbol_of(name: str, arity: int) -> Functor:
     """Return the functor for a name from the environment, quoted unless it is a plain lower-case word."""
@@ -261,13 +256,13 @@ def _other_to_term(value: Any, references: References) -> Term:
     if isinstance(simple, str):
         return String(simple)
     if isinstance(simple, (int, float)):
-        return number_to_term(simple)
+        return number(simple)
     return reference_to(simple)
 
 
 _BY_CLASS: dict[type, Callable[[Any, References], Term]] = {
     float: lambda value, _: value,
-    int: lambda value, _: number_to_term(value),
+    int: lambda value, _: number(value),
     bool: lambda value, _: TRUE if value else FALSE,
     str: lambda value, _: String(value),
     Atom: lambda value, _: TRUE if value == "true" else FALSE if value == "false" else symbol_of(value, 0),

@@ -1,6 +1,5 @@
 """``jacaros check FILE|FOLDER...``."""
 
-import difflib
 import os
 import sys
 from collections import Counter
@@ -12,8 +11,9 @@ import click
 from jacaros.asl.diagnostics import KINDS, Diagnostic, Severity, bounded
 from jacaros.cli.files import existing, no_programs
 from jacaros.cli.reports import as_json, as_sarif
-from jacaros.cli.usage import did_you_mean, examples, usage_error
+from jacaros.cli.usage import examples, usage_error
 from jacaros.mas.checking import Findings, check_files
+from jacaros.suggestions import suggestion
 from jacaros.text_files import is_file
 
 _KINDS = (".asl", ".mas2j", ".jcm", ".py", ".yaml", ".yml")
@@ -80,10 +80,9 @@ def command(
     """  # fmt: skip
     unknown = [code for code in ignore if code not in KINDS]
     if unknown:
-        near = difflib.get_close_matches(unknown[0], KINDS, 1)
         raise usage_error(
             f"unknown code: `{unknown[0]}`",
-            did_you_mean(near) or 'the reference page "Diagnostics" lists the codes',
+            suggestion(unknown[0], KINDS, 'the reference page "Diagnostics" lists the codes'),
         )
     supported = _supported(files)
     findings = check_files([existing(file, _KINDS) for file in supported], mappings, imports)

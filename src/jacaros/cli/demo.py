@@ -6,6 +6,7 @@ from pathlib import Path
 import click
 
 from jacaros.cli.usage import examples, usage_error
+from jacaros.cli.variables import variables
 
 PROGRAM = Path(__file__).with_name("patrol.asl")
 ROBOT = ("--world", "patrol", "--mapping", "nav2.yaml", "--mapping", "turtlebot4.yaml")
@@ -36,7 +37,7 @@ def command(save: bool, options: tuple[str, ...]) -> int:
 
     view = () if _has_view(options) else ("--view" if has_display() else "--view=terminal",)
     arguments = [str(PROGRAM), *ROBOT, *view, *options]
-    code: int = run.main(arguments, "jacaros demo", standalone_mode=False)
+    code: int = run.main(arguments, "jacaros demo", standalone_mode=False, obj=variables())
     return code
 
 

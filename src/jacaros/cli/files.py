@@ -1,14 +1,14 @@
 """Files and folders named on the command line."""
 
-import difflib
 from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from jacaros.cli.usage import did_you_mean, usage_error
+from jacaros.cli.usage import usage_error
 from jacaros.errors import UsageError
+from jacaros.suggestions import close_matches, did_you_mean, suggestion
 from jacaros.text_files import is_file
 
 if TYPE_CHECKING:
@@ -31,14 +31,17 @@ def existing(path: Path, kinds: tuple[str, ...] = _KINDS) -> Path:
     if path.is_dir():
         return path
     if not is_file(path):
-        beside = [each.name for each in path.parent.glob("*.*") if each.suffix in kinds]
-        near = difflib.get_close_matches(path.name, beside, n=2)
-        raise usage_error(
-            f"file not found: `{path}`", did_you_mean([str(path.parent / name) for name in near])
-        )
+        raise not_found(path, [each for each in path.parent.glob("*.*") if each.suffix in kinds])
     if path.suffix not in kinds:
         raise usage_error(f"unsupported file type: `{path}`", f"expected {', '.join(kinds)}")
     return path
+
+
+def not_found(path: Path, beside: Iterable[Path]) -> UsageError:
+    """Return the error for a missing file: those *beside* it that may be meant, first one of the same stem."""
+    same = [str(each) for each in beside if each.stem == path.name]
+    near = same or close_matches(str(path), map(str, beside), 2)
+    return usage_error(f"file not found: `{path}`", did_you_mean(near))
 
 
 def read_recording(path: Path) -> "Recording":
@@ -52,10 +55,9 @@ def read_recording(path: Path) -> "Recording":
     if path.is_dir():
         raise usage_error(f"`{path}` is a folder", "name a recording in it")
     if not is_file(path):
-        beside = [each.name for each in path.parent.glob("*.*") if _RECORDINGS.intersection(each.suffixes)]
-        near = difflib.get_close_matches(path.name, beside, n=1)
-        help = did_you_mean([str(path.parent / name) for name in near[:1]])
-        raise usage_error(f"recording not found: `{path}`", help or f"jacaros run FILE --record {path}")
+        beside = [str(each) for each in path.parent.glob("*.*") if _RECORDINGS.intersection(each.suffixes)]
+        help = suggestion(str(path), beside, f"jacaros run FILE --record {path}")
+        raise usage_error(f"recording not found: `{path}`", help)
     from jacaros.inspector.recording import Recording  # here: it imports numpy and the simulator
 
     recording = Recording.read(path)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from jacaros.cli.usage import usage_error
+from jacaros.cli.variables import VariableOption
 from jacaros.ros.middleware import ROS_KINDS
 
 if TYPE_CHECKING:
@@ -46,6 +47,7 @@ def ros_option(
 
     return click.option(
         "--ros",
+        cls=VariableOption,
         type=RosKind(kinds),
         default=None if required else "memory",
         callback=needed,
@@ -79,6 +81,14 @@ noise_option = click.option(
     help="Factor for the noise of the embedded world's odometry and lasers: off (0), on (1, that of the world file, or "
     "that of slipping wheels if it has none) or a number (default: as in the world file; off if no world is named).",
 )
+
+
+def world_option(help: str) -> Callable[[F], F]:
+    """Return the option ``--world``."""
+    return click.option(
+        "--world", cls=VariableOption, metavar="FILE", envvar="JACAROS_WORLD", show_envvar=True, help=help
+    )
+
 
 faults_option = click.option(
     "--faults",

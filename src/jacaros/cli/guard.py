@@ -9,6 +9,7 @@ import click
 
 from jacaros.cli.graph_options import address_options, ros_option
 from jacaros.cli.usage import examples
+from jacaros.cli.variables import VariableOption
 from jacaros.clock import WallClock, run
 from jacaros.ros.middleware import ROS_KINDS
 
@@ -27,6 +28,7 @@ LEAST_TIMEOUT = 0.15
 @click.option("--node-name", metavar="NODE", help="Name of the guard's node (default: NAME_guard).")
 @click.option(
     "--timeout",
+    cls=VariableOption,
     type=click.FloatRange(min=LEAST_TIMEOUT),
     default=0.3,
     metavar="S",

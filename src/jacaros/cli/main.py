@@ -6,18 +6,22 @@ Exit codes: 0 after a normal end, 1 for an error in a program or project, 2 for 
 
 import io
 import os
+import re
 import sys
 import threading
 import traceback
+from collections.abc import Mapping
 from importlib import import_module
 
 import click
 
 from jacaros.cli.outputs import OUTPUT_GONE
-from jacaros.cli.usage import did_you_mean, examples, in_our_form, usage_error
+from jacaros.cli.usage import examples, in_our_form, usage_error
+from jacaros.cli.variables import note
 from jacaros.errors import JacarosError, UsageError
 from jacaros.excerpts import help_line
 from jacaros.output import PLAIN
+from jacaros.suggestions import suggestion
 
 ENDED_BY_SIGNAL = (129, 130, 143, 149)
 """Exit codes of runs ended by SIGHUP, Ctrl+C, SIGTERM or Ctrl+Break (Windows)."""
@@ -74,12 +78,8 @@ class Commands(click.Group):
 
 
 def _unknown_command(name: str) -> UsageError:
-    import difflib  # here: only for a command that does not exist
-
-    near = difflib.get_close_matches(name, COMMANDS, 1)
-    return usage_error(
-        f"unknown command: `{name}`", did_you_mean(near) or "`jacaros --help` lists the commands"
-    )
+    help = suggestion(name, COMMANDS, "`jacaros --help` lists the commands")
+    return usage_error(f"unknown command: `{name}`", help)
 
 
 def _print_version(ctx: click.Context, _: click.Parameter, wanted: bool) -> None:
@@ -139,19 +139,23 @@ def _threads_are_left() -> bool:
 
 def call(arguments: list[str] | None = None) -> int:
     """Run a command; return its exit code."""
+    by_variable: dict[str, str] = {}
     try:
         arguments = _own(sys.argv[1:] if arguments is None else arguments)
-        result = jacaros.main(args=arguments, prog_name="jacaros", standalone_mode=False)
+        result = jacaros.main(args=arguments, prog_name="jacaros", standalone_mode=False, obj=by_variable)
     except click.exceptions.Exit as end:
         return end.exit_code
     except click.exceptions.Abort:
         return 130
     except click.ClickException as wrong:
-        return _report(in_our_form(wrong), 2)
+        if type(wrong).__name__ == "NoArgsIsHelpError":  # a command alone, such as `jacaros`
+            click.echo(wrong.format_message())
+            return 0
+        return _report(in_our_form(wrong), 2, by_variable)
     except UsageError as wrong:
-        return _report(wrong, 2)
+        return _report(wrong, 2, by_variable)
     except JacarosError as wrong:
-        return _report(wrong, 1)
+        return _report(wrong, 1, by_variable)
     except BrokenPipeError:
         return OUTPUT_GONE
     except Exception as defect:
@@ -174,9 +178,14 @@ def _own(arguments: list[str]) -> list[str]:
     return as_options(arguments, lambda line: print(f"warning: {line}", file=sys.stderr))
 
 
-def _report(error: JacarosError, code: int) -> int:
+def _report(error: JacarosError, code: int, by_variable: Mapping[str, str]) -> int:
     # Diagnostics begin with the file and line, where editors look for them.
     located = hasattr(error, "diagnostics") or hasattr(error, "problems")
     prefix = "" if located or str(error).startswith("error: ") else "error: "
     print(f"{prefix}{error}", file=sys.stderr)
+    for option, variable in by_variable.items():
+        words = option[2:].replace("-", "[- ]")
+        about = re.search(rf"\b{words}\b", str(error)) or os.environ[variable] in str(error)
+        if about or (code == 1 and not located):
+            print(note(option, variable), file=sys.stderr)
     return code

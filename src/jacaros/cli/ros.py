@@ -7,8 +7,9 @@ from typing import Any, TypeVar
 
 import click
 
-from jacaros.cli.graph_options import address_options, ros_option
+from jacaros.cli.graph_options import address_options, ros_option, world_option
 from jacaros.cli.usage import examples, usage_error
+from jacaros.cli.variables import settled
 from jacaros.mas.options import RunOptions
 from jacaros.ros.middleware import MIDDLEWARES
 from jacaros.text_files import shown_from
@@ -18,13 +19,7 @@ T = TypeVar("T")
 
 _OPTIONS = (
     ros_option("ROS graph to inspect: that of the embedded world (memory), or a real one."),
-    click.option(
-        "--world",
-        metavar="FILE",
-        envvar="JACAROS_WORLD",
-        show_envvar=True,
-        help="World file, or the name of a shipped world; with --ros memory only.",
-    ),
+    world_option("World file, or the name of a shipped world; with --ros memory only."),
     address_options,
     click.option(
         "--timeout",
@@ -236,7 +231,9 @@ def _in_graph(
     from jacaros.cli.graph.joining import clock_for, joined
     from jacaros.clock import run
 
-    options = RunOptions(**graph)
+    options, notes = settled(RunOptions(**graph))
+    for note in notes:
+        click.echo(note, err=True)
     clock = clock_for(options)
 
     async def main() -> T:

@@ -11,6 +11,7 @@ from typing import Any
 
 from jacaros.cli.usage import usage_error
 from jacaros.errors import UsageError
+from jacaros.ros.middleware import ROS_KINDS
 from jacaros.text_files import file_text
 
 _SIGN = ":="
@@ -64,8 +65,10 @@ def as_options(arguments: Sequence[str], warn: Callable[[str], None]) -> list[st
     added = [*_ros1_options(of_ros1), *_Ros2Arguments(of_ros2).options()]
     if own[:1] == ["sim"]:
         added = _without_parameters(added, warn)
-    if not _given(own, "--ros") and not os.environ.get("JACAROS_ROS"):
-        added += ["--ros", "ros1" if of_ros1 and "--ros-args" not in arguments else "ros2"]
+    kind = os.environ.get("JACAROS_ROS") or ("ros1" if of_ros1 and "--ros-args" not in arguments else "ros2")
+    # An unknown kind remains in the environment, so that the error names the variable.
+    if not _given(own, "--ros") and (kind in ROS_KINDS or ":" in kind):
+        added += ["--ros", kind]
     return [*own, *added]
 
 

@@ -11,6 +11,7 @@ from typing import Any
 import click
 
 from jacaros.bdi.mind import Mind
+from jacaros.cli.files import not_found
 from jacaros.cli.graph_options import (
     faults_option,
     graph_options,
@@ -20,9 +21,11 @@ from jacaros.cli.graph_options import (
     parameter_options,
     read_remaps,
     ros_option,
+    world_option,
 )
 from jacaros.cli.outputs import OUTPUT_GONE, RECORD_LIMIT, Outputs
-from jacaros.cli.usage import did_you_mean, examples, usage_error
+from jacaros.cli.usage import examples, usage_error
+from jacaros.cli.variables import VariableOption, settled, variables
 from jacaros.cli.view_options import ViewCommand, view_options
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.console import StandardConsole
@@ -58,6 +61,7 @@ SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
 @click.argument("file", type=click.Path(path_type=Path))
 @click.option(
     "--clock",
+    cls=VariableOption,
     type=click.Choice(["real", "fast", "ros"]),
     envvar="JACAROS_CLOCK",
     show_envvar=True,
@@ -67,13 +71,7 @@ SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
     "--seed", type=int, help="Seed for random numbers. With --clock fast, the whole run is reproducible."
 )
 @ros_option("ROS graph to join: memory (in-process), or a real one.")
-@click.option(
-    "--world",
-    metavar="FILE",
-    envvar="JACAROS_WORLD",
-    show_envvar=True,
-    help="World file, or the name of a shipped world; `none` for a graph without robots.",
-)
+@world_option("World file, or the name of a shipped world; `none` for a graph without robots.")
 @noise_option
 @faults_option
 @click.option(
@@ -197,22 +195,24 @@ def command(
         show_world=outputs.ground_truth is not None,
         **given,
     )
-    project: Path | Deployment = file
+    project = load_deployment(file)
+    options, notes = settled(options, file.name, project.world)
     if param or params_file:
-        project = load_deployment(file)
         parameters = _parameters(project, param, params_file, options)
         simulated = parameters.pop("use_sim_time", False)
         if not isinstance(simulated, bool):
             raise usage_error(
                 f"invalid parameter use_sim_time: expected true or false, found `{simulated!r}`"
             )
-        if simulated and clock is None and options.real_graph:
+        if simulated and (clock is None or "--clock" in variables()) and options.real_graph:
             clock = "ros"
         options = replace(options, parameters=parameters)
     options = replace(options, fast=clock == "fast", ros_clock=clock == "ros")
     console = StandardConsole(
         "warning" if quiet else "info", patience=FAST_PATIENCE if options.fast else PATIENCE
     )
+    for each in notes:
+        console.log(each)
     code = 1
     try:
         code = _launch(project, options, console, outputs, explained)
@@ -232,7 +232,7 @@ def _parameters(
 
 
 def _launch(
-    file: Path | Deployment,
+    project: Deployment,
     options: RunOptions,
     console: StandardConsole,
     outputs: Outputs,
@@ -251,7 +251,7 @@ def _launch(
 
     if not outputs.any:
         with console.with_prints():
-            return launch(file, options, console, begin)
+            return launch(project, options, console, begin)
     # Imported here: numpy, rich and the simulator are needed only for views and recordings.
     from jacaros.cli.watching import Watching
 
@@ -260,7 +260,7 @@ def _launch(
         watching.begin(mas)
 
     with Watching(console, outputs) as watching, console.with_prints():
-        return launch(file, options, watching, begin_watched)
+        return launch(project, options, watching, begin_watched)
 
 
 def _check_events(events: Sequence[str]) -> None:
@@ -339,9 +339,4 @@ def check_file(file: Path) -> None:
         return
     if file.is_dir():
         raise usage_error(f"`{file}` is a folder", "name a .asl, .py, .mas2j or .jcm file in it")
-    beside = [each.name for each in file.parent.glob("*.*") if each.suffix in SUFFIXES]
-    import difflib  # here: only for a missing file
-
-    near = [f"{file.name}{suffix}" for suffix in SUFFIXES if f"{file.name}{suffix}" in beside]
-    near = near or difflib.get_close_matches(file.name, beside, n=2)
-    raise usage_error(f"file not found: `{file}`", did_you_mean([str(file.parent / name) for name in near]))
+    raise not_found(file, [each for each in file.parent.glob("*.*") if each.suffix in SUFFIXES])

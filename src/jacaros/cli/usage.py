@@ -4,6 +4,7 @@ import click
 
 from jacaros.errors import UsageError
 from jacaros.excerpts import help_line, printable
+from jacaros.suggestions import suggestion
 
 
 def usage_error(what: str, help: str = "") -> UsageError:
@@ -19,18 +20,15 @@ def usage_error(what: str, help: str = "") -> UsageError:
     return UsageError("\n".join(lines))
 
 
-def did_you_mean(names: list[str]) -> str:
-    """Return the help that names what may have been meant; empty without names."""
-    return f"did you mean {' or '.join(f'`{name}`' for name in names)}?" if names else ""
-
-
 def in_our_form(wrong: click.ClickException) -> UsageError:
     """Return an error of click in the form of all other errors."""
     path = wrong.ctx.command_path if isinstance(wrong, click.UsageError) and wrong.ctx else "jacaros"
     overview = f"`{path} --help` lists the options"
     if isinstance(wrong, click.NoSuchOption):
-        near = sorted(wrong.possibilities or ())
-        return usage_error(f"unknown option: `{wrong.option_name}`", did_you_mean(near) or overview)
+        known = [opt for each in wrong.ctx.command.params for opt in each.opts] if wrong.ctx else []
+        return usage_error(
+            f"unknown option: `{wrong.option_name}`", suggestion(wrong.option_name, known, overview, 3)
+        )
     if isinstance(wrong, click.MissingParameter) and wrong.param is not None:
         is_option = isinstance(wrong.param, click.Option)
         name = (

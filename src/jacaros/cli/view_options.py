@@ -6,6 +6,7 @@ from typing import Any
 import click
 
 from jacaros.cli.outputs import LOOPBACK
+from jacaros.cli.variables import VariableOption
 
 _PLACE = (
     click.option(
@@ -25,6 +26,7 @@ _PLACE = (
     ),
     click.option(
         "--view-token",
+        cls=VariableOption,
         metavar="TOKEN",
         envvar="JACAROS_VIEW_TOKEN",
         show_envvar=True,

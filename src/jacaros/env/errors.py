@@ -10,11 +10,11 @@ OperationFailed               an agent's request failed; carries the reason term
 └── UnknownWorkspace          no workspace has this path
 """
 
-import difflib
 from collections.abc import Iterable
 
 from jacaros.env.values import Atom, Structure
 from jacaros.errors import JacarosError
+from jacaros.suggestions import aside
 
 
 class WorkspaceError(JacarosError):
@@ -36,13 +36,16 @@ class UnknownArtifactType(WorkspaceError):
         type_name: the unknown type.
         candidates: names of known types, for a suggestion.
         text: a more specific message.
+
+    Attributes:
+        is_explained: the message says what to do.
     """
 
     def __init__(self, type_name: str, candidates: Iterable[str] = (), text: str = "") -> None:
         self.type_name = type_name
-        self.candidates = tuple(candidates)
-        message = text or f"unknown artifact type `{type_name}`"
-        super().__init__(message + suggestion(type_name, self.candidates))
+        meant = aside(type_name, candidates)
+        self.is_explained = bool(text or meant)
+        super().__init__((text or f"unknown artifact type `{type_name}`") + meant)
 
 
 class OperationFailed(Exception):
@@ -65,9 +68,3 @@ class UnknownArtifact(OperationFailed):
 
 class UnknownWorkspace(OperationFailed):
     """No workspace has this path."""
-
-
-def suggestion(wrong: str, candidates: Iterable[str]) -> str:
-    """Return a suggestion, such as ``; did you mean …?``, of the *candidates* near *wrong*. Empty if none is near."""
-    near = difflib.get_close_matches(wrong, dict.fromkeys(candidates), n=3, cutoff=0.6)
-    return f"; did you mean {' or '.join(f'`{name}`' for name in near)}?" if near else ""

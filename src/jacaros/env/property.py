@@ -4,9 +4,10 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
-from jacaros.env.errors import InvalidArtifact, UnknownProperty, suggestion
+from jacaros.env.errors import InvalidArtifact, UnknownProperty
 from jacaros.env.ids import ArtifactId
 from jacaros.env.values import SCALARS, Structure, equal, plain, text
+from jacaros.suggestions import aside
 
 
 @dataclass(slots=True)
@@ -249,7 +250,7 @@ class PropertyStore:
             )
         names = [each for each, properties in self._by_name.items() if properties]
         known = f" (it has {', '.join(names)})" if names else " (it has none)"
-        help = suggestion(name, names) or f'; add it with self.define_property("{name}", ...)'
+        help = aside(name, names) or f'; add it with self.define_property("{name}", ...)'
         return UnknownProperty(f"unknown observable property `{name}`{known}{help}")
 
     @staticmethod

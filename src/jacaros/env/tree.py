@@ -2,9 +2,10 @@
 
 from collections.abc import Callable
 
-from jacaros.env.errors import OperationFailed, UnknownWorkspace, suggestion
+from jacaros.env.errors import OperationFailed, UnknownWorkspace
 from jacaros.env.ports import Workspace
 from jacaros.env.values import Structure
+from jacaros.suggestions import aside
 
 _LINKS_ON_ONE_PATH = 100
 """A path with more links than this is a cycle."""
@@ -39,7 +40,7 @@ class WorkspaceTree:
         """
         found = self._workspaces.get(path) or self._workspaces.get(self._without_links(path))
         if found is None:
-            help = suggestion(path, (*self._workspaces, *self._links))
+            help = aside(path, (*self._workspaces, *self._links))
             reason = Structure("unknown_workspace", (str.__str__(path),))
             raise UnknownWorkspace(f"unknown workspace `{path}`{help}", reason)
         return found

@@ -7,7 +7,7 @@ from functools import partial
 from jacaros.env import ports
 from jacaros.env.artifact import Artifact
 from jacaros.env.creation import FindType, artifact_type_of, attach, init_failed, init_of, refused
-from jacaros.env.errors import OperationFailed, UnknownArtifact, suggestion
+from jacaros.env.errors import OperationFailed, UnknownArtifact
 from jacaros.env.execution import OperationExecution
 from jacaros.env.ids import ArtifactId
 from jacaros.env.kernel import faults
@@ -30,6 +30,7 @@ from jacaros.env.operation import (
 from jacaros.env.ports import OnMade, OnOutcome, ignore_made
 from jacaros.env.property import ObservableProperty, histories_of
 from jacaros.env.values import Structure
+from jacaros.suggestions import aside
 from jacaros.trace import Cause
 
 Watcher = Callable[[ArtifactId, bool], None]
@@ -209,7 +210,7 @@ class Workspace(ports.Workspace):
         """
         found = self._artifacts.get(name) or self._personal.get(name)
         if found is None:
-            help = suggestion(name, self._artifacts)
+            help = aside(name, self._artifacts)
             message = f"unknown artifact `{name}` in workspace {self.path}{help}"
             raise UnknownArtifact(message, Structure("artifact_not_available", (str.__str__(name),)))
         return found

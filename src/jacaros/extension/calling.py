@@ -23,7 +23,7 @@ from jacaros.project_modules import place_of
 from jacaros.terms.operators import ArithmeticFault
 from jacaros.terms.substitution import free_variables, resolve
 from jacaros.terms.text import text
-from jacaros.terms.values import Term, functor_of
+from jacaros.terms.values import NUMBERS, Term, functor_of
 
 FAULTS = (Exception, SystemExit, CancelledError)
 """Exceptions of project code that end only the step that called it."""
@@ -253,7 +253,7 @@ def _evaluator(
         except FAULTS as error:
             raise FunctionCrashed(crash_text(name, function, error)) from error
         number = term_of(value)
-        if number.__class__ is not float:
+        if number.__class__ not in NUMBERS:
             raise FunctionCrashed(f"{name}: the function returned {value!r}, which is not a number")
         return number
 

@@ -4,7 +4,6 @@ import os
 import stat
 import tempfile
 from collections.abc import Iterator
-from difflib import get_close_matches
 from pathlib import Path
 from types import ModuleType
 from typing import Generic, NamedTuple, TypeVar
@@ -19,6 +18,7 @@ from jacaros.errors import JacarosError
 from jacaros.extension.belief_base import BeliefBase, Keeper
 from jacaros.extension.literal import Literal, literal_of
 from jacaros.project_modules import ProjectModules
+from jacaros.suggestions import aside
 from jacaros.terms.values import Term, arguments_of
 from jacaros.text_files import file_text
 
@@ -81,11 +81,13 @@ def _values(terms: tuple[Term, ...]) -> tuple[object, ...]:
 
 
 def find_class(modules: ProjectModules, name: str, kind: type[T]) -> type[T] | None:
-    """Return the subclass of *kind* that ``my.Careful`` names; None if the project does not have the module.
+    """Return the subclass of *kind* that ``my.Careful`` names; None if the project does not have it.
+
+    A module of the project may have other things of a Java package than this class.
 
     Raises:
         ModuleUnreadable: the module cannot be imported.
-        UnknownClass: the module lacks the class; the text lists its classes.
+        UnknownClass: the class of that name is not a *kind*, or the module has others that are; the text lists them.
     """
     path, _, last = name.rpartition(".")
     found = list(_modules_of(modules, path or last))
@@ -100,8 +102,9 @@ def find_class(modules: ProjectModules, name: str, kind: type[T]) -> type[T] | N
         {key for module in found for key, value in vars(module).items() if _is_own(value, kind, module)}
     )
     there = f"it has {', '.join(known)}" if known else f"it has no class derived from jacaros.{kind.__name__}"
-    close = get_close_matches(last, known, 1)
-    meant = f"; did you mean {path}.{close[0]}?" if close else ""
+    meant = aside(name, [f"{path}.{each}".lstrip(".") for each in known])
+    if not known and not any(last in vars(module) for module in found):
+        return None
     raise UnknownClass(f"unknown class {last} in {found[0].__file__ or path}: {there}{meant}")
 
 

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from difflib import get_close_matches
 from pathlib import Path
 from types import ModuleType
 from typing import TypeVar, overload
@@ -11,6 +10,7 @@ from jacaros.bdi.actions.internal_action import InternalAction
 from jacaros.extension.calling import Undeclarable, action_of, function_of
 from jacaros.module_outlines import INCOMPLETE, UNSEEN
 from jacaros.project_modules import ModuleUnreadable, ProjectModules
+from jacaros.suggestions import suggestion
 from jacaros.terms.values import Term
 
 Function = TypeVar("Function", bound=Callable[..., object])
@@ -199,8 +199,7 @@ class Additions:
             least, most = self.arities[name]
             takes = str(least) if least == most else f"{least} to {'any' if most is None else most}"
             return f"{name} is an arithmetic function with {takes} arguments"
-        close = get_close_matches(name, [*self.actions, *self.arities], 1)
-        return f"did you mean `{close[0]}`?" if close else None
+        return suggestion(name, [*self.actions, *self.arities]) or None
 
 
 def _default_name(module_name: str, function_name: str) -> str:

@@ -12,7 +12,6 @@ from jacaros.asl import nodes
 from jacaros.asl.checks.formulas import clauses as clauses_of
 from jacaros.asl.declaration import UNDECLARED
 from jacaros.asl.diagnostics import Diagnostic
-from jacaros.asl.slips import close_matches
 from jacaros.asl.walk import walk
 from jacaros.bdi.actions.internal_action import STANDARD
 from jacaros.body.actions import keys
@@ -21,6 +20,7 @@ from jacaros.env.environment import Environment
 from jacaros.env.errors import UnknownArtifactType
 from jacaros.mas.agent_classes import is_own_architecture
 from jacaros.mas.deployment import AgentSpec, Deployment
+from jacaros.suggestions import close_matches, did_you_mean
 
 if TYPE_CHECKING:
     from jacaros.env.artifact import Artifact
@@ -224,10 +224,7 @@ class _Offered:
             known += self._main.offers(artifact)
         name = key.partition("/")[0]
         same = [each for each in dict.fromkeys(known) if each.partition("/")[0] == name]
-        close = close_matches(name, [each.partition("/")[0] for each in known], 0.75)
-        if same:
-            return f"did you mean {' or '.join(f'`{each}`' for each in same)}?"
-        return f"did you mean `{close[0]}`?" if close else None
+        return did_you_mean(same or close_matches(name, [each.partition("/")[0] for each in known])) or None
 
 
 class _Place(NamedTuple):

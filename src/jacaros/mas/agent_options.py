@@ -6,9 +6,9 @@ from dataclasses import replace
 from typing import Final
 
 from jacaros.asl.diagnostics import Diagnostic
-from jacaros.asl.slips import close_matches
 from jacaros.asl.source import Span
 from jacaros.bdi.state.options import Options
+from jacaros.suggestions import suggestion
 
 _EVENT: Final = re.compile(r"(\w+::)?~?[a-z]\w*")
 _TRUTH: Final = ("true", "false")
@@ -52,8 +52,7 @@ def check_option(name: str, value: str, span: Span | None) -> Diagnostic | None:
     """Return an error for an invalid option, a warning for one without effect, or None. Custom options are valid."""
     choices = _CHOICES.get(name)
     if choices is not None and value not in choices:
-        close = close_matches(value, choices)
-        help = f"did you mean `{close[0]}`?" if close else None
+        help = suggestion(value, choices) or None
         return Diagnostic(
             "error", f"expected one of {', '.join(choices)} as `{name}`, found `{value}`", span, help
         )

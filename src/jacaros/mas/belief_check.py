@@ -19,6 +19,7 @@ from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.formatter import format_term
 from jacaros.asl.slips import Slips, is_slip_of
 from jacaros.bdi.actions.internal_action import STANDARD
+from jacaros.suggestions import did_you_mean
 from jacaros.text_files import file_bytes
 
 if TYPE_CHECKING:
@@ -207,7 +208,7 @@ def _never(sign: str, literal: nodes.Literal, rule: nodes.Rule | None, other: Se
         help = f"rules cause no events; react to a belief in the body of the rule{example}"
     else:
         why = f"belief `{key}` is never added"
-        help = f"did you mean {' or '.join(f'`{literal.functor}/{size}`' for size in other)}?"
+        help = did_you_mean(f"{literal.functor}/{size}" for size in other)
     return Diagnostic("warning", f"event `{sign}{key}` never happens: {why}", literal.span, help, NEVER)
 
 
@@ -218,9 +219,7 @@ def _is_own(literal: nodes.Literal) -> bool:
 
 def _warning(name: str, meant: str, literal: nodes.Literal) -> Diagnostic:
     key = f"{name}/{len(literal.arguments)}"
-    return Diagnostic(
-        "warning", f"belief `{key}` is never added", literal.span, f"did you mean `{meant}`?", CODE
-    )
+    return Diagnostic("warning", f"belief `{key}` is never added", literal.span, did_you_mean([meant]), CODE)
 
 
 def _observables(types: "Sequence[type[Artifact]]") -> set[str] | None:

@@ -13,7 +13,7 @@ from jacaros.body.percepts import PerceptWriter
 from jacaros.body.values import References
 from jacaros.clock import Clock
 from jacaros.env.environment import Environment
-from jacaros.env.errors import OperationFailed, UnknownArtifact, UnknownArtifactType, suggestion
+from jacaros.env.errors import OperationFailed, UnknownArtifact, UnknownArtifactType
 from jacaros.env.kernel.kinds import Unsuitable
 from jacaros.env.kernel.signature import Parameter
 from jacaros.env.ports import Workspace
@@ -32,6 +32,7 @@ from jacaros.mas.deployment import (
 )
 from jacaros.mas.idleness import Activity
 from jacaros.project_modules import ModuleUnreadable, NotImported, ProjectModules
+from jacaros.suggestions import close_matches
 
 if TYPE_CHECKING:
     from jacaros.env.artifact import Artifact
@@ -79,7 +80,7 @@ class TypeFinder:
         try:
             return (self._find or self._prepare())(type_name)
         except UnknownArtifactType:
-            if suggestion(type_name, self.given):
+            if close_matches(type_name, self.given):
                 raise UnknownArtifactType(type_name, self.given) from None
             raise
 
@@ -240,7 +241,8 @@ def types_of(
             continue
         except Exception as error:
             message = str(error) or type(error).__name__
-            help = None if "did you mean" in message else _where(artifact.type_name)
+            explained = isinstance(error, UnknownArtifactType) and error.is_explained
+            help = None if explained else _where(artifact.type_name)
             wrong.append(Diagnostic("error", message, artifact.type_span or artifact.span, help))
     if wrong:
         raise ProjectError(wrong)

@@ -14,6 +14,7 @@ from jacaros.ros.errors import RosError
 from jacaros.ros.graph import GraphContents
 from jacaros.ros.parameter import GivenParameters
 from jacaros.ros.waiting import MISSING_AFTER
+from jacaros.suggestions import close_matches, did_you_mean
 
 SIM_TIME = "use_sim_time"
 PATIENCE = 5.0
@@ -198,16 +199,11 @@ class UndeclaredParameters:
 
 
 def _text(unknown: Sequence[str], known: Sequence[str]) -> str:
-    from jacaros.asl.slips import close_matches  # here: only for errors
-
     several = len(unknown) > 1
     listed = ", ".join(unknown[:_FEW]) + (f" and {len(unknown) - _FEW} more" if len(unknown) > _FEW else "")
-    near = [found[0] for name in unknown if (found := close_matches(name, known))]
-    help = (
-        f"did you mean {', '.join(f'`{name}`' for name in dict.fromkeys(near))}?"
-        if near
-        else f"declare it in a mapping file: `parameters: {{{unknown[0].rpartition('.')[2]}: {{default: ...}}}}`"
-    )
+    near = dict.fromkeys(each for name in unknown for each in close_matches(name, known))
+    declaration = f"`parameters: {{{unknown[0].rpartition('.')[2]}: {{default: ...}}}}`"
+    help = did_you_mean(near, f"declare it in a mapping file: {declaration}")
     return (
         f"parameter{'s' if several else ''} {listed} {'have' if several else 'has'} no effect: nothing declares "
         f"{'them' if several else 'it'}; {help}"

@@ -8,9 +8,9 @@ from jacaros.artifacts.mapping.checking import UNCERTAIN, type_problems
 from jacaros.artifacts.mapping.file import find_mapping, read_with_problems, shipped_mappings
 from jacaros.artifacts.mapping.interfaces import stored_interfaces
 from jacaros.asl.diagnostics import Diagnostic
-from jacaros.asl.slips import close_matches
 from jacaros.asl.source import SourceFile, Span
 from jacaros.mas.deployment import ArtifactSpec, Deployment, FocusSpec, ProjectError, WorkspaceSpec
+from jacaros.suggestions import suggestion
 from jacaros.yaml_nodes import Problem
 
 MAIN = "main"
@@ -34,8 +34,7 @@ def read_mapping_file(
     path = find_mapping(name, folders)
     if path is None:
         known = [each.name for folder in folders for each in folder.glob("*.y*ml")] + shipped_mappings()
-        near = close_matches(name, known)
-        help = f"did you mean `{near[0]}`?" if near else f"expected in {folders[0]}"
+        help = suggestion(name, known, f"expected in {folders[0]}")
         return [], [Diagnostic("error", f"mapping file not found: {name}", span, help)]
     mapping, problems = read_with_problems(path)
     specs = [

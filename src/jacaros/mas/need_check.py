@@ -8,9 +8,9 @@ from jacaros.asl import nodes
 from jacaros.asl.checks.formulas import clauses as clauses_of
 from jacaros.asl.checks.needs import needs_of
 from jacaros.asl.diagnostics import Diagnostic
-from jacaros.asl.slips import close_matches
 from jacaros.asl.walk import walk
 from jacaros.env.resources.resource import local_name, read_uses
+from jacaros.suggestions import close_matches, did_you_mean
 
 if TYPE_CHECKING:
     from jacaros.env.artifact import Artifact
@@ -30,14 +30,14 @@ def check_needs(programs: Sequence[nodes.Program], types: "Iterable[type[Artifac
     for name, item in found:
         if local_name(name) in known:
             continue
-        close = close_matches(name, known, 0.7)
+        close = close_matches(name, known)
         if close or counts[name] == 1:
             listed = f"resources of the project: {', '.join(known)}"
             yield Diagnostic(
                 "warning",
                 f"unknown resource `{name}`: no artifact of the project uses it",
                 item.span,
-                f"did you mean `{close[0]}`?" if close else listed,
+                did_you_mean(close, listed),
                 "unknown-resource",
             )
 

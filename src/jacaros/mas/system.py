@@ -289,6 +289,15 @@ class System:
             self.clock.call_later(self.options.seconds, lambda: self.end(0))
         self.ros.watch_parameters()
         self.idleness.look()
+        if self.clock.virtual:
+            self._warn_of_real_time()
+
+    def _warn_of_real_time(self) -> None:
+        if files := self._modules.loaded_files():
+            from jacaros.mas.time_of_day import readings  # here: few projects have Python code
+
+            for warning in readings(files):
+                self.console.log(warning.render(), "warning")
 
     def _publish_diagnostics(self) -> None:
         from jacaros.mas.diagnostics import Diagnostics  # here: only for runs on a real graph

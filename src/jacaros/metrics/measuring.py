@@ -4,7 +4,6 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from jacaros.asl.diagnostics import Diagnostic, render_all
-from jacaros.asl.slips import close_matches
 from jacaros.errors import JacarosError
 from jacaros.metrics.baseline_files import read_baseline
 from jacaros.metrics.counted_file import CountedFile
@@ -12,6 +11,7 @@ from jacaros.metrics.groups import Group, ProgramMetrics
 from jacaros.metrics.library import DEFAULT, Library
 from jacaros.metrics.program_files import ProgramFiles, no_programs
 from jacaros.metrics.sources import Sources
+from jacaros.suggestions import suggestion
 
 
 class MetricsError(JacarosError):
@@ -73,9 +73,7 @@ def _program(folder: Path, sources: Sources, library: Library) -> dict[Group, tu
 def _no_folder(path: Path) -> Diagnostic:
     if path.exists():
         return Diagnostic("error", f"not a folder: `{path}`", help=f"name its folder: `{path.parent}`")
-    beside = [each.name for each in path.parent.glob("*/")]
-    near = close_matches(path.name, beside)
-    help = f"did you mean `{path.with_name(near[0])}`?" if near else None
+    help = suggestion(str(path), map(str, path.parent.glob("*/"))) or None
     return Diagnostic("error", f"folder does not exist: `{path}`", help=help)
 
 

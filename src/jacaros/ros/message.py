@@ -6,7 +6,6 @@ on the client library). The differences are handled here: stamps, defaults and c
 """
 
 import dataclasses
-import difflib
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any, Protocol
@@ -14,6 +13,7 @@ from typing import Any, Protocol
 from jacaros.ros.errors import MessageMismatch, NameInvalid
 from jacaros.ros.fields import DURATION, TIME, FieldType
 from jacaros.ros.values import array_of_numbers, single_value, written
+from jacaros.suggestions import aside
 
 TIMES = (TIME, DURATION)
 DEFAULTS: Mapping[str, Mapping[str, object]] = {
@@ -186,9 +186,7 @@ def _setter(path: tuple[str, ...], name: str, value: object) -> Callable[[Any], 
 
 def _unknown_field(owner: str, where: str, name: str, fields: Mapping[str, FieldType]) -> MessageMismatch:
     known = ", ".join(f"{field} ({kind})" for field, kind in fields.items()) or "none"
-    near = difflib.get_close_matches(name, fields, 1)
-    guess = f"; did you mean {near[0]}?" if near else "."
-    text = f"{owner} has no field {name!r} (at {where}){guess} Its fields: {known}"
+    text = f"{owner} has no field {name!r} (at {where}){aside(name, fields) or '.'} Its fields: {known}"
     return MessageMismatch(text, owner, where, tuple(fields))
 
 

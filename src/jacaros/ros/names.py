@@ -3,12 +3,12 @@
 Every backend passes absolute names to its middleware, so namespaces and remapping need no support there.
 """
 
-import difflib
 import re
 from collections.abc import Collection, Iterable, Mapping
 from functools import cache
 
 from jacaros.ros.errors import NameInvalid
+from jacaros.suggestions import close_matches
 
 _SEGMENT = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 _PACKAGE = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
@@ -100,8 +100,7 @@ def near_names(name: str, names: Iterable[str], alike: Collection[str] = ()) -> 
     known = list(alike or names)
     last = name.rpartition("/")[2]
     same = [each for each in known if each.rpartition("/")[2] == last]
-    spelt = difflib.get_close_matches(name, known, n=3, cutoff=0.7)
-    return (list(dict.fromkeys([*same, *spelt])) or list(alike))[:3]
+    return (list(dict.fromkeys([*same, *close_matches(name, known, 3)])) or list(alike))[:3]
 
 
 class NodeNames:

@@ -6,6 +6,7 @@ from types import TracebackType
 from typing import TypeVar
 
 from jacaros.clock import Clock, Timer
+from jacaros.excerpts import is_worth_a_line
 
 T = TypeVar("T")
 
@@ -23,7 +24,7 @@ class Absence:
     def wait(self) -> bool:
         """Count a wait. Return whether to log it."""
         self._waits += 1
-        return str(self._waits).strip("0") == "1"
+        return is_worth_a_line(self._waits)
 
     def report(self, log: Callable[[str], None], what: str) -> None:
         """Log that it is awaited."""

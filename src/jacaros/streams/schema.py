@@ -19,6 +19,7 @@ from jacaros.streams.order import Absent, Chain, Missing
 from jacaros.streams.share import Share
 from jacaros.streams.states import Debounce, Delayed, Held, Hysteresis
 from jacaros.streams.together import Together
+from jacaros.suggestions import suggestion
 
 LONGEST: Final = 86_400.0
 """Maximum duration in seconds of a window, or of waiting for late events: the window bounds memory."""
@@ -148,10 +149,7 @@ VALUED: Final = frozenset({"mean", "min", "max", "slope", "share", "hysteresis",
 
 def unknown(operator: str) -> Fault:
     """Return the error for an unknown operator."""
-    from difflib import get_close_matches  # here: only for invalid declarations
-
-    near = get_close_matches(operator, OPERATORS, 1)
-    help = f"did you mean `{near[0]}`?" if near else f"operators: {', '.join(OPERATORS)}"
+    help = suggestion(operator, OPERATORS, f"operators: {', '.join(OPERATORS)}")
     return Fault("", f"unknown operator `{operator}`", help)
 
 
@@ -178,10 +176,7 @@ def faults(operator: str, sources: Sequence[str], options: Mapping[str, object])
             yield Fault("", f"`{operator}` needs `{name}`", _NEEDED[name])
     for name, value in options.items():
         if name not in known:
-            from difflib import get_close_matches  # here: only for invalid declarations
-
-            near = get_close_matches(name, known, 1)
-            help = f"did you mean `{near[0]}`?" if near else f"options: {', '.join(known)}"
+            help = suggestion(name, known, f"options: {', '.join(known)}")
             yield Fault(name, f"`{operator}` has no option `{name}`", help)
         elif (fault := _KINDS[name](name, value)) is not None:
             yield fault

@@ -1,13 +1,24 @@
-"""Arithmetic on terms: doubles throughout, evaluated when operands are known, kept as a term until then."""
+"""Arithmetic on terms, evaluated when operands are known, kept as a term until then: doubles, and exact integers."""
 
 import math
 from collections.abc import Callable, Mapping
 from contextvars import ContextVar
 from types import MappingProxyType
-from typing import Protocol
+from typing import Any, Protocol
 
 from jacaros.terms.operators import COMPUTE, named
-from jacaros.terms.values import ARITHMETIC, FUNCTION, Annotated, Term, Var, deref
+from jacaros.terms.values import (
+    ARITHMETIC,
+    FUNCTION,
+    NUMBERS,
+    Annotated,
+    Functor,
+    Term,
+    Var,
+    deref,
+    double,
+    number,
+)
 
 Evaluator = Callable[..., Term]
 functions: Mapping[str, Evaluator] = MappingProxyType({})
@@ -96,9 +107,40 @@ def _evaluate_iteratively(term: Term) -> Term:
 def _apply(term: Term, operands: list[Term]) -> Term:
     """Return the value of an operation, or the term itself while an operand is unknown."""
     for operand in operands:
-        if operand.__class__ is not float and _is_open(operand):
+        if operand.__class__ not in NUMBERS and _is_open(operand):
             return term
-    return COMPUTE[term[0]](*[_number(o, term) for o in operands])
+    numbers = [_number(o, term) for o in operands]
+    if any(n.__class__ is int for n in numbers):
+        return _exactly(term[0], numbers)
+    return COMPUTE[term[0]](*numbers)
+
+
+def _remainder(left: int, right: int) -> int:
+    """Return the remainder with the sign of *left*, as Java does."""
+    return left - right * (abs(left) // abs(right)) * (1 if (left < 0) == (right < 0) else -1)
+
+
+_EXACT: Mapping[str, Callable[..., int]] = MappingProxyType(
+    {
+        "+": lambda left, right=0: left + right,
+        "-": lambda left, right=None: -left if right is None else left - right,
+        "*": lambda left, right: left * right,
+        "div": lambda left, right: (left - _remainder(left, right)) // right,
+        "mod": _remainder,
+    }
+)
+"""Operations of integers with an integer as their value, by symbol."""
+
+
+def _exactly(symbol: Functor, numbers: list[float]) -> float:
+    """Return the value of an operation with an operand that no double is equal to: exact between integers."""
+    exact = _EXACT.get(symbol.name)
+    if exact is None or not all(n.__class__ is int or n.is_integer() for n in numbers):
+        return COMPUTE[symbol](*map(double, numbers))
+    try:
+        return number(exact(*map(int, numbers)))
+    except ZeroDivisionError:
+        return COMPUTE[symbol](*map(double, numbers))
 
 
 def _is_open(operand: Term) -> bool:
@@ -108,8 +150,8 @@ def _is_open(operand: Term) -> bool:
     )
 
 
-def _number(operand: Term, term: Term) -> float:
-    if operand.__class__ is float:
+def _number(operand: Term, term: Term) -> Any:
+    if operand.__class__ in NUMBERS:
         return operand
     if operand.__class__ is Annotated:
         return _number(deref(operand.term), term)

@@ -13,19 +13,19 @@ from jacaros.terms.arithmetic import Evaluator, settle
 from jacaros.terms.collections import MapValue, QueueValue, SetValue
 from jacaros.terms.operators import ArithmeticFault
 from jacaros.terms.substitution import free_variables, resolve
-from jacaros.terms.values import Annotated, String, Term, is_list, list_items, list_length
+from jacaros.terms.values import NUMBERS, Annotated, String, Term, double, is_list, list_items, list_length
 
 
 def _on_number(compute: Callable[[float], float]) -> Callable[..., Term]:
     def function(argument: Term) -> Term:
         value = settle(argument)
-        if value.__class__ is not float:
+        if value.__class__ not in NUMBERS:
             if free_variables(value):
                 return None
             arithmetic.warn("argument of a function", value)
             return math.nan
         try:
-            return float(compute(value))
+            return float(compute(double(value)))
         except OverflowError:
             return math.inf
         except ValueError:
@@ -65,7 +65,7 @@ def _on_list(compute: Callable[[list[float]], float]) -> Callable[..., Term]:
                 values = list(values[0])
             elif is_list(values[0]):
                 values = list(list_items(values[0]))
-        return compute([v for v in values if v.__class__ is float])
+        return compute([v for v in values if v.__class__ in NUMBERS])
 
     return function
 

@@ -17,6 +17,7 @@ from jacaros.terms.values import (
     CONS,
     FUNCTION,
     NIL,
+    NUMBERS,
     Annotated,
     Functor,
     List,
@@ -35,7 +36,7 @@ _variable_numbers = itertools.count()
 
 def _rank(term: Term) -> int:
     kind = term.__class__
-    if kind is float:
+    if kind in NUMBERS:
         return _NUMBER
     if kind is String:
         return _STRING

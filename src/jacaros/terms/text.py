@@ -25,6 +25,7 @@ from jacaros.terms.values import (
     LOGIC,
     NEGATED,
     NIL,
+    NUMBERS,
     PLAIN,
     PLAN,
     RELATION,
@@ -45,6 +46,8 @@ _LEAST, _GREATEST, _LARGEST = -(2.0**63), 2.0**63, 2**63 - 1
 
 def number_text(value: float) -> str:
     """Format a number: integral values without a fraction, others in the shortest form of Java's doubles."""
+    if value.__class__ is int:
+        return str(value)
     if _LEAST <= value <= _GREATEST:
         whole = int(value)
         if whole == value:
@@ -105,7 +108,7 @@ def unquoted(written: str) -> str:
 
 def text(term: Term) -> str:
     """Return the text of a term with all bindings applied, strings in quotes."""
-    if term.__class__ is float:
+    if term.__class__ in NUMBERS:
         return number_text(term)
     term = resolve(term)
     return (term.__class__ is tuple and _flat(term)) or _write(term)
@@ -144,7 +147,7 @@ def _write(term: Term) -> str:
         kind = piece.__class__
         if kind is str:
             written.append(piece)
-        elif kind is float:
+        elif kind in NUMBERS:
             written.append(number_text(piece))
         elif kind is Functor:
             written.append(_name(piece) if piece is not BODY_END else "{ }")
@@ -199,7 +202,7 @@ def _flat(term: tuple[Term, ...]) -> str:
     arguments = []
     for argument in term[1:]:
         kind = argument.__class__
-        if kind is float:
+        if kind in NUMBERS:
             arguments.append(number_text(argument))
         elif kind is String:
             arguments.append(f'"{argument}"')

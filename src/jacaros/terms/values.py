@@ -1,7 +1,7 @@
 """The values of the language, chosen for speed: most are plain Python objects.
 
 ==================  ==================================================================================
-number              `float` (all numbers are doubles, as in Jason); never `int`, never `bool`
+number              `float`, a double as in Jason; `int` only for an integer that no double is equal to (`number`)
 string              `String`, a `str` without arithmetic
 atom                an interned `Functor` of arity 0, compared by identity
 structure           a tuple ``(functor, argument, ...)``
@@ -24,6 +24,7 @@ Formulae, plans and triggers are terms too (a program may pass them around): str
 # pyright: reportAttributeAccessIssue=false
 
 import itertools
+import math
 from _weakref import _remove_dead_weakref  # type: ignore[attr-defined]
 from collections.abc import Callable, Iterable, Iterator
 from operator import is_
@@ -32,6 +33,28 @@ from weakref import ref
 
 Term = Any
 """Any value of the table above."""
+
+NUMBERS: frozenset[Any] = frozenset({float, int})
+"""Classes of numbers. One of each is never equal to one of the other."""
+
+
+def number(value: float) -> float | int:
+    """Return the term for a Python number: a double, or the integer itself if no double is equal to it.
+
+    So identifiers and nanoseconds pass through an agent unchanged, and all other numbers are Jason's. Beyond all doubles it
+    is infinite, so that no product grows without limit.
+    """
+    nearest = double(value)
+    return int(value) if nearest != value and math.isfinite(nearest) else nearest
+
+
+def double(value: float) -> float:
+    """Return the double nearest to a number, which is infinite beyond all doubles."""
+    try:
+        return float(value)
+    except OverflowError:
+        return math.copysign(math.inf, value > 0 or -1)
+
 
 PLAIN, ARITHMETIC, FUNCTION, RELATION, LOGIC, ACTION, PLAN, NEGATION = range(8)
 """Kinds of functors: ordinary; ``+``; ``math.max``; ``<``; ``&``; ``.print``; pieces of plans; ``~X`` with X unknown."""
@@ -351,7 +374,7 @@ class List:
         return f"make_list({self.elements()!r})"
 
 
-ATOMIC = frozenset({float, String, Functor})
+ATOMIC = frozenset({float, int, String, Functor})
 """Classes of values that hold no variables and evaluate to themselves."""
 NO_KEY = 1_000_000
 """Depth of a list whose elements have annotations."""

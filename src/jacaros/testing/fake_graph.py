@@ -1,6 +1,5 @@
 """The rest of the ROS graph in a test: publishes messages, receives what the run publishes, and answers services."""
 
-import difflib
 import math
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -10,10 +9,12 @@ from jacaros.artifacts.mapping.encoding import builder
 from jacaros.artifacts.mapping.read_operations import read_values
 from jacaros.mas.ros_graph import RosGraph
 from jacaros.ros.backend import Publisher, Sample, Service
+from jacaros.ros.drivers.memory.services import MemoryClient
 from jacaros.ros.errors import RosError
 from jacaros.ros.message import to_seconds
 from jacaros.ros.names import message_type, request_type, response_type, service_type
 from jacaros.ros.qos import LATCHED, QoS
+from jacaros.suggestions import suggestion
 from jacaros.yaml_nodes import Problem, read_document
 
 NODE = "test"
@@ -41,7 +42,7 @@ class FakeGraph:
     """
 
     def __init__(self, graph: RosGraph) -> None:
-        self._ours = graph.backend()
+        self._ours: Any = graph.backend()  # of the in-process graph
         self.node = graph.companion(NODE)
         self._publishers: dict[str, Publisher] = {}
         self._services: dict[str, Service] = {}
@@ -88,6 +89,14 @@ class FakeGraph:
     def asked(self, service: str) -> list[Any]:
         """Return the requests received by a service of `answer`, oldest first."""
         return self._asked.get(self.node.resolve(service), [])
+
+    def services_without_clients(self) -> Iterator[str]:
+        """Yield an error for each service of `answer` that no artifact of the run can call, as its name is wrong."""
+        clients = {each.name for each in self._ours.members if isinstance(each, MemoryClient)}
+        for name in self._services:
+            if name not in clients:
+                listed = f"services that artifacts call: {', '.join(sorted(clients)) or 'none'}"
+                yield f"no artifact calls the service {name} of fake_service; {suggestion(name, sorted(clients), listed)}"
 
     def forget(self) -> None:
         """Discard all received messages and requests."""
@@ -139,8 +148,7 @@ class FakeGraph:
         topics: dict[str, str] = self.node.graph.topics()
         if found := topics.get(name):
             return found
-        near = difflib.get_close_matches(name, topics, 2)
-        help = f"did you mean {' or '.join(near)}?" if near else "pass its type as the second argument"
+        help = suggestion(name, topics, "pass its type as the second argument", 2)
         raise ValueError(f"unknown type of {name}, which has no subscription; {help}")
 
     def _fields(self, fields: str | Mapping[str, Any], type_name: str) -> dict[str, Any]:

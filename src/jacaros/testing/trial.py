@@ -229,6 +229,11 @@ class Trial:
 
     def _finish(self) -> None:
         """End the test."""
+        if self._others is not None and not self._outcome.problems:
+            span = self._outcome.test.span
+            self._outcome.problems += [
+                Problem(each, (), span) for each in self._others.services_without_clients()
+            ]
         self._note_times()
         self._next()
 

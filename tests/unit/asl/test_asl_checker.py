@@ -14,6 +14,7 @@ from jacaros.asl.suppression import Suppressions, wanted
 
 STANDARD = {
     ".print": Declaration(),
+    ".wait": Declaration(arity=(1, 3)),
     ".findall": Declaration(arity=3),
     ".length": Declaration(arity=2),
     ".add_plan": Declaration(arity=(1, 3), brings_in=True, changes_plans=True),
@@ -393,3 +394,28 @@ def test_conditions_and_clean_up_goals_of_labels_are_looked_at():
     assert codes("@p[while(a & not a)] +!g.") == ["context-never-true"]
     assert codes("@p[while(a), cleanup(park)] +!g.") == ["unknown-goal"]
     assert codes("@p[while(at(Room))] +!g(Room).") == []
+
+
+@pytest.mark.parametrize(
+    ("step", "message", "help"),
+    [
+        (".wait(2)", "`.wait(2)` waits for 2 ms", "for 2 s write `.wait(2000)`"),
+        (".wait(0.5)", "`.wait(0.5)` waits for 0.5 ms", "for 0.5 s write `.wait(500)`"),
+        (
+            ".print('at home')",
+            "`'at home'` is an atom, which is printed with its quotes",
+            'write a text as `"at home"`',
+        ),
+    ],
+)
+def test_a_value_that_was_probably_meant_otherwise_is_noted(step: str, message: str, help: str) -> None:
+    [note] = warnings(f"+!g <- {step}.")
+    assert (note.severity, note.message, note.help) == ("note", message, help)
+    assert check_for_run(program(f"+!g <- {step}."), KNOWN) == []
+
+
+@pytest.mark.parametrize(
+    "step", [".wait(10)", ".wait(0)", ".wait(done)", '.print("at home")', "go('at home')"]
+)
+def test_other_values_are_not_noted(step: str) -> None:
+    assert warnings(f"+!g <- {step}.") == []

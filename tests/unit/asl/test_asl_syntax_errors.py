@@ -171,6 +171,14 @@ def test_carets_are_below_the_error_even_after_tabs():
             "missing `}` before `else`",
             "close the block that was opened at line 1, column 15",
         ),
+        ('!start <- .print("hi").', 1, "`!start` is a goal, not the trigger of a plan", "write `+!start`"),
+        ("p. !start(1) : p <- q.", 1, "`!start` is a goal, not the trigger of a plan", "write `+!start`"),
+        (
+            '+!g <- .print(f"at {X}").',
+            1,
+            "strings have no prefix such as `f` in Python",
+            "write values between strings",
+        ),
         ("def go(): pass", 1, "Python keyword `def` in an agent program", "this is an agent program"),
         (
             "+!g <- X = foo + 1.",

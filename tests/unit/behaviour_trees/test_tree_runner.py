@@ -3,6 +3,7 @@
 import asyncio
 import subprocess
 import sys
+import time
 
 import py_trees
 import pytest
@@ -347,3 +348,36 @@ def test_an_observer_receives_behaviours_and_operations_from_beginning_to_end(on
     assert ends[:3] == [("achieved", "drive(3)"), ("failed", "drive(30)"), ("failed", "tour")]
     assert sorted(ends[3:]) == [("achieved", "0.5 s"), ("achieved", "whatever")]
     assert ("failed", "drive(30)", "a wall") in told
+
+
+def test_timers_of_py_trees_follow_the_clock_of_the_run(on_rails):
+    async def scene(rails):
+        rest = py_trees.timers.Timer("rest", 500.0)
+        drive = py_trees.decorators.Timeout("at most 2 s", Act("drive", 9), duration=2.0)
+        moments = []
+        for root in (rest, drive):
+            status = await rails.runner(root).run()
+            moments.append((status, rails.clock.elapsed))
+            assert "update" not in vars(root), "the object is as before the run"
+        assert py_trees.timers.time is time
+        return moments
+
+    begun = time.monotonic()
+    ends = [(Status.SUCCESS, pytest.approx(500, abs=0.3)), (Status.FAILURE, pytest.approx(502, abs=0.6))]
+    assert on_rails(scene) == ends
+    assert time.monotonic() - begun < 100
+
+
+def test_a_timer_that_cannot_follow_a_virtual_clock_is_refused(on_rails):
+    class Rest(py_trees.timers.Timer):
+        def update(self):
+            return super().update()
+
+    async def scene(rails):
+        with pytest.raises(
+            TypeError, match=r"`rest` \(Rest\) follows the time of day.*behaviour_trees\.Timer"
+        ):
+            await rails.runner(Rest("rest", 5.0)).run()
+        await rails.runner(Timer(1.0)).run()
+
+    on_rails(scene)

@@ -42,14 +42,14 @@ async def test_an_unknown_operation_is_reported_with_similar_ones(
     one.make("motion", "Counter")
     failure = one.do("driv", 1)
     assert message_of(failure) == (
-        "no artifact of workspace /main has an operation driv/1; did you mean drive/1 of 'motion'?"
+        "no artifact of workspace /main has an operation driv/1; did you mean `drive/1` of 'motion'?"
     )
     assert reason_of(failure) == 'env_failure(action_failed(driv,op(default,"( driv 1 )")))'
     assert detail_of(failure) == 'unknown_operation("driv/1")'
     failure = one.do("left::driv", "far away", [1, "a b"], Var("X"))
     assert reason_of(failure) == 'env_failure(action_failed(driv,op(left,"( driv far away [1,"a b"] X )")))'
-    assert "did you mean drive/1 of 'motion'?" in message_of(one.do("drive", 1, 2))
-    assert "did you mean makeArtifact/" in message_of(one.do("makeArtifat", "a", "Counter"))
+    assert "did you mean `drive/1` of 'motion'?" in message_of(one.do("drive", 1, 2))
+    assert "did you mean `makeArtifact/" in message_of(one.do("makeArtifat", "a", "Counter"))
 
 
 @among_artifacts

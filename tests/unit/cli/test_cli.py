@@ -113,7 +113,7 @@ def test_an_unhandled_failure_logs_a_warning_with_a_suggestion(
     )
     code, output, errors = outcome(capsys, "run", "a.asl", "--clock", "fast", "--until-idle")
     assert (code, output) == (0, "")
-    assert "did you mean moveForward/1 of 'm'" in errors
+    assert "did you mean `moveForward/1` of 'm'" in errors
 
 
 def test_a_run_can_be_recorded_and_replayed(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -241,3 +241,17 @@ def test_low_batteries_are_logged_by_sim(folder: Path, capsys: pytest.CaptureFix
     assert "`turtlebot` is empty" in errors
     assert "--full-battery" in errors
     assert outcome(capsys, *world, "--full-battery")[2] == ""
+
+
+@pytest.mark.parametrize("arguments", [[], ["ros"], ["world"]])
+def test_a_command_alone_prints_its_help(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert call(arguments) == 0
+    printed = capsys.readouterr()
+    assert printed.err == ""
+    assert printed.out.startswith(" ".join(["Usage: jacaros", *arguments]))
+    assert "Commands:" in printed.out
+
+
+def test_the_most_similar_option_is_suggested_first(capsys: pytest.CaptureFixture[str]) -> None:
+    assert call(["run", "hello.asl", "--maping", "robot.yaml"]) == 2
+    assert "= help: did you mean `--mapping` or" in capsys.readouterr().err

@@ -50,7 +50,7 @@ def test_our_own_options_win(monkeypatch: pytest.MonkeyPatch) -> None:
     own = ("run", "a.asl", "--ros", "memory", "--param", "speed:=1")
     assert options(*own, "--ros-args") == (list(own), [])
     monkeypatch.setenv("JACAROS_ROS", "rosbridge")
-    assert options("run", "a.asl", "--ros-args") == (["run", "a.asl"], [])
+    assert options("run", "a.asl", "--ros-args") == (["run", "a.asl", "--ros", "rosbridge"], [])
 
 
 def test_sim_drops_parameters(tmp_path: Path) -> None:

@@ -137,7 +137,7 @@ def test_mistakes_in_the_mapping_file_itself_are_reported(
     file.write_text("propertys: {}\n", encoding="utf-8")
     code, _, errors = outcome(capsys, "ros", "check", str(file))
     assert code == 1
-    assert "did you mean 'properties'?" in errors
+    assert "did you mean `properties`?" in errors
     code, _, errors = outcome(capsys, "ros", "check", str(tmp_path / "absent.yaml"))
     assert code == 1
     assert "mapping file not found" in errors

@@ -69,7 +69,11 @@ class Careless(Artifact):
         ("hide", (), "self.value = ... would replace a part of Artifact; choose another name"),
         ("where", (), "expected 2 values of property room, found 1: ('h',); None matches any value"),
         ("index", (), "property room has 2 values, so index 5 is out of range (the first index is 0)"),
-        ("get", (Out(),), "for an output, annotate the parameter: `x: Out`"),
+        (
+            "get",
+            (Out(),),
+            "give it a value before the call, or, for an output, annotate the parameter: `x: Out`",
+        ),
         ("begin_unmarked", (), "add @internal_operation above def unmarked"),
         ("undefined", (), 'add it with self.define_property("on", ...)'),
     ],

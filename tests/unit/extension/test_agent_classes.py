@@ -211,7 +211,7 @@ class Mine(Agent):
     ("declared", "message"),
     [
         ("agentClass my.Mien", "unknown class Mien in"),
-        ("agentClass my.Mien", "did you mean my.Mine?"),
+        ("agentClass my.Mien", "did you mean `my.Mine`?"),
         ("beliefBaseClass my.Mine", "it has no class derived from jacaros.BeliefBase"),
         ("agentClass my.Mine(1 2)", "invalid arguments of my.Mine(1 2)"),
         ("agentClass broken.Mine", "broken.py:1: NameError"),

@@ -79,7 +79,7 @@ def test_a_mismatch_names_field_and_type(type_name: str, fields: dict[str, Any],
 
 
 def test_an_unknown_field_lists_the_known_ones() -> None:
-    with pytest.raises(MessageMismatch, match="did you mean angular") as caught:
+    with pytest.raises(MessageMismatch, match="did you mean `angular`") as caught:
         make("geometry_msgs/msg/Twist", anguler={})
     assert caught.value.known == ("linear", "angular")
     assert caught.value.type_name == "geometry_msgs/msg/Twist"

@@ -139,7 +139,7 @@ def test_unknown_frames_are_reported_with_a_suggestion() -> None:
     known.insert("odom", "base_link", at(1.0))
     with pytest.raises(
         TransformUnavailable,
-        match=r"unknown frame base_lnk; did you mean base_link\? Known: base_link, odom",
+        match=r"unknown frame base_lnk; did you mean `base_link`\? Known: base_link, odom",
     ):
         known.lookup("odom", "base_lnk")
 

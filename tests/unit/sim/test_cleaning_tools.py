@@ -187,7 +187,7 @@ def test_cells_are_created_when_a_tool_comes_near() -> None:
             "covers more than 10000 square metres",
         ),
         ("dirt: {dust: 10}", "dirt: 10", "'dirt' must be a mapping of names to values"),
-        ("dirt: {dust: 10}", "dirty: {dust: 10}", "did you mean 'dirt'?"),
+        ("dirt: {dust: 10}", "dirty: {dust: 10}", "did you mean `dirt`?"),
         ("removes: [dust], rate: 2", "rate: 2", "'vacuum' lacks the key 'removes'"),
         ("removes: [dust], rate: 2", "removes: [], rate: 2", "removes at least one kind of dirt"),
         ("removes: [dust], rate: 2", "removes: dust, rate: 2", "'removes' must be a list"),

@@ -180,7 +180,7 @@ def test_equal_runs_are_equal() -> None:
         ("{name: ann, path: []}", "'path' has no points"),
         ("{name: ann, path: [[1, 1], [1, 1]]}", "'path' has the point [1, 1] twice in a row"),
         ("{name: ann, path: [[1, 1]], speed: 0}", "'speed' is 0, but must lie between 0.01 and 5"),
-        ("{name: ann, path: [[1, 1]], careles: true}", "did you mean 'careless'?"),
+        ("{name: ann, path: [[1, 1]], careles: true}", "did you mean `careless`?"),
         ("{name: ann, path: [[1, 1]], color: sky}", "'sky' is not a colour"),
         ("{name: a, path: [[1, 1]]}", "duplicate name 'a'"),
         ("{name: ann, path: [[0.3, 0]]}", "'ann' starts at the place of the robot 'a'"),

@@ -249,7 +249,7 @@ def test_every_fault_has_a_service() -> None:
 
 
 def test_a_fault_of_an_unknown_topic_is_reported() -> None:
-    with pytest.raises(UsageError, match=r"fault f: unknown topic /skan; did you mean /scan\?"):
+    with pytest.raises(UsageError, match=r"fault f: unknown topic /skan; did you mean `/scan`\?"):
         heard("{kind: dead, topic: /skan}", *SCAN)
 
 
@@ -323,7 +323,7 @@ def test_a_stuck_door_fails_a_share_of_the_requests() -> None:
 
 def test_a_fault_of_an_unknown_action_is_reported() -> None:
     with pytest.raises(
-        UsageError, match=r"fault f: unknown action /navigate_to; did you mean /navigate_to_pose\?"
+        UsageError, match=r"fault f: unknown action /navigate_to; did you mean `/navigate_to_pose`\?"
     ):
         heard("{kind: aborted_action, action: /navigate_to}", *SCAN)
 

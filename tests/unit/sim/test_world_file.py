@@ -97,7 +97,7 @@ def test_all_mistakes_are_reported_with_excerpt_and_help() -> None:
     told = str(caught.value)
     assert "bad.yaml:2:1: error: a world has no key 'wals'" in told
     assert "    2 | wals: []" in told
-    assert "  = help: did you mean 'walls'?" in told
+    assert "  = help: did you mean `walls`?" in told
     assert "'x' must be a number, not 'left'" in told
     assert "the robot of line 7 has the same name 'a'" in told
     assert "'2bad' is not a ROS namespace" in told

@@ -153,7 +153,7 @@ def test_a_missing_message_is_reported_with_the_published_ones(run: Run) -> None
     [
         (
             '!fake_message("odm", "")',
-            "unknown type of /odm, which has no subscription; did you mean /odom?",
+            "unknown type of /odm, which has no subscription; did you mean `/odom`?",
         ),
         ('!fake_message("a", "")', "pass its type as the second argument"),
         ('!fake_message("odom", "pose.x: 1")', "has no field `x`"),
@@ -191,7 +191,7 @@ def test_an_invalid_mapping_is_reported(run: Run, files: Path) -> None:
     assert "mapping file not found: robt.yaml" in told(outcome)
     (files / "robot.yaml").write_text("properties: {a: {topik: b}}\n", encoding="utf-8")
     outcomes = run("true", "true")
-    assert all("did you mean 'topic'?" in told(each) for each in outcomes)
+    assert all("did you mean `topic`?" in told(each) for each in outcomes)
 
 
 def test_a_label_without_a_file_is_an_error(files: Path) -> None:
@@ -222,3 +222,10 @@ def test_python_tests_play_the_graph_of_a_whole_run(files: Path) -> None:
     assert [message.linear.x for message in held[0].published("cmd_vel")] == [-0.5] * 10 + [0.0]
     assert [request.data for request in held[0].asked("light")] == [True]
     assert result.ground_truth is None
+
+
+def test_a_fake_service_that_no_artifact_can_call_is_reported(run: Run) -> None:
+    serve = '!fake_service("{}", "std_srvs/srv/SetBool", "success: true")'
+    [unused, misspelt] = run(serve.format("light"), serve.format("lihgt"))
+    assert unused.problems == []
+    assert "no artifact calls the service /lihgt of fake_service; did you mean `/light`?" in told(misspelt)

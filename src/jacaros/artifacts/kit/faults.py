@@ -29,6 +29,7 @@ from typing import Any
 
 from jacaros.clock import Clock
 from jacaros.env.values import Structure
+from jacaros.excerpts import is_worth_a_line
 from jacaros.ros.backend import Sample
 from jacaros.ros.message import to_seconds
 
@@ -67,7 +68,7 @@ class Faults:
             text: what was found, and what happens to the message.
         """
         times = self.counts[why.functor] = self.counts.get(why.functor, 0) + 1
-        if str(times).strip("0") == "1":
+        if is_worth_a_line(times):
             again = f" ({times} times so far)" if times > 1 else ""
             self._report(why, f"{self._topic}: {text}{again}")
 
@@ -168,7 +169,7 @@ class Listener:
         times = self._faults[kind] = self._faults.get(kind, 0) + 1
         if times == 1:
             self._complain(f"the callback of topic {self._topic} failed:", error)
-        elif str(times).strip("0") == "1":
+        elif is_worth_a_line(times):
             self._complain(f"the callback of topic {self._topic} failed ({times} times so far):", error)
 
 

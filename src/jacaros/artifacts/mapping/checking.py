@@ -22,6 +22,7 @@ from jacaros.artifacts.mapping.rows import extractor
 from jacaros.ros.errors import UnknownInterface
 from jacaros.ros.fields import FieldType
 from jacaros.ros.names import feedback_type, goal_type, request_type, response_type, result_type
+from jacaros.suggestions import suggestion
 from jacaros.yaml_nodes import Problem
 
 UNCERTAIN = "is not known here"
@@ -64,12 +65,9 @@ def known(written: Written, needed: str, interfaces: Interfaces, problems: list[
 
 
 def _cure(type_name: str, error: UnknownInterface) -> str:
-    from jacaros.artifacts.mapping.interfaces import (
-        similar_types,
-    )  # imported here: only needed after a mistake
+    from jacaros.artifacts.mapping.interfaces import known_types  # here: only needed after a mistake
 
-    near = similar_types(type_name)
-    return f"did you mean {' or '.join(near)}?" if near else str(error)
+    return suggestion(type_name, known_types(type_name.split("/")[1]), str(error), 2)
 
 
 def check_topic(topic: TopicPart, type_name: str, interfaces: Interfaces, problems: list[Problem]) -> None:

@@ -11,6 +11,7 @@ from jacaros.artifacts.mapping.host import Host
 from jacaros.artifacts.mapping.read_fields import ANGLES
 from jacaros.artifacts.mapping.stamped_frames import StampedFrames
 from jacaros.clock import Timer
+from jacaros.excerpts import is_worth_a_line
 from jacaros.ros.message import to_seconds
 from jacaros.streams.operator import HIDE, OCCUR, SHOW
 from jacaros.streams.pattern import Pattern
@@ -105,8 +106,8 @@ class Derivation:
         self.close()
 
     def _tell_dropped(self) -> None:
-        self._told_dropped = self._pattern.dropped
-        if self._told_dropped in (1, 10, 100):
+        before, self._told_dropped = self._told_dropped, self._pattern.dropped
+        if is_worth_a_line(self._told_dropped, self._told_dropped - before):
             part = self._part
             message = f"{part.name}: {self._told_dropped} late messages dropped"
             help_ = "allow more time: lateness: 0.2"

@@ -1,6 +1,5 @@
 """Message types, from the middleware of a run or from the definitions that come with the package."""
 
-import difflib
 import re
 from collections.abc import Mapping
 from functools import lru_cache
@@ -117,8 +116,3 @@ def known_types(kind: str) -> list[str]:
     ]
     whole = [name for name in stored_types() if not name.endswith(PARTS)]
     return [*own, *(name for name in whole if f"/{kind}/" in name)]
-
-
-def similar_types(type_name: str) -> list[str]:
-    """Return at most two known types with similar names."""
-    return difflib.get_close_matches(type_name, known_types(type_name.split("/")[1]), 2, 0.8)

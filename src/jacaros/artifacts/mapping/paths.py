@@ -1,6 +1,5 @@
 """Paths into messages: ``pose.pose.position.x``, ``ranges[0]``, ``transforms[*].child_frame_id``."""
 
-import difflib
 import keyword
 import re
 from collections.abc import Callable, Mapping
@@ -8,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from jacaros.ros.fields import FieldType
+from jacaros.suggestions import suggestion
 
 ALL = "*"
 """Stands for all elements of an array."""
@@ -121,9 +121,9 @@ def _field(path: Path, name: str, here: FieldType, shown: str, fields: Fields) -
         raise WrongPath(f"`{path.text}`: {where} is {here} and has no fields", f"write {shown}")
     known = fields(here.base)
     if name not in known:
-        near = difflib.get_close_matches(name, known, 1)
         listed = ", ".join(f"{field} ({kind})" for field, kind in known.items()) or "none"
-        help = f"did you mean `{near[0]}`? Its fields: {listed}" if near else f"its fields: {listed}"
+        meant = suggestion(name, known)
+        help = f"{meant} Its fields: {listed}" if meant else f"its fields: {listed}"
         raise WrongPath(f"`{path.text}`: {here.base} has no field `{name}`", help)
     return known[name]
 

@@ -18,6 +18,7 @@ from jacaros.streams.schema import (
     faults,
     unknown,
 )
+from jacaros.suggestions import suggestion
 from jacaros.yaml_nodes import Node, Problem
 
 _COMMON = ("value", "lateness", "history", "description")
@@ -135,16 +136,8 @@ def derived_problems(part: ArtifactPart) -> Iterator[Problem]:
 
 
 def _unknown_stream(source: Written, known: list[str]) -> Problem:
-    import difflib  # imported here: only needed after a mistake
-
-    near = difflib.get_close_matches(source.text, known, 1)
-    listed = ", ".join(known) or "none"
-    return source.place.problem(
-        f"unknown property `{source.text}`",
-        f"did you mean `{near[0]}`?"
-        if near
-        else f"properties, signals, frames and entries above this one: {listed}",
-    )
+    listed = f"properties, signals, frames and entries above this one: {', '.join(known) or 'none'}"
+    return source.place.problem(f"unknown property `{source.text}`", suggestion(source.text, known, listed))
 
 
 def _unfit(spec: Spec, topic: TopicPart, place: Place) -> Iterator[Problem]:

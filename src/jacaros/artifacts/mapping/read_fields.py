@@ -5,6 +5,7 @@ from typing import Any
 from jacaros.artifacts.mapping.declared import Conversion, FieldPart, Place
 from jacaros.artifacts.mapping.paths import WHOLE, Path, WrongPath, read_path
 from jacaros.artifacts.mapping.units import UNITS, Line, conversion, usual
+from jacaros.suggestions import suggestion
 from jacaros.yaml_nodes import Node
 
 ANGLES = ("yaw", "pitch", "roll")
@@ -173,14 +174,9 @@ def _of_kind(kind: str) -> str:
 def _unit(node: Node) -> str | None:
     if isinstance(node.value, str) and node.value in UNITS:
         return str(node.value)
-    import difflib  # imported here: only needed after a mistake
-
-    near = difflib.get_close_matches(str(node.value), UNITS, 1)
-    listed = ", ".join(UNITS)
-    node.wrong(
-        f"unknown unit {shown(node.value)}",
-        f"did you mean `{near[0]}`? Units: {listed}" if near else f"units: {listed}",
-    )
+    meant, listed = suggestion(str(node.value), UNITS), ", ".join(UNITS)
+    help = f"{meant} Units: {listed}" if meant else f"units: {listed}"
+    node.wrong(f"unknown unit {shown(node.value)}", help)
     return None
 
 

@@ -1,7 +1,6 @@
 """Read ``operations``, and the values of their messages: parameters, the time, constants, lists of messages."""
 
 import dataclasses
-import difflib
 import re
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -29,6 +28,7 @@ from jacaros.artifacts.mapping.read_fields import (
 from jacaros.artifacts.mapping.read_names import UNNAMED, belief_name, ros_name, type_written
 from jacaros.artifacts.mapping.read_topics import is_misplaced, read_feedback, read_qos
 from jacaros.env.resources.resource import Use, read_use
+from jacaros.suggestions import close_matches, did_you_mean
 from jacaros.yaml_nodes import Node, Problem
 
 _COMMON = ("parameters", "description", "uses")
@@ -63,8 +63,8 @@ def read_operation(name: Node, node: Node) -> OperationPart:
     if len(kinds) != 1:
         found = f"has {' and '.join(kinds)}" if kinds else "does not name what it does"
         unknown = [] if kinds else [key for key in _keys(node) if key not in _ALL_KEYS]
-        near = [each for key in unknown for each in difflib.get_close_matches(key, KEYS, 1)]
-        help = f"did you mean `{near[0]}`?" if near else f"write one of {', '.join(KEYS)}"
+        near = [each for key in unknown for each in close_matches(key, KEYS)]
+        help = did_you_mean(near[:1], f"write one of {', '.join(KEYS)}")
         name.wrong(f"the operation `{part.name}` {found}", help)
         return part
     kind = OperationKind(kinds[0])
@@ -428,11 +428,8 @@ def _parameter(node: Node, name: str, parameters: tuple[str, ...], within_list: 
         return ALL_OF_IT
     if name in parameters:
         return parameters.index(name)
-    import difflib  # imported here: only needed after a mistake
-
-    near = difflib.get_close_matches(name, parameters, 1)
-    listed = ", ".join((*parameters, name))
-    help = f"did you mean ${near[0]}?" if near else f"add it to `parameters`: [{listed}]"
+    near = [f"${each}" for each in close_matches(name, parameters)]
+    help = did_you_mean(near, f"add it to `parameters`: [{', '.join((*parameters, name))}]")
     node.wrong(f"the operation has no parameter `{name}`", help)
     return 0
 

@@ -8,6 +8,7 @@ from jacaros.artifacts.kit.reading import Values
 from jacaros.artifacts.mapping.declared import DerivedPart, FramePart
 from jacaros.artifacts.mapping.frames import values_of
 from jacaros.artifacts.mapping.host import Host
+from jacaros.excerpts import is_worth_a_line
 from jacaros.ros.errors import TransformUnavailable
 from jacaros.ros.waiting import MISSING_AFTER
 from jacaros.trace import Cause
@@ -99,7 +100,7 @@ class StampedFrames:
         if self._host.clock.elapsed - self._began < MISSING_AFTER:
             return  # tf may still be unknown
         self._dropped += 1
-        if self._dropped in (1, 10, 100):
+        if is_worth_a_line(self._dropped):
             part, count = self._part, self._dropped
             message = f"`{part.name}`: dropped {count} message{'s' if count > 1 else ''} without a transform: {error}"
             self._host.report_once(

@@ -8,7 +8,8 @@ from jacaros.asl import nodes
 from jacaros.asl.checks.formulas import conditions, parts_of
 from jacaros.asl.declaration import UNDECLARED, Declaration
 from jacaros.asl.diagnostics import Diagnostic
-from jacaros.asl.slips import MOST_ASKED, close_matches, is_slip_of
+from jacaros.asl.slips import MOST_ASKED, is_slip_of
+from jacaros.suggestions import did_you_mean, suggestion
 from jacaros.terms.functions import ARITIES
 
 _PERFORMATIVES: Final = (
@@ -73,8 +74,7 @@ def unknown_actions(
 
 
 def _meant_action(name: str, known: KnownActions) -> str | None:
-    close = close_matches(name, known.declared)
-    return known.help(name) or (f"did you mean `{close[0]}`?" if close else None)
+    return known.help(name) or suggestion(name, known.declared) or None
 
 
 def _wrong_function(node: nodes.InternalAction) -> Diagnostic:
@@ -130,6 +130,28 @@ def acting_conditions(found: Sequence[nodes.Node], known: KnownActions) -> Itera
                     )
 
 
+_PRINTING: Final = frozenset({".print", ".println", ".printf"})
+_SHORT: Final = 10
+"""Milliseconds: a shorter `.wait` was probably meant in seconds."""
+
+
+def doubtful_values(found: Sequence[nodes.Node]) -> Iterator[Diagnostic]:
+    """Note waits that are probably meant in seconds, and atoms that are probably meant as texts."""
+    for node in found:
+        if not isinstance(node, nodes.InternalAction):
+            continue
+        first = node.arguments[0] if node.arguments else None
+        if node.name == ".wait" and isinstance(first, nodes.Number) and 0 < first.value < _SHORT:
+            time = f"{first.value:g}"
+            help = f"for {time} s write `.wait({first.value * 1000:g})`"
+            yield Diagnostic("note", f"`.wait({time})` waits for {time} ms", first.span, help, "short-wait")
+        for word in node.arguments if node.name in _PRINTING else ():
+            if isinstance(word, nodes.Literal) and word.functor.startswith("'") and not word.arguments:
+                text = word.functor.strip("'")
+                message = f"`{word.functor}` is an atom, which is printed with its quotes"
+                yield Diagnostic("note", message, word.span, f'write a text as `"{text}"`', "quoted-atom")
+
+
 def unknown_performatives(found: Sequence[nodes.Node], known: KnownActions) -> Iterator[Diagnostic]:
     """Warn of misspelt performatives; a word that is not similar to one may be the program's own."""
     for node in found:
@@ -148,6 +170,6 @@ def unknown_performatives(found: Sequence[nodes.Node], known: KnownActions) -> I
                 "warning",
                 f"unknown performative `{word.functor}`",
                 word.span,
-                f"did you mean `{meant[0]}`?",
+                did_you_mean(meant[:1]),
                 "unknown-performative",
             )

@@ -10,7 +10,8 @@ from jacaros.asl import nodes
 from jacaros.asl.checks.actions import KnownActions
 from jacaros.asl.checks.formulas import labelled
 from jacaros.asl.diagnostics import Diagnostic
-from jacaros.asl.slips import MOST_ASKED, close_matches
+from jacaros.asl.slips import MOST_ASKED
+from jacaros.suggestions import close_matches, did_you_mean
 
 _Signature = tuple[str | nodes.Variable | None, str, int]
 
@@ -108,7 +109,7 @@ def _meant_goal(wanted: _Signature, handled: Iterable[_Signature]) -> str:
     if not close:
         return f"write a plan for it: `+{_goal_text(wanted).rpartition('/')[0]}`"
     name, _, arity = close[0].rpartition("/")
-    return f"did you mean `{name if arity == str(wanted[2]) else close[0]}`?"
+    return did_you_mean([name if arity == str(wanted[2]) else close[0]])
 
 
 def _is_reachable(namespace: str | nodes.Variable | None, own: str | nodes.Variable | None) -> bool:

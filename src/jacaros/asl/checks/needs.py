@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from jacaros.asl import nodes
 from jacaros.asl.diagnostics import Diagnostic
-from jacaros.asl.slips import close_matches
+from jacaros.suggestions import suggestion
 
 _POLICIES = ("wait", "refuse", "take")
 _NAME = re.compile(r"[A-Za-z_/][A-Za-z0-9_/]*")
@@ -95,11 +95,10 @@ def _wrong_policies(items: Sequence[nodes.Literal]) -> Iterator[Diagnostic]:
         given = item.arguments[0] if len(item.arguments) == 1 else None
         name = given.functor if isinstance(given, nodes.Literal) and not given.arguments else ""
         if name not in _POLICIES:
-            close = close_matches(name, _POLICIES, 0.6)
             yield _wrong(
                 item,
                 f"unknown policy `{name}`",
-                f"did you mean `{close[0]}`?" if close else f"write {', '.join(_POLICIES)}",
+                suggestion(name, _POLICIES, f"write {', '.join(_POLICIES)}"),
             )
 
 

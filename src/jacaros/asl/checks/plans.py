@@ -9,6 +9,7 @@ from jacaros.asl.checks.formulas import contradiction, is_true
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.slips import is_slip_of
 from jacaros.asl.walk import walk
+from jacaros.suggestions import did_you_mean
 
 _LABEL_WORDS: Final = ("atomic", "breakpoint", "all_unifs", "urgency", "needs", "policy", "within", "cleanup")
 
@@ -179,7 +180,7 @@ def misspelt_label_words(found: Sequence[nodes.Node]) -> Iterator[Diagnostic]:
                     "warning",
                     f"label annotation `{item.functor}` has no meaning",
                     item.span,
-                    f"did you mean `{meant[0]}`?",
+                    did_you_mean(meant[:1]),
                     "misspelt-annotation",
                 )
 

@@ -8,8 +8,9 @@ from typing import Final
 from jacaros.asl import nodes
 from jacaros.asl.checks.formulas import Clause, in_order
 from jacaros.asl.diagnostics import Diagnostic
-from jacaros.asl.slips import MOST_ASKED, close_matches
+from jacaros.asl.slips import MOST_ASKED
 from jacaros.asl.walk import walk
+from jacaros.suggestions import did_you_mean, suggestion
 from jacaros.terms.operators import BINARY
 
 _WORD: Final = re.compile(r"\b[A-Z]\w*")
@@ -84,7 +85,7 @@ def singletons_of_facts(facts: Iterable[nodes.Literal], what: str) -> Iterator[D
                     "warning",
                     f"`{name}` is a variable (capital {name[0]}), so this {what} matches any value",
                     node.span,
-                    f"did you mean `{lower}`? If any value is meant, write `_{name}`",
+                    f"{did_you_mean([lower])} If any value is meant, write `_{name}`",
                     "singleton-variable",
                 )
 
@@ -96,12 +97,8 @@ def _in_head(clause: Clause) -> set[str]:
 
 
 def _meant_variable(name: str, occurrences: Counter[str]) -> str:
-    close = close_matches(name, (other for other in occurrences if other != name), 0.7)
-    return (
-        f"did you mean `{close[0]}`? Otherwise write `_{name}`"
-        if close
-        else f"if this is intended, write `_{name}`"
-    )
+    meant = suggestion(name, (other for other in occurrences if other != name))
+    return f"{meant} Otherwise write `_{name}`" if meant else f"if this is intended, write `_{name}`"
 
 
 def vain_comparisons(clause: Clause) -> Iterator[Diagnostic]:

@@ -23,8 +23,8 @@ from jacaros.asl.directives.pattern import PatternCall, PatternError
 from jacaros.asl.literal_parser import Namespaces
 from jacaros.asl.plan_parser import PlanParser
 from jacaros.asl.program_parser import ProgramParser
-from jacaros.asl.slips import close_matches
 from jacaros.asl.source import SourceFile, Span
+from jacaros.suggestions import suggestion
 
 Read = Callable[[str, str], tuple[str, str]]
 """``read(path, including_name) -> (name, text)``: finds an included file; raises FileNotFoundError."""
@@ -383,8 +383,7 @@ def _with_named_variables(term: nodes.Term) -> nodes.Term:
 
 
 def _meant(name: str) -> str | None:
-    close = close_matches(name, [*_SIMPLE, *PATTERNS])
-    return f"did you mean `{close[0]}`?" if close else None
+    return suggestion(name, [*_SIMPLE, *PATTERNS]) or None
 
 
 def _place(directive: nodes.Literal) -> Span:

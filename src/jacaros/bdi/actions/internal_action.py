@@ -23,7 +23,7 @@ from jacaros.asl.declaration import Declaration
 from jacaros.terms.collections import QueueValue, SetValue
 from jacaros.terms.operators import to_int
 from jacaros.terms.text import text
-from jacaros.terms.values import String, Term, is_list, list_items
+from jacaros.terms.values import NUMBERS, String, Term, double, is_list, list_items
 
 Function = Callable[..., Any]
 Declared = TypeVar("Declared", bound=Function)
@@ -110,8 +110,8 @@ STANDARD: Final[Mapping[str, InternalAction]] = MappingProxyType(_declared)
 
 def number(term: Term, what: str) -> float:
     """Return the value of a number; an expression with unbound variables is rejected."""
-    if term.__class__ is float:
-        return float(term)
+    if term.__class__ in NUMBERS:
+        return double(term)
     raise WrongArguments(f"{what} must be a number, not {text(term)}")
 
 

@@ -53,9 +53,9 @@ def _convert(value: float | str | bool, conversion: str, flags: str, width: int,
     elif lower == "b":
         piece = (_plain(value) if isinstance(value, bool) else "true")[:places]
     elif lower in ("f", "e", "g"):
-        if not isinstance(value, float):
+        if isinstance(value, str | bool):
             raise ValueError(f"%{conversion} expects a number, found {value}")
-        piece = _signed(value, lower, flags, width, 6 if places is None else places)
+        piece = _signed(float(value), lower, flags, width, 6 if places is None else places)
     else:
         help = ": numbers are doubles, use %.0f" if lower in "dxo" else ""
         raise ValueError(f"unknown conversion %{conversion}{help}")
@@ -65,7 +65,7 @@ def _convert(value: float | str | bool, conversion: str, flags: str, width: int,
 def _plain(value: float | str | bool) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
-    return double_text(value) if isinstance(value, float) else value
+    return double_text(value) if isinstance(value, float) else str(value)
 
 
 def _signed(value: float, conversion: str, flags: str, width: int, places: int) -> str:

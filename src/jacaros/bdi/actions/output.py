@@ -16,7 +16,7 @@ from jacaros.bdi.state.intention import PLAN
 from jacaros.errors import JacarosError
 from jacaros.terms.substitution import resolve
 from jacaros.terms.text import display, text
-from jacaros.terms.values import FALSE, TRUE, Functor, String, Term, Var
+from jacaros.terms.values import FALSE, NUMBERS, TRUE, Functor, String, Term, Var
 
 _LEVELS = {"severe": "error", "warning": "warning", "fine": "debug", "finer": "debug", "finest": "debug"}
 _EXPRESSION = re.compile(r"#\{([^{}]+)\}")
@@ -57,7 +57,7 @@ def printf(ctx: Context, template: Term, *arguments: Term) -> None:
 def _value(term: Term) -> float | str | bool:
     if term is TRUE or term is FALSE:
         return term is TRUE
-    return term if isinstance(term, float) else display(term)
+    return term if term.__class__ in NUMBERS else display(term)
 
 
 @internal_action(".puts", arity=(1, 2), prints=True, by_name=True)

@@ -14,6 +14,7 @@ from jacaros.terms.values import (
     ACTION,
     ARITHMETIC,
     FUNCTION,
+    NUMBERS,
     PLAIN,
     SOURCE,
     Annotated,
@@ -135,7 +136,7 @@ def is_a_list(_ctx: Context, term: Term) -> bool:
 @internal_action(".number", arity=1, repeatable=True)
 def is_number(_ctx: Context, term: Term) -> bool:
     """``.number(X)``: *X* is a number, or an expression with unbound variables."""
-    return term.__class__ is float or (term.__class__ is tuple and term[0].kind in (ARITHMETIC, FUNCTION))
+    return term.__class__ in NUMBERS or (term.__class__ is tuple and term[0].kind in (ARITHMETIC, FUNCTION))
 
 
 @internal_action(".atom", arity=1, repeatable=True)

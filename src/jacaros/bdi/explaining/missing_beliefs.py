@@ -2,12 +2,9 @@
 
 from collections.abc import Iterator, Mapping
 
-from jacaros.asl.slips import close_matches
 from jacaros.bdi.state.belief_base import Table
+from jacaros.suggestions import close_matches, did_you_mean
 from jacaros.terms.values import Functor
-
-LIKE = 0.75
-"""Minimum similarity of two names, from 0 to 1, to suggest one for the other."""
 
 
 def missing_belief(tables: Mapping[Functor, Table], wanted: Functor) -> str:
@@ -25,12 +22,12 @@ def missing_belief(tables: Mapping[Functor, Table], wanted: Functor) -> str:
     if same:
         known = ", ".join(f"`{wanted.name}/{arity}`" for arity in same)
         return f"no belief `{wanted.name}/{wanted.arity}`; there is {known}"
-    near = close_matches(wanted.name, sorted({symbol.name for symbol in _held(tables, wanted)}), LIKE)
+    near = close_matches(wanted.name, sorted({symbol.name for symbol in _held(tables, wanted)}))
     if not near and not wanted.arity:
         return ""
     sign = "~" if wanted.negated else ""
-    help = f"; did you mean `{sign}{near[0]}`?" if near else ""
-    return f"no belief `{sign}{wanted.name}`{help}"
+    help = did_you_mean(f"{sign}{name}" for name in near)
+    return f"no belief `{sign}{wanted.name}`{'; ' * bool(help)}{help}"
 
 
 def _held(tables: Mapping[Functor, Table], wanted: Functor) -> Iterator[Functor]:

@@ -13,7 +13,7 @@ from jacaros.terms.operators import ArithmeticFault
 from jacaros.terms.substitution import free_variables, resolve
 from jacaros.terms.text import text
 from jacaros.terms.unifier import undo
-from jacaros.terms.values import ACTION, Functor, Term, Var, functor
+from jacaros.terms.values import ACTION, NUMBERS, Functor, Term, Var, functor
 
 
 class RegisteredFunction(NamedTuple):
@@ -100,7 +100,7 @@ def _call_registered(agent: Circumstance, function: RegisteredFunction, term: Te
     for _ in run(solve_formula(agent, formula, trail), agent.options.rule_depth):
         found = settle(value)
         undo(trail, mark)
-        if found.__class__ is float:
+        if found.__class__ in NUMBERS:
             return found
         raise ArithmeticFault(f"value of function {term[0].name} is not a number: {text(found)}")
     undo(trail, mark)

@@ -16,6 +16,7 @@ from jacaros.bdi.state.literals import apart, literal_of
 from jacaros.bdi.state.plan import SUSPENDED
 from jacaros.bdi.state.supervision import SUPERVISION, GoalSupervision
 from jacaros.bdi.state.triggers import Goal
+from jacaros.excerpts import is_worth_a_line
 from jacaros.terms.text import text
 from jacaros.terms.values import BY_SELF, Functor, Term, atom, bare, functor, structure
 
@@ -166,11 +167,11 @@ def _skip_to(
     if missed <= 0:
         return
     supervision.number = number
-    before, supervision.missed = supervision.missed, supervision.missed + missed
+    supervision.missed += missed
     meta_events.goal_state(
         agent, goal, annotations, "missed", atom("overrun"), structure("periods", float(missed))
     )
-    if len(str(before)) < len(str(supervision.missed)) or not before:  # the 1st, 10th, 100th ...
+    if is_worth_a_line(supervision.missed, missed):
         count = "a period" if supervision.missed == 1 else f"{supervision.missed} periods"
         every = text(supervision.period * 1000) if supervision.period is not None else ""
         agent.architecture.log(

@@ -10,6 +10,7 @@ from typing import Any, Final, Protocol
 
 from jacaros.bdi.architecture import Architecture
 from jacaros.bdi.state.plan import Failure
+from jacaros.excerpts import is_worth_a_line
 from jacaros.terms.values import String, Term, atom, functor
 
 _ERROR, _ERROR_MSG = functor("error", 1), functor("error_msg", 1)
@@ -67,7 +68,7 @@ class Budget:
         if self._holder.current is not None:
             raise self.failure(held, details)
         self.refusals += 1
-        if _is_worth_a_line(self.refusals):
+        if is_worth_a_line(self.refusals):
             count = "" if self.refusals == 1 else f" ({self.refusals} so far)"
             text = f"refusing {self._what} from outside{count}: {self._message(held, details)}"
             self._holder.architecture.log("error", text)
@@ -75,7 +76,7 @@ class Budget:
     def note_loss(self) -> int:
         """Count an intention that was lost; the number on the 1st, 10th, 100th … occurrence, else 0."""
         self.losses += 1
-        return self.losses if _is_worth_a_line(self.losses) else 0
+        return self.losses if is_worth_a_line(self.losses) else 0
 
     def failure(self, held: int, details: str = "") -> Failure:
         """The failure of a step that asks for one more item."""
@@ -84,10 +85,6 @@ class Budget:
 
     def _message(self, held: int, details: str) -> str:
         return f"there are {held} {self._what} (option {self._option}){details}"
-
-
-def _is_worth_a_line(count: int) -> bool:
-    return str(count).strip("0") == "1"
 
 
 class SearchLimit(Exception):

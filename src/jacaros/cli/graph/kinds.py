@@ -4,11 +4,12 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from jacaros.cli.graph.joining import Joined
-from jacaros.cli.usage import did_you_mean, usage_error
+from jacaros.cli.usage import usage_error
 from jacaros.errors import UsageError
 from jacaros.ros.errors import NameInvalid
 from jacaros.ros.graph import GraphContents
 from jacaros.ros.names import near_names
+from jacaros.suggestions import did_you_mean
 
 
 class Kind(StrEnum):
@@ -59,7 +60,10 @@ def find(joined: Joined, written: str) -> list[Thing]:
     things = all_things(joined.contents)
     found = [thing for thing in things if thing.name == name]
     if not found:
-        raise usage_error(f"unknown name: `{name}`", suggestion(name, [t.name for t in things]))
+        raise usage_error(
+            f"unknown name: `{name}`",
+            did_you_mean(near_names(name, [t.name for t in things]), "`jacaros ros list` shows all names"),
+        )
     return found
 
 
@@ -77,11 +81,6 @@ def find_mappable(joined: Joined, written: str) -> list[Thing]:
             f"`{found.name}` is a {found.kind}", "a mapping file contains topics, services and actions"
         )
     return mappable
-
-
-def suggestion(name: str, names: list[str]) -> str:
-    """Return the help for an unknown name."""
-    return did_you_mean(near_names(name, names)) or "`jacaros ros list` shows all names"
 
 
 def _type_names(written: str) -> list[str]:

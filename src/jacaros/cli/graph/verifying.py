@@ -15,13 +15,13 @@ from jacaros.artifacts.mapping.declared import (
 )
 from jacaros.cli.graph.joining import Joined
 from jacaros.cli.graph.listening import root
-from jacaros.cli.usage import did_you_mean
 from jacaros.ros.backend import PARAMETERS
 from jacaros.ros.errors import RosError
 from jacaros.ros.graph import Endpoint, TopicInfo, alike, latching
 from jacaros.ros.guarded import VELOCITIES
 from jacaros.ros.names import frame_name, near_names
 from jacaros.ros.qos import DEFAULT_QOS, SENSOR_DATA, STATE, QoS, incompatibility
+from jacaros.suggestions import did_you_mean
 from jacaros.yaml_nodes import Problem
 
 MOST_NAMES = 8
@@ -255,9 +255,7 @@ async def _of_parameter(names: Names, node: str, parameter: str, place: Place) -
     if name not in known:
         near = near_names(name, list(known))
         return [
-            place.problem(
-                f"unknown node `{name}`", did_you_mean(near) or "`jacaros ros list` shows all nodes"
-            )
+            place.problem(f"unknown node `{name}`", did_you_mean(near, "`jacaros ros list` shows all nodes"))
         ]
     try:
         there = await joined.backend.parameters(name).names(joined.timeout)

@@ -6,10 +6,11 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-from jacaros.env.errors import InvalidArtifact, suggestion
+from jacaros.env.errors import InvalidArtifact
 from jacaros.env.kernel.signature import Signature, signature_of
 from jacaros.env.operation import Mark, WhenPreempted
 from jacaros.env.resources.resource import Use, read_uses
+from jacaros.suggestions import aside
 
 FOR_ONE_ARTIFACT = 1_000_000
 """Depth of operations that an artifact defines itself: they override those of all its classes."""
@@ -64,7 +65,7 @@ def declare_method(
         guard = getattr(owner, mark.guard, None)
         if not callable(guard):
             methods = [name for name in dir(owner) if not name.startswith("_")]
-            help = suggestion(mark.guard, methods)
+            help = aside(mark.guard, methods)
             raise InvalidArtifact(f"{function.__qualname__}: unknown guard method {mark.guard}{help}")
     signature = signature_of(function, skip_first=True)
     if guard is not None:

@@ -5,9 +5,10 @@ from dataclasses import dataclass
 from itertools import chain
 from typing import Any
 
-from jacaros.env.errors import InvalidArtifact, suggestion
+from jacaros.env.errors import InvalidArtifact
 from jacaros.env.kernel.declaration import DeclaredOperation, declare_method, name_of
 from jacaros.env.operation import INIT, LINK, OPERATION, Mark, marks_of
+from jacaros.suggestions import aside
 
 
 class OperationTable:
@@ -70,7 +71,7 @@ class OperationTable:
         if same:
             return f"; it has {', '.join(same)}"
         offer = f" (it has {', '.join(keys)})" if keys else " (it has none)"
-        return offer + suggestion(name, [key.rpartition("/")[0] for key in keys])
+        return offer + aside(name, [key.rpartition("/")[0] for key in keys])
 
 
 def _check_overlap(present: DeclaredOperation | None, new: DeclaredOperation, arity: str) -> None:

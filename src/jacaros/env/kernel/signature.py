@@ -48,16 +48,19 @@ class Signature:
         rest: accepts any number of further arguments (``*args``). None without.
         unknown: annotations that cannot be resolved, by parameter. Such a parameter accepts any value.
         fewest: least number of arguments.
+        is_written: whether it is that of a Python function as written, not of a mapping file.
     """
 
-    __slots__ = ("_accepts", "fewest", "parameters", "rest", "unknown")
+    __slots__ = ("_accepts", "fewest", "is_written", "parameters", "rest", "unknown")
 
     def __init__(
         self,
         parameters: tuple[Parameter, ...],
         rest: Parameter | None,
         unknown: Mapping[str, str] = MappingProxyType({}),
+        is_written: bool = True,
     ) -> None:
+        self.is_written = is_written
         self.parameters, self.rest, self.unknown = parameters, rest, unknown
         self._accepts = tuple(parameter.accept for parameter in parameters)
         self.fewest = sum(not parameter.optional for parameter in parameters)
@@ -92,7 +95,9 @@ class Signature:
             parameter = self._parameter(position)
             part = f": {unsuitable}" if str(unsuitable) else ""
             if isinstance(arguments[position], Out) and not parameter.output:
-                part += f"; for an output, annotate the parameter: `{parameter.name}: Out`"
+                part += "; give it a value before the call"
+                if self.is_written:
+                    part += f", or, for an output, annotate the parameter: `{parameter.name}: Out`"
             raise WrongArguments(
                 f"argument {position + 1} ({parameter.name}): expected {parameter.expected}, "
                 f"found {shown(arguments[position])}{part}"
@@ -142,7 +147,7 @@ def signature_of(function: Callable[..., object], skip_first: bool) -> Signature
             rest = _parameter(each, annotation, takes_outputs=annotation is object)
         else:
             parameters.append(_parameter(each, annotation, takes_outputs=False))
-    return Signature(tuple(parameters), rest, unknown)
+    return Signature(tuple(parameters), rest, unknown, not hasattr(function, "__signature__"))
 
 
 def _annotations(function: Callable[..., object]) -> tuple[dict[str, Any], dict[str, str]]:

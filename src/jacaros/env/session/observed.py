@@ -3,11 +3,12 @@
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
-from jacaros.env.errors import UnknownProperty, suggestion
+from jacaros.env.errors import UnknownProperty
 from jacaros.env.ids import ArtifactId
 from jacaros.env.observation import Observation
 from jacaros.env.property import ObservableProperty
 from jacaros.env.values import equal, plain
+from jacaros.suggestions import aside
 
 
 class ObservedProperty(NamedTuple):
@@ -123,7 +124,7 @@ class Observed:
         else:
             which = ", ".join(owner.name for owner in owners)
             why = f"the focused artifacts ({which}) have {', '.join(known) if known else 'none'}"
-        return UnknownProperty(f"unknown observable property `{name}`: {why}{suggestion(name, known)}")
+        return UnknownProperty(f"unknown observable property `{name}`: {why}{aside(name, known)}")
 
 
 def changes_of(observation: Observation) -> Iterator[PropertyChange]:

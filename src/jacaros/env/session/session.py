@@ -8,7 +8,7 @@ from typing import Any
 
 from jacaros.env.artifact import Artifact
 from jacaros.env.environment import Environment
-from jacaros.env.errors import OperationFailed, UnknownArtifact, WorkspaceError, suggestion
+from jacaros.env.errors import OperationFailed, UnknownArtifact, WorkspaceError
 from jacaros.env.ids import ArtifactId, resolve_path
 from jacaros.env.lookup import artifact_named, chosen_artifact
 from jacaros.env.operation import OperationOutcome, OperationRequest
@@ -18,6 +18,7 @@ from jacaros.env.session.operation import SessionOperation
 from jacaros.env.session.perception import Perceiving
 from jacaros.env.session.workspaces import SessionWorkspaces
 from jacaros.env.values import Atom, Out, Structure, plain, text
+from jacaros.suggestions import aside
 
 
 class Session(Perceiving):
@@ -389,4 +390,4 @@ def _offer(places: Sequence[Workspace], operation: str) -> str:
             same = [key for key in offers if key.rpartition("/")[0] == operation]
             if same:
                 return f"; {artifact.name} has {', '.join(same)}"
-    return suggestion(operation, sorted(names))
+    return aside(operation, sorted(names))

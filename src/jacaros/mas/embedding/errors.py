@@ -10,24 +10,16 @@ JacarosError
 from collections.abc import Iterable
 
 from jacaros.errors import JacarosError
+from jacaros.suggestions import suggestion
 
 
 class UnknownAgent(JacarosError):
     """No participant has this name. The text suggests similar names."""
 
     def __init__(self, name: str, known: Iterable[str]) -> None:
-        from difflib import get_close_matches  # here: only for an unknown name
-
         names = list(known)
-        near = get_close_matches(name, names, n=3, cutoff=0.6)
         listed = ", ".join(names[:10]) + (", …" if len(names) > 10 else "")
-        help = (
-            f"did you mean {' or '.join(f'`{each}`' for each in near)}?"
-            if near
-            else f"agents: {listed}"
-            if names
-            else ""
-        )
+        help = suggestion(name, names, f"agents: {listed}" if names else "", 3)
         super().__init__(f"unknown agent `{name}`{'; ' * bool(help)}{help}")
         self.name = name
 

@@ -3,11 +3,11 @@
 from collections.abc import Iterator
 from typing import Any
 
-from jacaros.asl.slips import close_matches
 from jacaros.mas.history.chains import chain, shown, source_line
 from jacaros.mas.history.explanation import Explanation, Fact, seconds
 from jacaros.mas.history.past import Data, Past, of_agent
 from jacaros.mas.history.patterns import Pattern, name_of
+from jacaros.suggestions import suggestion
 
 MOST_CHANGES = 5
 """Number of earlier changes that an answer lists."""
@@ -68,6 +68,6 @@ def _meant(past: Past, pattern: Pattern) -> Iterator[Fact]:
         yield Fact("note", f"there was `{shown(same[-1])}`")
         return
     names: set[Any] = {name_of(str(data["belief"])) for _, data in past.beliefs}
-    near = close_matches(pattern.name, sorted(names), 0.7)
-    if near:
-        yield Fact("note", f"did you mean `{near[0]}`?")
+    help = suggestion(pattern.name, sorted(names))
+    if help:
+        yield Fact("note", help)

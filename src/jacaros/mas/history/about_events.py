@@ -2,12 +2,12 @@
 
 from collections.abc import Iterator
 
-from jacaros.asl.slips import close_matches
 from jacaros.errors import UsageError
 from jacaros.mas.history.chains import chain, place_of, plan_name, plan_text, shown
 from jacaros.mas.history.explanation import Explanation, Fact, seconds
 from jacaros.mas.history.past import Data, Past, of_agent
 from jacaros.mas.history.patterns import Pattern, name_of, unsigned
+from jacaros.suggestions import suggestion
 
 MOST_PLANS = 8
 """Maximum number of plans in an answer."""
@@ -153,9 +153,9 @@ def _hints(past: Past, pattern: Pattern, agent: str) -> Iterator[Fact]:
     if rule is not None and not pattern.kind:
         yield Fact("note", f"`{pattern.name}` is the conclusion of a rule; rules cause no events")
     yield from _near_plans(past, pattern, agent)
-    near = close_matches(pattern.name, sorted(known_names(past) - {pattern.name}), 0.75)
-    if near:
-        yield Fact("note", f"did you mean `{near[0]}`?")
+    help = suggestion(pattern.name, sorted(known_names(past) - {pattern.name}))
+    if help:
+        yield Fact("note", help)
     seen = sorted({shown(data.get("trigger")) for _, data in past.deliberations if _is_near(data, pattern)})
     if seen:
         yield Fact("note", f"events with this name: {', '.join(f'`{each}`' for each in seen[:MOST_PLANS])}")

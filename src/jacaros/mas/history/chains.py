@@ -13,18 +13,45 @@ _OF_PERCEPTS = re.compile(r"\[artifact_id\([^\]]*source\(percept\)[^\]]*\]")
 LONGEST_CHAIN = 40
 """Maximum number of links shown. Of a longer chain, those next to the effect and the first one."""
 
-
-LONGEST_SAMPLE = 100
-"""Maximum number of characters of a message."""
+LONGEST_ROUND = 12
+"""Maximum number of links of a round of a loop."""
 
 
 def chain(past: Past, number: Any) -> tuple[Fact, ...]:
     """Return the links from one back to the beginning, as facts."""
-    links = [fact for t, data in past.chain(number) for fact in _facts(past, t, data)]
+    links = _without_rounds([fact for t, data in past.chain(number) for fact in _facts(past, t, data)])
     if len(links) > LONGEST_CHAIN:
         left = len(links) - LONGEST_CHAIN
         return (*links[: LONGEST_CHAIN - 1], Fact("note", f"{left} more causes"), links[-1])
     return tuple(links)
+
+
+def _without_rounds(links: list[Fact]) -> list[Fact]:
+    """Keep the newest round of each loop, and count the earlier ones."""
+    kept: list[Fact] = []
+    places = [
+        (each.kind, each.agent, each.file, each.line) if each.line else re.sub(r"[-\d.]+", "#", each.text)
+        for each in links
+    ]
+    at = 0
+    while at < len(links):
+        size, rounds = _loop(places[at:])
+        kept += links[at : at + size]
+        at += size * rounds
+        if rounds > 1:
+            kept.append(Fact("note", f"{rounds - 1} earlier rounds like this", links[at - 1].t))
+    return kept
+
+
+def _loop(places: list[Any]) -> tuple[int, int]:
+    """Return how many links the loop has that *places* begin with, and the number of its rounds; 1 and 1 without one."""
+    for size in range(1, LONGEST_ROUND + 1):
+        rounds = 1
+        while places[:size] == places[size * rounds : size * (rounds + 1)]:
+            rounds += 1
+        if rounds > 2:
+            return size, rounds
+    return 1, 1
 
 
 def _facts(past: Past, t: float, link: Data) -> Iterator[Fact]:
@@ -67,7 +94,7 @@ def _end(operation: Any) -> str:
 def _sample(_past: Past, t: float, link: Data) -> Fact:
     what, topic = str(link.get("what", "")), str(link.get("topic") or "")
     told = what if topic in what else f"{topic}: {what}"
-    return Fact("sample", told if len(told) <= LONGEST_SAMPLE else f"{told[: LONGEST_SAMPLE - 3]}...", t)
+    return Fact("sample", told, t)
 
 
 def _message(_past: Past, t: float, link: Data) -> Fact:

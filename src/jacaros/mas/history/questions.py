@@ -18,9 +18,10 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from jacaros.asl.slips import close_matches
 from jacaros.errors import UsageError
+from jacaros.excerpts import help_line
 from jacaros.mas.history.patterns import Pattern
+from jacaros.suggestions import suggestion
 
 FORMS = (
     ("stopped", "why the robot stopped"),
@@ -151,10 +152,10 @@ def unknown_question(written: str, known: Iterable[str] = ()) -> UsageError:
     words = {word for each in _WORDS.values() for word in each}
     names = sorted(set(known))
     last = written.strip(" ?`'\"").split()[-1:] or [""]
-    near = close_matches(last[0].lstrip("+-!?"), sorted({*words, *names}), 0.7)
+    help = suggestion(last[0].lstrip("+-!?"), sorted({*words, *names}))
     lines = [f"error: unknown question: `{written}`"]
-    if near:
-        lines.append(f"  = help: did you mean `{near[0]}`?")
+    if help:
+        lines.append(help_line(help))
     if names:
         more = ", ..." if len(names) > MOST_NAMES else ""
         lines.append(

@@ -7,7 +7,6 @@ lists and structures as arguments, ``parent:`` of workspaces, paths as names of 
 from contextlib import suppress
 from typing import Final
 
-from jacaros.asl.slips import close_matches
 from jacaros.mas.project.cursor import ProjectCursor, ProjectPanic, Token, UnclosedPanic, text_of
 from jacaros.mas.project.jcm_agents import KEYS as AGENT_KEYS
 from jacaros.mas.project.jcm_agents import JcmAgents
@@ -16,6 +15,7 @@ from jacaros.mas.project.jcm_values import NAME, SECTIONS, JcmValues
 from jacaros.mas.project.jcm_workspaces import ENTRIES, JcmWorkspaces
 from jacaros.mas.project.parts import ProjectPart, Written
 from jacaros.mas.project.unsupported import NODES, PACKAGES, PATHS, PLATFORMS
+from jacaros.suggestions import suggestion
 
 _KEYS: Final = ("asl-path", "org-path", "java-path", "class-path", "platform", "world", "mapping")
 _OWN_PLATFORMS: Final = ("cartago", "local", "centralised", "jacamo.platform.Cartago")
@@ -91,11 +91,8 @@ class _JcmReader(JcmValues):
 
     def _no_section(self, token: Token) -> None:
         sections = (*SECTIONS[:4], *_KEYS)
-        close = close_matches(token.text, sections)
-        self.cursor.fail(
-            f"unknown section {token} in a .jcm file",
-            help=f"did you mean `{close[0]}`?" if close else f"expected one of {', '.join(sections)}",
-        )
+        help = suggestion(token.text, sections, f"expected one of {', '.join(sections)}")
+        self.cursor.fail(f"unknown section {token} in a .jcm file", help=help)
 
     def _to_next_section(self, start: int) -> None:
         """Skip to the next section at the beginning of a line, after an error in the one that began at *start*."""

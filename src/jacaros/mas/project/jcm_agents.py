@@ -2,12 +2,13 @@
 
 from typing import Final
 
-from jacaros.asl.slips import close_matches
+from jacaros.asl.slips import is_slip_of
 from jacaros.asl.source import Span
 from jacaros.mas.project.cursor import Token, text_of
 from jacaros.mas.project.jcm_values import NAME, JcmValues
 from jacaros.mas.project.parts import AgentPart, FocusPart, JoinPart
 from jacaros.mas.project.unsupported import INSPECTORS, NODES, ROLES
+from jacaros.suggestions import did_you_mean
 
 KEYS: Final = (
     *("beliefs", "goals", "join", "focus", "instances", "roles"),
@@ -71,10 +72,10 @@ class JcmAgents(JcmValues):
         span = cursor.span_of(key)
         if key.text in agent.options:
             cursor.warn(f"duplicate key `{key.text}`: only the last value has an effect", span)
-        close = [] if key.text in KEYS else close_matches(key.text, KEYS, 0.8)
-        if close:
+        meant = [] if key.text in KEYS else [each for each in KEYS if is_slip_of(key.text, each)]
+        if meant:
             message = f"unknown key `{key.text}`, kept as a parameter of the agent"
-            cursor.warn(message, span, f"did you mean `{close[0]}`?")
+            cursor.warn(message, span, did_you_mean(meant[:1]))
         agent.option_places[key.text] = span
         agent.options[key.text] = ", ".join(_unquoted(text) for text, _ in self.pieces())
         if key.text == "debug":

@@ -3,12 +3,12 @@
 from collections.abc import Callable, Iterable
 from typing import Final
 
-from jacaros.asl.slips import close_matches
 from jacaros.asl.source import Span
 from jacaros.env.values import Atom, Structure
 from jacaros.mas.project.cursor import ProjectCursor, ProjectPanic, Token, UnclosedPanic, text_of
 from jacaros.mas.project.parts import AgentName, ProjectPart, Written
 from jacaros.mas.project.unsupported import NODES, Topic, Unsupported
+from jacaros.suggestions import suggestion
 
 SECTIONS: Final = ("agent", "workspace", "institution", "organisation", "organization", "node", "uses")
 NAME: Final = ("word", "string")
@@ -125,10 +125,9 @@ class JcmValues:
         token = cursor.token
         if token.kind == "word" and not cursor.at_key():
             known = list(known)
-            close = close_matches(token.text, known)
-            help = f"did you mean `{close[0]}`?" if close and close[0] != token.text else None
             keys = [f"{each}:" for each in known if each not in self.entries]
-            help = help or f"keys of {what}: {', '.join([*self.entries, *keys])}"
+            listed = f"keys of {what}: {', '.join([*self.entries, *keys])}"
+            help = listed if token.text in known else suggestion(token.text, known, listed)
             cursor.fail(f"missing `:` after `{token.text}`", help=help)
         if token.kind != "word":
             cursor.fail(f"expected a key, found `{token.text}`")
@@ -139,8 +138,7 @@ class JcmValues:
     def unknown_key(self, key: Token, known: Iterable[str], what: str) -> None:
         """Report an unknown key and skip its value."""
         known = list(known)
-        close = close_matches(key.text, known)
-        help = f"did you mean `{close[0]}`?" if close else f"keys of {what}: {', '.join(known)}"
+        help = suggestion(key.text, known, f"keys of {what}: {', '.join(known)}")
         self.cursor.report(f"unknown key `{key.text}` in {what}", self.cursor.span_of(key), help)
         self.pieces()
 

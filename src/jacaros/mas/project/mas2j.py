@@ -3,12 +3,13 @@
 from contextlib import suppress
 from typing import Final, NoReturn
 
-from jacaros.asl.slips import close_matches
+from jacaros.asl.slips import is_slip_of
 from jacaros.asl.source import Span
 from jacaros.mas.deployment import CARTAGO_ENVIRONMENTS
 from jacaros.mas.project.cursor import ProjectCursor, ProjectPanic, Token, text_of
 from jacaros.mas.project.parts import AgentPart, ProjectPart
 from jacaros.mas.project.unsupported import INFRASTRUCTURES, JAVA, JAVA_ENVIRONMENT, NODES, Topic, Unsupported
+from jacaros.suggestions import did_you_mean, suggestion
 
 _SECTIONS: Final = (
     "infrastructure",
@@ -111,8 +112,7 @@ class _Mas2jReader:
 
     def no_section(self) -> NoReturn:
         token = self.cursor.token
-        close = close_matches(token.text, _SECTIONS)
-        help = f"did you mean `{close[0]}`?" if close else f"expected one of {', '.join(_SECTIONS)}"
+        help = suggestion(token.text, _SECTIONS, f"expected one of {', '.join(_SECTIONS)}")
         self.cursor.fail(f"unknown section {token} in a .mas2j file", help=help)
 
     def to_next_section(self, start: int) -> None:
@@ -191,12 +191,12 @@ class _Mas2jReader:
     def refuse_misspelt_key(self) -> None:
         """Report a word before a class that is nearly a key. Otherwise it would be read as the agent's file."""
         cursor = self.cursor
-        meant = [key for key in _AGENT_KEYS if key.lower() == cursor.token.text.lower()]
-        meant = meant or (
-            close_matches(cursor.token.text, _AGENT_KEYS[:3], 0.8) if cursor.peek().kind == "word" else []
-        )
+        written = cursor.token.text.lower()
+        meant = [key for key in _AGENT_KEYS if key.lower() == written]
+        if not meant and cursor.peek().kind == "word":
+            meant = [key for key in _AGENT_KEYS[:3] if is_slip_of(written, key.lower())]
         if meant and cursor.token.kind == "word":
-            cursor.fail(f"unexpected {cursor.token}", help=f"did you mean `{meant[0]}`?")
+            cursor.fail(f"unexpected {cursor.token}", help=did_you_mean(meant[:1]))
 
     def source(self, agent: AgentPart) -> None:
         token = self.cursor.advance()
@@ -217,8 +217,8 @@ class _Mas2jReader:
             agent.instances = self.count()
             return
         if key.text not in _AGENT_KEYS or key.kind != "word":
-            close = close_matches(key.text, _AGENT_KEYS) if key.kind == "word" else []
-            help = f"did you mean `{close[0]}`?" if close else "end each agent with `;`"
+            end = "end each agent with `;`"
+            help = suggestion(key.text, _AGENT_KEYS, end) if key.kind == "word" else end
             cursor.fail(f"expected `;` after agent `{agent.name}`, found {key}", help=help)
         cursor.advance()
         if key.text == "at":

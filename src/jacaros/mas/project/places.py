@@ -4,8 +4,9 @@ from jacaros.asl.source import Span
 from jacaros.env.ids import resolve_path
 from jacaros.mas.deployment import FocusSpec, WorkspaceSpec
 from jacaros.mas.project.parts import FocusPart, JoinPart, ProjectPart, WorkspacePart
-from jacaros.mas.project.remarks import Remarks, meant
+from jacaros.mas.project.remarks import Remarks
 from jacaros.mas.project.unsupported import INSTITUTIONS, ORGANISATIONS, Unsupported
+from jacaros.suggestions import suggestion
 
 _MAIN = "/main"
 _DEFAULT_NAMES = frozenset({"workspace", "blackboard", "console", "manrepo", "system"})
@@ -64,7 +65,7 @@ class ProjectPlaces:
         self._remarks.error(
             f"unknown workspace `{wanted}`",
             workspace.parent_span,
-            meant(wanted, names),
+            suggestion(wanted, sorted(names)) or None,
         )
         return _MAIN
 
@@ -113,7 +114,7 @@ class ProjectPlaces:
     def _check_agent(self, name: str, span: Span, known: set[str], is_error: bool = True) -> None:
         if name != "*" and name not in known:
             report = self._remarks.error if is_error else self._remarks.warn
-            report(f"unknown agent `{name}`", span, meant(name, known))
+            report(f"unknown agent `{name}`", span, suggestion(name, sorted(known)) or None)
 
     # what names lead to
 
@@ -141,7 +142,7 @@ class ProjectPlaces:
         names = {path.rpartition("/")[2] for path in self._paths}
         message = f"unknown workspace `{name}`"
         self._remarks.error(
-            message, span, meant(name, names) or f"declare it in the project: `workspace {name}`"
+            message, span, suggestion(name, sorted(names), f"declare it in the project: `workspace {name}`")
         )
         return None
 
@@ -170,7 +171,7 @@ class ProjectPlaces:
             self._remarks.warn(
                 f"artifact `{wanted.artifact}` is not declared in workspace `{wanted.workspace}`",
                 wanted.span,
-                meant(wanted.artifact, known) or "the agent focuses it as soon as it is created",
+                suggestion(wanted.artifact, sorted(known), "the agent focuses it as soon as it is created"),
             )
         return FocusSpec(wanted.artifact, self._shortest(path), wanted.namespace)
 
@@ -180,7 +181,7 @@ class ProjectPlaces:
             if not wanted.elsewhere:
                 every = {name for path in self._paths for name in self._artifacts(path, defaults=False)}
                 message = f"unknown artifact `{wanted.artifact}`"
-                help = meant(wanted.artifact, every)
+                help = suggestion(wanted.artifact, sorted(every)) or None
                 help = (
                     help or f"if an agent creates it, name its workspace, too: `workspace.{wanted.artifact}`"
                 )

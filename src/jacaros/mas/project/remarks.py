@@ -3,7 +3,6 @@
 from collections.abc import Iterable
 
 from jacaros.asl.diagnostics import Diagnostic
-from jacaros.asl.slips import close_matches
 from jacaros.asl.source import Span
 
 
@@ -32,9 +31,3 @@ class Remarks:
                 help = None if first is None else f"the first one is at {first.file.name}:{first.line}"
                 self.error(f"duplicate {what} `{name}`", span, help)
             seen.setdefault(name, span)
-
-
-def meant(name: str, known: Iterable[str]) -> str | None:
-    """Return a suggestion of the known name that is nearest to *name*, or None."""
-    close = close_matches(name, sorted(known))
-    return f"did you mean `{close[0]}`?" if close else None

@@ -7,7 +7,6 @@ from typing import Final
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.loader import parse_literals
 from jacaros.asl.lowering import lower_value
-from jacaros.asl.slips import close_matches
 from jacaros.extension.literal import Literal, literal_of
 from jacaros.extension.python_agent import PythonAgent
 from jacaros.mas.agent_host import Run
@@ -18,6 +17,7 @@ from jacaros.mas.python_agents.faults import place_of_fault
 from jacaros.mas.python_agents.host import PythonAgentHost
 from jacaros.module_outlines import UNSEEN
 from jacaros.project_modules import ModuleUnreadable, ProjectModules
+from jacaros.suggestions import suggestion
 
 _OF_MINDS: Final = (
     "events",
@@ -52,8 +52,7 @@ def agent_class(modules: ProjectModules, spec: AgentSpec) -> type[PythonAgent]:
     if wanted is not None:
         if wanted.rpartition(".")[2] in found:
             return found[wanted.rpartition(".")[2]]
-        close = close_matches(wanted, found)
-        help = f"did you mean `{close[0]}`?" if close else f"it has {', '.join(found)}"
+        help = suggestion(wanted, found, f"it has {', '.join(found)}")
         raise _wrong(spec, f"no subclass `{wanted}` of jacaros.PythonAgent in {file}", help)
     if len(found) == 1:
         return next(iter(found.values()))

@@ -4,13 +4,13 @@ The rules are tf2's: every frame has one parent, a look-up goes up from both fra
 between two known ones are interpolated, times outside the known interval are refused.
 """
 
-import difflib
 import math
 from bisect import bisect_left
 from collections.abc import Callable
 
 from jacaros.ros.errors import TransformUnavailable
 from jacaros.ros.protocols.transform import Transform, interpolate
+from jacaros.suggestions import aside
 
 HISTORY = 10.0
 """Seconds for which moving transforms are kept, as in tf2."""
@@ -128,9 +128,7 @@ class TransformBuffer:
         known = self.frames
         if not known:
             return "no transforms have arrived"
-        close = difflib.get_close_matches(frame, known, 1)
-        help = f"; did you mean {close[0]}?" if close else ""
-        return f"unknown frame {frame}{help or '.'} Known: {', '.join(known)}"
+        return f"unknown frame {frame}{aside(frame, known) or '.'} Known: {', '.join(known)}"
 
     def _outdated(self, parent: str, child: str, transform: Transform) -> None:
         """Drop a transform older than all others; if only such ones arrive, begin again with them."""

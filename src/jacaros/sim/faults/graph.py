@@ -4,7 +4,6 @@ Faults act where the world joins the graph, so they affect agents and all other 
 """
 
 import asyncio
-import difflib
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
@@ -15,6 +14,7 @@ from jacaros.errors import UsageError
 from jacaros.ros.action import Abort, ActionServer, Execute, ServerGoal
 from jacaros.ros.backend import Backend, Publisher, Sample, Subscription
 from jacaros.sim.faults.schedule import Faults
+from jacaros.suggestions import suggestion
 
 
 class FaultyGraph:
@@ -111,9 +111,7 @@ class FaultyGraph:
 
 def _check_name(fault: str, what: str, name: str, known: set[str]) -> None:
     if name and name not in known:
-        near = difflib.get_close_matches(name, known, 1)
-        listed = ", ".join(sorted(known)) or "none"
-        help = f"did you mean {near[0]}?" if near else f"{what}s of the world: {listed}"
+        help = suggestion(name, sorted(known), f"{what}s of the world: {', '.join(sorted(known)) or 'none'}")
         raise UsageError(f"fault {fault}: unknown {what} {name}; {help}")
 
 

@@ -13,12 +13,12 @@ a topic or a service::
       navigate_to_pose: go_to
 """
 
-import difflib
 import re
 from collections.abc import Mapping
 from typing import Any
 
 from jacaros.sim.interface import ACTIONS, SERVICES, TOPICS, Interface, OwnService, OwnTopic
+from jacaros.suggestions import suggestion
 from jacaros.yaml_nodes import Node
 
 SECTIONS = ("topics", "services", "actions")
@@ -67,11 +67,12 @@ def _name(node: Node) -> str:
 
 
 def _unknown(key: Node, section: str) -> None:
-    near = difflib.get_close_matches(str(key.value), _KNOWN[section], 1)
-    help = f"did you mean `{near[0]}`?" if near else f"known names: {', '.join(_KNOWN[section])}"
-    if not near and section in _TYPES:
-        help = f"to add it, give its type: `{key.value}: {{type: PACKAGE/{_TYPES[section]}/TYPE}}`"
-    key.wrong(f"unknown name in '{section}': `{key.value}`", help)
+    other = f"known names: {', '.join(_KNOWN[section])}"
+    if section in _TYPES:
+        other = f"to add it, give its type: `{key.value}: {{type: PACKAGE/{_TYPES[section]}/TYPE}}`"
+    key.wrong(
+        f"unknown name in '{section}': `{key.value}`", suggestion(str(key.value), _KNOWN[section], other)
+    )
 
 
 def _type(node: Node | None, kind: str) -> str:

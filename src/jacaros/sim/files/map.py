@@ -5,7 +5,6 @@ The keys are those of `jacaros.map_header`; the origin must not be rotated.
 Unknown cells are not walls: laser beams and robots pass through them.
 """
 
-import difflib
 import math
 from dataclasses import dataclass
 from pathlib import Path
@@ -25,6 +24,7 @@ from jacaros.map_header import (
 )
 from jacaros.sim.description import Rectangle, Segment, WorldDescription
 from jacaros.sim.navigation.grid import Grid
+from jacaros.suggestions import suggestion
 from jacaros.yaml_nodes import Node, Problem, read_document
 from jacaros.yaml_syntax import read_text, top_keys
 
@@ -222,10 +222,9 @@ def _image(node: Node, path: Path) -> GreyImage | None:
 def near_file(path: Path, pattern: str) -> str:
     """Return a "did you mean" for a file of a similar name next to *path*; empty without one."""
     try:
-        near = difflib.get_close_matches(path.name, [each.name for each in path.parent.glob(pattern)], 1)
+        return suggestion(path.name, [each.name for each in path.parent.glob(pattern)])
     except (OSError, ValueError):
         return ""
-    return f"did you mean `{near[0]}`?" if near else ""
 
 
 def map_of_world(world: WorldDescription, image: str) -> tuple[str, bytes]:

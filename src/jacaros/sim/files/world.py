@@ -29,7 +29,6 @@ Lengths are in metres, times in seconds, levels in percent and angles in degrees
       - {name: ann, path: [[0, 1], [2, 1]], loop: true}
 """
 
-import difflib
 import itertools
 import re
 from collections.abc import Iterable
@@ -55,6 +54,7 @@ from jacaros.sim.files.people import check_people, read_person
 from jacaros.sim.files.places import place_problem
 from jacaros.sim.files.robot import read_pose, read_robot
 from jacaros.sim.files.room import read_rectangle, read_rooms
+from jacaros.suggestions import suggestion
 from jacaros.text_files import is_file
 from jacaros.yaml_nodes import Node, read_document
 from jacaros.yaml_syntax import read_text, top_keys
@@ -104,10 +104,9 @@ def _meant(name: str) -> str:
         beside = [str(path) for path in Path(name).parent.glob("*.y*ml")]
     except (OSError, ValueError):
         beside = []
-    near = difflib.get_close_matches(name, [*shipped_worlds(), *beside], 1)
-    if near:
-        return f"did you mean `{near[0]}`?"
-    return f"give the path of a world file, or one of the shipped worlds: {', '.join(shipped_worlds())}"
+    shipped = shipped_worlds()
+    listed = f"give the path of a world file, or one of the shipped worlds: {', '.join(shipped)}"
+    return suggestion(name, [*shipped, *beside], listed)
 
 
 def load_world(name: str) -> WorldDescription:

@@ -50,7 +50,7 @@ def test_the_map_of_another_tool_is_read(tmp_path: Path) -> None:
         ("image: room.pgm\nresolution: 0\norigin: [0, 0]\n", "'origin' must be three numbers"),
         (
             "image: room.pgm\nresolution: 1\norigin: [0, 0, 0]\nocupied_thresh: 1\n",
-            "did you mean 'occupied_thresh'",
+            "did you mean `occupied_thresh`",
         ),
         ("image: none.pgm\nresolution: 1\norigin: [0, 0, 0]\n", "none.pgm"),
         ("image: room.yaml\nresolution: 1\norigin: [0, 0, 0]\n", "expected a PGM or PNG image"),

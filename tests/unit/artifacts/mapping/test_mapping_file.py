@@ -75,7 +75,7 @@ WRONG = {
     "a list": ("- a", "1:1: a mapping file must be a mapping of keys to values | "),
     "unknown key": (
         "propertys: {}",
-        "1:1: a mapping file has no key 'propertys' | did you mean 'properties'?",
+        "1:1: a mapping file has no key 'propertys' | did you mean `properties`?",
     ),
     "no topic": ("properties: {a: {rate: 1}}", "1:17: 'a' lacks the key 'topic' | add 'topic: ...'"),
     "twice": (
@@ -295,7 +295,7 @@ WRONG = {
     ),
     "parameter": (
         "operations: {go: {parameters: [speed], publish: t, fields: {x: $sped}}}",
-        "1:64: the operation has no parameter `sped` | did you mean $speed?",
+        "1:64: the operation has no parameter `sped` | did you mean `$speed`?",
     ),
     "parameter missing": (
         "operations: {go: {publish: t, fields: {x: $v}}}",

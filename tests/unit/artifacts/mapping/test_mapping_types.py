@@ -18,15 +18,15 @@ GOAL = "operations: {{go: {{action: t, type: nav2_msgs/action/NavigateToPose, pa
 WRONG = {
     "type": (
         "properties: {a: {topic: t, type: nav_msgs/msg/Odometri}}",
-        "1:34: the type `nav_msgs/msg/Odometri` is not known here | did you mean nav_msgs/msg/Odometry?",
+        "1:34: the type `nav_msgs/msg/Odometri` is not known here | did you mean `nav_msgs/msg/Odometry`?",
     ),
     "service type": (
         "operations: {a: {service: t, type: std_srvs/srv/Triger}}",
-        "1:36: the type `std_srvs/srv/Triger` is not known here | did you mean std_srvs/srv/Trigger?",
+        "1:36: the type `std_srvs/srv/Triger` is not known here | did you mean `std_srvs/srv/Trigger`?",
     ),
     "action type": (
         "operations: {a: {action: t, type: nav2_msgs/action/NavigateToPos}}",
-        "1:35: the type `nav2_msgs/action/NavigateToPos` is not known here | did you mean nav2_msgs/action/NavigateToPose",
+        "1:35: the type `nav2_msgs/action/NavigateToPos` is not known here | did you mean `nav2_msgs/action/NavigateToPose",
     ),
     "field": (
         ODOMETRY.format("fields: [pose.pose.positon.x]"),

@@ -359,3 +359,33 @@ def test_a_stop_of_a_robot_that_others_drive_is_the_end_of_an_operation() -> Non
     )
     assert kinds(answer) == ["operation", "act", "event"]
     assert explain(records, "stopped", robot="robot2").t is None
+
+
+def test_a_loop_is_shown_once_with_the_number_of_its_rounds() -> None:
+    rounds = [
+        record
+        for turn in range(25)
+        for record in (
+            event(float(turn), 2 * turn + 1, 2 * turn, f"+!patrol({turn})", 1),
+            event(turn + 0.5, 2 * turn + 2, 2 * turn + 1, f"+!dock({turn})", 6),
+        )
+    ]
+    end = event(30.0, 51, 50, "+alarm(9)", 4)
+    answer = explain([*RECORDS[:3], *rounds, end], "+alarm(_)")
+    assert [fact.text.partition(",")[0] for fact in answer.because] == [
+        "+alarm(9)",
+        "+!dock(24)",
+        "+!patrol(24)",
+        "24 earlier rounds like this",
+    ]
+    assert answer.because[-1].t == 0.0
+
+
+def test_a_message_is_shown_whole() -> None:
+    told = "/battery: " + ", ".join(f"field_{number}={number}" for number in range(12)) + ", percentage=0.4"
+    records = [
+        *RECORDS[:3],
+        cause(1.0, 10, 0, "sample", told, topic="/battery"),
+        event(1.0, 11, 10, "+alarm(9)", 4),
+    ]
+    assert explain(records, "+alarm(_)").because[-1].text == told

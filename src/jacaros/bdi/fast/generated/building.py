@@ -1,5 +1,6 @@
 """Code that builds terms: an expression for the value of a piece of syntax."""
 
+import math
 from collections.abc import Callable
 
 from jacaros.asl import nodes
@@ -22,7 +23,7 @@ def build(fn: FunctionBuilder, node: nodes.Node) -> str:
     if isinstance(node, nodes.Number):
         return (
             repr(node.value)
-            if node.value == node.value and abs(node.value) != float("inf")
+            if node.value.__class__ is float and math.isfinite(node.value)
             else _const(fn, node)
         )
     if isinstance(node, nodes.Constant):

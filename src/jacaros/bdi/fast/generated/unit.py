@@ -40,7 +40,7 @@ class CodeUnit:
     def constant(self, value: Term, call: nodes.InternalAction | None = None) -> str:
         """A global name for a value; equal values share it.  With a *call*, the value is what its action gave for it."""
         key: Any = value if value.__class__ in (Functor, Trigger) else (value.__class__, id(value))
-        if value.__class__ in (String, float):
+        if value.__class__ in (String, float, int):
             key = (value.__class__, value)
         name = self._constants.get(key)
         if name is None:
