@@ -308,7 +308,9 @@ class LiveServer:
                 count += 1
                 allowance.spend(len(message) / RECEIVED)
                 await asyncio.sleep(0)  # the command's first turn, which costs what is to be paid
-                while count % BURST == 0 or len(running) >= BURST or allowance.is_used_up:
+                while connection in self._connections and (
+                    count % BURST == 0 or len(running) >= BURST or allowance.is_used_up
+                ):
                     await self._beat.next()
                     count += 1
         finally:
