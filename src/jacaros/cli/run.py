@@ -258,7 +258,8 @@ def _launch(
         watching.begin(mas)
 
     with Watching(console, outputs) as watching, console.with_prints():
-        return launch(file, options, watching, begin_watched)
+        code = launch(file, options, watching, begin_watched)
+    return code or int(watching.incomplete)
 
 
 def _check_events(events: Sequence[str]) -> None:
