@@ -73,7 +73,7 @@ class Outputs:
                 continue
             files = {path: kind}
             if kind == "recording":  # a long one is continued in another file
-                files[path.with_name(f"{path.name}.1")] = "older part of the recording"
+                files[path.parent / f"{path.name}.1"] = "older part of the recording"
             for file, what in files.items():
                 check_output(file, kind)
                 before = known.setdefault(file.resolve(), what)

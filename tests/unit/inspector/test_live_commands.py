@@ -515,8 +515,7 @@ def test_the_run_continues_while_a_question_about_it_is_answered(monkeypatch: py
 
     async def test(mas: Mas, page: LivePage) -> None:
         answer = asyncio.create_task(done(page, "why", question="waiting"))
-        while not asked.is_set():
-            await asyncio.sleep(0)
+        await asyncio.to_thread(asked.wait, 20)
         await done(page, "goal", agent="bob", op="post", text="go(hall)")
         await mas.agent("bob").until("at(hall)", 5)
         assert not answer.done()

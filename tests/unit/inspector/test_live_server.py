@@ -397,3 +397,23 @@ def _read_until(wanted: str, address: str, connected: threading.Event) -> str:
         while wanted not in text:
             text += str(socket.recv(timeout=PATIENCE))
     return text
+
+
+def test_many_connections_do_not_end_a_page(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(server, "ADMITTED", 10_000)
+
+    async def test(mas: Mas, address: str) -> None:
+        host, port = address.split("/")[2].split(":")
+        async with live_page(address) as page:
+            begun = []
+            for _ in range(server.CONNECTIONS + 5):  # requests that never end
+                _, writer = await asyncio.open_connection(host, int(port))
+                writer.write(f"GET /{TOKEN}/ HTTP/1.1\r\n".encode())
+                begun.append(writer)
+            await counts_on(mas)
+            reply = await page.do("console", agent="bob", text="?counted(N)")
+            assert reply["ok"]
+            for writer in begun:
+                writer.transport.abort()
+
+    serving(test)
