@@ -45,8 +45,10 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         ),
         (
             ["--record", "x.jsonl", "--ground-truth", "x.jsonl.1"],
-            "error: `x.jsonl.1` cannot be both older part of the recording and ground truth\n"
-            "  = help: name two files\n",
+            (
+                "error: `x.jsonl.1` cannot be both older part of the recording and ground truth\n"
+                "  = help: name two files\n"
+            ),
         ),
     ],
 )

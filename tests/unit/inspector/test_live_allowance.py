@@ -36,7 +36,7 @@ def test_a_page_gets_its_share_of_the_time_in_the_long_run(time: Time) -> None:
     assert used == pytest.approx(1000.0 * SHARE, rel=0.05)
 
 
-def test_pages_together_get_no_more(time: Time) -> None:
+def test_pages_together_get_the_share_of_one(time: Time) -> None:
     pages, used, begun = Allowances(), 0.0, time.now
     each = [pages.begin() for _ in range(8)]
     while time.now < begun + 1000.0:
