@@ -18,6 +18,20 @@ _UNSAFE: Final = re.compile(
 """Characters that a terminal obeys or hides: control characters, direction marks, parts of surrogate pairs."""
 
 
+_OBEYED: Final = re.compile(
+    "[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069]|\r(?!\n)"
+)
+"""Characters that a terminal obeys: control characters without tabs and line ends, and direction marks."""
+
+
+def visible(text: str) -> str:
+    r"""Return *text* with characters that a terminal obeys replaced by escapes such as ``\x1b`` and ``\u202e``.
+
+    JSON without escapes for them stays JSON: it contains none below ``\u007f``.
+    """
+    return _OBEYED.sub(_escape, text)
+
+
 def is_worth_a_line(count: int, more: int = 1) -> bool:
     """Return whether a repeated message is printed: it is the 1st, 10th, 100th, … or one of the *more* last ones was."""
     before = count - more
@@ -31,7 +45,7 @@ def escaped(text: str) -> str:
 
 def _escape(found: re.Match[str]) -> str:
     code = ord(found.group())
-    return f"\\x{code:02x}" if code < 0x100 else f"\\u{code:04x}"
+    return f"\\x{code:02x}" if code < 0x20 else f"\\u{code:04x}"
 
 
 def printable(text: str) -> str:

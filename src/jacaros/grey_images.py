@@ -6,7 +6,7 @@ from importlib import import_module
 from io import BytesIO
 from pathlib import Path
 
-from jacaros.text_files import file_bytes
+from jacaros.text_files import LARGEST, file_bytes
 
 WHITE = 255
 _NUMBER = re.compile(rb"(?:\s|#[^\r\n]*+)*+(\d{1,9})")
@@ -71,10 +71,16 @@ def _read_png(data: bytes, path: Path) -> GreyImage:
             f"pip install 'jacaros[maps]', or magick {path} {path.with_suffix('.pgm')}",
         ) from None
     try:
-        image = pillow.open(BytesIO(data)).convert("L")
+        image = pillow.open(BytesIO(data))
+        if image.width * image.height <= LARGEST:
+            image = image.convert("L")
+            return GreyImage(image.width, image.height, image.tobytes())
     except Exception as error:  # Pillow raises errors of many kinds, SyntaxError among them
         raise ImageError(f"the PNG image is broken: {error}", "save the map again") from error
-    return GreyImage(image.width, image.height, image.tobytes())
+    raise ImageError(
+        f"the image has more than {LARGEST >> 20} million pixels ({image.width} x {image.height})",
+        "use a smaller map, or a coarser resolution",
+    )
 
 
 def _header(data: bytes) -> tuple[int, int, int, int]:

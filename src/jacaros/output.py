@@ -19,7 +19,7 @@ from collections import deque
 from collections.abc import Callable
 from typing import Any, Protocol, TextIO
 
-from jacaros.excerpts import is_worth_a_line
+from jacaros.excerpts import is_worth_a_line, visible
 
 LIMIT = 8 << 20
 """Maximum number of bytes waiting for a sink."""
@@ -77,6 +77,7 @@ class Output:
         patience: seconds that `write` waits if the queue is full and the sink accepts nothing; then lines are dropped until
             half of the queue is free.
         delay: seconds that text may be collected before the thread writes it; 0 writes directly while the sink accepts it.
+        raw: write control characters as they are; otherwise they are escaped (`jacaros.excerpts.visible`).
 
     Attributes:
         when_gone: called once, in any thread, instead of a warning when the reader has closed its end of a pipe.
@@ -89,8 +90,10 @@ class Output:
         warn: Callable[[str], None] | None = None,
         patience: float = PATIENCE,
         delay: float = 0.0,
+        raw: bool = False,
     ) -> None:
         self._find = stream if callable(stream) else lambda: stream
+        self._raw = raw
         self._name, self._warn, self._patience, self._delay = name, warn, patience, delay
         self.when_gone: Callable[[], object] | None = None
         # Reentrant: a signal handler may log in the middle of a write.
@@ -114,13 +117,15 @@ class Output:
 
     def write(self, text: str | bytes) -> None:
         """Write whole lines; bytes only to a file that was opened for them (`io.FileIO`)."""
+        if isinstance(text, str) and not self._raw:
+            text = visible(text)
         with self._changed:
             if self._retry_at is not None and time.monotonic() < self._retry_at:
                 self._lost += _line_ends(text)
                 return
             if self._closed and self._waiting:
                 return
-            stream = self._find()
+            stream = beneath(self._find())
             if stream is not self._stream:
                 self._adopt(stream)
             if self._descriptor is None or self._closed:
@@ -391,6 +396,55 @@ class Printed(io.TextIOBase):
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._stream, name)
+
+
+class Visible(io.TextIOBase):
+    """A standard stream of a command: whatever is written, control characters are escaped.
+
+    It has no ``buffer``, by which libraries would write past it. `beneath` returns the stream for own styles and pictures.
+
+    Args:
+        stream: the stream.
+    """
+
+    def __init__(self, stream: TextIO) -> None:
+        self.stream = stream
+
+    def write(self, text: str) -> int:
+        """Write *text*."""
+        self.stream.write(visible(text))
+        return len(text)
+
+    def flush(self) -> None:
+        """Flush the stream."""
+        self.stream.flush()
+
+    def writable(self) -> bool:
+        """Return True."""
+        return True
+
+    def isatty(self) -> bool:
+        """Return whether the stream is a terminal."""
+        return self.stream.isatty()
+
+    def fileno(self) -> int:
+        """Return the stream's file descriptor."""
+        return self.stream.fileno()
+
+    @property
+    def encoding(self) -> str:  # type: ignore[override]
+        """The encoding of the stream."""
+        return self.stream.encoding
+
+    @property
+    def errors(self) -> str | None:  # type: ignore[override]
+        """How characters that the encoding lacks are handled."""
+        return self.stream.errors
+
+
+def beneath(stream: Any) -> Any:
+    """Return the stream itself, for text that is escaped already."""
+    return stream.stream if isinstance(stream, Visible) else stream
 
 
 class _Sink(Protocol):

@@ -237,6 +237,13 @@ _DEEPEST: Final = 100
 """Maximum nesting of values; code that uses a document recurses into it."""
 
 
+_TAGS: Final = frozenset(
+    f"tag:yaml.org,2002:{kind}"
+    for kind in ("bool", "float", "int", "map", "merge", "null", "seq", "str", "timestamp", "value")
+)
+"""Kinds of values; `!robot` and `!!python/object` are others."""
+
+
 class _Placing:
     """Makes values of nodes, and reports where a value is invalid, such as the date 2001-99-99."""
 
@@ -268,7 +275,7 @@ def _parts(node: Any) -> Iterator[Any]:
 
 
 def _unusable(document: Any) -> Problem | None:
-    """Return the error of an alias inside its own value, or of aliases of aliases that make the document endless."""
+    """Return the error of an unknown tag, an alias inside its own value, or aliases that make the document endless."""
     sizes: dict[int, int] = {}
     depths: dict[int, int] = {}
     within: set[int] = set()
@@ -277,6 +284,10 @@ def _unusable(document: Any) -> Problem | None:
         if id(node) in sizes:
             return None
         line, column = node.start_mark.line + 1, node.start_mark.column + 1
+        if node.tag not in _TAGS:
+            return Problem(
+                line, column, f"unknown tag `{node.tag}`", "remove the tag: values have no other kinds"
+            )
         if id(node) in within:
             return Problem(line, column, f"&{node.anchor} contains itself", "remove the alias")
         within.add(id(node))

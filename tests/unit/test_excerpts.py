@@ -15,7 +15,7 @@ from jacaros.yaml_nodes import Problem, YamlFileError
 
 
 def test_control_characters_and_marks_of_direction_are_escaped() -> None:
-    assert escaped("a\x1b[31m\x9b\u202eb\ud800\tc\n") == "a\\x1b[31m\\x9b\\u202eb\\ud800\tc\n"
+    assert escaped("a\x1b[31m\x9b\u202eb\ud800\tc\n") == "a\\x1b[31m\\u009b\\u202eb\\ud800\tc\n"
     assert escaped("été 日本 🤖") == "été 日本 🤖"
 
 

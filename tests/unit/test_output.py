@@ -201,3 +201,43 @@ class FullDisk(io.StringIO):
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
         self.text += text
         return len(text)
+
+
+def test_after_a_block_lines_are_dropped_until_half_of_the_queue_is_free(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(output, "LIMIT", 100_000)
+    with pipe() as (reader, stream):
+        out = Output(stream, "standard output", None, patience=0.0)
+        while not out._blocked:
+            out.write(LINE)
+        lost, waiting = out._lost, out._waiting
+        with out._changed:  # the reader takes a little: less than half of the queue is free
+            out._waiting = waiting - 1000
+            out.write(LINE)
+            assert out._lost == lost + 1
+            out._waiting = output.LIMIT // 2
+            out.write(LINE)
+            assert out._lost == lost + 1
+            out._waiting = waiting + len(LINE.encode())
+        os.set_blocking(reader, False)
+        out.close(patience=0.0)
+
+
+def test_control_characters_are_escaped_except_in_raw_output() -> None:
+    text = "a\tb\x1b[2J\x07\x9b\x7f\u202e\r!\n"
+    with pipe() as (reader, stream):
+        out = Output(stream, "standard output")
+        out.write(text)
+        assert os.read(reader, 1000).decode() == "a\tb\\x1b[2J\\x07\\u009b\\u007f\\u202e\\x0d!\n"
+        Output(stream, "the terminal", raw=True).write(text)
+        assert os.read(reader, 1000).decode() == text
+
+
+def test_a_visible_stream_escapes_whatever_is_written() -> None:
+    with pipe() as (reader, stream):
+        shown = output.Visible(stream)
+        print("\x1b[2Jé", file=shown, flush=True)
+        assert os.read(reader, 1000).decode() == "\\x1b[2Jé\n"
+        assert not hasattr(shown, "buffer")
+        assert output.beneath(shown) is stream

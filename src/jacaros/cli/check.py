@@ -13,6 +13,7 @@ from jacaros.cli.files import existing, no_programs
 from jacaros.cli.reports import as_json, as_sarif
 from jacaros.cli.usage import examples, usage_error
 from jacaros.mas.checking import Findings, check_files
+from jacaros.output import beneath
 from jacaros.suggestions import suggestion
 from jacaros.text_files import is_file
 
@@ -113,7 +114,10 @@ def report(findings: Findings) -> None:
     """Print the diagnostics, and their number on the standard error output."""
     coloured = has_colours()
     for diagnostic in findings.diagnostics:
-        click.echo(_coloured(diagnostic) if coloured else diagnostic.render(with_code=True), color=coloured)
+        if coloured:  # its text is escaped
+            click.echo(_coloured(diagnostic), beneath(sys.stdout), color=True)
+        else:
+            click.echo(diagnostic.render(with_code=True))
         click.echo()
     click.echo(_summary(findings.diagnostics, len(findings.files)), err=True)
 

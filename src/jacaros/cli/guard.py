@@ -11,6 +11,7 @@ from jacaros.cli.graph_options import address_options, ros_option
 from jacaros.cli.usage import examples
 from jacaros.cli.variables import VariableOption
 from jacaros.clock import WallClock, run
+from jacaros.excerpts import visible
 from jacaros.ros.middleware import ROS_KINDS
 
 LEAST_TIMEOUT = 0.15
@@ -78,4 +79,4 @@ def _leave_output() -> None:
 def _log(text: str) -> None:
     """Write a line; the reader may have died with the agents."""
     with suppress(OSError):
-        os.write(sys.stderr.fileno(), f"[guard {os.getpid()}] {text}\n".encode())
+        os.write(sys.stderr.fileno(), visible(f"[guard {os.getpid()}] {text}\n").encode())

@@ -20,7 +20,7 @@ from jacaros.cli.usage import examples, in_our_form, usage_error
 from jacaros.cli.variables import note
 from jacaros.errors import JacarosError, UsageError
 from jacaros.excerpts import help_line
-from jacaros.output import PLAIN
+from jacaros.output import PLAIN, Visible
 from jacaros.suggestions import suggestion
 
 ENDED_BY_SIGNAL = (129, 130, 143, 149)
@@ -114,10 +114,13 @@ def jacaros() -> None:
 
 def main(arguments: list[str] | None = None) -> None:
     """Run the ``jacaros`` command and exit the process."""
-    for stream in (sys.stdout, sys.stderr):
+    for name in ("stdout", "stderr"):
+        stream = getattr(sys, name)
         # A console that lacks a character, as those of cp1252 lack arrows, must not end a command.
         if isinstance(stream, io.TextIOWrapper) and stream.errors in ("strict", "backslashreplace"):
             stream.reconfigure(errors=PLAIN)
+        if stream is not None:
+            setattr(sys, name, Visible(stream))
     code = call(arguments)
     if code in ENDED_BY_SIGNAL and _threads_are_left():
         # Python would wait for these threads; after Ctrl+C the process must end immediately.

@@ -71,12 +71,14 @@ class Outputs:
         for kind, path in paths.items():
             if path is None:
                 continue
-            check_output(path, kind)
-            if kind == "recording" and path.with_name(f"{path.name}.1").exists():
-                check_output(path.with_name(f"{path.name}.1"), kind)
-            before = known.setdefault(path.resolve(), kind)
-            if before != kind:
-                raise usage_error(f"`{path}` cannot be both {before} and {kind}", "name two files")
+            files = {path: kind}
+            if kind == "recording":  # a long one is continued in another file
+                files[path.parent / f"{path.name}.1"] = "older part of the recording"
+            for file, what in files.items():
+                check_output(file, kind)
+                before = known.setdefault(file.resolve(), what)
+                if before != what:
+                    raise usage_error(f"`{file}` cannot be both {before} and {what}", "name two files")
         if self.view == "page":
             check_view(self.view_address, self.view_token)
 
@@ -132,6 +134,8 @@ def check_output(path: Path, kind: str, make_folder: bool = False) -> None:
                 raise usage_error(f"no permission to write to `{path.parent}`", "name another folder")
         elif not os.access(path, os.W_OK):
             raise usage_error(f"no permission to write `{path}`", "name another file")
+        elif path.is_fifo() and path.resolve().exists():  # unlike a pipe of the shell, which is open: >(gzip)
+            raise usage_error(f"`{path}` is a named pipe, and opening it waits for a reader", "name a file")
         elif path.is_file():
             _check_content(path, kind)
     except (OSError, ValueError) as error:

@@ -260,7 +260,8 @@ def _launch(
         watching.begin(mas)
 
     with Watching(console, outputs) as watching, console.with_prints():
-        return launch(project, options, watching, begin_watched)
+        code = launch(project, options, watching, begin_watched)
+    return code or int(watching.incomplete)
 
 
 def _check_events(events: Sequence[str]) -> None:

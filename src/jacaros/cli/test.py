@@ -1,6 +1,7 @@
 """``jacaros test FILE|FOLDER ...``."""
 
 import os
+import re
 import sys
 from collections.abc import Sequence
 from fnmatch import fnmatchcase
@@ -12,12 +13,15 @@ import click
 from jacaros.cli.graph_options import noise_option
 from jacaros.cli.outputs import check_output
 from jacaros.cli.usage import examples, usage_error
+from jacaros.excerpts import visible
+from jacaros.output import beneath
 
 if TYPE_CHECKING:
     from jacaros.testing.outcomes import SuiteOutcome
     from jacaros.testing.suites import AgentTest, Suite
     from jacaros.testing.trial import TrialOptions
 
+_STYLED = re.compile(r"(\x1b\[.*?\x1b\[0m)", re.DOTALL)
 _COLOURS = {"passed": "green", "failed": "red", "place": "cyan"}
 
 
@@ -144,7 +148,7 @@ def command(
         "",
         summary(outcomes, options.seed, paint),
     ):
-        click.echo(line, color=True)
+        paint.echo(line)
     if junit is not None:
         try:
             write_junit(junit, outcomes)
@@ -161,13 +165,21 @@ class _Paint:
             self._wanted = sys.stdout.isatty() and not os.environ.get("NO_COLOR")
         else:
             self._wanted = color == "always"
+        self._painted: set[str] = set()
 
     def __call__(self, text: str, kind: str) -> str:
         if not self._wanted:
             return text
-        return click.style(
-            text, fg=_COLOURS.get(kind), bold=kind == "failed" or None, dim=kind == "quiet" or None
+        painted = click.style(
+            visible(text), fg=_COLOURS.get(kind), bold=kind == "failed" or None, dim=kind == "quiet" or None
         )
+        self._painted.add(painted)
+        return painted
+
+    def echo(self, line: str) -> None:
+        """Print a line; control characters that are not painted here are escaped."""
+        parts = (part if part in self._painted else visible(part) for part in _STYLED.split(line))
+        click.echo("".join(parts), beneath(sys.stdout), color=True)
 
 
 class _Progress:
@@ -187,7 +199,7 @@ class _Progress:
         for suite in suites:
             for warning in suite.warnings:
                 click.echo(warning, err=True)
-            click.echo(self._paint(str(suite.path), "place"), color=True)
+            self._paint.echo(self._paint(str(suite.path), "place"))
             outcome = SuiteOutcome(suite)
             outcomes.append(outcome)
             self._run(outcome)
@@ -200,16 +212,16 @@ class _Progress:
         from jacaros.testing.trial import run_suite
 
         if suite.suite.error is not None:
-            click.echo(f"  {self._paint('ERROR ', 'failed')}  cannot run the file", color=True)
+            self._paint.echo(f"  {self._paint('ERROR ', 'failed')}  cannot run the file")
             return
         for outcome in run_suite(
             suite.suite, self._options, lambda test: _is_meant(suite.suite, test, self._pattern)
         ):
             suite.outcomes.append(outcome)
-            click.echo(line_of(outcome, self._paint, self._verbose), color=True)
+            self._paint.echo(line_of(outcome, self._paint, self._verbose))
             if self._verbose and outcome.passed:
                 for text in outcome.output:
-                    click.echo(self._paint(f"          {text}", "quiet"), color=True)
+                    self._paint.echo(self._paint(f"          {text}", "quiet"))
             if self._first and not outcome.passed:
                 return
 

@@ -7,7 +7,7 @@ import click
 
 from jacaros.cli.files import read_recording
 from jacaros.cli.outputs import check_output, check_view
-from jacaros.cli.usage import examples
+from jacaros.cli.usage import examples, usage_error
 from jacaros.cli.view_options import place_options
 
 
@@ -39,7 +39,10 @@ def command(
     if output is not None:
         from jacaros.inspector.page import write_replay
 
-        write_replay(recording, output)
+        try:
+            write_replay(recording, output)
+        except OSError as error:
+            raise usage_error(f"cannot write `{output}`: {error.strerror}", "name another file") from error
         click.echo(f"wrote {output}")
         return
     from jacaros.cli.pages import log_address, open_page

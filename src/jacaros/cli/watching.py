@@ -28,6 +28,9 @@ class Watching:
     Args:
         console: takes the output. The view is drawn on the current standard error output.
         outputs: recordings and views to make of the run.
+
+    Attributes:
+        incomplete: whether the replay page could not be written.
     """
 
     def __init__(self, console: Console, outputs: Outputs) -> None:
@@ -41,6 +44,7 @@ class Watching:
         self._view: TerminalView | None = None
         self._terminal = sys.stderr
         self._watch: Watch | None = None
+        self.incomplete = False
 
     def begin(self, mas: System) -> None:
         """Begin to watch a run that has been created.
@@ -107,7 +111,8 @@ class Watching:
         try:
             write_replay(recording, path)
         except OSError as error:
-            self._warn(f"cannot write `{path}`: {error.strerror}")
+            self._console.log(f"error: cannot write `{path}`: {error.strerror}", "error")
+            self.incomplete = True
 
     def _warn(self, text: str) -> None:
         self._console.log(f"warning: {text}", "warning")

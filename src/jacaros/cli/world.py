@@ -7,6 +7,7 @@ import click
 
 from jacaros.cli.outputs import check_output
 from jacaros.cli.usage import examples, usage_error
+from jacaros.output import beneath
 from jacaros.sim.description import WorldDescription, WorldError
 
 _IMAGES = (".pgm", ".png")
@@ -183,13 +184,13 @@ def _count(number: int, what: str) -> str:
 
 
 def _draw(world: WorldDescription) -> None:
-    from rich.console import Console  # here: only for pictures in the terminal
-
     from jacaros.inspector.scene import views_of
+    from jacaros.inspector.terminal_console import TerminalConsole  # here: it imports rich
     from jacaros.inspector.terminal_view import TerminalView
     from jacaros.sim import World
 
-    console = Console() if sys.stdout.isatty() else Console(height=_ROWS + 2 * len(world.robots))
+    height = None if sys.stdout.isatty() else _ROWS + 2 * len(world.robots)
+    console = TerminalConsole(file=beneath(sys.stdout), height=height)
     view = TerminalView(console, wall=lambda: 0.0)
     view.world(world.drawing())
     view.frame(0.0, views_of(World(world)))

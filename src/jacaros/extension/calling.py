@@ -34,8 +34,8 @@ class Undeclarable(Exception):
     """Raised when a function does not fit its decorator; the text says why and how to fix it."""
 
 
-def action_of(name: str, function: Callable[..., object]) -> InternalAction:
-    """Return the internal action for a function.
+def action_of(name: str, function: Callable[..., object], pure: bool = False) -> InternalAction:
+    """Return the internal action for a function; *pure* if its decorator says so.
 
     Raises:
         Undeclarable: its parameters do not fit.
@@ -53,6 +53,7 @@ def action_of(name: str, function: Callable[..., object]) -> InternalAction:
         body_only=suspends,
         arity=(callee.minimum, callee.maximum),
         result_hint=callee.result_hint,
+        pure=pure and not suspends,
     )
 
 

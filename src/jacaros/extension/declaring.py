@@ -27,12 +27,14 @@ class Declared:
         function: the function itself.
         name: as programs write it; None for the default, module and function.
         arity: number of arguments, or their minimum and maximum; None to use the parameters.
+        pure: whether questions about an agent may call it.
     """
 
     kind: str
     function: Callable[..., object]
     name: str | None
     arity: int | tuple[int, int | None] | None = None
+    pure: bool = False
 
 
 ACTION, FUNCTION = "internal action", "arithmetic function"
@@ -43,10 +45,10 @@ def internal_action(name: Function, /) -> Function: ...
 
 
 @overload
-def internal_action(name: str | None = None, /) -> Callable[[Function], Function]: ...
+def internal_action(name: str | None = None, /, *, pure: bool = False) -> Callable[[Function], Function]: ...
 
 
-def internal_action(name: str | Function | None = None, /) -> object:
+def internal_action(name: str | Function | None = None, /, *, pure: bool = False) -> object:
     """Make a function an internal action of the project's agents.
 
     The first part of the name must lead to the module: for ``my.norm(X, Y, L)`` agents look for ``my.py``, or a package
@@ -65,13 +67,15 @@ def internal_action(name: str | Function | None = None, /) -> object:
 
     Args:
         name: as programs write it, with dots; by default the module and the function.
+        pure: the function only computes its result. Questions (the console of the live page, conditions of breakpoints, and
+            explanations of failures) call pure functions only.
 
     Examples:
-        @internal_action("my.norm")
+        @internal_action("my.norm", pure=True)
         def norm(x: float, y: float) -> float:
             return math.hypot(x, y)
     """
-    return _declare(ACTION, name, None)
+    return _declare(ACTION, name, None, pure)
 
 
 @overload
@@ -105,13 +109,16 @@ def arithmetic_function(
 
 
 def _declare(
-    kind: str, name: str | Function | None, arity: int | tuple[int, int | None] | None
+    kind: str,
+    name: str | Function | None,
+    arity: int | tuple[int, int | None] | None,
+    pure: bool = False,
 ) -> Function | Callable[[Function], Function]:
     if callable(name):
         return _mark(name, Declared(kind, name, None, arity))
     if name is not None and (not isinstance(name, str) or "." not in name[1:] or name.startswith(".")):
         raise ValueError(f"the name of an {kind} must begin with the module, as in 'my.norm', not {name!r}")
-    return lambda function: _mark(function, Declared(kind, function, name, arity))
+    return lambda function: _mark(function, Declared(kind, function, name, arity, pure))
 
 
 def _mark(function: Function, declared: Declared) -> Function:
@@ -183,7 +190,7 @@ class Additions:
         self._places[name] = place
         try:
             if declared.kind == ACTION:
-                self.actions[name] = action_of(name, declared.function)
+                self.actions[name] = action_of(name, declared.function, declared.pure)
             else:
                 self.functions[name], self.arities[name] = function_of(
                     name, declared.function, declared.arity

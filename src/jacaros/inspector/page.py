@@ -29,12 +29,22 @@ _PLACES = re.compile(
 
 
 def write_replay(recording: Recording, path: str | Path, title: str | None = None) -> None:
-    """Write the page; *title* is the name of the project or the world by default.
+    """Write the page; *title* is the name of the project or the world by default. A page is written whole or not at all.
 
     Raises:
         OSError: the file cannot be written.
     """
-    Path(path).write_text(replay_html(recording, title), encoding="utf-8", newline="\n")
+    path = Path(path)
+    if path.exists() and not path.is_file():  # a device or pipe
+        path.write_text(replay_html(recording, title), encoding="utf-8", newline="\n")
+        return
+    part = path.with_name(f"{path.name}.part")
+    try:
+        part.write_text(replay_html(recording, title), encoding="utf-8", newline="\n")
+        part.replace(path)
+    except OSError:
+        part.unlink(missing_ok=True)
+        raise
 
 
 def replay_html(recording: Recording, title: str | None = None) -> str:

@@ -10,12 +10,14 @@ from jacaros.excerpts import printable
 from jacaros.inspector.line_format import MAGIC, unpacked
 from jacaros.sim import GroundTruth, Sample
 from jacaros.sim.ground_truth import FIELDS, present_kind
-from jacaros.text_files import file_bytes, text_of
+from jacaros.text_files import LARGEST, file_bytes, text_of
 
 VERSION = 2
 """Version of the written format; older versions are read completely, and known records of newer ones."""
 LARGEST_RECORDING = 2**32
-"""Maximum size of a recording to read, in bytes before compression."""
+"""Maximum size of a recording to read, in bytes."""
+LARGEST_RATIO = 32
+"""A compressed recording contains at most this number of times its size, or `LARGEST` bytes: runs reach 8 to 15 times."""
 
 _COLUMNS = 6
 _LARGEST = 1e15
@@ -244,7 +246,13 @@ def _lines(path: Path, warnings: list[str]) -> list[str]:
             "  = help: `jacaros run FILE --record RUN.jsonl` makes one that jacaros reads"
         )
     if data.startswith(MAGIC):
-        data, broken = unpacked(data, LARGEST_RECORDING)
+        largest = max(LARGEST, LARGEST_RATIO * len(data))
+        data, broken = unpacked(data, largest + 1)
+        if len(data) > largest:
+            raise JacarosError(
+                f"error: compressed content is larger than {largest >> 20} MiB: {printable(str(path))}\n"
+                f"  = help: if you trust the file, unpack it first: gzip -dc {printable(str(path))} > run.jsonl"
+            )
         if broken:
             warnings.append(f"{path} is damaged: what can be read of it is shown")
     whole, end, cut_off = data.rpartition(b"\n")

@@ -21,6 +21,7 @@ from rich.text import Text
 from jacaros.inspector.braille import BrailleMap, character, draw_world
 from jacaros.inspector.people import PeopleSeen
 from jacaros.inspector.scene import UNKNOWN, RobotView
+from jacaros.inspector.terminal_console import TerminalConsole
 from jacaros.output import Output
 
 FRAME_PERIOD = 0.1
@@ -45,7 +46,7 @@ class Screen(io.TextIOBase):
 
     def __init__(self, stream: TextIO) -> None:
         self._stream = stream
-        self._output = Output(stream, "the terminal")
+        self._output = Output(stream, "the terminal", raw=True)
 
     @property
     def lagging(self) -> bool:
@@ -90,7 +91,7 @@ class TerminalView:
         self._drawing: Mapping[str, Any] = {}
         self._open: dict[str, bool] = {}
         self._people = PeopleSeen({})
-        self._console = console if console is not None else Console(file=cast(TextIO, self._screen))
+        self._console = console if console is not None else TerminalConsole(file=cast(TextIO, self._screen))
         self._wall = wall
         self._live: Live | None = None
         self._walls: BrailleMap | None = None

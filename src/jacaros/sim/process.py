@@ -44,7 +44,7 @@ class GroundTruthFile:
     ) -> None:
         self._world = world
         self._file = FileIO(path, "w")
-        self._output = Output(self._file, str(path), warn or _to_stderr, delay=_FLUSH)
+        self._output = Output(self._file, str(path), warn or _to_stderr, delay=_FLUSH, raw=True)
         truth = world.ground_truth
         self._write(header(truth.world, world.description.seed, epoch))
         for robot in truth.robots:

@@ -49,9 +49,9 @@ class Trail(list[Var]):
 
 def bind(variable: Var, value: Term, trail: Trail) -> None:
     """Bind an unbound variable."""
+    trail.append(variable)  # first: a search can be interrupted
     variable.ref = value
     variable.at = trail.serial
-    trail.append(variable)
 
 
 def undo(trail: Trail, mark: int) -> None:
@@ -70,14 +70,14 @@ def unify(left: Term, right: Term, trail: Trail) -> bool:  # noqa: C901 - the in
         if right.__class__ in ATOMIC:
             return kind is right.__class__ and bool(left == right)
         if right.__class__ is Var and right.ref is None:
+            trail.append(right)
             right.ref = left
             right.at = trail.serial
-            trail.append(right)
             return True
     elif kind is Var and left.ref is None and right.__class__ in ATOMIC:
+        trail.append(left)
         left.ref = right
         left.at = trail.serial
-        trail.append(left)
         return True
     turns = 0
     try:

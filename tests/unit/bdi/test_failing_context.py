@@ -118,7 +118,7 @@ def test_numbers_of_answers_are_computed_again() -> None:
 
 def test_actions_that_act_or_print_are_not_repeated() -> None:
     assert [
-        name for name, action in STANDARD.items() if action.repeatable and action.suspends | action.prints
+        name for name, action in STANDARD.items() if action.pure and action.suspends | action.prints
     ] == []
 
 
@@ -129,11 +129,15 @@ def test_output_of_a_context_is_printed_once() -> None:
 
 
 @pytest.mark.parametrize(
-    "conjunct", [".random(X)", ".add_plan({+!a})", "math.random < 2", ".queue.add(Q, 1)", "N::p(1)"]
+    "conjunct", [".random(X)", ".add_plan({+!a})", "math.random < 2", ".queue.add(Q, 1)"]
 )
 def test_calls_that_may_have_an_effect_are_not_repeated(conjunct: str) -> None:
     found = stop(f"p. !go.\n+!go : p & {conjunct} & ready.")
     assert found == f"not examined from `{conjunct}` on, which may have effects"
+
+
+def test_a_variable_for_a_namespace_is_examined() -> None:
+    assert stop("p(2). !go.\n+!go : p(2) & N::p(1) & ready.") == "stops at `N::p(1)`"
 
 
 def test_an_effect_inside_a_rule_is_not_repeated() -> None:

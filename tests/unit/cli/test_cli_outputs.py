@@ -1,6 +1,9 @@
 """Output files are checked before the run."""
 
+import errno
+import os
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -40,6 +43,13 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
             ["--record", "x.jsonl", "--ground-truth", "x.jsonl"],
             "error: `x.jsonl` cannot be both recording and ground truth\n  = help: name two files\n",
         ),
+        (
+            ["--record", "x.jsonl", "--ground-truth", "x.jsonl.1"],
+            (
+                "error: `x.jsonl.1` cannot be both older part of the recording and ground truth\n"
+                "  = help: name two files\n"
+            ),
+        ),
     ],
 )
 def test_an_unwritable_output_is_reported_before_the_run(
@@ -60,3 +70,36 @@ def test_a_report_of_tests_does_not_overwrite_a_program(
 ) -> None:
     assert call(["test", "agent.asl", "--junit", "agent.asl"]) == 2
     assert "error: `agent.asl` exists and is not a JUnit report" in capsys.readouterr().err
+
+
+def test_the_older_part_of_a_recording_overwrites_no_other_file(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "x.jsonl.1").write_text(PROGRAM, encoding="utf-8")
+    assert call(["run", "agent.asl", "--clock", "fast", "--record", "x.jsonl"]) == 2
+    assert capsys.readouterr().err.startswith("error: `x.jsonl.1` exists and is not a recording\n")
+    assert not (folder / "x.jsonl").exists()
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no named pipes")
+def test_a_named_pipe_is_not_an_output(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    os.mkfifo(folder / "pipe")
+    assert call(["run", "agent.asl", "--clock", "fast", "--record", "pipe"]) == 2
+    assert "error: `pipe` is a named pipe, and opening it waits for a reader" in capsys.readouterr().err
+
+
+def test_a_replay_page_that_cannot_be_written_is_an_error_without_a_cut_file(
+    folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write_text = Path.write_text
+
+    def full(path: Path, text: str, **options: Any) -> int:
+        if path.name.startswith("r.html"):
+            write_text(path, text[:100], **options)
+            raise OSError(errno.ENOSPC, "No space left on device")
+        return write_text(path, text, **options)
+
+    monkeypatch.setattr(Path, "write_text", full)
+    assert call(["run", "agent.asl", "--clock", "fast", "--replay", "r.html"]) == 1
+    assert "error: cannot write `r.html`: No space left on device" in capsys.readouterr().err
+    assert [each.name for each in folder.iterdir() if "html" in each.name] == []

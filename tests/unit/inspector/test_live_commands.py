@@ -1,6 +1,8 @@
 """Commands of pages over real sockets: effects, errors, and their records."""
 
-from collections.abc import Awaitable, Callable
+import asyncio
+import threading
+from collections.abc import Awaitable, Callable, Iterable
 from pathlib import Path
 
 import pytest
@@ -10,6 +12,10 @@ import jacaros
 from jacaros import Mas, Out
 from jacaros.env import Artifact, operation
 from jacaros.inspector import view
+from jacaros.inspector.live import run_view
+from jacaros.mas.history.explanation import Explanation
+from jacaros.mas.history.past import Record
+from jacaros.mas.history.why import explain
 
 WORLD = """
 name: lab
@@ -26,6 +32,7 @@ robots:
 PROGRAM = """
 ready. battery(12). battery(90).
 low :- battery(L) & L < 20.
+cleared :- low & .abolish(battery(_)).
 !wait.
 +!wait <- .wait(found(_)).
 +!go(X) <- +at(X).
@@ -184,6 +191,92 @@ def test_the_console_reports_errors_in_one_line(line: str, why: str) -> None:
         assert why in await refused(page, "console", agent="bob", text=line)
 
     commanding(test)
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "?.add_plan({+!y <- .print(y)})",
+        "?ready & .abolish(battery(_))",
+        "?F = .add_plan({+!y}) & F",
+        "?.random(X)",
+        "?not .create_agent(eve)",
+        "?cleared",
+    ],
+)
+def test_a_question_in_the_console_changes_nothing(line: str) -> None:
+    async def test(mas: Mas, page: LivePage) -> None:
+        bob = mas.agent("bob")
+        mind = bob.mind
+        before = bob.beliefs, len(mind.library.plans), mind.architecture.random.getstate()
+        assert "may have effects" in await refused(page, "console", agent="bob", text=line)
+        assert (bob.beliefs, len(mind.library.plans), mind.architecture.random.getstate()) == before
+        assert mas.system.agent_names() == ("bob",)
+
+    commanding(test)
+
+
+def test_functions_of_a_project_answer_questions_if_they_are_declared_pure(tmp_path: Path) -> None:
+    (tmp_path / "bob.asl").write_text("ready. both(X) :- my.twice(X, Y) & my.act(X, Z).")
+    (tmp_path / "my.py").write_text(
+        "from jacaros import internal_action\n"
+        '@internal_action("my.twice", pure=True)\ndef twice(x: int) -> int:\n    return 2 * x\n'
+        '@internal_action("my.act")\ndef act(x: int) -> int:\n    return x\n'
+    )
+
+    async def main() -> None:
+        async with (
+            Mas(tmp_path / "bob.asl", on_print=lambda *_: None) as mas,
+            view(mas) as address,
+            live_page(address) as page,
+        ):
+            assert await done(page, "console", agent="bob", text="?my.twice(4, X)") == "X = 8"
+            assert "`my.act` may have effects" in await refused(
+                page, "console", agent="bob", text="?my.act(4, X)"
+            )
+
+    jacaros.run(main())
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "?X0 = f(a, a) & " + " & ".join(f"X{i + 1} = f(X{i}, X{i})" for i in range(60)),
+        "?" + " & ".join(f"battery(X{i})" for i in range(60)) + " & nothing",
+        "?.range(X, 1, 1000000000) & X < 0",
+    ],
+)
+def test_an_endless_question_is_refused(line: str) -> None:
+    async def test(mas: Mas, page: LivePage) -> None:
+        why = await refused(page, "console", agent="bob", text=line)
+        assert "the question takes longer than 0.1 s" in why or "the search takes more than 10000" in why
+        await done(page, "goal", agent="bob", op="post", text="go(hall)")
+        await mas.agent("bob").until("at(hall)", 5)
+
+    commanding(test)
+
+
+def test_a_text_of_a_command_has_a_largest_length() -> None:
+    async def test(_: Mas, page: LivePage) -> None:
+        for command in (
+            {"do": "console", "text": "?ready"},
+            {"do": "goal", "op": "post", "text": "go(hall)"},
+        ):
+            name = command.pop("do")
+            await done(page, name, agent="bob", **{**command, "text": command["text"].ljust(2000)})
+            why = await refused(page, name, agent="bob", **{**command, "text": command["text"].ljust(2001)})
+            assert why == "`text` is longer than 2000 characters"
+        assert "longer than 2000" in await refused(page, "why", question="x" * 2001)
+
+    commanding(test)
+
+
+def test_every_command_is_recorded_whatever_its_fields() -> None:
+    async def test(_: Mas, page: LivePage) -> None:
+        await done(page, "obstacle", x=1, y=1, text="?")
+        await page.event("intervention", what="obstacle x=1 y=1 text=?")
+
+    commanding(test, WORLD)
 
 
 def test_the_console_limits_long_answers() -> None:
@@ -408,6 +501,28 @@ def test_a_changed_program_is_reloaded(tmp_path: Path) -> None:
             assert mas.agent("bob").believes("said(new)")
 
     jacaros.run(main())
+
+
+def test_the_run_continues_while_a_question_about_it_is_answered(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked, may_answer = threading.Event(), threading.Event()
+
+    def explained(records: Iterable[Record], question: str, at: float | None) -> Explanation:
+        asked.set()
+        assert may_answer.wait(20)
+        return explain(records, question, at)
+
+    monkeypatch.setattr(run_view, "explain", explained)
+
+    async def test(mas: Mas, page: LivePage) -> None:
+        answer = asyncio.create_task(done(page, "why", question="waiting"))
+        await asyncio.to_thread(asked.wait, 20)
+        await done(page, "goal", agent="bob", op="post", text="go(hall)")
+        await mas.agent("bob").until("at(hall)", 5)
+        assert not answer.done()
+        may_answer.set()
+        assert "intention" in str(await answer)
+
+    commanding(test)
 
 
 def test_a_question_is_answered() -> None:

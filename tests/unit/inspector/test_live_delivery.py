@@ -158,3 +158,22 @@ def test_a_very_long_text_is_cut() -> None:
     assert len(written) < LONGEST
     assert json.loads(written)["short"] == "y"
     assert json.loads(written)["text"].endswith("x …")
+
+
+def test_a_page_that_is_too_slow_again_receives_nothing_old_meanwhile(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    now = 100.0
+    monkeypatch.setattr(delivering, "real_time", lambda: now)
+    view, delivery = shown()
+    for index in range(QUEUED + 1):
+        view.text(1.0, "bob", str(index))
+    notes = [delivery.take(), delivery.take()]
+    assert names([json.loads(str(note)) for note in notes]) == ["missed", "hello"]
+    for index in range(QUEUED + 1):  # the records from the beginning still wait
+        view.text(2.0, "bob", str(index))
+    assert received(delivery) == []
+    now += delivering.AGAIN
+    again = received(delivery)
+    assert names(again)[:2] == ["missed", "hello"]
+    assert again[0]["records"] > QUEUED + 1

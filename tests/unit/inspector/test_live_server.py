@@ -17,7 +17,7 @@ from websockets.sync.client import connect as sync_connect
 import jacaros
 from jacaros import Mas, UsageError
 from jacaros.inspector import view
-from jacaros.inspector.live import server
+from jacaros.inspector.live import allowance, server
 from jacaros.inspector.live.access import Access
 
 TOKEN = "a-token-that-tests-know"
@@ -237,17 +237,55 @@ def test_a_huge_message_is_refused() -> None:
     serving(test)
 
 
-def test_idle_connections_do_not_block_others(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(server, "ADMITTED", 10_000)
+def test_idle_connections_do_not_keep_out_a_page(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(server, "ADMITTED", 20)
 
     async def test(mas: Mas, address: str) -> None:
         host, port = address.split("/")[2].split(":")
-        idle = [await asyncio.open_connection(host, int(port)) for _ in range(300)]
+        idle = [await asyncio.open_connection(host, int(port)) for _ in range(400)]
         await counts_on(mas)
+        for path in ("", "live.js", "page.css"):
+            status, _, _ = await get(address, path)
+            assert status == 200
         async with live_page(address) as page:
             assert page.hello["title"]
         for _, writer in idle:
             writer.transport.abort()
+
+    serving(test)
+
+
+def test_requests_without_the_token_do_not_keep_out_a_page(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(server, "ADMITTED", 20)
+
+    async def test(mas: Mas, address: str) -> None:
+        stranger = address.replace(TOKEN, "another-token-of-a-stranger")
+        with monkeypatch.context() as patch:
+            patch.setattr(server, "real_time", lambda: 0.0)  # all within one second
+            answers = [(await get(stranger))[0] for _ in range(20)]
+            assert answers == [404] * 20
+            with pytest.raises((ConnectionError, IndexError)):  # reset, or closed without an answer
+                await get(stranger)
+            assert (await get(address))[0] == 200
+        await counts_on(mas)
+
+    serving(test)
+
+
+def test_a_page_that_has_used_up_its_budget_waits_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(allowance, "SHARE", 1e-9)
+    monkeypatch.setattr(allowance, "AHEAD", 0.0)
+
+    async def test(mas: Mas, address: str) -> None:
+        async with live_page(address) as flood, live_page(address) as other:
+            question = {"agent": "bob", "text": "?counted(N)"}
+            assert (await flood.do("console", **question))["ok"]
+            waiting = [asyncio.create_task(flood.do("console", **question)) for _ in range(50)]
+            assert (await other.do("console", **question))["ok"]
+            await counts_on(mas, 20)
+            assert not any(each.done() for each in waiting)
+            for each in waiting:
+                each.cancel()
 
     serving(test)
 
@@ -359,3 +397,23 @@ def _read_until(wanted: str, address: str, connected: threading.Event) -> str:
         while wanted not in text:
             text += str(socket.recv(timeout=PATIENCE))
     return text
+
+
+def test_many_connections_do_not_end_a_page(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(server, "ADMITTED", 10_000)
+
+    async def test(mas: Mas, address: str) -> None:
+        host, port = address.split("/")[2].split(":")
+        async with live_page(address) as page:
+            begun = []
+            for _ in range(server.CONNECTIONS + 5):  # requests that never end
+                _, writer = await asyncio.open_connection(host, int(port))
+                writer.write(f"GET /{TOKEN}/ HTTP/1.1\r\n".encode())
+                begun.append(writer)
+            await counts_on(mas)
+            reply = await page.do("console", agent="bob", text="?counted(N)")
+            assert reply["ok"]
+            for writer in begun:
+                writer.transport.abort()
+
+    serving(test)

@@ -11,7 +11,8 @@ import pytest
 
 from jacaros.clock import VirtualClock, run
 from jacaros.errors import JacarosError
-from jacaros.inspector.line_format import CompressedLines, Lines
+from jacaros.inspector import recording as reading
+from jacaros.inspector.line_format import CompressedLines, Lines, unpacked
 from jacaros.inspector.recorder import Recorder
 from jacaros.inspector.recording import Recording
 from jacaros.inspector.scene import EmbeddedScene, RobotView
@@ -346,3 +347,72 @@ def test_a_text_that_looks_like_a_record_stays_in_its_record() -> None:
     ]
     lines = Lines().pack(records).decode("utf-8").splitlines()
     assert [json.loads(line) for line in lines] == records
+
+
+@pytest.mark.parametrize(("older", "read"), [(1, False), (2, True), (3, False)])
+def test_only_the_part_before_is_read_with_a_later_part(tmp_path: Path, older: int, read: bool) -> None:
+    for name, part in (("run.jsonl", 3), ("run.jsonl.1", older)):
+        (tmp_path / name).write_text(
+            f'{{"kind": "world", "version": 2, "world": {{}}, "part": {part}}}\n'
+            f'{{"kind": "text", "t": 1, "agent": "ann", "text": "{name}"}}\n',
+            encoding="utf-8",
+        )
+    texts = [text for _, _, text in Recording.read(tmp_path / "run.jsonl").texts]
+    assert texts == (["run.jsonl.1", "run.jsonl"] if read else ["run.jsonl"])
+
+
+def test_a_robot_that_starts_after_a_rest_has_its_frames_in_order(tmp_path: Path) -> None:
+    recorder = Recorder()
+    for t, x in ((0.0, 1.0), (4.0, 1.0), (5.0, 1.5), (6.0, 2.0)):
+        recorder.frame(t, at(x))
+    recorder.close()
+    assert [frame.t for frame in recorder.recording.frames] == [0.0, 4.0, 5.0, 6.0]
+
+
+def test_damage_in_front_of_whole_members_is_reported(tmp_path: Path) -> None:
+    form = CompressedLines()
+    members = []
+    for number in range(3):
+        members.append(
+            bytearray(
+                form.pack(
+                    [{"kind": "world", "world": {}}, {"kind": "text", "t": number, "agent": "a", "text": "x"}]
+                )
+                + form.end()
+            )
+        )
+    members[0][15:] = b"\xff" * (len(members[0]) - 15)
+    content, broken = unpacked(b"".join(members), 2**20)
+    assert broken
+    assert content.count(b'"text": "x"') == 2
+
+
+def test_a_compressed_recording_that_contains_too_much_is_an_error(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(reading, "LARGEST", 100_000)
+    record(tmp_path / "run.jsonl")
+    line = b'{"kind": "text", "t": 1, "agent": "ann", "text": "' + b"a" * 1000 + b'"}\n'
+    whole = (tmp_path / "run.jsonl").read_bytes()
+    packed = tmp_path / "run.jsonl.gz"
+    packed.write_bytes(gzip.compress(whole + line * 50))
+    assert len(Recording.read(packed).texts) == 51
+    packed.write_bytes(gzip.compress(whole + line * 2000))
+    with pytest.raises(JacarosError, match=r"compressed content is larger than .*\n.*gzip -dc"):
+        Recording.read(packed)
+    (tmp_path / "run.jsonl").write_bytes(whole + line * 2000)  # unpacked by the user
+    assert len(Recording.read(tmp_path / "run.jsonl").texts) == 2001
+
+
+def test_a_large_compressed_recording_of_a_run_is_read(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(reading, "LARGEST", 1000)
+    path, generator = tmp_path / "run.jsonl.gz", Random(1)
+    recorder = Recorder(path)
+    recorder.world({"name": "nowhere"})
+    for number in range(3000):
+        recorder.frame(number / 10, at(generator.random() * 5, generator.random() * 100))
+        recorder.event(number / 10, "belief", {"agent": "ann", "op": "+", "belief": f"seen({number})"})
+    recorder.close()
+    assert len(Recording.read(path).frames) == 3000

@@ -200,13 +200,13 @@ def broadcast(ctx: Context, performative: Term, content: Term) -> None:
             _say(ctx.agent, name, act, content)
 
 
-@internal_action(".my_name", arity=1, repeatable=True)
+@internal_action(".my_name", arity=1, pure=True)
 def my_name(ctx: Context, name: Term) -> bool:
     """``.my_name(N)``: *N* is the agent's name, an atom."""
     return ctx.unify(name, atom(ctx.agent.name))
 
 
-@internal_action(".all_names", arity=1)
+@internal_action(".all_names", arity=1, pure=True)
 def all_names(ctx: Context, names: Term) -> bool:
     """``.all_names(L)``: *L* is the list of the names of all agents, as atoms, in order of creation."""
     return ctx.unify(names, make_list([atom(name) for name in ctx.architecture.agent_names()]))
@@ -284,7 +284,7 @@ def stop_mas(ctx: Context, delay: Term = 0.0, code: Term = 0.0) -> None:
     ctx.architecture.stop_system(max(milliseconds, 0.0) / 1000, exit_code)
 
 
-@internal_action(".version", arity=1)
+@internal_action(".version", arity=1, pure=True)
 def version(ctx: Context, result: Term) -> bool:
     """``.version(V)``: *V* is the version of JaCaROS, a string."""
     return ctx.unify(result, String(VERSION))
@@ -302,7 +302,7 @@ def deregister_service(ctx: Context, service: Term, _kind: Term = None) -> None:
     ctx.architecture.deregister_service(characters(service))
 
 
-@internal_action(".df_search", arity=(2, 3))
+@internal_action(".df_search", arity=(2, 3), pure=True)
 def find_providers(ctx: Context, service: Term, *rest: Term) -> bool:
     """``.df_search(Service[, Type], L)``: *L* is the list of the agents that provide a service, as atoms."""
     found = ctx.architecture.providers(characters(service))

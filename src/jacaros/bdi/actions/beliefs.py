@@ -49,7 +49,7 @@ def assertz(ctx: Context, term: Term) -> None:
     _assert(ctx, term, last=True)
 
 
-@internal_action(".belief", arity=1, backtracks=True)
+@internal_action(".belief", arity=1, backtracks=True, pure=True)
 def belief(ctx: Context, pattern: Term) -> Iterator[None]:
     """``.belief(P)``: *P* is a matching belief; rules are not considered."""
     wanted = functor_of(pattern)
@@ -93,7 +93,7 @@ def relevant_rules(ctx: Context, pattern: Term, target: Term) -> bool:
     return ctx.unify(target, make_list(found))
 
 
-@internal_action(".eval", arity=2)
+@internal_action(".eval", arity=2, pure=True)
 def evaluate(ctx: Context, target: Term, formula: Term) -> bool:
     """``.eval(X, F)``: X is ``true`` if the formula F holds, otherwise ``false``."""
     mark = len(ctx.trail)
@@ -102,25 +102,25 @@ def evaluate(ctx: Context, target: Term, formula: Term) -> bool:
     return ctx.unify(target, TRUE if holds else FALSE)
 
 
-@internal_action(".findall", arity=3, condition=1, collects=True, repeatable=True)
+@internal_action(".findall", arity=3, condition=1, collects=True, pure=True)
 def findall(found: list[Term]) -> Term:
     """``.findall(T, F, L)``: L is the list of T for all answers of F, in order, with duplicates."""
     return make_list(found)
 
 
-@internal_action(".setof", arity=3, condition=1, collects=True, repeatable=True)
+@internal_action(".setof", arity=3, condition=1, collects=True, pure=True)
 def setof(found: list[Term]) -> Term:
     """``.setof(T, F, L)``: like `.findall`, sorted and without duplicates."""
     return make_list(annotation_set(tuple(found)))
 
 
-@internal_action(".count", arity=2, condition=0, collects=True, repeatable=True)
+@internal_action(".count", arity=2, condition=0, collects=True, pure=True)
 def count(found: list[Term]) -> Term:
     """``.count(F, N)``: N is the number of answers of F."""
     return float(len(found))
 
 
-@internal_action(".max", arity=(2, 3), repeatable=True)
+@internal_action(".max", arity=(2, 3), pure=True)
 def greatest(ctx: Context, *arguments: Term) -> bool:
     """``.max(L, X)``: *X* is the greatest element of a list in the standard order. Fails for an empty list.
 
@@ -129,7 +129,7 @@ def greatest(ctx: Context, *arguments: Term) -> bool:
     return _extreme(ctx, arguments, 1, ".max")
 
 
-@internal_action(".min", arity=(2, 3), repeatable=True)
+@internal_action(".min", arity=(2, 3), pure=True)
 def least(ctx: Context, *arguments: Term) -> bool:
     """``.min(L, X)``: *X* is the smallest element of a list in the standard order. Fails for an empty list.
 
@@ -173,7 +173,7 @@ def perceive(ctx: Context) -> None:
     del ctx
 
 
-@internal_action(".namespace", arity=1, backtracks=True)
+@internal_action(".namespace", arity=1, backtracks=True, pure=True)
 def namespace(ctx: Context, target: Term) -> Iterator[None]:
     """``.namespace(N)``: *N* is a namespace in use; one answer for each."""
     names: dict[str, None] = {"default": None}

@@ -83,7 +83,7 @@ def remove_from_set(ctx: Context, collection: Term, item: Term) -> None:
     _set(ctx, collection).items.pop(as_key(item), None)
 
 
-@internal_action(".set.to_list", arity=2, repeatable=True)
+@internal_action(".set.to_list", arity=2, pure=True)
 def list_of_set(ctx: Context, collection: Term, result: Term) -> bool:
     """``.set.to_list(S, L)``: *L* is the sorted list of the elements."""
     return ctx.unify(result, _set(ctx, collection).as_list())
@@ -113,7 +113,7 @@ def put(ctx: Context, collection: Term, key: Term, value: Term) -> None:
     _map(ctx, collection).items[as_key(key)] = value
 
 
-@internal_action(".map.get", arity=(3, 4), repeatable=True)
+@internal_action(".map.get", arity=(3, 4), pure=True)
 def get(ctx: Context, collection: Term, key: Term, value: Term, *default: Term) -> bool:
     """``.map.get(M, K, V[, Default])``: *V* is the value of *K*, or the default. Fails without either."""
     found = _map(ctx, collection).items.get(as_key(key), *default)
@@ -127,13 +127,13 @@ def remove_from_map(ctx: Context, collection: Term, key: Term, value: Term = Non
     return removed is not None and (value is None or ctx.unify(value, removed))
 
 
-@internal_action(".map.key", arity=2, backtracks=True, repeatable=True)
+@internal_action(".map.key", arity=2, backtracks=True, pure=True)
 def key_of_map(ctx: Context, collection: Term, key: Term) -> Iterator[None]:
     """``.map.key(M, K)``: *K* is a key; one answer for each that unifies, in the standard order."""
     return _each(ctx, key, list(_map(ctx, collection)))
 
 
-@internal_action(".map.value", arity=2, backtracks=True, repeatable=True)
+@internal_action(".map.value", arity=2, backtracks=True, pure=True)
 def value_of_map(ctx: Context, collection: Term, value: Term) -> Iterator[None]:
     """``.map.value(M, V)``: *V* is a value; one answer for each that unifies, in the order of the keys."""
     source = _map(ctx, collection)
@@ -176,7 +176,7 @@ def add_all_to_queue(ctx: Context, collection: Term, items: Term) -> None:
         target.add(item)
 
 
-@internal_action(".queue.head", arity=2, repeatable=True)
+@internal_action(".queue.head", arity=2, pure=True)
 def head(ctx: Context, collection: Term, item: Term) -> bool:
     """``.queue.head(Q, X)``: *X* is the next element, which stays in the queue. Fails for an empty queue."""
     found = _queue(ctx, collection).head()
@@ -190,7 +190,7 @@ def remove_from_queue(ctx: Context, collection: Term, item: Term) -> bool:
     return found is not None and ctx.unify(item, found)
 
 
-@internal_action(".queue.to_list", arity=2, repeatable=True)
+@internal_action(".queue.to_list", arity=2, pure=True)
 def list_of_queue(ctx: Context, collection: Term, result: Term) -> bool:
     """``.queue.to_list(Q, L)``: *L* is the list of the elements, the next one first."""
     return ctx.unify(result, _queue(ctx, collection).as_list())

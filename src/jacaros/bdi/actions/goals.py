@@ -66,7 +66,7 @@ def _matches_goal(ctx: Context, goal: Term, literal: Term, identity: Term, numbe
     return number is not None and ctx.unify_all((goal, literal), (identity, float(number)))
 
 
-@internal_action(".desire", arity=(1, 2), backtracks=True, repeatable=True)
+@internal_action(".desire", arity=(1, 2), backtracks=True, pure=True)
 def desire(ctx: Context, goal: Term, identity: Term = None) -> Iterator[None]:
     """``.desire(G [,Id])``: *G* is a goal of the agent, begun or not."""
     for literal, number in list(goals.desires(ctx.agent)):
@@ -74,7 +74,7 @@ def desire(ctx: Context, goal: Term, identity: Term = None) -> Iterator[None]:
             yield
 
 
-@internal_action(".intend", arity=(1, 2), backtracks=True, repeatable=True)
+@internal_action(".intend", arity=(1, 2), backtracks=True, pure=True)
 def intend(ctx: Context, goal: Term, identity: Term = None) -> Iterator[None]:
     """``.intend(G [,Id])``: *G* is a goal on the stack of an intention that is not suspended."""
     for literal, number in list(goals.intended(ctx.agent)):
@@ -82,7 +82,7 @@ def intend(ctx: Context, goal: Term, identity: Term = None) -> Iterator[None]:
             yield
 
 
-@internal_action(".intention", arity=(2, 4), backtracks=True)
+@internal_action(".intention", arity=(2, 4), backtracks=True, pure=True)
 def intention(
     ctx: Context, number: Term, state: Term, stack: Term = None, which: Term = None
 ) -> Iterator[None]:
@@ -266,7 +266,7 @@ def resume(ctx: Context, goal: Term) -> None:
     _on_goal(ctx, goal, lambda wanted: goals.resume_goal(ctx.agent, wanted))
 
 
-@internal_action(".suspended", arity=2, backtracks=True)
+@internal_action(".suspended", arity=2, backtracks=True, pure=True)
 def suspended(ctx: Context, goal: Term, reason: Term) -> Iterator[None]:
     """``.suspended(G, R)``: an intention with the goal is suspended or waiting, and *R* is the reason (``act`` for an
     action).

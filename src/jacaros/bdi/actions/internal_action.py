@@ -72,7 +72,7 @@ class InternalAction(Declaration):
         collects: the function is called with a list instead: the values of the template in all answers of the `condition`.
             It returns the value of the last argument. The template is the argument before the condition, if there is one.
         by_name: it accesses variables by name, so all variables of the plan are kept for it.
-        repeatable: it has no effects and uses no random numbers, so it may be called again to explain a failure.
+        pure: it has no effects and uses no random numbers, so that questions and explanations of failures may call it.
         restricted: minimum number of arguments with which a restricted run refuses it; None for never.
     """
 
@@ -83,7 +83,7 @@ class InternalAction(Declaration):
     values: Callable[..., Iterable[Term]] | None = None
     collects: bool = False
     by_name: bool = False
-    repeatable: bool = False
+    pure: bool = False
     restricted: int | None = None
 
     def __call__(self, function: Declared) -> Declared:

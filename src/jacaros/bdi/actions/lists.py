@@ -34,7 +34,7 @@ from jacaros.terms.values import (
 )
 
 
-@internal_action(".length", arity=2, repeatable=True)
+@internal_action(".length", arity=2, pure=True)
 def length(ctx: Context, collection: Term, result: Term) -> bool:
     """``.length(C, N)``: *N* is the number of elements of a list, set, map or queue, or of characters.
 
@@ -44,7 +44,7 @@ def length(ctx: Context, collection: Term, result: Term) -> bool:
     return size is not None and ctx.unify(result, float(size))
 
 
-@internal_action(".empty", arity=1, repeatable=True)
+@internal_action(".empty", arity=1, pure=True)
 def empty(_ctx: Context, collection: Term) -> bool:
     """``.empty(C)``: the list, string, set, map or queue has no elements.  Fails for any other term."""
     return collection is NIL or _size(collection) == 0
@@ -56,7 +56,7 @@ def _size(collection: Term) -> int | None:
     return list_length(collection) if is_list(collection) else None
 
 
-@internal_action(".member", arity=2, backtracks=True, repeatable=True)
+@internal_action(".member", arity=2, backtracks=True, pure=True)
 def member(ctx: Context, item: Term, collection: Term) -> Iterator[None]:
     """``.member(X, C)``: *X* is an element of a list, set or queue; one answer for each element that unifies.
 
@@ -87,7 +87,7 @@ def _holds(collection: SetValue | QueueValue, item: Term) -> bool:
     return any(equal(item, other) for other in collection)
 
 
-@internal_action(".nth", arity=3, backtracks=True, repeatable=True)
+@internal_action(".nth", arity=3, backtracks=True, pure=True)
 def nth(ctx: Context, index: Term, collection: Term, item: Term) -> Iterator[None]:
     """``.nth(I, L, X)``: the element at position *I* (from 0) of a list, or character of a string, is *X*.
 
@@ -116,7 +116,7 @@ def nth(ctx: Context, index: Term, collection: Term, item: Term) -> Iterator[Non
         yield
 
 
-@internal_action(".concat", arity=(2, None), repeatable=True)
+@internal_action(".concat", arity=(2, None), pure=True)
 def concat(ctx: Context, *arguments: Term) -> bool:
     """``.concat(A, ..., R)``: *R* is the concatenation of the other arguments, lists or strings.
 
@@ -156,7 +156,7 @@ def _unquoted(term: Term) -> str:
     return characters(term)
 
 
-@internal_action(".delete", arity=(3, 4), repeatable=True)
+@internal_action(".delete", arity=(3, 4), pure=True)
 def delete(ctx: Context, what: Term, *arguments: Term) -> bool:
     """``.delete(What, C, R)``: *R* is the list or string *C* with some elements removed.
 
@@ -223,7 +223,7 @@ def _delete_range(ctx: Context, start: int, end: int, collection: Term, result: 
     return ctx.unify(result, make_list(items))
 
 
-@internal_action(".reverse", arity=2, repeatable=True)
+@internal_action(".reverse", arity=2, pure=True)
 def reverse(ctx: Context, collection: Term, result: Term) -> bool:
     """``.reverse(C, R)``: *R* is the list or string *C* in reverse order; an open tail of a list stays at the end.
 
@@ -241,7 +241,7 @@ def reverse(ctx: Context, collection: Term, result: Term) -> bool:
     return ctx.unify(String(characters(collection)[::-1]), result)
 
 
-@internal_action(".sort", arity=2, repeatable=True)
+@internal_action(".sort", arity=2, pure=True)
 def sort(ctx: Context, collection: Term, result: Term) -> bool:
     """``.sort(L, R)``: *R* is the list *L* in the standard order of terms, with its duplicates."""
     items = sorted_terms(elements(collection, "the first argument of .sort"))
@@ -272,7 +272,7 @@ def _numbers(first: Term, last: Term, step: Term = 1.0) -> Iterator[float]:
     return map(float, range(start, end + (1 if by > 0 else -1), by))
 
 
-@internal_action(".range", arity=(3, 4), backtracks=True, values=_numbers, repeatable=True)
+@internal_action(".range", arity=(3, 4), backtracks=True, values=_numbers, pure=True)
 def range_(ctx: Context, value: Term, first: Term, last: Term, step: Term = 1.0) -> Iterator[None]:
     """``.range(X, First, Last[, Step])``: *X* is each number from *First* to *Last* inclusive, in turn.
 
@@ -288,21 +288,21 @@ def range_(ctx: Context, value: Term, first: Term, last: Term, step: Term = 1.0)
             yield
 
 
-@internal_action(".union", arity=3, repeatable=True)
+@internal_action(".union", arity=3, pure=True)
 def union(ctx: Context, left: Term, right: Term, result: Term) -> bool:
     """``.union(A, B, R)``: *R* is the sorted list of elements of the list *A* or *B*, without duplicates."""
     first, second = _two_lists(left, right, result, ".union")
     return ctx.unify(result, make_list(sorted_set([*second, *first])))
 
 
-@internal_action(".intersection", arity=3, repeatable=True)
+@internal_action(".intersection", arity=3, pure=True)
 def intersection(ctx: Context, left: Term, right: Term, result: Term) -> bool:
     """``.intersection(A, B, R)``: *R* is the sorted list of elements of both lists, without duplicates."""
     first, second = _two_lists(left, right, result, ".intersection")
     return ctx.unify(result, make_list(_parted(second, first)[0]))
 
 
-@internal_action(".difference", arity=3, repeatable=True)
+@internal_action(".difference", arity=3, pure=True)
 def difference(ctx: Context, left: Term, right: Term, result: Term) -> bool:
     """``.difference(A, B, R)``: *R* is the sorted list of elements of the list *A* that are not in *B*, without
     duplicates.
@@ -337,7 +337,7 @@ def _parted(items: list[Term], others: list[Term]) -> tuple[list[Term], list[Ter
 Bounds = tuple[int, int]
 
 
-@internal_action(".sublist", arity=2, backtracks=True, repeatable=True)
+@internal_action(".sublist", arity=2, backtracks=True, pure=True)
 def sublist(ctx: Context, part: Term, whole: Term) -> Iterator[None]:
     """``.sublist(S, L)``: *S* is a contiguous part of the list *L*; one answer for each part that unifies.
 
@@ -349,14 +349,14 @@ def sublist(ctx: Context, part: Term, whole: Term) -> Iterator[None]:
     return _parts(ctx, part, items, bounds)
 
 
-@internal_action(".prefix", arity=2, backtracks=True, repeatable=True)
+@internal_action(".prefix", arity=2, backtracks=True, pure=True)
 def prefix(ctx: Context, part: Term, whole: Term) -> Iterator[None]:
     """``.prefix(P, L)``: the list (or string) *L* begins with *P*; longer answers come first."""
     items = _whole_of(part, whole, ".prefix", strings=True)
     return _parts(ctx, part, items, ((0, end) for end in range(len(items), 0, -1)))
 
 
-@internal_action(".suffix", arity=2, backtracks=True, repeatable=True)
+@internal_action(".suffix", arity=2, backtracks=True, pure=True)
 def suffix(ctx: Context, part: Term, whole: Term) -> Iterator[None]:
     """``.suffix(S, L)``: the list (or string) *L* ends with *S*; longer answers come first."""
     items = _whole_of(part, whole, ".suffix", strings=True)

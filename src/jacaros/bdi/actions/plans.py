@@ -67,7 +67,7 @@ def remove_plan(ctx: Context, wanted: Term, source: Term = None) -> None:
         ctx.agent.remove_plan(item, _source(source))
 
 
-@internal_action(".plan_label", arity=2, backtracks=True)
+@internal_action(".plan_label", arity=2, backtracks=True, pure=True)
 def plan_label(ctx: Context, target: Term, label: Term) -> Iterator[None]:
     """``.plan_label(P, L)``: *P* is a plan and *L* its label; one answer for each plan."""
     for plan in list(ctx.agent.library.plans):
@@ -84,7 +84,7 @@ def _relevant(ctx: Context, event: Term) -> list[Plan]:
     return plans
 
 
-@internal_action(".relevant_plans", arity=(2, 3))
+@internal_action(".relevant_plans", arity=(2, 3), pure=True)
 def relevant_plans(ctx: Context, event: Term, target: Term, labels: Term = None) -> bool:
     """``.relevant_plans({T}, Ps [,Labels])``: *Ps* is the list of the plans whose triggers unify with an event, in
     order.
@@ -95,7 +95,7 @@ def relevant_plans(ctx: Context, event: Term, target: Term, labels: Term = None)
     return labels is None or ctx.unify(labels, make_list([ctx.agent.library.label(p) for p in plans]))
 
 
-@internal_action(".relevant_plan", arity=2, backtracks=True)
+@internal_action(".relevant_plan", arity=2, backtracks=True, pure=True)
 def relevant_plan(ctx: Context, event: Term, target: Term) -> Iterator[None]:
     """``.relevant_plan({T}, P)``: *P* is a plan for an event; one answer for each."""
     for plan in _relevant(ctx, event):

@@ -36,7 +36,7 @@ _DIFFERENT = re.compile(
 _REFERENCE = re.compile(r"\\(.)|\$\{(\w+)\}|\$(\d+)|(\$|\\$)", re.DOTALL)
 
 
-@internal_action(".substring", arity=(2, 4), backtracks=True, repeatable=True)
+@internal_action(".substring", arity=(2, 4), backtracks=True, pure=True)
 def substring(
     ctx: Context, part: Term, whole_term: Term, start: Term = None, end: Term = None
 ) -> Iterator[None]:
@@ -84,7 +84,7 @@ def _cut(source: str, start: Term, end: Term) -> String:
     return String(source[first:last])
 
 
-@internal_action(".replace", arity=4, repeatable=True)
+@internal_action(".replace", arity=4, pure=True)
 def replace(ctx: Context, source: Term, pattern: Term, by: Term, result: Term) -> bool:
     """``.replace(S, Regex, By, R)``: *R* is *S* with every match of a regular expression (of Java) replaced.
 
@@ -102,19 +102,19 @@ def replace(ctx: Context, source: Term, pattern: Term, by: Term, result: Term) -
     return ctx.unify(String(replaced), result)
 
 
-@internal_action(".upper_case", arity=2, repeatable=True)
+@internal_action(".upper_case", arity=2, pure=True)
 def upper_case(ctx: Context, source: Term, result: Term) -> bool:
     """``.upper_case(S, R)``: *R* is the string *S* in upper case; other terms are converted to text."""
     return ctx.unify(result, String(characters(source).upper()))
 
 
-@internal_action(".lower_case", arity=2, repeatable=True)
+@internal_action(".lower_case", arity=2, pure=True)
 def lower_case(ctx: Context, source: Term, result: Term) -> bool:
     """``.lower_case(S, R)``: *R* is the string *S* in lower case; other terms are converted to text."""
     return ctx.unify(result, String(characters(source).lower()))
 
 
-@internal_action(".term2string", arity=2, repeatable=True, by_name=True)
+@internal_action(".term2string", arity=2, pure=True, by_name=True)
 def term2string(ctx: Context, term: Term, written: Term) -> bool:
     """``.term2string(T, S)``: *S* is the text of the term *T*, strings in quotes.
 

@@ -35,14 +35,14 @@ from jacaros.terms.values import NIL as EMPTY
 CODE_LINE, CODE_SRC = functor("code_line", 1), functor("code_src", 1)
 
 
-@internal_action(".copy_term", arity=2)
-@internal_action(".rename_apart", arity=2)
+@internal_action(".copy_term", arity=2, pure=True)
+@internal_action(".rename_apart", arity=2, pure=True)
 def copy_term(ctx: Context, term: Term, copy: Term) -> bool:
     """``.copy_term(T, C)``, ``.rename_apart(T, C)``: *C* is *T* with new variables in place of the unbound ones."""
     return ctx.unify(copy, rename(term))
 
 
-@internal_action(".add_annot", arity=3)
+@internal_action(".add_annot", arity=3, pure=True)
 def add_annot(ctx: Context, term: Term, annotation: Term, result: Term) -> bool:
     """``.add_annot(L, A, R)``: *R* is the literal *L* with the annotation *A*.
 
@@ -51,7 +51,7 @@ def add_annot(ctx: Context, term: Term, annotation: Term, result: Term) -> bool:
     return ctx.unify(_in_lists(term, lambda literal: annotated(literal, (annotation,))), result)
 
 
-@internal_action(".add_nested_source", arity=3)
+@internal_action(".add_nested_source", arity=3, pure=True)
 def add_nested_source(ctx: Context, term: Term, source: Term, result: Term) -> bool:
     """``.add_nested_source(L, Ag, R)``: *R* is the literal *L* with the source *Ag*, its previous sources nested inside.
 
@@ -60,7 +60,7 @@ def add_nested_source(ctx: Context, term: Term, source: Term, result: Term) -> b
     return ctx.unify(_in_lists(term, lambda literal: told_by(literal, source)), result)
 
 
-@internal_action(".remove_source_annot", arity=2)
+@internal_action(".remove_source_annot", arity=2, pure=True)
 def remove_source_annot(ctx: Context, term: Term, result: Term) -> bool:
     """``.remove_source_annot(L, R)``: *R* is *L* without its sources.
 
@@ -121,50 +121,50 @@ def _only_operand(term: Term) -> Term:
     return step_parts(steps[0])[1][0] if len(steps) == 1 else term
 
 
-@internal_action(".string", arity=1, repeatable=True)
+@internal_action(".string", arity=1, pure=True)
 def is_string(_ctx: Context, term: Term) -> bool:
     """``.string(X)``: *X* is a string."""
     return term.__class__ is String
 
 
-@internal_action(".list", arity=1, repeatable=True)
+@internal_action(".list", arity=1, pure=True)
 def is_a_list(_ctx: Context, term: Term) -> bool:
     """``.list(X)``: *X* is a list, possibly empty."""
     return is_list(term)
 
 
-@internal_action(".number", arity=1, repeatable=True)
+@internal_action(".number", arity=1, pure=True)
 def is_number(_ctx: Context, term: Term) -> bool:
     """``.number(X)``: *X* is a number, or an expression with unbound variables."""
     return term.__class__ in NUMBERS or (term.__class__ is tuple and term[0].kind in (ARITHMETIC, FUNCTION))
 
 
-@internal_action(".atom", arity=1, repeatable=True)
+@internal_action(".atom", arity=1, pure=True)
 def is_atom(_ctx: Context, term: Term) -> bool:
     """``.atom(X)``: *X* is an atom, neither negated nor annotated."""
     return isinstance(term, Functor) and term.kind == PLAIN and not term.negated and term is not EMPTY
 
 
-@internal_action(".literal", arity=1, repeatable=True)
+@internal_action(".literal", arity=1, pure=True)
 def is_literal(_ctx: Context, term: Term) -> bool:
     """``.literal(X)``: *X* is an atom or structure, possibly negated or annotated, but not a list."""
     symbol = functor_of(term)
     return symbol is not None and symbol.kind not in (ARITHMETIC, FUNCTION)
 
 
-@internal_action(".structure", arity=1, repeatable=True)
+@internal_action(".structure", arity=1, pure=True)
 def is_structure(ctx: Context, term: Term) -> bool:
     """``.structure(X)``: *X* is a list, or a literal other than a plain atom (as Jason implements it)."""
     return is_list(term) or (is_literal(ctx, term) and not is_atom(ctx, term))
 
 
-@internal_action(".ground", arity=1, repeatable=True)
+@internal_action(".ground", arity=1, pure=True)
 def has_no_variables(_ctx: Context, term: Term) -> bool:
     """``.ground(X)``: *X* has no unbound variables."""
     return is_ground(term)
 
 
-@internal_action(".internal_action", arity=1)
+@internal_action(".internal_action", arity=1, pure=True)
 def is_internal_action(_ctx: Context, term: Term) -> bool:
     """``.internal_action(X)``: *X* is a call of an internal action, such as ``.print(a)``."""
     symbol = functor_of(term)
@@ -188,7 +188,7 @@ _TESTS: dict[str, Callable[[Context, Term], bool]] = {
 }
 
 
-@internal_action(".type", arity=2, backtracks=True, repeatable=True)
+@internal_action(".type", arity=2, backtracks=True, pure=True)
 def type_(ctx: Context, term: Term, kind: Term) -> Iterator[None]:
     """``.type(X, T)``: *T* is a type of *X*; with *T* unbound, each of its types in turn.
 

@@ -95,7 +95,7 @@ def signal(ctx: Context, event: Term, kind: Term = None) -> None:
     post_external(ctx.agent, found[0], found[1])
 
 
-@internal_action(".time", arity=(3, 4), repeatable=True)
+@internal_action(".time", arity=(3, 4), pure=True)
 def time(ctx: Context, hour: Term, minute: Term, second: Term, *millisecond: Term) -> bool:
     """``.time(H, M, S[, Ms])``: the time of day in UTC, as integers. Fails if the arguments are another time."""
     now = _now(ctx)
@@ -104,7 +104,7 @@ def time(ctx: Context, hour: Term, minute: Term, second: Term, *millisecond: Ter
     return ctx.unify(make_list(asked), make_list([float(part) for part in parts[: len(asked)]]))
 
 
-@internal_action(".date", arity=3, repeatable=True)
+@internal_action(".date", arity=3, pure=True)
 def date(ctx: Context, year: Term, month: Term, day: Term) -> bool:
     """``.date(Y, M, D)``: the date in UTC, month and day counted from 1. Fails if the arguments are another date."""
     now = _now(ctx)
@@ -113,7 +113,7 @@ def date(ctx: Context, year: Term, month: Term, day: Term) -> bool:
     )
 
 
-@internal_action(".nano_time", arity=1)
+@internal_action(".nano_time", arity=1, pure=True)
 def nano_time(ctx: Context, nanoseconds: Term) -> bool:
     """``.nano_time(T)``: *T* is the number of nanoseconds since the Unix epoch, with the precision of a double."""
     return ctx.unify(nanoseconds, float(round(ctx.architecture.now() * 1e9)))

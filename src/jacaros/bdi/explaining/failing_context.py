@@ -1,54 +1,39 @@
 """Where the context of a plan fails: its first failing conjunct, with the values of its variables.
 
 Compiled contexts only return whether they hold. When a goal is lost, the contexts of its plans are searched again,
-conjunct by conjunct, and the deepest failing conjunct is reported. This search changes nothing and is bounded: rules are
-interpreted, only internal actions and functions without effects are called, nothing is logged, and it ends after
-`MOST_STEPS` steps.
+conjunct by conjunct, and the deepest failing conjunct is reported. This search changes nothing (see
+`jacaros.bdi.rules.read_only`) and ends after `MOST_STEPS` steps.
 """
 
-from collections.abc import Callable, Generator, Iterator
+from collections.abc import Callable, Generator
 from contextlib import suppress
-from typing import Any, NamedTuple, NoReturn, cast
+from typing import NamedTuple
 
 from jacaros.asl import nodes
 from jacaros.asl.formatter import format_term
 from jacaros.asl.lowering import Names, lower
-from jacaros.asl.walk import names_in, operands, walk
-from jacaros.bdi.actions.internal_action import InternalAction
+from jacaros.asl.walk import names_in, operands
 from jacaros.bdi.explaining.missing_beliefs import missing_belief
 from jacaros.bdi.explaining.step_text import unbracketed
-from jacaros.bdi.rules.context import Context
-from jacaros.bdi.rules.functions import OF_AGENT
-from jacaros.bdi.rules.query import interpret_rule, solve_formula
-from jacaros.bdi.rules.searching import run
-from jacaros.bdi.state.belief_base import Table
-from jacaros.bdi.state.budget import SearchBudget, SearchLimit
+from jacaros.bdi.rules.read_only import Impure, ReadOnly, reading
+from jacaros.bdi.state.budget import SearchLimit
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.literals import EventAnnotations, literal_of
 from jacaros.bdi.state.plan import Plan
-from jacaros.bdi.state.rule import Answers, Rule
 from jacaros.bdi.state.triggers import Goal
-from jacaros.terms.arithmetic import RUNNING
-from jacaros.terms.functions import FUNCTIONS
 from jacaros.terms.iterative import CyclicTerm, excerpt
 from jacaros.terms.operators import ArithmeticFault
 from jacaros.terms.substitution import resolve
 from jacaros.terms.text import text
 from jacaros.terms.unifier import Trail, undo, unify
-from jacaros.terms.values import Functor, Term, Var, deref, functor_of
+from jacaros.terms.values import Term, Var, deref, functor_of
 
 MOST_STEPS = 1_000
 """Maximum number of steps of the search for one plan (about ten microseconds each): answers of conjuncts, rules and
 internal actions.
 """
-FACTS_PER_STEP = 16
-"""Number of beliefs compared with a question in one step."""
 LONGEST_CONJUNCT, LONGEST_VALUE = 100, 40
 """Maximum numbers of characters shown of a conjunct and of the value of a variable."""
-
-
-class NotRepeatable(Exception):
-    """Raised when a formula calls something that may have an effect."""
 
 
 class _Stop(NamedTuple):
@@ -102,52 +87,26 @@ class FailingContexts:
         context = plan.node.context
         if context is None:
             return ""
-        agent, trail = self._agent, Trail()
-        trail.serial = agent.trail.serial
-        view = _LookOnly(agent, SearchBudget(MOST_STEPS))
-        budget, running = agent.beliefs.budget, RUNNING.set(view)
-        agent.beliefs.budget = view.beliefs.budget
         try:
-            names = Names()
-            if not self._matches(plan, names.__getitem__, trail):
-                return ""
-            return _Search(view, context, names, trail).outcome()
+            with reading(self._agent, MOST_STEPS) as view:
+                names = Names()
+                if not self._matches(plan, names.__getitem__, view.trail):
+                    return ""
+                return _Search(self._agent, view, context, names).outcome()
         except Exception:
             # A message in a log must never make the run fail.
             return ""
-        finally:
-            undo(trail, 0)
-            agent.beliefs.budget = budget
-            RUNNING.reset(running)
 
     def _matches(self, plan: Plan, lookup: Callable[[str], Term], trail: Trail) -> bool:
         pattern = lower(plan.node.trigger.literal, lookup)
         return unify(pattern, literal_of(self._goal, self._annotations), trail)
 
 
-def holds(agent: Circumstance, condition: nodes.Node) -> bool:
-    """Return whether a condition holds now, by the same search; False if that cannot be determined."""
-    trail = Trail()
-    trail.serial = agent.trail.serial
-    view = _LookOnly(agent, SearchBudget(MOST_STEPS))
-    budget, running = agent.beliefs.budget, RUNNING.set(view)
-    agent.beliefs.budget = view.beliefs.budget
-    try:
-        view.refuse_effects(condition)
-        return any(True for _ in view.answers(lower(condition, Names().__getitem__), trail))
-    except Exception:
-        return False
-    finally:
-        undo(trail, 0)
-        agent.beliefs.budget = budget
-        RUNNING.reset(running)
-
-
 class _Search:
     """One search of a context, conjunct by conjunct, from the left."""
 
-    def __init__(self, agent: "_LookOnly", context: nodes.Node, names: Names, trail: Trail) -> None:
-        self._agent, self._names, self._trail = agent, names, trail
+    def __init__(self, agent: Circumstance, view: ReadOnly, context: nodes.Node, names: Names) -> None:
+        self._agent, self._view, self._names = agent, view, names
         self._conjuncts = operands(context) if isinstance(context, nodes.And) else [context]
         self._deepest: _Stop | None = None
 
@@ -168,7 +127,7 @@ class _Search:
                     answered[-1] = True
                     searches.append(self._answers(depth + 1))
                     answered.append(False)
-        except NotRepeatable:
+        except Impure:
             return f"not examined from `{self._text(len(searches) - 1)}` on, which may have effects"
         except SearchLimit:
             found = self._deepest
@@ -180,19 +139,19 @@ class _Search:
 
     def _answers(self, depth: int) -> Generator[bool, None, None]:
         """Yield the answers of one conjunct; an error inside ends them."""
-        conjunct, mark = self._conjuncts[depth], len(self._trail)
-        self._agent.refuse_effects(conjunct)
+        view = self._view
+        mark = len(view.trail)
         try:
-            formula = lower(conjunct, self._names.__getitem__)
-            for _ in self._agent.answers(formula, self._trail):
-                self._agent.beliefs.budget.spend()
+            formula = lower(self._conjuncts[depth], self._names.__getitem__)
+            for _ in view.answers(formula):
+                view.beliefs.budget.spend()
                 yield True
-        except (NotRepeatable, SearchLimit):
+        except (Impure, SearchLimit):
             raise
         except Exception:
             return
         finally:
-            undo(self._trail, mark)
+            undo(view.trail, mark)
 
     def _note(self, depth: int) -> None:
         """Record that a conjunct has no answer with the present values."""
@@ -206,10 +165,10 @@ class _Search:
 
     def _missing(self, conjunct: nodes.Node) -> str:
         """Describe which belief of a literal the agent lacks entirely, with a similar name."""
-        if not isinstance(conjunct, nodes.Literal):
+        if not isinstance(conjunct, nodes.Literal) or isinstance(conjunct.namespace, nodes.Variable):
             return ""
         symbol = functor_of(lower(conjunct, self._names.__getitem__))
-        return "" if symbol is None else self._agent.missing_belief(symbol)
+        return "" if symbol is None else missing_belief(self._agent.beliefs, symbol)
 
     def _text(self, depth: int) -> str:
         conjunct = self._conjuncts[depth]
@@ -238,145 +197,3 @@ def _value_text(value: Term) -> str:
 
 def _short(written: str, longest: int) -> str:
     return written if len(written) <= longest else f"{written[: longest - 3]}..."
-
-
-class _LookOnly:
-    """The view of an agent for a search that changes nothing, logs nothing and counts its steps."""
-
-    def __init__(self, agent: Circumstance, budget: SearchBudget) -> None:
-        self.beliefs = _Beliefs(self, agent, budget)
-        self.engine = _Actions(agent)
-        self.context = _Silent(agent, self)
-        self.architecture = agent.architecture
-        self.options = agent.options
-        self._agent = agent
-        self._repeatable: dict[int, nodes.Node] = {}
-
-    def answers(self, formula: Term, trail: Trail) -> Iterator[Any]:
-        """Return the answers of a formula."""
-        view = cast("Circumstance", self)
-        return run(solve_formula(view, formula, trail), self.options.rule_depth)
-
-    def refuse_effects(self, formula: nodes.Node) -> None:
-        """Check a formula for calls that may have an effect.
-
-        Raises:
-            NotRepeatable: it calls a function of the agent or the project, or a predicate whose namespace is a variable.
-        """
-        if id(formula) in self._repeatable:
-            return
-        for node in walk(formula):
-            if isinstance(node, nodes.FunctionCall):
-                own = OF_AGENT.get(node.name)
-                if node.name not in FUNCTIONS and not (own is not None and own.repeatable):
-                    raise NotRepeatable
-            elif isinstance(node, nodes.Literal) and isinstance(node.namespace, nodes.Variable):
-                raise NotRepeatable
-        self._repeatable[id(formula)] = formula
-
-    def call_own(self, term: Term) -> Term:
-        """Return the value of a function that needs the agent, as `jacaros.bdi.rules.functions.call_own`."""
-        own = OF_AGENT.get(term[0].name)
-        view = cast("Circumstance", self)
-        return self._agent.call_own(term) if own is None else own.evaluate(view, term)
-
-    def missing_belief(self, symbol: Functor) -> str:
-        """Describe that the agent has no belief of that name at all."""
-        return missing_belief(self._agent.beliefs, symbol)
-
-    def warn_of_operand(self, what: str, value: Term) -> None:
-        """Do nothing: the warning has been logged."""
-
-
-class _Silent(Context):
-    """A context for internal actions whose errors have already been reported."""
-
-    __slots__ = ("_view",)
-
-    def __init__(self, agent: Circumstance, view: _LookOnly) -> None:
-        super().__init__(agent)
-        self._view, self.trail = view, Trail()
-
-    def answers(self, formula: Term) -> Iterator[None]:
-        """Return the answers of a formula, in the same view of the agent."""
-        for _ in self._view.answers(formula, self.trail):
-            yield
-
-    def report(self, action: str, fault: object) -> None:
-        """Do nothing."""
-
-
-class _Actions:
-    """The internal actions that may be called again."""
-
-    def __init__(self, agent: Circumstance) -> None:
-        self._actions = agent.engine.actions
-        self.actions = self
-
-    def get(self, name: str) -> InternalAction | None:
-        """Return the action of a name.
-
-        Raises:
-            NotRepeatable: it may have an effect.
-        """
-        action = self._actions.get(name)
-        if action is not None and action.prints:
-            return InternalAction(name, lambda *_: True)  # it always succeeds; nothing is printed again
-        if action is not None and not action.repeatable:
-            raise NotRepeatable
-        return action
-
-
-class _Beliefs:
-    """The tables of a belief base; each entry that is read counts."""
-
-    def __init__(self, agent: _LookOnly, mind: Circumstance, budget: SearchBudget) -> None:
-        self._agent, self._beliefs, self.budget = agent, mind.beliefs, budget
-
-    def __getitem__(self, symbol: Functor) -> "_Table":
-        table = self._beliefs.get(symbol)
-        if table is None:
-            table = Table(symbol)
-        if type(table).candidates is not Table.candidates:
-            raise NotRepeatable  # a project's class looks up beliefs elsewhere
-        return _Table(self._agent, table, self.budget)
-
-    def items(self) -> NoReturn:
-        """Raise an exception: a variable as a question may stand for anything.
-
-        Raises:
-            NotRepeatable: always.
-        """
-        raise NotRepeatable
-
-
-class _Table:
-    def __init__(self, agent: _LookOnly, table: Table, budget: SearchBudget) -> None:
-        self._agent, self._table, self._budget = agent, table, budget
-
-    def still_holds(self, _entry: object) -> bool:
-        """True: nothing changes while a failure is explained."""
-        return True
-
-    def candidates(self, arguments: tuple[Term, ...]) -> Iterator[tuple[Any, tuple[Term, ...]]]:
-        for number, (entry, annotations) in enumerate(self._table.candidates(arguments)):
-            if isinstance(entry, Rule):
-                self._budget.spend()
-                yield _Interpreted(self._agent, entry), annotations
-            else:
-                if number % FACTS_PER_STEP == 0:
-                    self._budget.spend()
-                yield entry, annotations
-
-
-class _Interpreted:
-    """A rule whose body is searched as a term: compiled rules do not count their steps."""
-
-    def __init__(self, agent: _LookOnly, rule: Rule) -> None:
-        self._agent, self._rule = agent, rule.node
-
-    def search(self, _agent: object, arguments: tuple[Term, ...], trail: Trail) -> Answers:
-        """Return a generator of the answers, see `jacaros.bdi.rules.searching.run`."""
-        self._agent.refuse_effects(self._rule.body)
-        view = cast("Circumstance", self._agent)
-        return interpret_rule(view, self._rule, arguments, trail)

@@ -54,7 +54,7 @@ def call_own(agent: Circumstance, term: Term) -> Term:
     if evaluator is not None:
         return evaluator(*term[1:])
     function = agent.functions.own.get(name)
-    return None if function is None else _call_registered(agent, function, term)
+    return None if function is None else call_registered(agent, function, term)
 
 
 class FunctionOfAgent(NamedTuple):
@@ -62,11 +62,11 @@ class FunctionOfAgent(NamedTuple):
 
     Attributes:
         evaluate: gives the value of a call; None while it has none.
-        repeatable: it may be called once more to explain a failure.
+        pure: it may be called once more to explain a failure.
     """
 
     evaluate: Callable[[Circumstance, Term], Term]
-    repeatable: bool = True
+    pure: bool = True
 
 
 def _count(agent: Circumstance, term: Term) -> Term:
@@ -85,11 +85,11 @@ def _random(agent: Circumstance, term: Term) -> Term:
 OF_AGENT: Final = {
     ".count": FunctionOfAgent(_count),
     "system.time": FunctionOfAgent(_time),
-    "math.random": FunctionOfAgent(_random, repeatable=False),
+    "math.random": FunctionOfAgent(_random, pure=False),
 }
 
 
-def _call_registered(agent: Circumstance, function: RegisteredFunction, term: Term) -> Term:
+def call_registered(agent: Circumstance, function: RegisteredFunction, term: Term) -> Term:
     """Return the first answer of the rule or internal action, which must be a number; None while arguments are unknown."""
     if free_variables(term):
         return None

@@ -1,9 +1,11 @@
 """``jacaros ros list``: the contents of a graph as a table, as lines or as JSON."""
 
 import json
+import sys
 from collections.abc import Iterator
 from typing import Any
 
+from jacaros.output import beneath
 from jacaros.ros.graph import GraphContents, TopicInfo
 
 UNKNOWN = "(unknown)"
@@ -52,10 +54,11 @@ def as_lines(contents: GraphContents, rates: dict[str, float]) -> Iterator[str]:
 
 def show_tables(contents: GraphContents, rates: dict[str, float]) -> None:
     """Print tables on the terminal."""
-    from rich.console import Console
     from rich.table import Table
 
-    console = Console()
+    from jacaros.inspector.terminal_console import TerminalConsole
+
+    console = TerminalConsole(file=beneath(sys.stdout))
 
     def table(title: str, *columns: str) -> Table:
         made = Table(title=title, title_justify="left", title_style="bold", box=None, pad_edge=False)

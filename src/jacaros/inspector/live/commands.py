@@ -11,6 +11,9 @@ from jacaros.clock import of_run
 from jacaros.env.errors import OperationFailed
 from jacaros.errors import JacarosError
 
+LONGEST = 2_000
+"""Maximum number of characters of a text in a command: parsing it takes about 10 ms."""
+
 Given = Mapping[str, Any]
 Command = Callable[[Given], Awaitable[Any] | Any]
 """Takes the fields of a command and returns the result; raises `Refused`, `JacarosError` or `OperationFailed`."""
@@ -48,7 +51,7 @@ class Commands:
     def _noted(self, name: str, command: Command) -> Command:
         async def noted(given: Given) -> Any:
             result = await _result(command, given)
-            if not is_question(given):
+            if name != "console" or not is_question(given):
                 self._note(said(name, given))
             return result
 
@@ -120,11 +123,13 @@ def text_in(given: Given, name: str) -> str:
     """Return a field with a string.
 
     Raises:
-        Refused: it is missing, empty, or of another type.
+        Refused: it is missing, empty, too long, or of another type.
     """
     value = given.get(name)
     if not isinstance(value, str) or not value.strip():
         raise Refused(f"`{name}` must be a text")
+    if len(value) > LONGEST:
+        raise Refused(f"`{name}` is longer than {LONGEST} characters")
     return value.strip()
 
 

@@ -4,24 +4,29 @@ from collections.abc import Callable, Mapping, Sequence
 from itertools import islice
 
 from jacaros.asl.loader import parse_term
-from jacaros.asl.lowering import Names, lower_value
+from jacaros.asl.lowering import lower_value
 from jacaros.bdi.actions.internal_action import ActionError
 from jacaros.bdi.mind import Mind
+from jacaros.bdi.rules.read_only import Impure, ReadOnly, reading
+from jacaros.bdi.state.budget import SearchLimit
 from jacaros.bdi.state.plan import Failure
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.body.values import UNKEPT, to_term
-from jacaros.inspector.live.commands import Command, Given, Refused, choice_in, text_in
+from jacaros.inspector.live.commands import LONGEST, Command, Given, Refused, choice_in, text_in
+from jacaros.inspector.live.time_limit import within
 from jacaros.mas.open_mind import OpenMind, question
 from jacaros.mas.system import System
+from jacaros.terms.iterative import excerpt
 from jacaros.terms.substitution import resolve
 from jacaros.terms.text import text
-from jacaros.terms.unifier import undo
-from jacaros.terms.values import Var
+from jacaros.terms.values import Term, Var
 
 YOU = "you"
 """Sender of messages written on the page."""
 ANSWERS = 20
 """Number of answers shown for a query."""
+QUESTION_STEPS, QUESTION_TIME = 10_000, 0.1
+"""Limits of a query: steps (see `jacaros.bdi.rules.read_only.reading`), and seconds."""
 PERFORMATIVES = (
     "tell",
     "untell",
@@ -134,32 +139,35 @@ class _MindCommands:
 
 
 def _ask(mind: OpenMind, formula: str) -> str:
-    """Return the answers of a formula, one per line: ``X = 3, Y = kitchen``; ``yes`` or ``no`` without variables."""
+    """Return the answers of a formula, one per line: ``X = 3, Y = kitchen``; ``yes`` or ``no`` without variables.
+
+    A question changes nothing, whatever it calls; see `jacaros.bdi.rules.read_only`.
+    """
     agent = mind.mind
     if agent.running:
         raise Refused("the agent is in the middle of a step: ask again")
+    with reading(agent, QUESTION_STEPS, look_up=True) as view:
+        answers = within(QUESTION_TIME, lambda: _answers(view, formula))
+    if answers is None:
+        raise Refused(f"the question takes longer than {QUESTION_TIME} s; ask a simpler one")
+    return answers
+
+
+def _answers(view: ReadOnly, formula: str) -> str:
     term, names = question(formula)
-    shown = Names({name: value for name, value in names.items() if name[0] != "_"})
-    mark, lines = len(agent.trail), []
+    shown = {name: value for name, value in names.items() if name[0] != "_"}
     try:
-        for _ in islice(agent.context.answers(term), ANSWERS + 1):
-            found = ((name, resolve(value)) for name, value in shown.items())
-            lines.append(
-                ", ".join(f"{name} = {text(value)}" for name, value in found if value.__class__ is not Var)
-                or "yes"
-            )
-    except (ActionError, Failure) as error:
+        lines = [_values(shown) or "yes" for _ in islice(view.answers(term), ANSWERS + 1)]
+    except (Impure, SearchLimit, ActionError, Failure, RecursionError) as error:
         raise Refused(str(error)) from None
-    finally:
-        undo(agent.trail, mark)
     if not shown:
         lines = lines[:1]
     return "\n".join([*lines[:ANSWERS], *(["..."] if len(lines) > ANSWERS else [])]) or "no"
 
 
-def _values(names: Names) -> str:
+def _values(shown: Mapping[str, Term]) -> str:
     """Return the bound variables: ``X = 3, Y = kitchen``."""
-    found = ((name, resolve(value)) for name, value in names.items())
+    found = ((name, resolve(excerpt(value, LONGEST))) for name, value in shown.items())
     return ", ".join(f"{name} = {text(value)}" for name, value in found if value.__class__ is not Var)
 
 

@@ -2,10 +2,11 @@
 
 import asyncio
 import contextlib
-from collections.abc import Callable
+import time
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
-from jacaros.clock import outside_run
+from jacaros.clock import outside_run, start_thread
 from jacaros.inspector.live.access import LOOPBACK, Access
 from jacaros.inspector.live.artifact_commands import artifact_commands
 from jacaros.inspector.live.commands import Commands, Given, number_in, text_in
@@ -15,12 +16,16 @@ from jacaros.inspector.live.mind_commands import mind_commands
 from jacaros.inspector.live.server import LiveServer, bound_socket
 from jacaros.inspector.live.world_commands import world_commands
 from jacaros.inspector.watch import Watch
+from jacaros.mas.history.past import Record
+from jacaros.mas.history.why import explain
 from jacaros.mas.system import System
 from jacaros.sim import World
 
 FIRST_VISIT = 5.0
 """Seconds that the end of a run waits for an opened browser that has not shown the run yet."""
 
+REST = 4.0
+"""Seconds between two explanations per second that the first one took."""
 SIGNALS = 128
 """Exit codes from here on mean that a signal ended the run, which must then not wait."""
 
@@ -64,6 +69,8 @@ class RunView:
         access = Access(place.address, place.token)
         self._server = LiveServer(bound_socket(place.address, place.port), access, self.watcher)
         self.address = self._server.address
+        self._explaining = asyncio.Lock()
+        self._rested_at = 0.0
         self._serving: asyncio.Task[None] | None = None
         self._end_debug: Callable[[], None] = lambda: None
 
@@ -117,10 +124,23 @@ class RunView:
             else:
                 await self._server.close()
 
-    def _why(self, given: Given) -> str:
-        """Answer a question about the run so far, as lines."""
+    async def _why(self, given: Given) -> str:
+        """Answer a question about the run so far, as lines; in a thread, because many records take seconds."""
         at = number_in(given, "at") if given.get("at") is not None else None
-        return self._system.answer(text_in(given, "question"), at).text()
+        question = text_in(given, "question")
+        async with self._explaining:
+            records = self._system.keep_history().all()
+            return await start_thread(lambda: self._explain(records, question, at))
+
+    def _explain(self, records: Iterable[Record], question: str, at: float | None) -> str:
+        """Answer in a thread, which first rests: explanations take at most a fifth of the time, however many are wanted."""
+        time.sleep(max(0.0, self._rested_at - time.monotonic()))
+        begun = time.monotonic()
+        try:
+            return explain(records, question, at).text()
+        finally:
+            now = time.monotonic()
+            self._rested_at = now + REST * (now - begun)
 
     def _note(self, what: str) -> None:
         self._system.history().record("intervention", {"what": what})

@@ -8,6 +8,7 @@ import asyncio
 import json
 import logging
 import socket
+from collections import Counter
 from collections.abc import Awaitable, Callable, Mapping
 from contextlib import suppress
 from http import HTTPStatus
@@ -21,6 +22,7 @@ from websockets.http11 import Request, Response
 from jacaros.clock import real_time
 from jacaros.errors import UsageError
 from jacaros.inspector.live.access import LOOPBACK, Access
+from jacaros.inspector.live.allowance import Allowance, Allowances, metered
 from jacaros.inspector.live.beat import Beat
 from jacaros.inspector.live.delivery import Delivery
 from jacaros.inspector.live.pages import Pages, security_headers
@@ -30,10 +32,16 @@ LIVE = "live"
 """Path of the WebSocket below the token."""
 CONNECTIONS, PAGES = 64, 16
 """Maximum number of connections, and of pages among them."""
+IDLE = 4 * CONNECTIONS
+"""Maximum number of connections that have sent nothing yet: more than arrive before the first line of one is read."""
 ADMITTED = 200
 """Connections per second: enough for a page to load its modules, and few enough for the run to keep its turns."""
+_LONGEST_LINE = 4096
+"""Maximum number of bytes of the first line of a request."""
 LARGEST = 64 * 1024
 """Maximum size of a command, in bytes."""
+RECEIVED = 100e6
+"""Bytes of commands that the loop takes per second: that time counts for the budget of a page, too."""
 BURST = 20
 """Commands of one page between two beats."""
 PIECES = 6
@@ -98,12 +106,15 @@ class LiveServer:
         self._pages = pages or Pages()
         self._beat: Beat | None = None
         self._server: Server | None = None
+        self._idle: dict[_Connection, None] = {}
         self._connections: dict[ServerConnection, None] = {}
         self._deliveries: dict[ServerConnection, Delivery] = {}
+        self._allowances = Allowances()
         self.visitors = 0
         self._second = 0.0
         """Real time at which the counting of `_admitted` connections started."""
-        self._admitted = 0
+        self._admitted: Counter[bool] = Counter()
+        """Accepted connections of this second, with and without the token."""
 
     @property
     def address(self) -> str:
@@ -154,6 +165,8 @@ class LiveServer:
         server.close()
         while self._connections and real_time() < until:
             await beat.next()
+        for idle in tuple(self._idle):
+            idle.drop()
         for connection in tuple(self._connections):
             self._disconnect(connection)
         await server.wait_closed()
@@ -168,16 +181,29 @@ class LiveServer:
     def _connection(self, *arguments: Any, **options: Any) -> ServerConnection:
         return _Connection(self, *arguments, **options)
 
-    def admits(self) -> bool:
-        """Return whether another connection may be accepted now."""
+    def idle(self, connection: "_Connection") -> None:
+        """Register a connection that has sent nothing yet; if there are too many, drop the oldest."""
+        self._idle[connection] = None
+        if len(self._idle) > IDLE:
+            next(iter(self._idle)).drop()
+
+    def admits(self, connection: "_Connection", line: bytes) -> bool:
+        """Return whether a connection that has sent its first line may be accepted now.
+
+        Those without the token have a limit of their own: they cannot keep out a page that has it.
+        """
+        self._idle.pop(connection, None)
         now = real_time()
         if now - self._second >= 1.0:
-            self._second, self._admitted = now, 0
-        self._admitted += 1
-        return self._admitted <= ADMITTED
+            self._second = now
+            self._admitted.clear()
+        target = line.split(b" ")[1:2]
+        known = bool(target) and self._access.path(target[0].decode("latin-1")) is not None
+        self._admitted[known] += 1
+        return self._admitted[known] <= ADMITTED
 
     def opened(self, connection: "_Connection") -> None:
-        """Register a connection; if there are too many, drop the oldest one that is not a page."""
+        """Register an accepted connection; if there are too many, drop the oldest one that is not a page."""
         self._connections[connection] = None
         if len(self._connections) > CONNECTIONS:
             oldest = next((each for each in self._connections if each not in self._deliveries), connection)
@@ -185,6 +211,7 @@ class LiveServer:
 
     def lost(self, connection: "_Connection") -> None:
         """Remove a closed connection."""
+        self._idle.pop(connection, None)
         self._connections.pop(connection, None)
 
     def _disconnect(self, connection: ServerConnection) -> None:
@@ -220,12 +247,14 @@ class LiveServer:
         """Send records to a page and execute its commands until it disconnects."""
         delivery = self._deliveries[connection] = self._source.begin()
         self.visitors += 1
+        allowance = self._allowances.begin()
         sending = asyncio.create_task(self._send(connection, delivery))
         try:
-            await self._listen(connection)
+            await self._listen(connection, allowance)
         except ConnectionClosed:
             pass
         finally:
+            self._allowances.end(allowance)
             self._source.end(delivery)
             del self._deliveries[connection]
             sending.cancel()
@@ -261,8 +290,8 @@ class LiveServer:
             sending.cancel()
         sending.result()
 
-    async def _listen(self, connection: ServerConnection) -> None:
-        """Execute the commands of a page; slow commands do not block later ones."""
+    async def _listen(self, connection: ServerConnection, allowance: Allowance) -> None:
+        """Execute the commands of a page within its budget; commands that wait do not block later ones."""
         assert self._beat is not None
         garbage = count = 0
         running: set[asyncio.Task[None]] = set()
@@ -273,11 +302,15 @@ class LiveServer:
                 if garbage >= GARBAGE:
                     self._disconnect(connection)
                     return
-                task = asyncio.create_task(self._reply(connection, command))
+                task = asyncio.create_task(metered(self._reply(connection, command), allowance.spend))
                 running.add(task)
                 task.add_done_callback(running.discard)
                 count += 1
-                while count % BURST == 0 or len(running) >= BURST:
+                allowance.spend(len(message) / RECEIVED)
+                await asyncio.sleep(0)  # the command's first turn, which costs what is to be paid
+                while connection in self._connections and (
+                    count % BURST == 0 or len(running) >= BURST or allowance.is_used_up
+                ):
                     await self._beat.next()
                     count += 1
         finally:
@@ -293,31 +326,50 @@ class LiveServer:
 
 
 class _Connection(ServerConnection):
-    """A connection registered with the server from its first byte."""
+    """A connection registered with the server from its beginning, and accepted when its first line has come."""
 
     def __init__(self, pages: LiveServer, *arguments: Any, **options: Any) -> None:
         super().__init__(*arguments, **options)
         self._pages_server = pages
-        self._is_admitted = False
+        self._first = b""
+        self._is_accepted = False
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        """Start, or abort immediately if there are too many connections."""
-        self._is_admitted = self._pages_server.admits()
-        if not self._is_admitted:
-            cast(asyncio.Transport, transport).abort()
-            return
-        super().connection_made(transport)
-        self._pages_server.opened(self)
+        """Wait for the first line: a connection that sends nothing costs little."""
+        self._opened_transport = cast(asyncio.Transport, transport)
+        self._pages_server.idle(self)
+
+    def drop(self) -> None:
+        """Abort the connection."""
+        self._pages_server.lost(self)
+        self._opened_transport.abort()
 
     def data_received(self, data: bytes) -> None:
-        """Receive data."""
-        if self._is_admitted:
+        """Receive data; with the first line, start, or abort if there are too many connections."""
+        if self._is_accepted:
             super().data_received(data)
+            return
+        self._first += data
+        line, end, _ = self._first.partition(b"\n")
+        if not end and len(line) < _LONGEST_LINE:
+            return
+        if not self._pages_server.admits(self, line):
+            self.drop()
+            return
+        self._is_accepted = True
+        super().connection_made(self._opened_transport)
+        self._pages_server.opened(self)
+        super().data_received(self._first)
+
+    def eof_received(self) -> None:
+        """End a connection that ends before its first line."""
+        if self._is_accepted:
+            super().eof_received()
 
     def connection_lost(self, exc: Exception | None) -> None:
         """End the connection."""
-        if self._is_admitted:
-            self._pages_server.lost(self)
+        self._pages_server.lost(self)
+        if self._is_accepted:
             super().connection_lost(exc)
 
 

@@ -2,11 +2,15 @@
 
 from jacaros.asl import nodes
 from jacaros.asl.loader import parse_formula
+from jacaros.asl.lowering import Names, lower
 from jacaros.asl.walk import nodes_in
 from jacaros.bdi.actions.internal_action import STANDARD
-from jacaros.bdi.explaining.failing_context import holds
+from jacaros.bdi.rules.read_only import reading
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.errors import UsageError
+
+MOST_STEPS = 1_000
+"""Maximum number of steps of one evaluation, see `jacaros.bdi.rules.read_only.reading`."""
 
 
 class Condition:
@@ -24,9 +28,13 @@ class Condition:
         self._formula = parse_formula(written)
         for call in nodes_in(nodes.InternalAction, self._formula):
             action = STANDARD.get(call.name)
-            if action is not None and not action.repeatable:
+            if action is not None and not action.pure:
                 raise UsageError(f"condition `{written}` calls `{call.name}`, which may have effects")
 
     def holds(self, agent: Circumstance) -> bool:
         """Return whether the formula holds now; False if it cannot be evaluated, or the search takes too long."""
-        return holds(agent, self._formula)
+        try:
+            with reading(agent, MOST_STEPS) as view:
+                return any(True for _ in view.answers(lower(self._formula, Names().__getitem__)))
+        except Exception:
+            return False

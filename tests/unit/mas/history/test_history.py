@@ -86,3 +86,15 @@ def test_the_last_stop_ends_the_observation(starts):
             history.stop()
 
     jacaros.run(main(), clock="fast")
+
+
+def test_an_artifact_that_was_disposed_is_not_kept():
+    def act(history):
+        for state in ("made", "disposed"):
+            history.record("artifact", {"artifact": "/main/lamp", "state": state})
+        history.record("artifact", {"artifact": "/main/door", "state": "made"})
+        for number in range(3):
+            history.record("tick", {"number": number})
+        assert [data.get("artifact") for _, _, data in history.all()] == ["/main/door", None, None, None]
+
+    observed(act)

@@ -1,0 +1,204 @@
+"""Questions that change nothing: a read-only view of an agent, in which its beliefs, rules and functions answer a formula.
+
+The view does not list what is forbidden. It gives the search (`jacaros.bdi.rules.query`) tables that can only be read and
+internal actions whose decorator declares them ``pure``; rules are interpreted, so the same holds for what they call.
+Everything else raises `Impure`. Nothing is logged or printed, and the number of steps is limited.
+"""
+
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from typing import Any, cast
+
+from jacaros.bdi.actions.internal_action import InternalAction
+from jacaros.bdi.rules.context import Context
+from jacaros.bdi.rules.functions import OF_AGENT, call_registered
+from jacaros.bdi.rules.query import interpret_rule, solve_formula
+from jacaros.bdi.rules.searching import run
+from jacaros.bdi.state.belief_base import BeliefTables, Item, Table
+from jacaros.bdi.state.budget import SearchBudget, SearchLimit
+from jacaros.bdi.state.circumstance import Circumstance
+from jacaros.bdi.state.rule import Answers, Rule
+from jacaros.terms.arithmetic import RUNNING
+from jacaros.terms.unifier import Trail, undo
+from jacaros.terms.values import Functor, List, String, Term
+
+FACTS_PER_STEP = 16
+"""Number of beliefs compared with a question in one step."""
+LARGEST = 100_000
+"""Maximum number of elements or characters that an internal action may return to a question."""
+
+
+class Impure(Exception):
+    """Raised when a question calls something that may have an effect."""
+
+    def __init__(self, name: str) -> None:
+        super().__init__(f"`{name}` may have effects, and a question must not have any")
+
+
+@contextmanager
+def reading(agent: Circumstance, steps: int, look_up: bool = False) -> Iterator["ReadOnly"]:
+    """Give a view of an agent in which formulae can be evaluated; it raises `Impure` and `SearchLimit`.
+
+    Args:
+        agent: the agent.
+        steps: maximum number of steps of about ten microseconds: answers of rules and internal actions, or `FACTS_PER_STEP`
+            beliefs.
+        look_up: whether a belief base of the project may look up beliefs elsewhere.
+    """
+    view = ReadOnly(agent, SearchBudget(steps), look_up)
+    budget, running = agent.beliefs.budget, RUNNING.set(cast("Circumstance", view))
+    agent.beliefs.budget = view.beliefs.budget  # for pure actions that search, too
+    try:
+        yield view
+    finally:
+        undo(view.trail, 0)
+        agent.beliefs.budget = budget
+        RUNNING.reset(running)
+
+
+class ReadOnly:
+    """The view of one agent.
+
+    Attributes:
+        beliefs, engine, context, architecture, options, observers, functions: what a search needs of an agent.
+        trail: the bindings of the search.
+    """
+
+    def __init__(self, agent: Circumstance, budget: SearchBudget, look_up: bool) -> None:
+        self.beliefs = _Beliefs(self, agent.beliefs, budget, look_up)
+        self.engine = _Actions(agent)
+        self.trail = Trail()
+        self.trail.serial = agent.trail.serial
+        self.context = _Silent(agent, self)
+        self.architecture, self.options = agent.architecture, agent.options
+        self.observers, self.functions = agent.observers, agent.functions
+
+    def answers(self, formula: Term) -> Iterator[Any]:
+        """Return the answers of a formula."""
+        return run(solve_formula(cast("Circumstance", self), formula, self.trail), self.options.rule_depth)
+
+    def call_own(self, term: Term) -> Term:
+        """Return the value of a function that needs the agent, as `jacaros.bdi.rules.functions.call_own`.
+
+        Raises:
+            Impure: it draws a random number, or is the project's Python code.
+        """
+        name = term[0].name
+        view, own = cast("Circumstance", self), OF_AGENT.get(name)
+        if own is not None and own.pure:
+            return own.evaluate(view, term)
+        if own is not None or name in self.functions.project.evaluators:
+            raise Impure(name)
+        registered = self.functions.own.get(name)
+        return None if registered is None else call_registered(view, registered, term)
+
+    def warn_of_operand(self, what: str, value: Term) -> None:
+        """Do nothing: a question logs nothing."""
+
+
+class _Silent(Context):
+    """A context for internal actions that logs nothing."""
+
+    __slots__ = ("_view",)
+
+    def __init__(self, agent: Circumstance, view: ReadOnly) -> None:
+        super().__init__(agent)
+        self._view, self.trail = view, view.trail
+
+    def answers(self, formula: Term) -> Iterator[None]:
+        """Return the answers of a formula, in the same view of the agent."""
+        for _ in self._view.answers(formula):
+            yield
+
+    def unify(self, left: Term, right: Term) -> bool:
+        """Unify two terms, unless one is too large: repeated concatenation would exhaust the memory in few steps."""
+        for each in (left, right):
+            if (each.__class__ is String and len(each) > LARGEST) or (
+                each.__class__ is List and each.size > LARGEST
+            ):
+                raise SearchLimit(f"a list or string of the search has more than {LARGEST} elements")
+        return super().unify(left, right)
+
+    def report(self, action: str, fault: object) -> None:
+        """Pass on what ends the whole question; other errors mean that the action does not hold."""
+        if isinstance(fault, Impure | SearchLimit):
+            raise fault
+
+
+class _Actions:
+    """The internal actions that are declared pure."""
+
+    def __init__(self, agent: Circumstance) -> None:
+        self._actions = agent.engine.actions
+        self.actions = self
+
+    def get(self, name: str) -> InternalAction | None:
+        """Return the action of a name.
+
+        Raises:
+            Impure: it is not declared pure.
+        """
+        action = self._actions.get(name)
+        if action is not None and action.prints:
+            return InternalAction(name, lambda *_: True)  # it always succeeds; nothing is printed
+        if action is not None and not action.pure:
+            raise Impure(name)
+        return action
+
+
+class _Beliefs:
+    """The tables of a belief base; each entry that is read counts."""
+
+    def __init__(self, view: ReadOnly, beliefs: BeliefTables, budget: SearchBudget, look_up: bool) -> None:
+        self._view, self._beliefs, self.budget, self._look_up = view, beliefs, budget, look_up
+
+    def __getitem__(self, symbol: Functor) -> "_Table":
+        table = self._beliefs.get(symbol)  # not [symbol], which would create it
+        if table is None:
+            table = Table(symbol)
+        if not self._look_up and type(table).candidates is not Table.candidates:
+            raise Impure(symbol.name)  # a project's class looks up beliefs elsewhere
+        return _Table(self._view, table, self.budget)
+
+    def __iter__(self) -> Iterator[Functor]:
+        return iter(list(self._beliefs))
+
+    def items(self) -> Iterator[tuple[Functor, "_Table"]]:
+        """Yield all predicates with their tables."""
+        return ((symbol, self[symbol]) for symbol in self)
+
+
+class _Table:
+    def __init__(self, view: ReadOnly, table: Table, budget: SearchBudget) -> None:
+        self._view, self._table, self._budget = view, table, budget
+        self.functor = table.functor
+
+    def still_holds(self, _entry: object) -> bool:
+        """True: nothing changes while a question is answered."""
+        return True
+
+    def entries(self) -> Iterator[Item]:
+        """Yield all beliefs, each with its annotations."""
+        return (each for each in self._counted(self._table.entries()) if not isinstance(each[0], Rule))
+
+    def candidates(self, arguments: tuple[Term, ...]) -> Iterator[tuple[Any, tuple[Term, ...]]]:
+        """Yield the beliefs and rules that may match, each with its annotations."""
+        for entry, annotations in self._counted(self._table.candidates(arguments)):
+            yield (_Interpreted(self._view, entry) if isinstance(entry, Rule) else entry), annotations
+
+    def _counted(self, entries: Iterable[Item]) -> Iterator[Item]:
+        for number, item in enumerate(entries):
+            if isinstance(item[0], Rule) or number % FACTS_PER_STEP == 0:
+                self._budget.spend()
+            yield item
+
+
+class _Interpreted:
+    """A rule whose body is searched as a term: compiled rules call what they name, and do not count their steps."""
+
+    def __init__(self, view: ReadOnly, rule: Rule) -> None:
+        self._view, self._rule = view, rule.node
+
+    def search(self, _agent: object, arguments: tuple[Term, ...], trail: Trail) -> Answers:
+        """Return a generator of the answers, see `jacaros.bdi.rules.searching.run`."""
+        return interpret_rule(cast("Circumstance", self._view), self._rule, arguments, trail)
