@@ -134,7 +134,8 @@ class DirectiveProcessor:
             )
             return nodes.Section()
         path = arguments[0].value
-        namespaces = Namespaces(parser.namespaces.current, dict(parser.namespaces.local))
+        # As in Jason, local namespaces are local to their file.
+        namespaces = Namespaces(parser.namespaces.current)
         if len(arguments) == 2:
             namespaces.current = self._include_namespace(parser, arguments[1])
         found = self._find(parser, path, directive)
@@ -200,9 +201,9 @@ class DirectiveProcessor:
 
     def _include_namespace(self, parser: ProgramParser, term: nodes.Term) -> str | None:
         if isinstance(term, nodes.Literal) and not term.arguments:
-            return parser.namespaces.resolve(term.functor)
+            return Namespaces().resolve(term.functor)
         if isinstance(term, nodes.String):
-            return parser.namespaces.resolve(term.value)
+            return Namespaces().resolve(term.value)
         if isinstance(term, nodes.Variable):
             return f"{term.name}#{next(self._names.local_namespaces)}"
         parser.report("wrong-directive", "the namespace of an include must be an atom", term.span)
