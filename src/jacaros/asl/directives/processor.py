@@ -27,7 +27,8 @@ from jacaros.asl.slips import close_matches
 from jacaros.asl.source import SourceFile, Span
 
 Read = Callable[[str, str], tuple[str, str]]
-"""``read(path, including_name) -> (name, text)``: finds an included file; raises FileNotFoundError."""
+"""``read(path, including_name) -> (name, text)``: finds an included file; raises FileNotFoundError,
+whose text says where it was searched."""
 
 PATTERNS: Final[dict[str, Callable[[PatternCall, nodes.Section], nodes.Section]]] = {
     "dg": declarative,
@@ -163,7 +164,7 @@ class DirectiveProcessor:
                 raise FileNotFoundError(path)
             name, text = self._read(path, parser.file.name)
             return SourceFile(name, text)
-        except FileNotFoundError:
+        except FileNotFoundError as missing:
             ours = counterpart(path)
             if ours is not None or is_known_library(path):
                 return ours
@@ -181,7 +182,7 @@ class DirectiveProcessor:
                 "include-not-found",
                 f"included file not found: `{path}`",
                 directive.span,
-                f"searched beside {parser.file.name} and in the source paths of the project",
+                str(missing),
             )
         except (OSError, UnicodeError) as error:
             parser.report(
