@@ -11,8 +11,23 @@ from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.lexer import Token, tokenize
 from jacaros.asl.source import SourceFile
 
+DEFAULT_NAMESPACE: Final = "default"
+THIS_NAMESPACE: Final = "this_ns"
+"""The namespace of the module: that of the block, or the one that the module is included into."""
+
 KEYWORDS: Final = frozenset(
-    {"true", "false", "default", "source", "self", "percept", "atomic", "breakpoint", "all_unifs"}
+    {
+        "true",
+        "false",
+        DEFAULT_NAMESPACE,
+        THIS_NAMESPACE,
+        "source",
+        "self",
+        "percept",
+        "atomic",
+        "breakpoint",
+        "all_unifs",
+    }
     | {
         "tell",
         "untell",
@@ -44,9 +59,9 @@ class Namespaces:
 
     def resolve(self, written: str) -> str | None:
         """Return the namespace that *written* names here, resolving ``default`` and ``this_ns``."""
-        if written == "default":
+        if written == DEFAULT_NAMESPACE:
             return None
-        if written == "this_ns":
+        if written == THIS_NAMESPACE:
             return self.current
         return self.local.get(written, written)
 
@@ -200,12 +215,21 @@ class LiteralParser(Cursor, ABC):
             self.advance()
             return ()
         outside = self._enter_term()
-        arguments = [self.expression()]
+        arguments = [self._named(self.expression())]
         while self.accept(","):
-            arguments.append(self.expression())
+            arguments.append(self._named(self.expression()))
         self._leave_term(outside)
         self.close(opener)
         return tuple(arguments)
+
+    def _named(self, term: nodes.Term) -> nodes.Term:
+        """Replace the atom ``this_ns`` by the name of the namespace of the module.
+
+        As in Jason, only where it is an argument or an element, not in ``X = this_ns``.
+        """
+        if isinstance(term, nodes.Literal) and term.functor == THIS_NAMESPACE and not term.arguments:
+            return nodes.replace(term, functor=self.namespaces.current or DEFAULT_NAMESPACE)
+        return term
 
     def _enter_term(self) -> bool:
         """Mark the following tokens as part of a term; return whether they already were."""
@@ -273,9 +297,9 @@ class LiteralParser(Cursor, ABC):
         tail: nodes.Term | None = None
         outside = self._enter_term()
         if self.token.kind not in ("]", "|"):
-            items.append(element())
+            items.append(self._named(element()))
             while self.accept(","):
-                items.append(element())
+                items.append(self._named(element()))
         if self.accept("|"):
             tail = self.operand()
             if isinstance(tail, nodes.ListTerm):

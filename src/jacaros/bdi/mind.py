@@ -21,6 +21,7 @@ from jacaros.bdi.rules import (
     plan_terms,
     preemption,
     query,
+    subplans,
     supervised_goals,
     supervision,
     waits,
@@ -41,7 +42,7 @@ from jacaros.bdi.state.plan import FAILED, SUSPENDED, Fail, Failure
 from jacaros.bdi.state.plan_library import ProgramPlans
 from jacaros.bdi.state.rule import OpenFact, Rule
 from jacaros.bdi.state.speech_act import SpeechAct, message_id
-from jacaros.bdi.state.triggers import Goal, trigger
+from jacaros.bdi.state.triggers import Goal, Trigger, trigger
 from jacaros.bdi.state.waiting import ACTION, ActWait, Waiting
 from jacaros.terms import functions as _functions  # noqa: F401 - fills the table of arithmetic functions
 from jacaros.terms.operators import ArithmeticFault
@@ -374,9 +375,18 @@ class Mind(Circumstance):
         """Return the test goal for a query known only at run time; fail if no plan handles it."""
         goal = self.goal_from("+", "?", term)
         plain = goal.goal if isinstance(goal, Posted) else goal
-        if not self.may_handle(plain[0]):
+        if not self.may_test(plain[0]):
             raise Fail
         return goal
+
+    def may_test(self, kind: Trigger) -> bool:
+        """Return whether there is a plan for a test goal of the running intention."""
+        if self.library.selects[kind] is not None:
+            return True
+        current = self.current if self.features.subplans else None
+        return current is not None and any(
+            subplans.has_inner(self, frame, kind) for frame in subplans.scopes(current)
+        )
 
     def post_separate(self, goal: Goal | Posted) -> None:
         """``!!g``: adopt a new intention that shares no variables with this one."""

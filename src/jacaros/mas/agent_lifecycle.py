@@ -131,13 +131,12 @@ class AgentLifecycle:
         wanted = source if source is not None else f"{name}.asl"
         log = self._run.console.log
         try:
-            path = self.programs.find(wanted)
+            path = self.programs.path.find(wanted)
             spec = _spec(self._directory.free_name(name), name, path, classes)
             program = self.programs.load(spec)
             host = self.add(spec, program)
-        except FileNotFoundError:
-            folders = ", ".join(str(folder) for folder in self.programs.folders)
-            log(f"error: agent {name}: program not found: {wanted}; expected in {folders}", "error")
+        except FileNotFoundError as missing:
+            log(f"error: agent {name}: program not found: {wanted}; {missing}", "error")
             return None
         except JacarosError as wrong:
             log(str(wrong), "error")

@@ -19,6 +19,7 @@ from jacaros.mas.loading import load_deployment
 from jacaros.mas.programs import NEVER_SELECTED, Programs, text_of
 from jacaros.mas.project.reading import read_project
 from jacaros.mas.python_code import PythonCode
+from jacaros.mas.source_path import source_folders
 from jacaros.project_modules import ModuleUnreadable, ProjectModules
 from jacaros.text_files import is_file
 from jacaros.yaml_syntax import Problem
@@ -188,11 +189,11 @@ def _of_beliefs(
 
 def _check_lone_program(path: Path, findings: Findings) -> None:
     """Check a program that no project names."""
-    program = _check_program(path, (path.parent,), findings)
+    folders = source_folders(path.parent)
+    program = _check_program(path, folders, findings)
     if program is not None:
         lone = Deployment(path.stem, path.parent)
         programs = [(AgentSpec(path.stem, path), program)]
-        folders = (path.parent,)
         findings.diagnostics += _of_beliefs(lone, programs, folders, findings.unseen)
         _check_lone_artifacts(lone, programs, folders, findings)
 
@@ -399,7 +400,7 @@ def _check_program(
     sources: list[SourceFile] = []
 
     def include(name: str, including: str) -> tuple[str, str]:
-        found, text = programs.include(name, including)
+        found, text = programs.path.include(name, including)
         if not found.startswith("$"):
             findings.files.add(Path(found).resolve())
             sources.append(SourceFile(found, text))

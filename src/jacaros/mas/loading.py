@@ -2,13 +2,11 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Final
 
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.mas.deployment import AgentSpec, Deployment, ProjectError
+from jacaros.mas.source_path import PROJECTS, source_folders
 from jacaros.text_files import is_file
-
-_PROJECTS: Final = (".mas2j", ".jcm")
 
 
 def load_deployment(path: str | Path) -> Deployment:
@@ -20,7 +18,7 @@ def load_deployment(path: str | Path) -> Deployment:
     path = Path(path)
     if path.suffix in (".asl", ".py"):
         return _lone_agent(path)
-    if path.suffix not in _PROJECTS:
+    if path.suffix not in PROJECTS:
         raise ProjectError(
             [Diagnostic("error", f"unsupported file type: {path} (expected .mas2j, .jcm, .asl or .py)")]
         )
@@ -50,4 +48,4 @@ def _lone_agent(path: Path) -> Deployment:
         raise ProjectError([Diagnostic("error", f"file not found: {path}")])
     agent = AgentSpec(path.stem, path, path.stem)
     base = path.parent
-    return Deployment(path.stem, base, (agent,), artifact_environment=True, source_paths=(base,))
+    return Deployment(path.stem, base, (agent,), artifact_environment=True, source_paths=source_folders(base))

@@ -1,12 +1,10 @@
 """The agent programs of a run: found, read once and shared by all agents that run them."""
 
-import re
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from errno import ENOTDIR
 from pathlib import Path
 
-from jacaros import asl
 from jacaros.asl import nodes
 from jacaros.asl.checker import check_for_run
 from jacaros.asl.checks.actions import KnownActions
@@ -15,22 +13,11 @@ from jacaros.asl.loader import load_program, parse_literals
 from jacaros.asl.suppression import wanted
 from jacaros.mas.deployment import AgentSpec
 from jacaros.mas.python_code import PythonCode
-from jacaros.text_files import file_text, is_file
+from jacaros.mas.source_path import SourcePath, name_of
+from jacaros.text_files import file_text
 
 NEVER_SELECTED = "plan-never-selected"
 """Code of the warning about unreachable plans. Agents of user-defined classes may select them."""
-
-_LIBRARY = "$jacaros/"
-TEST_LIBRARY = (
-    "mock_agent.asl",
-    "test_assert.asl",
-    "test_manager.asl",
-    "test_performance.asl",
-    "tester_agent.asl",
-)
-"""Files that Jason programs include for tests. Those of JaCaROS replace them."""
-_OF_JASON = re.compile(r"\$jason(Jar)?/test/jason/inc/|\btest_manager\b|\bmock_owner\b")
-"""Text that identifies Jason's own copies of them, which projects have beside their tests."""
 
 
 def asks_why(program: nodes.Program) -> bool:
@@ -50,7 +37,7 @@ class Programs:
         prepare: returns the part of a program to run, and may add actions to the code. Default: all of it.
 
     Attributes:
-        folders: the folders that are searched.
+        path: finds programs and included files.
     """
 
     def __init__(
@@ -60,7 +47,7 @@ class Programs:
         code: PythonCode,
         prepare: Callable[[nodes.Program, PythonCode], nodes.Program] | None = None,
     ) -> None:
-        self.folders = tuple(folders)
+        self.path = SourcePath(folders)
         self._code = code
         self._warn = warn
         self._prepare = prepare
@@ -150,7 +137,7 @@ class Programs:
         """Parse a program, and import the project's modules that it names."""
         try:
             program, warnings = load_program(
-                path.as_posix(), written, self.include, self._code.functions, self._code.actions
+                name_of(path), written, self.path.include, self._code.functions, self._code.actions
             )
         except AslError as wrong:
             raise AslError([*wrong.diagnostics, *self._code.take_errors()]) from wrong
@@ -158,19 +145,6 @@ class Programs:
         if errors:
             raise AslError(errors)
         return program, warnings
-
-    def find(self, name: str) -> Path:
-        """Return the file of a program named by another program.
-
-        Raises:
-            FileNotFoundError: it does not exist.
-        """
-        candidates = [name] if name.endswith(".asl") else [f"{name}.asl", name]
-        for folder in self.folders:
-            for candidate in candidates:
-                if is_file(folder / candidate):
-                    return folder / candidate
-        raise FileNotFoundError(name)
 
     def list_files(self, folder: str, base: Path) -> list[str]:
         """Return the files below a folder, sorted, as paths that begin with *folder*. *base* is the project's folder.
@@ -185,30 +159,6 @@ class Programs:
             (Path(folder) / path.relative_to(root)).as_posix() for path in root.rglob("*") if path.is_file()
         )
 
-    def include(self, path: str, including: str) -> tuple[str, str]:
-        """Return name and text of an included file: beside the including one, in one of the folders, or
-        (``$jacaros/…``) in the library of JaCaROS. The library also replaces Jason's files for tests, whatever folder
-        is written before their name.
-
-        Raises:
-            FileNotFoundError: it does not exist.
-        """
-        if path.startswith(_LIBRARY):
-            return _of_library(path.removeprefix(_LIBRARY))
-        name = path.rpartition("/")[2]
-        beside = Path(including).parent / path
-        try:
-            # A program that is not in a file has no files beside it.
-            file = beside if is_file(beside) and not including.startswith("<") else self.find(path)
-        except FileNotFoundError:
-            if name in TEST_LIBRARY:
-                return _of_library(name)
-            raise
-        text = file_text(file)
-        if name in TEST_LIBRARY and _OF_JASON.search(text):
-            return _of_library(name)
-        return file.as_posix(), text
-
 
 def _concerns_author(warning: Diagnostic, path: Path) -> bool:
     """Return whether a warning concerns the author of the program at *path*.
@@ -219,15 +169,6 @@ def _concerns_author(warning: Diagnostic, path: Path) -> bool:
         return True
     file = warning.span.file.name
     return not file.startswith("$") and (warning.code != NEVER_SELECTED or file == path.as_posix())
-
-
-def library_file(name: str) -> Path:
-    """Return the path of a program in the library of JaCaROS. It need not exist."""
-    return Path(asl.__file__).parent / "library" / name
-
-
-def _of_library(name: str) -> tuple[str, str]:
-    return f"{_LIBRARY}{name}", library_file(name).read_text(encoding="utf-8")
 
 
 def text_of(path: Path) -> str:

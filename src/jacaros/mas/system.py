@@ -532,4 +532,4 @@ class System:
         Raises:
             FileNotFoundError: it does not exist.
         """
-        return self.lifecycle.programs.include(path, str(self.deployment.base_path / "."))
+        return self.lifecycle.programs.path.include(path, str(self.deployment.base_path / "."))

@@ -10,8 +10,9 @@ from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.loader import read_program
 from jacaros.asl.source import SourceFile
 from jacaros.mas.action_check import artifact_types
-from jacaros.mas.programs import TEST_LIBRARY, Programs, library_file
+from jacaros.mas.programs import Programs
 from jacaros.mas.python_code import PythonCode
+from jacaros.mas.source_path import TEST_LIBRARY, SourcePath
 from jacaros.metrics.agentspeak import clauses_of, identifiers_of, names_of
 from jacaros.metrics.counted_file import CountedFile
 from jacaros.metrics.sources import Sources
@@ -73,7 +74,7 @@ def read_agent(path: Path, folders: Sequence[Path], sources: Sources) -> AgentPr
     included: set[str] = set()
 
     def include(name: str, including: str) -> tuple[str, str]:
-        found, content = programs.include(name, including)
+        found, content = programs.path.include(name, including)
         included.add(found)
         return found, content
 
@@ -112,7 +113,7 @@ class AgentFiles:
 
     def _file(self, name: str) -> AgentFile:
         ours = name.startswith(_LIBRARY)
-        path = library_file(name.removeprefix(_LIBRARY)) if ours else Path(name)
+        path = SourcePath(()).find(name) if ours else Path(name)
         return (self.library if ours else self.own).setdefault(path.resolve(), AgentFile(path))
 
 

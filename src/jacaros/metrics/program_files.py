@@ -13,6 +13,7 @@ from jacaros.mas.deployment import AgentSpec, Deployment, ProjectError
 from jacaros.mas.mappings import diagnostics_of
 from jacaros.mas.project.cursor import ProjectCursor
 from jacaros.mas.project.reading import Reading, read_project
+from jacaros.mas.source_path import source_folders
 from jacaros.metrics import python_source, yaml_source
 from jacaros.metrics.agent_files import AgentFiles, AgentProgram, counted_agents, read_agent
 from jacaros.metrics.comments import between
@@ -164,7 +165,7 @@ class ProgramFiles:
         lone: dict[Path, AgentProgram] = {}
         for path in source_files(self._folder, (".asl",)):
             if path.resolve() not in read:
-                program = read_agent(path, (path.parent,), self._sources)
+                program = read_agent(path, source_folders(path.parent), self._sources)
                 if program is not None:
                     lone[path.resolve()] = program
         included = _included([*read.values(), *lone.values()])

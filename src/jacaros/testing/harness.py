@@ -92,7 +92,7 @@ class AgentHarness(OpenMind):
         port = self._port = HarnessPort(name, dict(actions or {}), others, seed, programs, file)
         self.prints, self.logs, self.files = port.prints, port.logs, port.files
         self.acts, self.sent = port.acts, port.sent
-        tree, _ = load_program(str(file), written, programs.include, code.functions, code.actions)
+        tree, _ = load_program(str(file), written, programs.path.include, code.functions, code.actions)
         wrong = code.take_errors()
         if wrong:
             raise AslError(wrong)

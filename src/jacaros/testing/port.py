@@ -138,7 +138,7 @@ class HarnessPort:
         return name in self.agent_names()
 
     def read_program(self, path: str) -> tuple[str, str]:
-        return self._programs.include(path, str(self._file))
+        return self._programs.path.include(path, str(self._file))
 
     def list_files(self, folder: str) -> Sequence[str]:
         return self._programs.list_files(folder, self._file.parent)

@@ -30,23 +30,15 @@ from jacaros.errors import JacarosError, UsageError
 from jacaros.excerpts import help_line
 from jacaros.mas.deployment import AgentSpec, Deployment, has_own_artifacts
 from jacaros.mas.loading import load_deployment
-from jacaros.mas.programs import Programs, library_file
-from jacaros.mas.project.reading import USUAL_PATHS
+from jacaros.mas.programs import Programs
 from jacaros.mas.python_code import PythonCode
+from jacaros.mas.source_path import PROJECTS, SourcePath, project_folders, source_folders
 from jacaros.project_modules import ProjectModules
 from jacaros.testing.assertions import UNTESTED
 from jacaros.text_files import file_text, is_file
 
 LIBRARY: Final = "tester_agent.asl"
-PROJECTS: Final = (".jcm", ".mas2j")
 _HARNESS_GOAL: Final = "execute_test_plans"
-_ROOTS: Final = (".git", "pyproject.toml", "build.gradle", "package.xml", "setup.py")
-_LEVELS: Final = 6
-_PATHS: Final = (
-    *USUAL_PATHS,
-    "inc",
-    *(f"src/test/{each}" for each in ("jason/inc", "jason/asl", "inc", "agt")),
-)
 _LABELLED: Final = re.compile(r"@[\w.]*\s*\[[^\]]*\btest\b")
 _COMMENT: Final = re.compile(r"/\*.*?\*/|//[^\n]*", re.DOTALL)
 _NAMED_TEST: Final = re.compile(r"test_.*|.*_test")
@@ -103,9 +95,8 @@ def with_assertions(program: nodes.Program) -> nodes.Program:
 @cache
 def _library() -> tuple[nodes.Plan, ...]:
     """Return the assertion goals, and the rest of Jason's test harness."""
-    text = library_file(LIBRARY).read_text(encoding="utf-8")
-    programs = Programs((), print, PythonCode(ProjectModules()))
-    return load_program(f"$jacaros/{LIBRARY}", text, programs.include)[0].plans
+    library = SourcePath(())
+    return load_program(*library.include(f"$jacaros/{LIBRARY}", "<tests>"), library.include)[0].plans
 
 
 def collect(paths: Sequence[Path]) -> list[Suite]:
@@ -249,38 +240,11 @@ def _programs(deployment: Deployment, warn: Callable[[str], None]) -> list[nodes
 
 def _lone(path: Path) -> Deployment:
     """Return the deployment of a single program; its project is searched in the folders above."""
-    folders = _project_folders(path.parent)
+    folders = project_folders(path.parent)
     base = next((folder for folder in folders if has_own_artifacts(folder)), folders[-1])
-    places = [folder / each for folder in folders for each in _PATHS]
     agent = AgentSpec(path.stem, path, path.stem)
-    return Deployment(
-        path.stem,
-        base,
-        (agent,),
-        artifact_environment=True,
-        source_paths=tuple(dict.fromkeys(place for place in places if place.is_dir())),
-    )
-
-
-def _project_folders(folder: Path) -> list[Path]:
-    """Return the folder of a test and those above it, up to that of its project."""
-    found = [folder]
-    above = Path(os.path.abspath(folder))
-    relative = folder
-    for _ in range(_LEVELS):
-        if _is_root(above) and above != Path(os.path.abspath(folder)):
-            return found
-        if above.parent == above or (above / ".git").exists():
-            break
-        above, relative = above.parent, relative / ".."
-        found.append(Path(os.path.normpath(relative)))
-    return [folder]
-
-
-def _is_root(folder: Path) -> bool:
-    return any((folder / name).exists() for name in _ROOTS) or any(
-        file.suffix in PROJECTS for file in folder.iterdir()
-    )
+    sources = source_folders(path.parent, above=folders[1:])
+    return Deployment(path.stem, base, (agent,), artifact_environment=True, source_paths=sources)
 
 
 def _tests(agent: str, program: nodes.Program, problems: list[Diagnostic]) -> Iterator[AgentTest]:

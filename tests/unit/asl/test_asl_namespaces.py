@@ -5,6 +5,7 @@ from asl_lab import belief_texts, errors, places, plan_texts, program
 
 from jacaros.asl import nodes
 from jacaros.asl.loader import load_program
+from jacaros.asl.walk import shape
 
 
 def block(clauses: str) -> str:
@@ -42,6 +43,36 @@ def test_the_default_namespace_is_reached_by_name():
     assert plan_texts(block("+!g : default::a & ::b & this_ns::c <- !other::d.")) == [
         "+!m::g : a & (m::b & m::c) <- !other::d."
     ]
+
+
+def test_this_ns_as_an_argument_is_the_name_of_the_namespace():
+    assert belief_texts(block("at(this_ns, [this_ns|T], f(this_ns))[in(this_ns)].") + "at(this_ns).") == [
+        "m::at(m,[m|T],f(m))[in(m)]",
+        "at(default)",
+    ]
+
+
+def test_this_ns_as_an_operand_stays_an_atom():
+    assert plan_texts(block("+!g <- X = this_ns.")) == ["+!m::g <- (X = this_ns)."]
+
+
+def test_this_ns_is_the_namespace_that_a_file_is_included_into():
+    files = {"part.asl": "at(this_ns)."}
+    read = program('{ include("part.asl", m) } { include("part.asl", this_ns) }', files)
+    assert [str(shape(belief)) for belief in read.beliefs] == [
+        str(shape(belief)) for belief in program("m::at(m). at(default).").beliefs
+    ]
+
+
+def test_local_namespaces_of_a_file_are_not_those_of_files_it_includes():
+    files = {"part.asl": "private::a."}
+    read = program(
+        '{ namespace(private, local) } { include("part.asl") } { include("part.asl", private) } private::b.',
+        files,
+    )
+    namespaces = [belief.namespace for belief in read.beliefs if isinstance(belief, nodes.Literal)]
+    assert namespaces[:2] == ["private", "private"]
+    assert namespaces[2] != "private"
 
 
 def test_keywords_stay_in_the_default_namespace():

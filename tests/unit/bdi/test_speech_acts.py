@@ -7,8 +7,10 @@ from jacaros.asl.loader import parse_term
 from jacaros.asl.lowering import lower_value
 from jacaros.bdi.state.options import Options
 from jacaros.bdi.state.speech_act import SpeechAct
+from jacaros.bdi.state.triggers import trigger
 from jacaros.terms.substitution import is_flat
 from jacaros.terms.text import text
+from jacaros.terms.values import BY_SELF, functor
 
 
 def message(performative: str, content: str, reply: str | None = None) -> SpeechAct:
@@ -93,6 +95,35 @@ def test_a_plan_of_the_program_for_messages_comes_first(flat: bool) -> None:
     said.flat = flat
     program = "+!kqml_received(S, P, C, M) : .ground(C) <- .print(S, P, C, M). +!g(X) <- .print(no)."
     assert after(program, said).printed == ["annachieveg(1)m1"]
+
+
+def test_a_question_waits_for_the_events_before_it() -> None:
+    host = mind("v(0). +!set(X) <- -+v(X). +e <- +seen.")
+    host.agent.receive(message("signal", "e"))
+    host.agent.receive(message("signal", "e"))
+    host.agent.receive(message("achieve", "set(1)"))
+    host.agent.receive(message("askOne", "v(_)"))
+    host.agent.post(((trigger("+", "", functor("e", 0)),), None, BY_SELF, None))
+    host.run()
+    assert [text(answer.content) for answer in host.sent] == ["v(1)"]
+
+
+def test_a_question_waits_for_the_end_of_an_atomic_plan() -> None:
+    host = mind("!work. v(old). @w[atomic] +!work <- -+v(half); .wait(10); -+v(new).")
+    host.agent.run(10)
+    host.agent.receive(message("askOne", "v(_)"))
+    host.agent.run(10)
+    assert host.sent == []
+    host.run()
+    assert [text(answer.content) for answer in host.sent] == ["v(new)"]
+
+
+def test_a_queued_question_that_cannot_be_processed_is_answered_with_false() -> None:
+    host = mind("+e <- +seen.")
+    host.agent.post(((trigger("+", "", functor("e", 0)),), None, BY_SELF, None))
+    host.agent.receive(message("askHow", "5"))
+    host.run()
+    assert [answer.performative for answer in host.sent] == ["untell"]
 
 
 def test_unachieve_drops_the_goal() -> None:

@@ -13,7 +13,7 @@ from jacaros.bdi.state.event import Event
 from jacaros.bdi.state.options import Options
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.terms.order import annotation_set
-from jacaros.terms.values import SOURCE_PERCEPT, Term, atom, structure
+from jacaros.terms.values import SOURCE_PERCEPT, Term, Var, atom, structure
 
 TWO_STEPS = """
     +low(I) <- .print("low ", I); .print("end of low ", I).
@@ -422,6 +422,14 @@ def test_an_urgent_message_is_answered_in_the_next_cycles_beside_a_hundred_busy_
     host.agent.receive(SpeechAct("achieve", "bob", "tester", atom("stop"), "m1"))
     host.agent.run(1)
     assert host.printed == ["stopped"]
+
+
+def test_an_urgent_question_does_not_wait_for_the_events_before_it() -> None:
+    host = mind("+low(I) <- .print(low, I). @q[urgency(5)] +?state(X) <- .print(asked); X = ok.")
+    host.agent.perceive(noticed(*(low(number) for number in range(5))))
+    host.agent.receive(SpeechAct("askOne", "bob", "tester", structure("state", Var()), "m1"))
+    host.run()
+    assert host.printed[0] == "asked"
 
 
 def test_an_urgent_intention_that_waited_goes_first_when_its_wait_ends() -> None:

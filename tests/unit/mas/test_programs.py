@@ -48,29 +48,6 @@ def test_the_errors_of_all_programs_are_reported_together(tmp_path: Path) -> Non
     assert f"file not found: {tmp_path / 'missing.asl'}" in str(wrong.value)
 
 
-def test_programs_are_found_in_the_folders_of_the_project(tmp_path: Path) -> None:
-    (tmp_path / "agt").mkdir()
-    (tmp_path / "agt" / "bob.asl").write_text("p.", encoding="utf-8")
-    read = programs(tmp_path, tmp_path / "agt")
-    assert read.find("bob") == read.find("bob.asl") == tmp_path / "agt" / "bob.asl"
-    with pytest.raises(FileNotFoundError):
-        read.find("ann")
-
-
-def test_an_included_file_beside_the_including_one_comes_first(tmp_path: Path) -> None:
-    (tmp_path / "inc").mkdir()
-    for folder in (tmp_path, tmp_path / "inc"):
-        (folder / "x.asl").write_text(f"// {folder.name}", encoding="utf-8")
-    read = programs(tmp_path)
-    assert read.include("x.asl", str(tmp_path / "inc" / "a.asl")) == (
-        str(tmp_path / "inc" / "x.asl"),
-        "// inc",
-    )
-    assert read.include("x.asl", "elsewhere/a.asl")[0] == str(tmp_path / "x.asl")
-    with pytest.raises(FileNotFoundError):
-        read.include("y.asl", str(tmp_path / "a.asl"))
-
-
 def test_warnings_are_passed_on(tmp_path: Path) -> None:
     (tmp_path / "a.asl").write_text("+!g : p(X) <- .print(Y).", encoding="utf-8")
     told: list[str] = []

@@ -9,6 +9,8 @@ from pathlib import Path
 import pytest
 
 from jacaros import alarm
+from jacaros.mas.checking import check_files
+from jacaros.mas.source_path import SourcePath
 from jacaros.testing.outcomes import Outcome
 from jacaros.testing.suites import suite_of
 from jacaros.testing.trial import TrialOptions, run_suite
@@ -418,3 +420,37 @@ def test_assertions_outside_of_tests_are_logged(tmp_path: Path) -> None:
     assert result.lines == ["[a] end"]
     assert "assert_true failed: expected p, but no belief p/0" in result.errors[0]
     assert "assert_false passed" in result.errors[1]
+
+
+MOCK_AGENT = """
+@mock[test] +!test_partner_learns
+  <- !create_mock_agent(partner);
+     .send(partner, tell, battery(80));
+     !wait_idle(partner);
+     .send(partner, askOne, battery(_), battery(B));
+     !assert_equals(80, B).
+"""
+
+
+def test_the_mock_agent_of_the_library_needs_no_file_of_the_project(outcomes: Outcomes) -> None:
+    (outcome,) = outcomes('{ include("$jacaros/tester_agent.asl") }' + MOCK_AGENT)
+    assert outcome.passed, outcome.lines()
+
+
+@pytest.mark.parametrize(
+    "name", ["mock_agent", "test_assert", "test_manager", "test_performance", "tester_agent"]
+)
+def test_each_library_file_for_tests_works_alone(outcomes: Outcomes, name: str) -> None:
+    include = f'{{ include("$jacaros/{name}.asl") }}'
+    (outcome,) = outcomes(include + "@t[test] +!passing <- !assert_true(true).")
+    assert outcome.passed, outcome.lines()
+
+
+@pytest.mark.parametrize("file", sorted(SourcePath(()).find("$jacaros/artifacts.asl").parent.glob("*.asl")))
+def test_a_program_with_only_a_library_file_has_nothing_wrong(file: Path, tmp_path: Path) -> None:
+    program = tmp_path / "lone.asl"
+    program.write_text(f'{{ include("$jacaros/{file.name}") }}', encoding="utf-8")
+    for path in (program, file):
+        assert [each.render() for each in check_files([path]).diagnostics] == []
+    assert suite_of(program).error is None
+    assert suite_of(program).warnings == []

@@ -102,7 +102,11 @@ def _goal_text(signature: _Signature) -> str:
 
 def _meant_goal(wanted: _Signature, handled: Iterable[_Signature]) -> str:
     """Return the goal with a plan that is most similar to *wanted*: of the same or of a similar name."""
-    within = [signature for signature in handled if _is_reachable(signature[0], wanted[0])]
+    within = [
+        each
+        for each in handled
+        if _is_reachable(each[0], wanted[0]) and _goal_text(each) != _goal_text(wanted)
+    ]
     texts = sorted(_goal_text(signature) for signature in within)
     same_name = [_goal_text(signature) for signature in within if signature[1] == wanted[1]]
     close = sorted(same_name) or close_matches(_goal_text(wanted), texts)

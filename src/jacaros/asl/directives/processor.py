@@ -27,7 +27,8 @@ from jacaros.asl.source import SourceFile, Span
 from jacaros.suggestions import suggestion
 
 Read = Callable[[str, str], tuple[str, str]]
-"""``read(path, including_name) -> (name, text)``: finds an included file; raises FileNotFoundError."""
+"""``read(path, including_name) -> (name, text)``: finds an included file; raises FileNotFoundError,
+whose text says where it was searched."""
 
 PATTERNS: Final[dict[str, Callable[[PatternCall, nodes.Section], nodes.Section]]] = {
     "dg": declarative,
@@ -134,7 +135,8 @@ class DirectiveProcessor:
             )
             return nodes.Section()
         path = arguments[0].value
-        namespaces = Namespaces(parser.namespaces.current, dict(parser.namespaces.local))
+        # As in Jason, local namespaces are local to their file.
+        namespaces = Namespaces(parser.namespaces.current)
         if len(arguments) == 2:
             namespaces.current = self._include_namespace(parser, arguments[1])
         found = self._find(parser, path, directive)
@@ -162,7 +164,7 @@ class DirectiveProcessor:
                 raise FileNotFoundError(path)
             name, text = self._read(path, parser.file.name)
             return SourceFile(name, text)
-        except FileNotFoundError:
+        except FileNotFoundError as missing:
             ours = counterpart(path)
             if ours is not None or is_known_library(path):
                 return ours
@@ -180,7 +182,7 @@ class DirectiveProcessor:
                 "include-not-found",
                 f"included file not found: `{path}`",
                 directive.span,
-                f"searched beside {parser.file.name} and in the source paths of the project",
+                str(missing),
             )
         except (OSError, UnicodeError) as error:
             parser.report(
@@ -200,9 +202,9 @@ class DirectiveProcessor:
 
     def _include_namespace(self, parser: ProgramParser, term: nodes.Term) -> str | None:
         if isinstance(term, nodes.Literal) and not term.arguments:
-            return parser.namespaces.resolve(term.functor)
+            return Namespaces().resolve(term.functor)
         if isinstance(term, nodes.String):
-            return parser.namespaces.resolve(term.value)
+            return Namespaces().resolve(term.value)
         if isinstance(term, nodes.Variable):
             return f"{term.name}#{next(self._names.local_namespaces)}"
         parser.report("wrong-directive", "the namespace of an include must be an atom", term.span)

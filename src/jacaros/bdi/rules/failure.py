@@ -4,11 +4,13 @@ An exception that no rule of the language foresees, such as a lack of memory, co
 intention; it is logged, and the agent continues.
 """
 
+from collections.abc import Callable
+from functools import partial
+
 from jacaros.asl import nodes
 from jacaros.bdi.actions.internal_action import ActionError, WrongArguments
 from jacaros.bdi.explaining.failure_reason import ERROR, ERROR_MSG, FailureReason, GoalPlace, goal_text
-from jacaros.bdi.rules import supervision
-from jacaros.bdi.rules.subplans import handles
+from jacaros.bdi.rules import subplans, supervision
 from jacaros.bdi.state.budget import SearchLimit
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.event import Posted
@@ -16,7 +18,7 @@ from jacaros.bdi.state.intention import GOAL, PLAN, STEP, Frame, Intention
 from jacaros.bdi.state.literals import EventAnnotations
 from jacaros.bdi.state.plan import Fail, Failure, StepInfo
 from jacaros.bdi.state.supervision import SUPERVISED
-from jacaros.bdi.state.triggers import Goal
+from jacaros.bdi.state.triggers import Goal, Trigger
 from jacaros.errors import InternalError
 from jacaros.terms.iterative import CyclicTerm
 from jacaros.terms.operators import ArithmeticFault
@@ -186,12 +188,11 @@ def handler_event(agent: Circumstance, intention: Intention, reason: FailureReas
     goals below the one it handles. A goal with attempts left comes before its handler: the index of its frame is
     returned.
     """
-    frames, selects = intention.frames, agent.library.selects
-    handlers = len(intention.handlers)
-    index = len(frames) - 1
+    frames = intention.frames
+    found = _handler_index(agent, intention)
+    index, handlers = _goal_below(intention, len(frames), len(intention.handlers))
     while index >= 0:
         frame = frames[index]
-        trigger = frame[1][0]
         if (
             index
             and frames[index - 1][1][0] is SUPERVISED
@@ -200,39 +201,73 @@ def handler_event(agent: Circumstance, intention: Intention, reason: FailureReas
             del intention.handlers[handlers:]
             release_bindings(frame[1], frame[3])
             return index
-        if trigger.failing:
-            handlers -= 1
-            index = intention.handlers[handlers] - 1
-            continue
-        kind = trigger.on_fail
-        if kind is not None and (
-            selects[kind] is not None or (agent.features.subplans and handles(agent, intention, index, kind))
-        ):
+        if index == found:
             goal = frame[1]
             release_bindings(goal, frame[3])
             # Handlers above it have failed with the goals that they handled.
             intention.handlers[handlers:] = (index,)
-            return Posted((kind, *goal[1:]), reason.for_goal(frame[2]))
-        index -= 1
+            return Posted((goal[0].on_fail, *goal[1:]), reason.for_goal(frame[2]))
+        index, handlers = _goal_below(intention, index, handlers)
     return None
 
 
 def has_handler(agent: Circumstance, intention: Intention, above: int) -> bool:
     """Return whether a goal higher on the stack than the frame *above* has a handler that is not already running."""
-    handlers = len(intention.handlers)
-    index = len(intention.frames) - 1
-    while index > above:
-        trigger = intention.frames[index][GOAL][0]
-        if trigger.failing:
-            handlers -= 1
-            index = intention.handlers[handlers] - 1
-            continue
-        if trigger.on_fail is not None and handles(agent, intention, index, trigger.on_fail):
-            return True
+    found = _handler_index(agent, intention)
+    index, handlers = _goal_below(intention, len(intention.frames), len(intention.handlers))
+    while found <= above < index:
         if supervision.has_attempt(intention, index):
             return True
-        index -= 1
-    return False
+        index, handlers = _goal_below(intention, index, handlers)
+    return found > above
+
+
+def handles_own(agent: Circumstance, intention: Intention, kind: Trigger) -> bool:
+    """Return whether a goal without a plan has a handler of its own; as in Jason, only the innermost scope counts."""
+    scope = next(subplans.scopes(intention), None) if agent.features.subplans else None
+    if scope is None:
+        return agent.library.selects[kind] is not None
+    return subplans.has_inner(agent, scope, kind)
+
+
+def _goal_below(intention: Intention, index: int, handlers: int) -> tuple[int, int]:
+    """Return the index of the next goal down the stack that a running handler is not for, and the handlers below it."""
+    index -= 1
+    while index >= 0 and intention.frames[index][GOAL][0].failing:
+        handlers -= 1
+        index = intention.handlers[handlers] - 1
+    return index, handlers
+
+
+def _handler_index(agent: Circumstance, intention: Intention) -> int:
+    """Return the index of the frame whose goal has the handler, or -1.
+
+    As in Jason, each scope is searched for handlers of the whole stack before the scope around it is, and outside the
+    innermost scope the bottom goal comes first.
+    """
+    scoped = False
+    for scope in subplans.scopes(intention) if agent.features.subplans else ():
+        index = _first_handled(intention, scoped, partial(subplans.has_inner, agent, scope))
+        if index >= 0:
+            return index
+        scoped = True
+    selects = agent.library.selects
+    return _first_handled(intention, scoped, lambda kind: selects[kind] is not None)
+
+
+def _first_handled(intention: Intention, bottom_first: bool, has_plan: Callable[[Trigger], bool]) -> int:
+    frames = intention.frames
+    index, handlers = _goal_below(intention, len(frames), len(intention.handlers))
+    if bottom_first and 0 not in intention.handlers:
+        kind = frames[0][GOAL][0].on_fail
+        if kind is not None and has_plan(kind):
+            return 0
+    while index >= 0:
+        kind = frames[index][GOAL][0].on_fail
+        if kind is not None and has_plan(kind):
+            return index
+        index, handlers = _goal_below(intention, index, handlers)
+    return -1
 
 
 def told(fault: BaseException) -> str:

@@ -4,7 +4,7 @@ from typing import Any
 
 from jacaros.bdi.explaining import lost_goals
 from jacaros.bdi.explaining.failure_reason import FailureReason
-from jacaros.bdi.rules import failure, meta_events, subplans, supervision
+from jacaros.bdi.rules import failure, meta_events, supervision
 from jacaros.bdi.rules.forks import branch_failed
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.event import Posted
@@ -73,9 +73,7 @@ def fail_goal(
     if number < 0:
         agent.trail.serial += 1
         number = agent.trail.serial
-    if trigger.on_fail is not None and subplans.handles(
-        agent, intention, len(intention.frames), trigger.on_fail
-    ):
+    if trigger.on_fail is not None and failure.handles_own(agent, intention, trigger.on_fail):
         intention.handlers.append(len(intention.frames))
         if agent.features.meta:
             _tell_unplanned(agent, intention, (goal, annotations, number), reason)

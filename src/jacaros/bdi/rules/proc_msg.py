@@ -45,6 +45,8 @@ from jacaros.terms.values import (
 )
 
 ERROR = functor("error", 1)
+_IMMEDIATE = ("tell", "achieve", "signal")
+"""Performatives whose only effect is an event, which takes its place in the queue."""
 RECEIVED = trigger("+", "!", functor("kqml_received", 4))
 
 
@@ -54,40 +56,59 @@ def read_message(agent: Circumstance, message: SpeechAct) -> None:
     if observer is not None:
         observer.reads(message)
     try:
-        if (
-            message.in_reply_to is None
-            and agent.library.selects[RECEIVED] is None
-            and (action := _ACTIONS.get(message.performative)) is not None
-        ):
-            if agent.accepts(message):
-                action(agent, message)
-        else:
-            _process(agent, message)
+        if message.in_reply_to is None or not _answers_question(agent, message):
+            _receive(agent, message)
     except InternalError:
         raise
     except Exception as fault:
-        failure.report_skipped(agent, f"message ({message.performative}) from {message.sender}", fault)
-        if message.performative.startswith("ask"):
-            answer(agent, message, None)
+        _skip(agent, message, fault)
     if observer is not None:
         observer.reads(None)
 
 
-def _process(agent: Circumstance, message: SpeechAct) -> None:
-    """Process a message: an answer, refused, or handled by a plan for ``+!kqml_received``, which comes first."""
-    if message.in_reply_to is not None and _answers_question(agent, message):
-        return
+def _skip(agent: Circumstance, message: SpeechAct, fault: Exception) -> None:
+    failure.report_skipped(agent, f"message ({message.performative}) from {message.sender}", fault)
+    if message.performative.startswith("ask"):
+        answer(agent, message, None)
+
+
+def _receive(agent: Circumstance, message: SpeechAct) -> None:
+    """Receive a message unless it is refused: now, or as an event in the order of the queue.
+
+    As in Jason, ``+!kqml_received`` is posted for plans of the program. Questions and the like are posted, too, because
+    they must not overtake the effects of earlier messages, or see those of half an atomic plan.
+    """
     if not agent.accepts(message):
         return
-    if agent.library.selects[RECEIVED] is not None and _handled_by_program(agent, message):
-        return
+    waits_its_turn = message.performative not in _IMMEDIATE and (agent.events or agent.atomic is not None)
+    if waits_its_turn or agent.library.selects[RECEIVED] is not None:
+        sender, performative = atom(message.sender), atom(message.performative)
+        goal: Goal = (RECEIVED, sender, performative, message.content, atom(message.id))
+        agent.post((goal, None, BY_SELF, agent.cause_now()))
+    else:
+        _act(agent, message)
+
+
+def receive_event(agent: Circumstance, goal: Goal) -> None:
+    """Handle ``+!kqml_received(Sender, Performative, Content, Id)`` without a plan of the program for it."""
+    sender, performative, content, id = goal[1:]
+    message = SpeechAct(text(performative), text(sender), agent.name, content, text(id))
+    try:
+        _act(agent, message)
+    except InternalError:
+        raise
+    except Exception as fault:
+        _skip(agent, message, fault)
+
+
+def _act(agent: Circumstance, message: SpeechAct) -> None:
     action = _ACTIONS.get(message.performative)
-    if action is None:
-        agent.architecture.log(
-            "warning", f"unknown performative {message.performative} in a message from {message.sender}"
-        )
+    if action is not None:
+        action(agent, message)
         return
-    action(agent, message)
+    agent.architecture.log(
+        "warning", f"unknown performative {message.performative} in a message from {message.sender}"
+    )
 
 
 def _answers_question(agent: Circumstance, message: SpeechAct) -> bool:
@@ -145,17 +166,6 @@ def _told_by(content: Term, own_name: str, message: SpeechAct) -> Term:
 def nobody_there(receiver: str) -> tuple[str, Term]:
     """Describe why a message cannot be delivered: for the log, and as the error of the step."""
     return f"unknown receiver: '{receiver}'", (ERROR, atom("receiver_not_found"))
-
-
-def _handled_by_program(agent: Circumstance, message: SpeechAct) -> bool:
-    """Post ``+!kqml_received`` when the program has an applicable plan for it."""
-    goal = (RECEIVED, atom(message.sender), atom(message.performative), message.content, atom(message.id))
-    frame = agent.selections.select_option(goal, BY_SELF, None)
-    undo(agent.trail, 0)
-    if frame is None:
-        return False
-    agent.post((goal, None, BY_SELF, agent.cause_now()))
-    return True
 
 
 def from_sender(content: Term, sender: str) -> Term:

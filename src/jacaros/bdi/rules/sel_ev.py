@@ -5,6 +5,7 @@ from jacaros.bdi.rules.add_im import log_inapplicable, push, select_for_reasons
 from jacaros.bdi.rules.clr_int import remove_event
 from jacaros.bdi.rules.goal_failure import unplanned
 from jacaros.bdi.rules.holding import is_held_before_event
+from jacaros.bdi.rules.proc_msg import RECEIVED, receive_event
 from jacaros.bdi.state.circumstance import CROWD, Circumstance
 from jacaros.bdi.state.event import EVENT_CAUSE, EVENT_INTENTION, Event
 from jacaros.bdi.state.intention import PLAN, Frame, Intention
@@ -107,22 +108,11 @@ def begin_intention(agent: Circumstance, event: Event) -> bool:
 def begin_with(agent: Circumstance, event: Event, frame: Frame | None, reacted: bool) -> bool:
     """Begin an intention with the frame of the plan for an external event, if there is one."""
     goal, _, annotations, cause = event
-    trigger = goal[0]
     if frame is None:
-        if trigger.kind == "" or trigger.operator == "^":
-            if agent.options.verbose > 1 and not reacted and agent.library.selects[trigger] is not None:
-                log_inapplicable(agent, goal, annotations)
-            if agent.options.events == "requeue" and not reacted and trigger.operator != "^":
-                agent.waits.requeued.append(event)
-            return reacted
-        intention = agent.new_intention(cause)
-        posted = unplanned(agent, intention, goal, annotations)
-        if posted is not None:
-            agent.post((posted.goal, intention, posted.annotations, None))
-        return True
+        return _begin_without_plan(agent, event, reacted)
     intention = agent.new_intention(cause)
     intention.frames.append(frame)
-    if trigger.failing:
+    if goal[0].failing:
         intention.handlers.append(0)
     if frame[PLAN].atomic:
         agent.atomic, agent.atomic_over = intention, False
@@ -130,6 +120,26 @@ def begin_with(agent: Circumstance, event: Event, frame: Frame | None, reacted: 
         meta_events.frame_state(agent, intention, frame, "executing")
     if not agent.features.needs or needs.acquire(agent, intention):
         _take_place(agent, intention, goal, annotations)
+    return True
+
+
+def _begin_without_plan(agent: Circumstance, event: Event, reacted: bool) -> bool:
+    """Drop an external event, let a goal fail, or handle a message by default."""
+    goal, _, annotations, cause = event
+    trigger = goal[0]
+    if trigger.kind == "" or trigger.operator == "^":
+        if agent.options.verbose > 1 and not reacted and agent.library.selects[trigger] is not None:
+            log_inapplicable(agent, goal, annotations)
+        if agent.options.events == "requeue" and not reacted and trigger.operator != "^":
+            agent.waits.requeued.append(event)
+        return reacted
+    if trigger is RECEIVED:
+        receive_event(agent, goal)
+        return True
+    intention = agent.new_intention(cause)
+    posted = unplanned(agent, intention, goal, annotations)
+    if posted is not None:
+        agent.post((posted.goal, intention, posted.annotations, None))
     return True
 
 

@@ -1,5 +1,7 @@
 """Plans inside plans: they handle events while their plan is pursued, and see its variables."""
 
+from collections.abc import Iterator
+
 from jacaros.bdi.state.belief_base import MANY_NAMES
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.engine import Select
@@ -15,17 +17,23 @@ def select_in_scope(
     agent: Circumstance, intention: Intention, goal: Goal, annotations: EventAnnotations
 ) -> Frame | None:
     """Return the frame of the first applicable sub-plan: of the plan on top, then of the plans around it."""
-    top = len(intention.frames)
-    if goal[0].failing and intention.handlers:
-        # The failed plans are still on the stack; the handler belongs to the one that called them.
-        top = intention.handlers[-1]
-    frame: Frame | None = intention.frames[top - 1] if top else None
-    while frame is not None:
+    for frame in scopes(intention):
         found = _select(agent, frame, goal, annotations)
         if found is not None:
             return found
-        frame = _outer(intention, frame)
     return None
+
+
+def scopes(intention: Intention) -> Iterator[Frame]:
+    """Yield the frames whose sub-plans the plan on top can use, the innermost first.
+
+    A failed plan stays on top while its failure is handled.
+    """
+    frame: Frame | None = intention.frames[-1] if intention.frames else None
+    while frame is not None:
+        if frame[PLAN].subplans:
+            yield frame
+        frame = _outer(intention, frame)
 
 
 def _outer(intention: Intention, frame: Frame) -> Frame | None:
@@ -59,18 +67,9 @@ def _select_function(agent: Circumstance, plan: Plan, kind: Trigger) -> Select |
     return found
 
 
-def handles(agent: Circumstance, intention: Intention, index: int, kind: Trigger) -> bool:
-    """Return whether there is a plan for an event kind, as seen from a frame of an intention."""
-    if agent.library.selects[kind] is not None:
-        return True
-    if not agent.features.subplans:
-        return False
-    frame: Frame | None = intention.frames[index - 1] if index else None
-    while frame is not None:
-        if _select_function(agent, frame[PLAN], kind) is not None:
-            return True
-        frame = _outer(intention, frame)
-    return False
+def has_inner(agent: Circumstance, frame: Frame, kind: Trigger) -> bool:
+    """Return whether a frame's plan has a sub-plan for an event kind."""
+    return _select_function(agent, frame[PLAN], kind) is not None
 
 
 def react(

@@ -33,7 +33,8 @@ from jacaros.bdi.state.plan import Plan
 from jacaros.bdi.state.plan_library import concerns
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.bdi.state.triggers import Trigger, trigger
-from jacaros.terms.values import functor_of, is_list, list_items
+from jacaros.terms.text import text
+from jacaros.terms.values import Term, functor_of, is_list, list_items
 
 Item = TypeVar("Item")
 
@@ -174,8 +175,10 @@ class Urgent(Fair):
         return self._named.get(name, plan.urgency)
 
     def _of_event(self, event: Event) -> int:
-        urgency = self._of_kinds[event[EVENT_GOAL][0]]
-        intention = event[EVENT_INTENTION]
+        goal, intention = event[EVENT_GOAL], event[EVENT_INTENTION]
+        urgency = self._of_kinds[goal[0]]
+        if goal[0] is RECEIVED:
+            urgency = max(urgency, self._of_content(text(goal[2]), goal[3]))
         return urgency if intention is None else max(urgency, self.urgency_of(intention))
 
     def urgency_of(self, intention: Intention) -> int:
@@ -199,10 +202,12 @@ class Urgent(Fair):
 
     def _of_message(self, message: SpeechAct) -> int:
         """Return the urgency of the events that a message may lead to."""
-        urgency = self._of_kinds[RECEIVED]
-        kind = _TRIGGERS.get(message.performative)
+        return max(self._of_kinds[RECEIVED], self._of_content(message.performative, message.content))
+
+    def _of_content(self, performative: str, content: Term) -> int:
+        urgency = 0
+        kind = _TRIGGERS.get(performative)
         if kind is not None:
-            content = message.content
             for item in list_items(content) if is_list(content) else (content,):
                 symbol = functor_of(item)
                 if symbol is not None:

@@ -15,6 +15,7 @@ from jacaros.mas.embedding.running_agent import RunningAgent
 from jacaros.mas.embedding.stream import OnLog, OnPrint, PrintedLine, Stream
 from jacaros.mas.loading import load_deployment, mapped
 from jacaros.mas.options import RunOptions
+from jacaros.mas.source_path import source_folders
 
 if TYPE_CHECKING:
     from jacaros.env.artifact import Artifact
@@ -170,10 +171,9 @@ class Mas(EmbeddedRun):
             return Path(f"<{name}>")  # as diagnostics show it
         wanted = str(program) if program is not None else f"{name}.asl"
         try:
-            return self._open.lifecycle.programs.find(wanted)
-        except FileNotFoundError:
-            folders = ", ".join(map(str, self._open.lifecycle.programs.folders))
-            raise UsageError(f"program not found: {wanted}; expected in {folders}") from None
+            return self._open.lifecycle.programs.path.find(wanted)
+        except FileNotFoundError as missing:
+            raise UsageError(f"program not found: {wanted}; {missing}") from None
 
     def agent(self, name: str) -> RunningAgent:
         """Return the agent with this name.
@@ -365,7 +365,7 @@ def _deployment(
     elif project is not None:
         declared = load_deployment(project)
     else:
-        declared = Deployment(name, folder, artifact_environment=True, source_paths=(folder,))
+        declared = Deployment(name, folder, artifact_environment=True, source_paths=source_folders(folder))
     return mapped(declared, mappings)
 
 

@@ -8,11 +8,10 @@ from jacaros.asl.diagnostics import AslError
 from jacaros.asl.loader import parse_literals
 from jacaros.mas.agent_options import check_option
 from jacaros.mas.deployment import AgentSpec, FocusSpec
-from jacaros.mas.programs import TEST_LIBRARY, library_file
 from jacaros.mas.project.parts import AgentPart, ProjectPart, Written
 from jacaros.mas.project.places import ProjectPlaces
 from jacaros.mas.project.remarks import Remarks
-from jacaros.text_files import is_file
+from jacaros.mas.source_path import SourcePath
 
 _PROGRAM: Final = ".asl"
 _PYTHON: Final = ".py"
@@ -55,20 +54,14 @@ class ProjectAgents:
 
     def _source(self, agent: AgentPart) -> Path:
         """Return the file of an agent's program."""
-        written = (agent.source or agent.name).removeprefix("file:")
-        span = agent.source_span or agent.span
-        files = [written] if written.endswith((_PROGRAM, _PYTHON)) else [written + _PROGRAM, written]
-        for folder in agent.folders:
-            for file in files:
-                if is_file(folder / file):
-                    return folder / file
-        if Path(files[0]).name in TEST_LIBRARY:
-            return library_file(Path(files[0]).name)
-        help = "expected in " + ", ".join(str(folder) for folder in agent.folders)
-        if "://" in written:
-            help = "download the program: only files are supported"
-        self._remarks.error(f"program of agent `{agent.name}` not found: {files[0]}", span, help)
-        return (agent.folders or (Path(),))[0] / files[0]
+        written = agent.source or agent.name
+        try:
+            return SourcePath(agent.folders).find(written)
+        except FileNotFoundError as missing:
+            file = written if written.endswith((_PROGRAM, _PYTHON)) else written + _PROGRAM
+            message = f"program of agent `{agent.name}` not found: {file}"
+            self._remarks.error(message, agent.source_span or agent.span, str(missing))
+            return (agent.folders or (Path(),))[0] / file
 
     def _literals(self, written: list[Written], what: str) -> str:
         """Return the literals, joined. Report what is not a literal."""

@@ -13,16 +13,12 @@ from jacaros.mas.project.parts import ArtifactPart, FocusPart, ProjectPart, Work
 from jacaros.mas.project.places import ProjectPlaces
 from jacaros.mas.project.remarks import Remarks
 from jacaros.mas.project.unsupported import condensed, each
+from jacaros.mas.source_path import source_folders
 from jacaros.text_files import file_text, is_file
 
 _JCM: Final = ".jcm"
-_JCM_PATHS: Final = (".", "src/agt", "src/agt/inc")
-"""Folders that are searched for programs of a `.jcm` file without an ``asl-path``."""
-
-_JCM_CODE_PATHS: Final = ("src", "src/env", "src/agt")
-"""Further folders that are searched for its Python modules without a ``java-path``."""
-
-USUAL_PATHS: Final = (".", "src/agt", "src/agt/inc", "src/asl", "asl", "agents")
+_CODE_PATHS: Final = ("src", "src/env", "src/agt")
+"""Folders that are searched for Python modules of a `.jcm` file without a ``java-path``."""
 
 
 @dataclass(frozen=True)
@@ -130,28 +126,15 @@ def _read_part(suffix: str, cursor: ProjectCursor) -> ProjectPart:
     return read_mas2j(cursor)
 
 
-def _has_programs(folder: str) -> bool:
-    return next(Path(folder).glob("*.asl"), None) is not None
-
-
 def _complete(path: Path, part: ProjectPart) -> None:
-    """Resolve the folders and files that the project at *path* names, relative to it."""
+    """Resolve the folders and files that the project at *path* names."""
     base = path.parent
-    written = [folder for folder in part.source_paths if not folder.startswith("$")]
-    declared = [base / folder for folder in written]
-    # Jason searches the folder in which it is started.
-    declared += [Path(folder) for folder in written if not (base / folder).is_dir() and _has_programs(folder)]
-    if path.suffix == _JCM:
-        # As in JaCaMo, the first asl-path replaces the default folders, except for the project's own folder.
-        usual = [base / folder for folder in (_JCM_PATHS[:1] if part.source_paths else _JCM_PATHS)]
-        code = [base / folder for folder in part.code_paths or _JCM_CODE_PATHS]
-    else:
-        usual = [base / folder for folder in USUAL_PATHS]
-        code = []
-    programs = [*declared, *(folder for folder in usual if folder == base or folder.is_dir())]
+    declared = [folder for folder in part.source_paths if not folder.startswith("$")]
+    programs = source_folders(base, declared)
+    code = [base / folder for folder in part.code_paths or _CODE_PATHS] if path.suffix == _JCM else []
     part.folders = tuple(dict.fromkeys([*programs, *(folder for folder in code if folder.is_dir())]))
     for agent in part.agents:
-        agent.folders = tuple(dict.fromkeys(programs))
+        agent.folders = programs
     if part.world is not None and is_file(base / part.world):
         part.world = str(base / part.world)
 

@@ -72,13 +72,14 @@ def test_programs_are_found_in_jacamos_folders(folder: Path) -> None:
     }
 
 
-def test_an_asl_path_replaces_the_default_folders(folder: Path) -> None:
+def test_an_asl_path_comes_before_the_default_folders(folder: Path) -> None:
     (folder / "own").mkdir()
     (folder / "own" / "dora.asl").write_text("", encoding="utf-8")
-    text = 'mas m {\n agent dora\n agent bob\n asl-path: own, "more"\n "$jacamoJar/test/jacamo/inc"\n}'
+    text = 'mas m {\n agent dora\n agent zoe\n asl-path: own, "more"\n "$jacamoJar/test/jacamo/inc"\n}'
     (found,) = diagnostics(folder, text)
-    assert found.message == "program of agent `bob` not found: bob.asl"
-    assert found.help == f"expected in {folder / 'own'}, {folder / 'more'}, {folder}"
+    assert found.message == "program of agent `zoe` not found: zoe.asl"
+    assert found.help is not None
+    assert found.help.startswith(f"expected in {folder / 'own'}, {folder / 'more'}, {folder}")
 
 
 def test_programs_are_not_read_over_the_network(folder: Path) -> None:

@@ -95,7 +95,7 @@ def _test(compiler: BodyCompiler, step: nodes.Test, name: str, next_name: str) -
 def _test_goal(compiler: BodyCompiler, fn: FunctionBuilder, formula: nodes.Literal, next_name: str) -> None:
     """No answer in the belief base: a plan for the test goal may find one."""
     symbol = functor_of_literal(formula)
-    fn.line(f"if not agent.may_handle({fn.constant(trigger('+', '?', symbol))}): return FAILED")
+    fn.line(f"if not agent.may_test({fn.constant(trigger('+', '?', symbol))}): return FAILED")
     goal = _goal_expression(fn, "+", "?", formula)
     if formula.annotations is not None:
         items, tail = annotation_parts(fn, formula.annotations)

@@ -1,0 +1,2 @@
++!learn <- +known(42).
++jag_awaking <- +awake.

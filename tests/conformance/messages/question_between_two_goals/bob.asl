@@ -1,0 +1,3 @@
+v(0).
++!set(X) <- -+v(X).
++jag_awaking <- +awake.
