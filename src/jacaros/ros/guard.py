@@ -56,6 +56,15 @@ class Brakes:
         self._cancels: dict[Named, Publisher] = {}
         """Of actionlib's topics that cancel goals."""
         self._asking: set[asyncio.Future[Any]] = set()
+        self._acquainted: set[str] = set()
+        """Names of actions whose server has answered a request to cancel."""
+
+    @property
+    def found(self) -> dict[str, int]:
+        """The number of receivers of each topic and action. Where it is 0, nothing can be stopped yet."""
+        publishers = (*self._topics.items(), *self._cancels.items())
+        counts = {name: publisher.subscription_count for (name, _), publisher in publishers}
+        return counts | {name: int(name in self._acquainted) for name, _ in self._clients}
 
     @property
     def described(self) -> str:
@@ -96,14 +105,16 @@ class Brakes:
 
     def _open_client(self, item: Named) -> Client:
         client = self._backend.client(f"{item[0]}/_action/cancel_goal", "action_msgs/srv/CancelGoal")
-        self._begin(self._get_acquainted(client))
+        self._acquainted.discard(item[0])
+        self._begin(self._get_acquainted(item[0], client))
         return client
 
-    async def _get_acquainted(self, client: Client) -> None:
+    async def _get_acquainted(self, action: str, client: Client) -> None:
         """Cancel a goal that does not exist: the first call to a server is slower than later ones."""
         nothing = {"goal_info": {"goal_id": {"uuid": list(uuid.uuid4().bytes)}}}
         with suppress(RosError):
             await client.call(nothing, None)
+            self._acquainted.add(action)
 
     def _begin(self, work: Coroutine[Any, Any, None]) -> None:
         task = asyncio.ensure_future(work)
@@ -157,6 +168,8 @@ class Guard:
         self._writer: asyncio.StreamWriter | None = None
         self._node = "the agents"
         self._tripped_at = self._cancelled_at = -math.inf
+        self._trips = 0
+        self._reported: dict[str, int] = {}
         self._ending = False
         self._wake = asyncio.Event()
         self._wanted: tuple[list[Named], list[Named]] = ([], [])
@@ -224,8 +237,9 @@ class Guard:
     def _trip(self, why: str) -> None:
         now = asyncio.get_running_loop().time()
         self._tripped_at, self._cancelled_at = now, -math.inf
+        self._trips += 1
         self._brake(now)
-        self._report(tripped=why)
+        self._report()
         self._log(f"warning: {self._node}: {why}; the guard {self._brakes.described} until they return")
 
     def _release(self) -> None:
@@ -260,14 +274,14 @@ class Guard:
             self._node = message["node"]
             self._brakes.simulated_time = message["simulated_time"]
             self._wanted = (_pairs(message["topics"]), _pairs(message["actions"]))
-            if self._watch.tripped:
-                self._report(tripped=self._watch.tripped)
-            else:
+            if not self._watch.tripped:
                 self._cover()
-            self._report(ready=True)
+            self._report()
+        elif self._brakes.found != self._reported:
+            self._report()
         if message.get("leaving"):
             self._watch.expect_end()
-        if message.get("permit"):
+        if message.get("permit") == self._trips:
             self._watch.permit()
         if message.get("goodbye"):
             self._wanted = ([], [])
@@ -279,9 +293,10 @@ class Guard:
         self._watch.armed = any(self._wanted)
         self._brakes.cover(*self._wanted)
 
-    def _report(self, **fields: Any) -> None:
+    def _report(self) -> None:
+        self._reported = self._brakes.found
         if self._writer is not None:
-            self._writer.write(line(**fields))
+            self._writer.write(line(found=self._reported, tripped=self._watch.tripped, trip=self._trips))
 
 
 def _pairs(written: list[list[str]]) -> list[Named]:

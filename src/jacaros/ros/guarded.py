@@ -1,7 +1,7 @@
 """What a node drives, and what interrupts its motions: shared by its artifacts, its heartbeat and its motions."""
 
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from weakref import WeakKeyDictionary
 
 from jacaros.ros.backend import Backend
@@ -18,10 +18,12 @@ class Guarded:
 
     Attributes:
         on_change: called after an addition or removal.
+        found: of each guard, the number of receivers that it has found, by the name of the topic or action.
     """
 
     def __init__(self) -> None:
         self.on_change: Callable[[], None] = lambda: None
+        self.found: dict[str, Mapping[str, int]] = {}
         self._topics: Counter[Named] = Counter()
         self._actions: Counter[Named] = Counter()
         self._motions: list[Callable[[], None]] = []
@@ -37,6 +39,15 @@ class Guarded:
     def actions(self) -> list[Named]:
         """The actions with a client, sorted."""
         return sorted(self._actions)
+
+    def covered(self, name: str, receivers: int) -> bool:
+        """Return whether every guard has found as many *receivers* of a topic or action as this node has.
+
+        A guard joins the graph later than this node. Until it is matched, its zero velocity reaches no base.
+        """
+        if name not in dict((*self._topics, *self._actions)):
+            return True
+        return all(found.get(name, 0) >= receivers for found in self.found.values())
 
     def add_topic(self, name: str, type_name: str) -> Callable[[], None]:
         """Add a velocity topic. Return a function that removes it."""

@@ -5,12 +5,16 @@ A Unix socket connects one process of agents to its guard.  Each line is a JSON 
     {"node": N, "simulated_time": B, "topics": [[NAME, TYPE], ...], "actions": [[NAME, TYPE], ...]}
                       first, and whenever what they drive has changed
     {}                every `PERIOD` seconds, from their event loop: a loop that is stuck sends nothing
-    {"permit": true}  after `tripped`: their motions are interrupted, and the robot may be released
+    {"permit": N}     after trip number N: their motions are interrupted, and the robot may be released
     {"leaving": true} when their process begins to end: it stops the robot itself, and heartbeats may be late
     {"goodbye": true} before they close normally
 
-and the guard answers ``{"ready": true}`` when it can stop everything that was named, and ``{"tripped": WHY}`` when it has
-stopped the robot.
+and the guard answers, first and whenever one of these changes,
+
+    {"found": {NAME: N, ...}, "tripped": WHY, "trip": N}
+
+with the number of receivers that it has found for each topic and action, the reason for which it is stopping the robot
+(empty if it is not), and how often it has done so.
 """
 
 import asyncio
@@ -34,6 +38,8 @@ NO_GUARD = (
     "error: a guard needs Unix sockets, which Python does not have on Windows\n"
     "  = help: run the agents in WSL 2, on Linux or on macOS, or start them without --guard"
 )
+LOCAL = "the guard on this computer"
+"""Its key in `Guarded.found`."""
 UNREAD = 65536
 """Number of unread bytes after which a guard counts as gone."""
 
@@ -104,7 +110,7 @@ class Heartbeat:
         self._reading = asyncio.ensure_future(self._read(reader))
 
     async def wait_until_ready(self) -> None:
-        """Wait until the guard can stop everything that was named.
+        """Wait until the guard has opened everything that was named. What it has found is in `Guarded.found`.
 
         Raises:
             OSError: the guard is gone before that.
@@ -162,11 +168,12 @@ class Heartbeat:
         with suppress(OSError):
             while text := await reader.readline():
                 message = json.loads(text)
-                if message.get("ready") and self._ready is not None and not self._ready.done():
+                if self._ready is not None and not self._ready.done():
                     self._ready.set_result(None)
-                if message.get("tripped"):
+                self._guarded.found[LOCAL] = message["found"]
+                if message["tripped"]:
                     self._guarded.interrupt()
-                    self._send(line(permit=True))
+                    self._send(line(permit=message["trip"]))
         self._lose()
 
     def _lose(self) -> None:
@@ -180,6 +187,7 @@ class Heartbeat:
 
     def _end(self) -> None:
         self._writer = None
+        self._guarded.found[LOCAL] = {}
         self._guarded.on_change = lambda: None
         if self._timer is not None:
             self._timer.cancel()

@@ -92,6 +92,16 @@ def test_the_robot_stands_after_its_agents_are_killed(guarded: Callable[..., Gua
     wait_until(lambda: not is_running(run.guard), "the guard ends with the agents")
 
 
+def test_the_robot_stands_after_its_agents_are_killed_at_their_first_command(
+    guarded: Callable[..., Guarded],
+) -> None:
+    run = guarded("velocity", "velocity")
+    run.world.until_truth(lambda truth: truth.odometer() > 0.0, "the robot moves")
+    took = run.stood_after(run.agents.signal(signal.SIGKILL))
+    print(f"SIGKILL, first command: standing after {took:.2f} s")
+    assert took <= STATIONARY
+
+
 @pytest.mark.parametrize("driven", DRIVEN)
 def test_the_robot_stands_while_its_agents_are_frozen(guarded: Callable[..., Guarded], driven: str) -> None:
     run = guarded(driven, driven)

@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+import math
 from collections.abc import Awaitable, Callable
 from pathlib import Path
 from typing import Any
@@ -16,7 +17,7 @@ from jacaros.ros.backend import Backend
 from jacaros.ros.guard import STAMPED, Brakes, Guard
 from jacaros.ros.guarded import Guarded
 from jacaros.ros.guarding import LEAVING, Watch
-from jacaros.ros.heartbeat import Heartbeat, line
+from jacaros.ros.heartbeat import LOCAL, Heartbeat, line
 from jacaros.ros.open import open_backend
 
 TWIST = "geometry_msgs/msg/Twist"
@@ -127,7 +128,7 @@ class Lab:
         self.guard = Guard(backend, path, 0.3, True, self.lines.append)
         self.lost: list[bool] = []
         self.heartbeat = Heartbeat(self.guarded, "/robot", False, lambda: self.lost.append(True))
-        self.path = path
+        self.path, self.base = path, base
         base.subscription("/cmd_vel", TWIST, lambda sample: self.heard.append(sample.message.linear.x))
 
     async def connected(self) -> None:
@@ -185,6 +186,32 @@ def test_a_guard_sends_zero_until_the_agents_return_and_ends_with_them(tmp_path:
         "/robot: the guard has released the robot",
     ]
     assert not (tmp_path / "s").exists()
+
+
+def test_a_guard_reports_how_many_receivers_it_has_found(tmp_path: Path) -> None:
+    async def body(lab: Lab) -> None:
+        found = lab.guarded.found
+        await lab.until(lambda: found == {LOCAL: {"/cmd_vel": 1}})
+        lab.guarded.add_topic("/late", TWIST)
+        assert not lab.guarded.covered("/late", 1)
+        await lab.until(lambda: found == {LOCAL: {"/cmd_vel": 1, "/late": 0}})
+        lab.base.subscription("/late", TWIST, lambda sample: None)
+        await lab.until(lambda: lab.guarded.covered("/late", 1))
+        await lab.heartbeat.close()
+
+    in_lab(tmp_path, body)
+
+
+def test_a_permit_for_an_earlier_trip_does_not_release_the_robot(tmp_path: Path) -> None:
+    async def body(lab: Lab) -> None:
+        lab.guard._watch.look(math.inf)
+        lab.guard._take({"permit": 0})
+        assert lab.guard._watch.tripped
+        lab.guard._take({"permit": 1})
+        assert not lab.guard._watch.tripped
+        await lab.heartbeat.close()
+
+    in_lab(tmp_path, body)
 
 
 def test_a_guard_that_dies_before_it_is_ready_does_not_count_as_lost(tmp_path: Path) -> None:

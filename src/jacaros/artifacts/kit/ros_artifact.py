@@ -125,6 +125,7 @@ class RosArtifact(SensingArtifact):
         options = GoalOptions(
             timeout, self._feedback(on_feedback), under_way, suspend, pause, resume, aborted
         )
+        await self.guarded(client)
         try:
             return await self.step(
                 GoalRunner(client, goal, options, self.clock, self.current, self.log).run()
