@@ -147,6 +147,7 @@ class ConnectedArtifact(Artifact):
             self.at_dispose(guarded_by(self.ros).add_topic(made.topic, full))
             changed = partial(self.start, self.show_other_publisher, made.topic)
             self.kept(OtherPublishers(self.ros, self.clock, made.topic, changed, self.log))
+            guarded_by(self.ros).watch(made)
         return made
 
     @internal_operation
