@@ -40,6 +40,11 @@ def _moves(message: Any) -> bool:
     )
 
 
+def guards_of(node: str) -> set[str]:
+    """Return the names of the guards of a node: the one on the robot's computer, and the one that the run starts."""
+    return {f"{node}_guard", f"{node}_local_guard"}
+
+
 class Guarded:
     """The velocity topics and actions of one node, which a guard stops if the node no longer can.
 
