@@ -53,11 +53,11 @@ class RunGuard:
         try:
             async with asyncio.timeout(STARTING):
                 await self._connect()
-                await self._graph_heartbeat.wait_for_answer()
         except TimeoutError:
             raise UsageError(
                 f"the guard did not start within {STARTING:g} s; run `jacaros guard` to see the reason"
             ) from None
+        await self._graph_heartbeat.wait_for_answer()
 
     async def close(self) -> None:
         """Report to the guard that the robot has been stopped and the run has ended."""

@@ -81,9 +81,8 @@ class Guarded:
 
         A guard joins the graph later than this node. Until it is matched, its zero velocity reaches no base.
         """
-        if name not in dict((*self._topics, *self._actions)):
-            return True
-        return all(found.get(name, 0) >= receivers for found in self.found.values())
+        ready = all(found.get(name, 0) >= receivers for found in self.found.values())
+        return ready or name not in dict((*self._topics, *self._actions))
 
     @property
     def driving(self) -> bool:
