@@ -31,26 +31,24 @@ LEAST_TIMEOUT = 0.15
     "--timeout",
     cls=VariableOption,
     type=click.FloatRange(min=LEAST_TIMEOUT),
-    default=0.3,
     metavar="S",
-    show_default=True,
     envvar="JACAROS_GUARD_TIMEOUT",
     show_envvar=True,
-    help="Seconds without a heartbeat after which the guard stops the robot. Larger values cause fewer false alarms on "
-    "a busy machine.",
+    help="Seconds without a heartbeat after which the guard stops the robot (default: 0.3 for agents on this computer, "
+    "0.5 over the graph). Larger values cause fewer false alarms on a busy machine or network.",
 )
 @click.option("--once", is_flag=True, help="Exit when the agents have shut down, or when none connect.")
 def command(
     name: str,
-    timeout: float,
+    timeout: float | None,
     once: bool,
     **graph: Any,
 ) -> None:
     """Guard the robot of the agents whose node is named NAME, until you press Ctrl+C.
 
-    `jacaros run --guard` on the same machine and graph finds this guard and sends it heartbeats. When the heartbeats stop,
-    the guard cancels all goals of the actions that the agents use, and publishes zero velocity to their topics until the
-    agents return.
+    `jacaros run --guard` in the same graph sends heartbeats to this guard, from the same computer or from another one.
+    When they stop, the guard cancels all goals of the actions that the agents use, and publishes zero velocity to their
+    topics until the agents return. Start it on the robot's computer to stop the robot when that loses its network.
     """  # fmt: skip
     from jacaros.ros.address import GraphAddress
     from jacaros.ros.guard import Guard
@@ -60,10 +58,11 @@ def command(
     address.check()
 
     async def main() -> None:
-        backend = address.open(WallClock(), f"{name}_guard", _log)
+        # Beside a guard on the robot's computer: ROS 1 ends a node when another one takes its name.
+        backend = address.open(WallClock(), f"{name}_local_guard" if once else f"{name}_guard", _log)
         agents = f"{backend.node_name.rpartition('/')[0]}/{name}"
         path = socket_path(address.ros, address.identity, agents)
-        await Guard(backend, path, timeout, once, _log, _leave_output if once else lambda: None).run()
+        await Guard(backend, agents, path, timeout, once, _log, _leave_output if once else lambda: None).run()
 
     run(main, WallClock())
 

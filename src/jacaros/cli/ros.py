@@ -3,7 +3,7 @@
 import sys
 from collections.abc import Awaitable, Callable
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
@@ -13,6 +13,10 @@ from jacaros.cli.variables import settled
 from jacaros.mas.options import RunOptions
 from jacaros.ros.middleware import MIDDLEWARES
 from jacaros.text_files import shown_from
+
+if TYPE_CHECKING:
+    from jacaros.artifacts.mapping.declared import MappingFile
+    from jacaros.cli.graph.joining import Joined
 
 F = TypeVar("F", bound=Callable[..., Any])
 T = TypeVar("T")
@@ -185,40 +189,93 @@ def map_command(
 
 @command.command(
     "check",
-    short_help="Check a mapping file against the graph.",
-    epilog=examples("jacaros ros check robot.yaml --ros ros2"),
+    short_help="Check a mapping file against the graph, or what the base does when commands cease.",
+    epilog=examples(
+        "jacaros ros check robot.yaml --ros ros2",
+        "jacaros ros check --base-timeout --ros ros2 --namespace robot_1",
+    ),
 )
-@click.argument("file", type=click.Path(path_type=Path))
+@click.argument("file", type=click.Path(path_type=Path), required=False)
 @_asking
-def check_command(file: Path, **graph: Any) -> int:
+@click.option(
+    "--base-timeout",
+    is_flag=True,
+    help="Drive the robot at 0.05 m/s for a second, send no more commands, and report when its base stops; at the end, "
+    "stop the robot.",
+)
+@click.option("--yes", is_flag=True, help="Drive without asking whether the way is free.")
+def check_command(file: Path | None, base_timeout: bool, yes: bool, **graph: Any) -> int:
     """Check that the topics, servers, frames and parameters in the mapping FILE exist in the graph, with the same types.
 
     Each problem is reported with its line, what was found, and a suggested fix. The exit code is 1 if there is one. A
     warning names other nodes that publish velocities to the same robot.
+
+    With --base-timeout, FILE can be omitted; it names the topics if the robot's are not `cmd_vel` and `odom`. The exit
+    code is 1 if the base keeps driving when commands cease.
     """  # fmt: skip
+    if file is None and not base_timeout:
+        raise usage_error("missing argument: `FILE`", "name a mapping file, or add --base-timeout")
+    if base_timeout and not yes and not _may_drive(graph["ros"]):
+        return 1
     from jacaros.artifacts.mapping.file import find_mapping, load_mapping
-    from jacaros.cli.graph import listening
     from jacaros.cli.graph.joining import Joined
+
+    mapping = None if file is None else load_mapping(find_mapping(str(file)) or file)
+
+    async def look(joined: Joined) -> int:
+        problems = 0 if mapping is None else await _check_mapping(joined, mapping, str(file))
+        drives = not base_timeout or await _check_base(joined, mapping, graph["namespace"])
+        return 0 if not problems and drives else 1
+
+    return _in_graph(look, **graph)
+
+
+async def _check_mapping(joined: "Joined", mapping: "MappingFile", name: str) -> int:
+    """Print the problems of a mapping file, and return their number."""
+    from jacaros.cli.graph import listening
     from jacaros.cli.graph.verifying import problems_of, warnings_of
-    from jacaros.yaml_nodes import Problem, shown
+    from jacaros.yaml_nodes import shown
 
-    mapping = load_mapping(find_mapping(str(file)) or file)
-
-    async def look(joined: Joined) -> tuple[list[Problem], list[Problem]]:
-        parts = mapping.artifacts.values()
-        frames = await listening.frames(joined) if any(part.frames for part in parts) else {}
-        problems = [each for part in parts for each in await problems_of(joined, part, frames)]
-        return problems, list(dict.fromkeys(each for part in parts for each in warnings_of(joined, part)))
-
-    problems, warnings = _in_graph(look, **graph)
+    parts = mapping.artifacts.values()
+    frames = await listening.frames(joined) if any(part.frames for part in parts) else {}
+    problems = [each for part in parts for each in await problems_of(joined, part, frames)]
+    warnings = list(dict.fromkeys(each for part in parts for each in warnings_of(joined, part)))
     lines = mapping.text.splitlines()
     for problem in problems:
         click.echo(shown(mapping.file, lines, problem))
     for warning in warnings:
         click.echo(shown(mapping.file, lines, warning, "warning: "))
     count = f"{len(problems)} problem{'s' if len(problems) != 1 else ''}"
-    click.echo(f"{count} with this graph" if problems else f"{file} matches this graph", err=bool(problems))
-    return 1 if problems else 0
+    click.echo(f"{count} with this graph" if problems else f"{name} matches this graph", err=bool(problems))
+    return len(problems)
+
+
+def _may_drive(ros: str) -> bool:
+    """Ask whether a real robot may drive."""
+    from jacaros.cli.graph.base_timeout import QUESTION
+
+    if ros == "memory":
+        return True
+    if not sys.stdin.isatty():
+        raise usage_error("--base-timeout drives the robot", "check that the way is free, and add --yes")
+    return click.confirm(QUESTION, err=True)
+
+
+async def _check_base(joined: "Joined", mapping: "MappingFile | None", namespace: str) -> bool:
+    """Drive, print what the base did, and return whether it stops by itself."""
+    from jacaros.cli.graph.base_timeout import Drive, find_base, verdict
+    from jacaros.cli.graph.verifying import topics_of
+
+    parts = mapping.artifacts.values() if mapping is not None else ()
+    named = {name for part in parts for name in topics_of(joined, part)}
+    command, odometry = find_base(joined, named, namespace)
+    click.echo(f"driving with `{command.name}`, watching `{odometry.name}`")
+    if command.publishers:
+        others = sorted({each.node or "an unknown node" for each in command.publishers})
+        click.echo(f"warning: {', '.join(others)} may command `{command.name}`, too", err=True)
+    ceased = await Drive(joined, command, odometry).run()
+    click.echo(verdict(ceased))
+    return ceased.seconds is not None
 
 
 def _in_graph(

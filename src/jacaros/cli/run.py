@@ -91,8 +91,8 @@ SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
 @click.option(
     "--guard",
     is_flag=True,
-    help="Start a separate process that stops the robot if this one dies, freezes or is stuck (real graphs only); a "
-    "running `jacaros guard` for this node is used instead.",
+    help="Start a separate process that stops the robot if this one dies, freezes or is stuck (real graphs only), or use "
+    "a running `jacaros guard` for this node; also publish a heartbeat for a guard on the robot's computer.",
 )
 @graph_options
 @orphans_option

@@ -1,4 +1,4 @@
-"""The guard of a run: find or start it, and send it the heartbeat of the run."""
+"""The guards of a run: find or start the one on this computer, and send the heartbeat to it and over the graph."""
 
 import asyncio
 import subprocess
@@ -9,6 +9,7 @@ from contextlib import suppress
 from jacaros.errors import UsageError
 from jacaros.ros.address import GraphAddress
 from jacaros.ros.backend import Backend
+from jacaros.ros.graph_heartbeat import GraphHeartbeat
 from jacaros.ros.guarded import guarded_by
 from jacaros.ros.heartbeat import Heartbeat, socket_path
 
@@ -19,7 +20,7 @@ RETRY = 0.05
 
 
 class RunGuard:
-    """Keeps a guard beside a run, from its start to its end.
+    """Keeps a guard beside a run, from its start to its end, and publishes a heartbeat for guards on other computers.
 
     A running guard for this node is reused: it may have been started separately, or have stopped the robot after an
     earlier run died. Otherwise one is started. It outlives the agents unless they shut down in order.
@@ -37,6 +38,7 @@ class RunGuard:
         self._address, self._backend, self._simulated_time, self._log = address, backend, simulated_time, log
         self._path = socket_path(address.ros, address.identity, backend.node_name)
         self._heartbeat: Heartbeat | None = None
+        self._graph_heartbeat: GraphHeartbeat | None = None
         self._returning: asyncio.Task[None] | None = None
         self._process: subprocess.Popen[bytes] | None = None
 
@@ -47,6 +49,7 @@ class RunGuard:
             UsageError: the guard was not ready in time.
         """
         self._backend.add_exit_hook(self._leaving)
+        self._graph_heartbeat = GraphHeartbeat(self._backend, self._simulated_time, self._log)
         try:
             async with asyncio.timeout(STARTING):
                 await self._connect()
@@ -54,19 +57,20 @@ class RunGuard:
             raise UsageError(
                 f"the guard did not start within {STARTING:g} s; run `jacaros guard` to see the reason"
             ) from None
+        await self._graph_heartbeat.wait_for_answer()
 
     async def close(self) -> None:
         """Report to the guard that the robot has been stopped and the run has ended."""
         if self._returning is not None:
             self._returning.cancel()
+        if self._graph_heartbeat is not None:
+            self._graph_heartbeat.close()
         if self._heartbeat is not None:
             await self._heartbeat.close()
 
     async def _connect(self) -> None:
         while True:
-            heartbeat = Heartbeat(
-                guarded_by(self._backend), self._backend.node_name, self._simulated_time, self._lost
-            )
+            heartbeat = Heartbeat(guarded_by(self._backend), self._simulated_time, self._lost)
             with suppress(OSError):
                 await heartbeat.connect(self._path)
                 self._heartbeat = heartbeat
@@ -80,6 +84,8 @@ class RunGuard:
     def _leaving(self) -> None:
         if self._heartbeat is not None:
             self._heartbeat.leaving()
+        if self._graph_heartbeat is not None:
+            self._graph_heartbeat.goodbye()
 
     def _launch(self) -> None:
         name = self._backend.node_name.rpartition("/")[2]

@@ -80,7 +80,13 @@ class Sample:
 
 
 class Publisher(Protocol):
-    """Publishes on a topic."""
+    """Publishes on a topic.
+
+    Attributes:
+        watcher: called with each message before it is sent; None for no watcher.
+    """
+
+    watcher: Callable[[Any], None] | None
 
     @property
     def topic(self) -> str:

@@ -1,33 +1,31 @@
 """The guard process, which stops the robot when its agents no longer can.
 
-It receives the heartbeat of one process of agents (`jacaros.ros.heartbeat`) and joins the same ROS graph under a name
-of its own. It opens publishers and clients for everything the agents drive before they are needed, because discovery
-takes longer than a robot may keep driving.
+It receives the heartbeat of one process of agents (`jacaros.ros.heartbeat`), on the same computer or over the graph,
+and joins the same ROS graph under a name of its own.
 """
 
 import asyncio
 import json
 import math
+import secrets
 import signal
 import socket
 import sys
-import uuid
-from collections.abc import Callable, Coroutine
+from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 from jacaros.errors import UsageError
-from jacaros.ros.backend import Backend, Client, Publisher
-from jacaros.ros.errors import RosError, ServiceError
+from jacaros.ros.backend import Backend, Sample
+from jacaros.ros.brakes import CANCELLING, Brakes
+from jacaros.ros.graph_heartbeat import NEWEST, TEXT, topics_of
 from jacaros.ros.guarded import Named
 from jacaros.ros.guarding import Watch
 from jacaros.ros.heartbeat import NO_GUARD, line
 
 PERIOD = 0.05
 """Seconds between two zero velocities while the robot is being stopped."""
-CANCELLING = 0.25
-"""Seconds between two requests to cancel all goals, and the maximum wait for an answer."""
 CANCELLED = 2.0
 """Seconds during which goals are cancelled: one may be on its way. Later ones are not the agents'."""
 CONNECTING = 15.0
@@ -36,97 +34,10 @@ GOODBYE = 5.0
 """Seconds that the agents have to end after guard and agents received a signal."""
 ENDING = 1.0
 """Seconds for which a guard stops the robot even after a signal to end."""
-STAMPED = "geometry_msgs/msg/TwistStamped"
-
-
-class Brakes:
-    """Publishers and clients that stop everything the agents drive.
-
-    Args:
-        backend: the guard's node.
-        log: called with one line.
-    """
-
-    def __init__(self, backend: Backend, log: Callable[[str], None]) -> None:
-        self.simulated_time = False
-        self._backend, self._log = backend, log
-        self._topics: dict[Named, Publisher] = {}
-        self._clients: dict[Named, Client] = {}
-        """Of ROS 2's services that cancel goals."""
-        self._cancels: dict[Named, Publisher] = {}
-        """Of actionlib's topics that cancel goals."""
-        self._asking: set[asyncio.Future[Any]] = set()
-
-    @property
-    def described(self) -> str:
-        """Text that lists what is stopped."""
-        goals = [f"cancels all goals of {name}" for name, _ in (*self._clients, *self._cancels)]
-        return ", ".join([*goals, *(f"sends zero velocity to {name}" for name, _ in self._topics)])
-
-    def cover(self, topics: list[Named], actions: list[Named]) -> None:
-        """Open what is named, and close the rest."""
-        _keep(self._topics, topics, self._open_topic, self._log)
-        if self._backend.ros_version == 1:
-            _keep(self._cancels, actions, self._open_cancel, self._log)
-        else:
-            _keep(self._clients, actions, self._open_client, self._log)
-
-    def stop(self) -> None:
-        """Send zero velocity to every topic."""
-        for (_, kind), publisher in self._topics.items():
-            message = publisher.message()
-            if kind == STAMPED and not self.simulated_time:
-                # A zero stamp means "now"; some bases require a real one.
-                message = publisher.message(header={"stamp": self._backend.clock.now()})
-            publisher.publish(message)
-
-    def cancel(self) -> None:
-        """Ask every action server to cancel all its goals, without waiting for the answers."""
-        # In both protocols an empty id and no stamp mean all goals.
-        for publisher in self._cancels.values():
-            publisher.publish(publisher.message())
-        for client in self._clients.values():
-            self._begin(_call(client, {}))
-
-    def _open_topic(self, item: Named) -> Publisher:
-        return self._backend.publisher(*item)
-
-    def _open_cancel(self, item: Named) -> Publisher:
-        return self._backend.publisher(f"{item[0]}/cancel", "actionlib_msgs/msg/GoalID")
-
-    def _open_client(self, item: Named) -> Client:
-        client = self._backend.client(f"{item[0]}/_action/cancel_goal", "action_msgs/srv/CancelGoal")
-        self._begin(self._get_acquainted(client))
-        return client
-
-    async def _get_acquainted(self, client: Client) -> None:
-        """Cancel a goal that does not exist: the first call to a server is slower than later ones."""
-        nothing = {"goal_info": {"goal_id": {"uuid": list(uuid.uuid4().bytes)}}}
-        with suppress(RosError):
-            await client.call(nothing, None)
-
-    def _begin(self, work: Coroutine[Any, Any, None]) -> None:
-        task = asyncio.ensure_future(work)
-        self._asking.add(task)
-        task.add_done_callback(self._asking.discard)
-
-
-async def _call(client: Client, request: dict[str, Any]) -> None:
-    with suppress(ServiceError):
-        await client.call(request, CANCELLING)
-
-
-def _keep(
-    made: dict[Named, Any], wanted: list[Named], make: Callable[[Named], Any], log: Callable[[str], None]
-) -> None:
-    for item in [item for item in made if item not in wanted]:
-        made.pop(item).close()
-    for item in wanted:
-        if item not in made:
-            try:
-                made[item] = make(item)
-            except RosError as problem:
-                log(f"warning: {item[0]} cannot be stopped: {problem}")
+TIMEOUT = 0.3
+"""Seconds without a heartbeat from the same computer after which the guard stops the robot."""
+NETWORK_TIMEOUT = 0.5
+"""The same over the graph: Wi-Fi often delays messages by 0.3 s."""
 
 
 class Guard:
@@ -134,9 +45,10 @@ class Guard:
 
     Args:
         backend: the guard's node.
+        agents: absolute name of the agents' node.
         path: path of the socket.
-        timeout: seconds without a heartbeat after which it stops the robot.
-        once: end when the agents have ended normally, or if none connect.
+        timeout: seconds without a heartbeat after which it stops the robot; None: `TIMEOUT` and `NETWORK_TIMEOUT`.
+        once: end when the agents have ended normally, or if none connect; agents on other computers are ignored.
         log: called with one line.
         orphaned: called when agents have died, after that was logged.
     """
@@ -144,19 +56,25 @@ class Guard:
     def __init__(
         self,
         backend: Backend,
+        agents: str,
         path: Path,
-        timeout: float,
+        timeout: float | None,
         once: bool,
         log: Callable[[str], None],
         orphaned: Callable[[], None] = lambda: None,
     ) -> None:
-        self._backend, self._path, self._once, self._log = backend, path, once, log
+        self._backend, self._agents, self._path, self._once, self._log = backend, agents, path, once, log
         self._orphaned = orphaned
-        self._watch = Watch(timeout, self._trip, self._release)
+        self._network_timeout = NETWORK_TIMEOUT if timeout is None else timeout
+        self._watch = Watch(TIMEOUT if timeout is None else timeout, self._trip, self._release)
         self._brakes = Brakes(backend, log)
         self._writer: asyncio.StreamWriter | None = None
-        self._node = "the agents"
+        self._answer: Callable[[bytes], None] = lambda message: None
+        self._run = ""
+        """The run that is heard over the graph."""
         self._tripped_at = self._cancelled_at = -math.inf
+        self._trip_id = ""
+        self._reported: dict[str, int] = {}
         self._ending = False
         self._wake = asyncio.Event()
         self._wanted: tuple[list[Named], list[Named]] = ([], [])
@@ -171,19 +89,24 @@ class Guard:
             raise UsageError(NO_GUARD)
         loop = asyncio.get_running_loop()
         listening = _listening(self._path)
+        made = self._path.stat().st_ino
         try:
             await self._backend.start()
             # Set afterwards: the backend's own handlers would refuse the messages that still stop the robot.
             for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
                 loop.add_signal_handler(number, self._end)
             server = await asyncio.start_unix_server(self._serve, sock=listening)
+            if not self._once:
+                self._listen()
             await self._guard(loop)
             server.close()
             await self._disconnect()
             await self._backend.close()
         finally:
             listening.close()
-            self._path.unlink(missing_ok=True)
+            with suppress(FileNotFoundError):
+                if self._path.stat().st_ino == made:  # the next guard of these agents may have replaced it
+                    self._path.unlink()
 
     async def _disconnect(self) -> None:
         writer, self._writer = self._writer, None
@@ -197,6 +120,7 @@ class Guard:
         while True:
             now = loop.time()
             rest = min(self._watch.look(now), PERIOD if self._watch.tripped else 1.0)
+            self._forget_gone()
             if self._watch.tripped:
                 self._brake(now)
             if self._ending and not self._watch.agents and now - self._tripped_at >= ENDING:
@@ -224,19 +148,52 @@ class Guard:
     def _trip(self, why: str) -> None:
         now = asyncio.get_running_loop().time()
         self._tripped_at, self._cancelled_at = now, -math.inf
+        self._trip_id = secrets.token_hex(4)
         self._brake(now)
-        self._report(tripped=why)
-        self._log(f"warning: {self._node}: {why}; the guard {self._brakes.described} until they return")
+        self._report()
+        self._log(f"warning: {self._agents}: {why}; the guard {self._brakes.described} until they return")
 
     def _release(self) -> None:
         self._cover()
-        self._log(f"{self._node}: the guard has released the robot")
+        self._log(f"{self._agents}: the guard has released the robot")
+
+    def _forget_gone(self) -> None:
+        if not (self._watch.agents or self._watch.tripped) and any(self._wanted):
+            self._wanted = ([], [])
+            self._cover()
 
     # ---- the heartbeat
 
+    def _listen(self) -> None:
+        """Listen to agents on other computers."""
+        heartbeat, answer = topics_of(self._agents)
+        publisher = self._backend.publisher(answer, TEXT, NEWEST)
+        self._answer = lambda message: publisher.publish({"data": message.decode()})
+        self._backend.subscription(heartbeat, TEXT, self._hear, NEWEST)
+
+    def _hear(self, sample: Sample) -> None:
+        """Take a heartbeat from the graph, unless the agents are on this computer and were heard already."""
+        watch = self._watch
+        try:
+            message = json.loads(sample.message.data)
+            run, driving, permits = message["run"], message["driving"], message["permits"]
+        except (ValueError, KeyError, TypeError):
+            return  # another program uses the topic
+        if self._writer is not None or (run != self._run and watch.agents and not watch.tripped):
+            return
+        if not watch.agents:
+            watch.connect(asyncio.get_running_loop().time(), self._network_timeout)
+        elif message["goodbye"] and watch.driving:
+            self._brakes.stop()  # the zero velocity of the agents may have been lost
+        self._run, watch.driving = run, driving
+        self._take(message | {"permit": permits.get(self._backend.node_name)})
+
     async def _serve(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-        if self._watch.agents and not self._watch.tripped:
-            writer.close()  # two processes with one name: the first keeps its guard
+        # Of two processes with one name, the first keeps its guard; one that is ending takes no others.
+        if (self._writer is not None and not self._watch.tripped) or (
+            self._ending and not self._watch.agents
+        ):
+            writer.close()
             return
         if self._writer is not None:
             self._writer.close()  # that of a frozen process
@@ -257,31 +214,38 @@ class Guard:
     def _take(self, message: dict[str, Any]) -> None:
         self._watch.beat(asyncio.get_running_loop().time())
         if "topics" in message:
-            self._node = message["node"]
             self._brakes.simulated_time = message["simulated_time"]
             self._wanted = (_pairs(message["topics"]), _pairs(message["actions"]))
-            if self._watch.tripped:
-                self._report(tripped=self._watch.tripped)
-            else:
+            if not self._watch.tripped:
                 self._cover()
-            self._report(ready=True)
+            self._report()
+        elif self._brakes.found != self._reported:
+            self._report()
         if message.get("leaving"):
             self._watch.expect_end()
-        if message.get("permit"):
+        if message.get("permit") == self._trip_id:
             self._watch.permit()
         if message.get("goodbye"):
-            self._wanted = ([], [])
             self._watch.leave()
-            self._cover()
+            self._forget_gone()
             self._ending = self._ending or self._once
 
     def _cover(self) -> None:
         self._watch.armed = any(self._wanted)
         self._brakes.cover(*self._wanted)
 
-    def _report(self, **fields: Any) -> None:
+    def _report(self) -> None:
+        self._reported = self._brakes.found
+        state = line(
+            guard=self._backend.node_name,
+            found=self._reported,
+            tripped=self._watch.tripped,
+            trip=self._trip_id,
+        )
         if self._writer is not None:
-            self._writer.write(line(**fields))
+            self._writer.write(state)
+        elif self._watch.agents:
+            self._answer(state)
 
 
 def _pairs(written: list[list[str]]) -> list[Named]:

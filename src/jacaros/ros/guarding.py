@@ -22,6 +22,8 @@ class Watch:
     Attributes:
         agents: whether agents are connected.
         armed: whether they drive anything; otherwise there is nothing to stop.
+        driving: whether the robot may be moving when heartbeats cease. Only agents on other computers report this:
+            one that loses its network while its robot stands must not disturb other drivers of the robot.
         tripped: why the robot is being stopped; empty if it is not.
     """
 
@@ -29,16 +31,22 @@ class Watch:
         self, timeout: float, on_trip: Callable[[str], None], on_release: Callable[[], None]
     ) -> None:
         self.agents = self.armed = False
+        self.driving = True
         self.tripped = ""
         self._timeout = timeout
         self._on_trip, self._on_release = on_trip, on_release
         self._patience = timeout
         self._heard = 0.0
 
-    def connect(self, now: float) -> None:
-        """Note that agents have connected. A tripped guard stays tripped until they release it."""
-        self.agents = True
-        self._patience = self._timeout
+    def connect(self, now: float, timeout: float | None = None) -> None:
+        """Note that agents have connected. A tripped guard stays tripped until they release it.
+
+        Args:
+            now: the time.
+            timeout: seconds without a heartbeat, instead of those of the watch.
+        """
+        self.agents = self.driving = True
+        self._patience = self._timeout if timeout is None else timeout
         self._heard = now
 
     def beat(self, now: float) -> None:
@@ -67,12 +75,15 @@ class Watch:
 
     def look(self, now: float) -> float:
         """Trip if heartbeats ceased. Return the seconds until the next check, at most the time-out."""
-        if not (self.agents and self.armed) or self.tripped:
+        if not self.agents or self.tripped or (self.driving and not self.armed):
             return self._timeout
         silence = now - self._heard
         if silence < self._patience:
             return self._patience - silence
-        self._trip(f"no heartbeat from the agents for {silence:.2f} s")
+        if self.driving:
+            self._trip(f"no heartbeat from the agents for {silence:.2f} s")
+        else:
+            self.leave()
         return self._timeout
 
     def _trip(self, why: str) -> None:

@@ -2,15 +2,19 @@
 
 A Unix socket connects one process of agents to its guard.  Each line is a JSON object.  The agents send
 
-    {"node": N, "simulated_time": B, "topics": [[NAME, TYPE], ...], "actions": [[NAME, TYPE], ...]}
+    {"simulated_time": B, "topics": [[NAME, TYPE], ...], "actions": [[NAME, TYPE], ...]}
                       first, and whenever what they drive has changed
     {}                every `PERIOD` seconds, from their event loop: a loop that is stuck sends nothing
-    {"permit": true}  after `tripped`: their motions are interrupted, and the robot may be released
+    {"permit": TRIP}  after this trip: their motions are interrupted, and the robot may be released
     {"leaving": true} when their process begins to end: it stops the robot itself, and heartbeats may be late
     {"goodbye": true} before they close normally
 
-and the guard answers ``{"ready": true}`` when it can stop everything that was named, and ``{"tripped": WHY}`` when it has
-stopped the robot.
+and the guard answers, first and whenever one of these changes,
+
+    {"found": {NAME: N, ...}, "tripped": WHY, "trip": TRIP}
+
+with the number of receivers that it has found for each topic and action, the reason for which it is stopping the robot
+(empty if it is not), and an id of that trip.
 """
 
 import asyncio
@@ -34,6 +38,8 @@ NO_GUARD = (
     "error: a guard needs Unix sockets, which Python does not have on Windows\n"
     "  = help: run the agents in WSL 2, on Linux or on macOS, or start them without --guard"
 )
+LOCAL = "the guard on this computer"
+"""Its key in `Guarded.found`."""
 UNREAD = 65536
 """Number of unread bytes after which a guard counts as gone."""
 
@@ -64,6 +70,11 @@ def line(**fields: Any) -> bytes:
     return json.dumps(fields).encode() + b"\n"
 
 
+def description(guarded: Guarded, simulated_time: bool) -> dict[str, Any]:
+    """Return the fields that say what the process drives."""
+    return {"simulated_time": simulated_time, "topics": guarded.topics, "actions": guarded.actions}
+
+
 class Heartbeat:
     """Sends the heartbeat of this process to its guard, until it is closed or the guard is gone.
 
@@ -71,16 +82,13 @@ class Heartbeat:
 
     Args:
         guarded: what the process drives.
-        node: absolute name of its node.
         simulated_time: whether messages use the time of a simulator.
         on_lost: called once when a guard that was ready is gone.
     """
 
-    def __init__(
-        self, guarded: Guarded, node: str, simulated_time: bool, on_lost: Callable[[], None]
-    ) -> None:
+    def __init__(self, guarded: Guarded, simulated_time: bool, on_lost: Callable[[], None]) -> None:
         self._ready: asyncio.Future[None] | None = None
-        self._guarded, self._node, self._simulated_time = guarded, node, simulated_time
+        self._guarded, self._simulated_time = guarded, simulated_time
         self._on_lost = on_lost
         self._changed = False
         self._writer: asyncio.StreamWriter | None = None
@@ -104,7 +112,7 @@ class Heartbeat:
         self._reading = asyncio.ensure_future(self._read(reader))
 
     async def wait_until_ready(self) -> None:
-        """Wait until the guard can stop everything that was named.
+        """Wait until the guard has opened everything that was named. What it has found is in `Guarded.found`.
 
         Raises:
             OSError: the guard is gone before that.
@@ -136,14 +144,7 @@ class Heartbeat:
 
     def _describe(self) -> None:
         self._changed = False
-        self._send(
-            line(
-                node=self._node,
-                simulated_time=self._simulated_time,
-                topics=self._guarded.topics,
-                actions=self._guarded.actions,
-            )
-        )
+        self._send(line(**description(self._guarded, self._simulated_time)))
 
     def _beat(self) -> None:
         self._timer = asyncio.get_running_loop().call_later(PERIOD, self._beat)
@@ -162,11 +163,12 @@ class Heartbeat:
         with suppress(OSError):
             while text := await reader.readline():
                 message = json.loads(text)
-                if message.get("ready") and self._ready is not None and not self._ready.done():
+                if self._ready is not None and not self._ready.done():
                     self._ready.set_result(None)
-                if message.get("tripped"):
+                self._guarded.found[LOCAL] = message["found"]
+                if message["tripped"]:
                     self._guarded.interrupt()
-                    self._send(line(permit=True))
+                    self._send(line(permit=message["trip"]))
         self._lose()
 
     def _lose(self) -> None:
@@ -180,6 +182,7 @@ class Heartbeat:
 
     def _end(self) -> None:
         self._writer = None
+        self._guarded.found[LOCAL] = {}
         self._guarded.on_change = lambda: None
         if self._timer is not None:
             self._timer.cancel()

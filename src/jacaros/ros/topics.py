@@ -59,7 +59,12 @@ class TopicPublisher(_TopicEnd[N]):
         topic: absolute name.
         type_name: message type in full form.
         qos: offered quality of service.
+
+    Attributes:
+        watcher: see `jacaros.ros.backend.Publisher`.
     """
+
+    watcher: Callable[[Any], None] | None = None
 
     def __init__(self, node: N, topic: str, type_name: str, qos: QoS) -> None:
         super().__init__(node, topic, type_name, qos)
@@ -79,6 +84,8 @@ class TopicPublisher(_TopicEnd[N]):
         if not isinstance(message, self._class):
             message = published_message(self._node.factory, self.topic, self.type_name, message)
         if not self._closed:
+            if self.watcher is not None:
+                self.watcher(message)
             self._node.lifetime.send(self._send, message)
             if self._node.tracer is not None:
                 self._node.tracer.sent_message(self.topic, message, CURRENT.get())

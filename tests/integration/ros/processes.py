@@ -58,6 +58,11 @@ class Program:
         self._shared_memory: set[str] = set()
 
     @property
+    def process(self) -> int:
+        """The process id."""
+        return self._process.pid
+
+    @property
     def over(self) -> bool:
         """Whether the process has ended."""
         return self._process.poll() is not None

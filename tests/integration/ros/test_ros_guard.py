@@ -3,17 +3,20 @@
 import os
 import re
 import signal
+import subprocess
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 from judging import stands, standstill
-from processes import Agents, WorldProcess, wait_until
+from processes import JACAROS, Agents, Program, WorldProcess, wait_until
 
 STATIONARY = 0.6
 """Seconds from the death of the agents to a robot that stands: 0.3 to notice, 0.2 to brake, the rest for the way."""
 BRAKING = 2.5
 """Metres per second squared by which the robot of this world brakes."""
+OVER_THE_GRAPH = 0.9
+"""The same if the guard hears the agents over the graph: 0.5 to notice, 0.2 to brake, the rest for the way."""
 WORLDS = Path(__file__).parent / "worlds"
 MAPPINGS = {"ros1": "move_base.yaml", "ros2": "nav2.yaml"}
 DRIVEN = ("velocity", "action")
@@ -92,6 +95,16 @@ def test_the_robot_stands_after_its_agents_are_killed(guarded: Callable[..., Gua
     wait_until(lambda: not is_running(run.guard), "the guard ends with the agents")
 
 
+def test_the_robot_stands_after_its_agents_are_killed_at_their_first_command(
+    guarded: Callable[..., Guarded],
+) -> None:
+    run = guarded("velocity", "velocity")
+    run.world.until_truth(lambda truth: truth.odometer() > 0.0, "the robot moves")
+    took = run.stood_after(run.agents.signal(signal.SIGKILL))
+    print(f"SIGKILL, first command: standing after {took:.2f} s")
+    assert took <= STATIONARY
+
+
 @pytest.mark.parametrize("driven", DRIVEN)
 def test_the_robot_stands_while_its_agents_are_frozen(guarded: Callable[..., Guarded], driven: str) -> None:
     run = guarded(driven, driven)
@@ -118,3 +131,53 @@ def test_the_robot_stands_while_its_agents_are_stuck(guarded: Callable[..., Guar
     took = run.stood_after(began)
     print(f"stuck, {driven}: standing after {took:.2f} s")
     assert took <= STATIONARY
+
+
+@pytest.fixture
+def on_the_robot(
+    kind: str, environment: dict[str, str], tmp_path: Path
+) -> Iterator[Callable[[str], Program]]:
+    """Starts ``jacaros guard`` as on another computer: it shares the graph with the agents, but no socket."""
+    started: list[Program] = []
+
+    def run(agents: str) -> Program:
+        command = [JACAROS, "guard", agents, "--ros", kind, "--timeout", "0.5"]
+        started.append(Program(command, environment | {"TMPDIR": str(tmp_path)}))
+        return started[-1]
+
+    yield run
+    for each in started:
+        each.stop()
+
+
+def children(process: int) -> list[int]:
+    """The processes that a process has started."""
+    listed = subprocess.run(
+        ["ps", "-o", "pid=", "--ppid", str(process)], capture_output=True, text=True, check=False
+    )
+    return [int(number) for number in listed.stdout.split()]
+
+
+def test_a_guard_on_the_robot_stops_it_when_the_agents_computer_is_gone(
+    guarded: Callable[..., Guarded],
+    on_the_robot: Callable[[str], Program],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setenv("JACAROS_GUARD_TIMEOUT", "30")  # the guard beside the agents has no false alarms
+    guard = on_the_robot("velocity")
+    run = guarded("velocity", "velocity")
+    run.agents.until_error("the guard /velocity_guard watches over the graph")
+    run.until_driving()
+    for beside in children(run.agents.process):
+        os.kill(beside, signal.SIGKILL)
+    took = run.stood_after(run.agents.signal(signal.SIGKILL))
+    print(f"SIGKILL of agents and their guard: standing after {took:.2f} s")
+    assert 0.0 < took <= OVER_THE_GRAPH
+    guard.until_error("no heartbeat from the agents")
+
+    before = run.world.truth.odometer()
+    again = guarded("velocity", "velocity")
+    guard.until_error("released the robot")
+    run.world.until_truth(lambda truth: truth.odometer() > before + 0.5, "new agents drive the robot")
+    again.agents.signal(signal.SIGTERM)
+    assert again.agents.end() == 128 + signal.SIGTERM

@@ -9,8 +9,10 @@ from navigator import Navigator, begun, failed, succeeded
 from robot_lab import Lab, in_lab
 
 from jacaros.artifacts.kit.acting import ACCEPTANCE, error_code, missing_number
+from jacaros.artifacts.kit.connection import GUARD_TIMEOUT
 from jacaros.env import Out, Structure
 from jacaros.ros.action import GoalStatus
+from jacaros.ros.guarded import guarded_by
 
 
 def test_the_result_comes_back_and_feedback_is_a_property() -> None:
@@ -113,6 +115,47 @@ def test_a_server_that_is_not_there_is_unavailable_and_one_that_leaves_is_lost()
         await lab.sleep(1)
         server.leave()
         await failed(going, "server_lost")
+
+    in_lab(body, None)
+
+
+def test_a_goal_is_sent_when_the_guard_can_cancel_it() -> None:
+    async def body(lab: Lab) -> None:
+        server = FakeServer(lab)
+        found = guarded_by(lab.backend).found
+        found["guard"] = {}
+        lab.begin(await lab.make(Navigator), "go", 3, Out())
+        await lab.sleep(4)
+        assert server.goals == []
+        found["guard"] = {"/go": 1}
+        await lab.sleep(0.1)
+        assert len(server.goals) == 1
+
+    in_lab(body, None)
+
+
+def test_a_guard_that_never_finds_the_server_delays_a_goal_and_is_reported() -> None:
+    async def body(lab: Lab) -> None:
+        server = FakeServer(lab)
+        guarded_by(lab.backend).found["guard"] = {}
+        lab.begin(await lab.make(Navigator), "go", 3, Out())
+        await lab.sleep(GUARD_TIMEOUT + 0.1)
+        assert len(server.goals) == 1
+        [warning] = lab.logged
+        assert (
+            "the guard has not found the server of action /go after 10 s; sending the goal anyway" in warning
+        )
+
+    in_lab(body, None)
+
+
+def test_a_missing_server_is_unavailable_as_soon_with_a_guard() -> None:
+    async def body(lab: Lab) -> None:
+        server = FakeServer(lab)
+        server.offered = False
+        guarded_by(lab.backend).found["guard"] = {}
+        await failed(lab.begin(await lab.make(Navigator), "go", 3, Out()), "server_unavailable")
+        assert lab.clock.elapsed == pytest.approx(ACCEPTANCE, abs=0.11)
 
     in_lab(body, None)
 

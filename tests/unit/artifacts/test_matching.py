@@ -6,11 +6,12 @@ from typing import Any, cast
 import pytest
 from robot_lab import STANDSTILL, Lab, in_lab
 
-from jacaros.artifacts.kit.connection import SETTLING, TURN, Matching
+from jacaros.artifacts.kit.connection import GUARD_TIMEOUT, SETTLING, TURN, Matching
 from jacaros.artifacts.robots.velocity import ArtCmdVel
 from jacaros.artifacts.thesis.cleaning import ArtCleaning
 from jacaros.env import Structure
 from jacaros.ros.backend import DISCOVERY, Publisher, Sample
+from jacaros.ros.guarded import guarded_by
 
 
 def on_a_graph(body: Callable[[Lab], Awaitable[Any]]) -> Lab:
@@ -29,7 +30,7 @@ def driving(lab: Lab) -> list[float]:
 
 
 def warnings(lab: Lab) -> list[str]:
-    return [line for line in lab.logged if "no subscriber" in line]
+    return [line for line in lab.logged if "subscriber" in line]
 
 
 def test_an_open_loop_motion_loses_no_command_to_a_base_that_is_matched_late() -> None:
@@ -223,3 +224,64 @@ def test_a_message_that_is_suspended_while_it_waits_does_not_block_the_others() 
     assert matching.exists()
     assert list(suspended) == [SETTLING]
     assert matching.exists()
+
+
+def test_the_first_command_waits_until_the_guard_has_found_the_base() -> None:
+    async def body(lab: Lab) -> None:
+        guarded = guarded_by(lab.backend)
+        guarded.found["guard"] = {}
+        lab.record()
+        wheels = await lab.make(ArtCmdVel)
+        motion = lab.begin(wheels, "move", 4)
+        await lab.sleep(5.0)
+        assert driving(lab) == []
+        guarded.found["guard"] = {"/cmd_vel": 1}
+        await motion.done
+        assert driving(lab)[0] == pytest.approx(5.0 + SETTLING, abs=0.06)
+        await lab.do(wheels, "move", 4)
+        assert warnings(lab) == []
+
+    on_a_graph(body)
+
+
+def test_a_guard_that_has_found_fewer_subscribers_than_the_robot_has_is_not_ready() -> None:
+    async def body(lab: Lab) -> None:
+        guarded_by(lab.backend).found["guard"] = {"/cmd_vel": 1}
+        lab.record()
+        lab.record()
+        lab.begin(await lab.make(ArtCmdVel), "move", 4)
+        await lab.sleep(1.0)
+        assert driving(lab) == []
+
+    on_a_graph(body)
+
+
+def test_a_guard_that_never_finds_the_base_delays_one_command_and_is_reported_once() -> None:
+    async def body(lab: Lab) -> None:
+        guarded_by(lab.backend).found["guard"] = {"/other": 1}
+        lab.record()
+        wheels = await lab.make(ArtCmdVel)
+        await lab.do(wheels, "move", 4)
+        assert driving(lab)[0] == pytest.approx(GUARD_TIMEOUT, abs=0.06)
+        begun = lab.clock.elapsed
+        await lab.do(wheels, "move", 4)
+        assert lab.clock.elapsed - begun == pytest.approx(0.5, abs=0.06)
+        [warning] = warnings(lab)
+        assert (
+            "the guard has not found the subscriber of topic /cmd_vel after 10 s; publishing anyway"
+            in warning
+        )
+        assert "`jacaros ros show /cmd_vel`" in warning
+
+    on_a_graph(body)
+
+
+def test_topics_that_drive_nothing_do_not_wait_for_a_guard() -> None:
+    async def body(lab: Lab) -> None:
+        guarded_by(lab.backend).found["guard"] = {}
+        household = await lab.make(ArtCleaning)
+        lab.backend.subscription("/cleaning/task", "std_msgs/msg/String", lambda sample: None)
+        await lab.do(household, "clean", 1)
+        assert lab.clock.elapsed == pytest.approx(2.5)
+
+    on_a_graph(body)

@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+import math
 from collections.abc import Awaitable, Callable
 from pathlib import Path
 from typing import Any
@@ -13,10 +14,11 @@ from jacaros.errors import UsageError
 from jacaros.mas.options import RunOptions
 from jacaros.ros.address import GraphAddress
 from jacaros.ros.backend import Backend
-from jacaros.ros.guard import STAMPED, Brakes, Guard
-from jacaros.ros.guarded import Guarded
+from jacaros.ros.brakes import Brakes
+from jacaros.ros.guard import Guard
+from jacaros.ros.guarded import STAMPED, Guarded
 from jacaros.ros.guarding import LEAVING, Watch
-from jacaros.ros.heartbeat import Heartbeat, line
+from jacaros.ros.heartbeat import LOCAL, Heartbeat, line
 from jacaros.ros.open import open_backend
 
 TWIST = "geometry_msgs/msg/Twist"
@@ -120,14 +122,14 @@ def test_guard_and_agents_find_each_other_by_graph_and_name(monkeypatch: pytest.
 class Lab:
     """A guard, the heartbeat of a robot's agents, and the base that hears it all; in real time."""
 
-    def __init__(self, backend: Backend, base: Backend, path: Path) -> None:
+    def __init__(self, backend: Backend, base: Backend, path: Path, once: bool = True) -> None:
         self.lines: list[str] = []
         self.heard: list[float] = []
         self.guarded = Guarded()
-        self.guard = Guard(backend, path, 0.3, True, self.lines.append)
+        self.guard = Guard(backend, "/robot", path, 0.3, once, self.lines.append)
         self.lost: list[bool] = []
-        self.heartbeat = Heartbeat(self.guarded, "/robot", False, lambda: self.lost.append(True))
-        self.path = path
+        self.heartbeat = Heartbeat(self.guarded, False, lambda: self.lost.append(True))
+        self.path, self.base = path, base
         base.subscription("/cmd_vel", TWIST, lambda sample: self.heard.append(sample.message.linear.x))
 
     async def connected(self) -> None:
@@ -170,7 +172,7 @@ def test_a_guard_sends_zero_until_the_agents_return_and_ends_with_them(tmp_path:
         assert first._writer is not None
         first._writer.transport.abort()  # as the death of a process does
         await lab.until(lambda: len(lab.heard) > 3)
-        lab.heartbeat = Heartbeat(lab.guarded, "/robot", False, lambda: None)
+        lab.heartbeat = Heartbeat(lab.guarded, False, lambda: None)
         await lab.connected()
         await lab.until(lambda: "/robot: the guard has released the robot" in lab.lines)
         count = len(lab.heard)
@@ -187,6 +189,35 @@ def test_a_guard_sends_zero_until_the_agents_return_and_ends_with_them(tmp_path:
     assert not (tmp_path / "s").exists()
 
 
+def test_a_guard_reports_how_many_receivers_it_has_found(tmp_path: Path) -> None:
+    async def body(lab: Lab) -> None:
+        found = lab.guarded.found
+        await lab.until(lambda: found == {LOCAL: {"/cmd_vel": 1}})
+        lab.guarded.add_topic("/late", TWIST)
+        assert not lab.guarded.covered("/late", 1)
+        await lab.until(lambda: found == {LOCAL: {"/cmd_vel": 1, "/late": 0}})
+        lab.base.subscription("/late", TWIST, lambda sample: None)
+        await lab.until(lambda: lab.guarded.covered("/late", 1))
+        await lab.heartbeat.close()
+
+    in_lab(tmp_path, body)
+
+
+def test_a_permit_for_an_earlier_trip_does_not_release_the_robot(tmp_path: Path) -> None:
+    async def body(lab: Lab) -> None:
+        lab.guard._watch.look(math.inf)
+        first = lab.guard._trip_id
+        lab.guard._take({"permit": first})
+        lab.guard._watch.look(math.inf)
+        lab.guard._take({"permit": first})
+        assert lab.guard._watch.tripped
+        lab.guard._take({"permit": lab.guard._trip_id})
+        assert not lab.guard._watch.tripped
+        await lab.heartbeat.close()
+
+    in_lab(tmp_path, body)
+
+
 def test_a_guard_that_dies_before_it_is_ready_does_not_count_as_lost(tmp_path: Path) -> None:
     async def dying(_reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         writer.close()
@@ -194,7 +225,7 @@ def test_a_guard_that_dies_before_it_is_ready_does_not_count_as_lost(tmp_path: P
     async def main() -> None:
         lost: list[bool] = []
         async with await asyncio.start_unix_server(dying, tmp_path / "s"):
-            heartbeat = Heartbeat(Guarded(), "/robot", False, lambda: lost.append(True))
+            heartbeat = Heartbeat(Guarded(), False, lambda: lost.append(True))
             await heartbeat.connect(tmp_path / "s")
             with pytest.raises(ConnectionError):
                 await heartbeat.wait_until_ready()

@@ -1,11 +1,19 @@
 """The part of an artifact that opens topics, services and actions below its robot's name, and closes them on
 disposal."""
 
+import math
 from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any, ClassVar, Protocol, TypeVar
 
-from jacaros.artifacts.kit.connection import MATCH_TIMEOUT, Connection, Matching, MissingTopic
+from jacaros.artifacts.kit.connection import (
+    GUARD_TIMEOUT,
+    MATCH_LOOK,
+    MATCH_TIMEOUT,
+    Connection,
+    Matching,
+    MissingTopic,
+)
 from jacaros.artifacts.kit.faults import Faults, Listener
 from jacaros.artifacts.kit.options import Reader, WrongOption, read_arguments, text, watching
 from jacaros.artifacts.kit.other_publishers import OtherPublishers
@@ -139,6 +147,7 @@ class ConnectedArtifact(Artifact):
             self.at_dispose(guarded_by(self.ros).add_topic(made.topic, full))
             changed = partial(self.start, self.show_other_publisher, made.topic)
             self.kept(OtherPublishers(self.ros, self.clock, made.topic, changed, self.log))
+            guarded_by(self.ros).watch(made)
         return made
 
     @internal_operation
@@ -169,23 +178,31 @@ class ConnectedArtifact(Artifact):
             timeout if timeout is not None else float(str(self.options.get("match_timeout", MATCH_TIMEOUT)))
         )
         fails = (unmatched or self.options.get("unmatched")) == "fail"
+        guarded = guarded_by(self.ros)
 
         def missed(topic: str, seconds: float, again: bool) -> None:
-            waited = f" after {seconds:g} s" if seconds else ""
+            what = "no subscriber on topic"
+            help = "start the node that subscribes to it; `jacaros ros list` shows the topics of the graph"
+            if publisher.subscription_count:
+                what = "the guard has not found the subscriber of topic"
+                help = f"`jacaros ros show {topic}` shows the quality of service of its subscribers"
+            text = f"{what} {topic}{f' after {seconds:g} s' if seconds else ''}"
             if fails:
-                self.fail(
-                    f"no subscriber on topic {topic}{waited}; nothing was published", "unmatched", topic
-                )
+                self.fail(f"{text}; nothing was published", "unmatched", topic)
             if again or not self.ros.connected:
                 return  # the backend reports a graph that cannot be reached
-            message = f"no subscriber on topic {topic}{waited}; publishing anyway"
-            help = "start the node that subscribes to it; `jacaros ros list` shows the topics of the graph"
+            message = f"{text}; publishing anyway"
             if warn is not None:
                 warn(message, help)
             else:
                 self.log(f"warning: {message}\n  help: {help}")
 
-        return Matching(publisher, found if DISCOVERY in self.ros.capabilities else 0.0, missed)
+        return Matching(
+            publisher,
+            found if DISCOVERY in self.ros.capabilities else 0.0,
+            missed,
+            lambda count: guarded.covered(publisher.topic, count),
+        )
 
     async def matched(self, publisher: Publisher) -> None:
         """Wait until *publisher* has a subscriber, so that the next message arrives.
@@ -298,6 +315,21 @@ class ConnectedArtifact(Artifact):
         client = self.kept(self.ros.action_client(self.robot_topic(name), type_name))
         self.at_dispose(guarded_by(self.ros).add_action(client.name, type_name))
         return client
+
+    async def guarded(self, client: ActionClient) -> None:
+        """Wait until the guard, if any, can cancel the goals of *client*; a step boundary only if it waits.
+
+        After `GUARD_TIMEOUT` seconds it logs a warning and returns. It does not wait for a missing server.
+        """
+        covered = partial(guarded_by(self.ros).covered, client.name, 1)
+        for _ in range(math.ceil(GUARD_TIMEOUT / MATCH_LOOK)):
+            if covered() or not client.ready:
+                return
+            await self.sleep(MATCH_LOOK)
+        self.log(
+            f"warning: the guard has not found the server of action {client.name} after {GUARD_TIMEOUT:g} s; "
+            "sending the goal anyway"
+        )
 
     def service(self, name: str, type_name: str, handler: Callable[..., Any]) -> Service:
         """Offer the robot's service *name* until the artifact is disposed.

@@ -180,6 +180,9 @@ class MissingTopic:
 MATCH_TIMEOUT = 3.0
 """Default number of seconds that an operation waits for a subscriber. First discovery on ROS 2 can take two."""
 
+GUARD_TIMEOUT = 10.0
+"""Seconds that an operation waits until a guard can stop it. Under load, discovery has taken three."""
+
 MATCH_OPTIONS: Mapping[str, Reader] = {"match_timeout": positive, "unmatched": one_of("warn", "fail")}
 """Options of artifacts whose operations publish."""
 
@@ -205,12 +208,20 @@ class Matching:
         publisher: sends the messages.
         timeout: seconds to wait; 0.0 in a graph where subscribers are matched immediately.
         missed: called when no subscriber was matched in time; an exception ends the operation.
+        covered: returns whether the guards have found that number of subscribers, too.
     """
 
-    def __init__(self, publisher: Publisher, timeout: float, missed: Missed) -> None:
+    def __init__(
+        self,
+        publisher: Publisher,
+        timeout: float,
+        missed: Missed,
+        covered: Callable[[int], bool] = lambda count: True,
+    ) -> None:
         self._publisher = publisher
         self._timeout = timeout
         self._missed = missed
+        self._covered = covered
         self._vain = False
         self._line: deque[object] = deque()
         """Waiting messages, in order: a later one must not overtake them when a subscriber is matched."""
@@ -220,10 +231,16 @@ class Matching:
         return not self._line and self._matched()
 
     def _matched(self) -> bool:
-        if self._publisher.subscription_count:
+        count = self._publisher.subscription_count
+        if count and self._covered(count):
             self._vain = False
             return True
         return False
+
+    @property
+    def _limit(self) -> float:
+        """The maximum wait in seconds: for a subscriber, or for a guard that has not found the subscriber yet."""
+        return max(self._timeout, GUARD_TIMEOUT) if self._publisher.subscription_count else self._timeout
 
     def pauses(self, always: bool = False) -> Iterator[float]:
         """Yield the seconds of each pause until messages arrive or the time is over.
@@ -256,11 +273,13 @@ class Matching:
         """Yield the pauses of the first message in the queue."""
         if self._matched():  # the messages ahead have waited
             return
-        if not self._vain or always:
-            for _ in range(math.ceil(self._timeout / MATCH_LOOK)):
+        looks = 0
+        if not self._vain or (always and not self._publisher.subscription_count):
+            while looks < math.ceil(self._limit / MATCH_LOOK):
+                looks += 1
                 yield MATCH_LOOK
                 if self._matched():
                     yield SETTLING
                     return
         again, self._vain = self._vain, True
-        self._missed(self._publisher.topic, self._timeout, again)
+        self._missed(self._publisher.topic, self._limit, again)

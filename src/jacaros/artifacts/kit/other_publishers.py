@@ -7,7 +7,7 @@ from contextlib import suppress
 from jacaros.clock import Clock
 from jacaros.ros.backend import Backend
 from jacaros.ros.errors import RosError
-from jacaros.ros.guarded import guarded_by
+from jacaros.ros.guarded import guarded_by, guards_of
 
 LOOK = 1.0
 """Seconds between two queries. Only a publisher that two of them find counts: discovery also finds those that are
@@ -52,7 +52,7 @@ class OtherPublishers:
     async def _ask(self) -> None:
         with suppress(RosError):  # the graph cannot be reached now, or not be queried at all
             found = frozenset(await self._backend.other_publishers(self._topic))
-            before, self._found = self._found, found - {f"{self._backend.node_name}_guard"}
+            before, self._found = self._found, found - guards_of(self._backend.node_name)
             self._show(self._found & before)
         self._timer = self._clock.call_later(LOOK, self._look)
 

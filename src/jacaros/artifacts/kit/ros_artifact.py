@@ -19,6 +19,7 @@ from jacaros.env.errors import InvalidArtifact
 from jacaros.ros.action import ActionClient
 from jacaros.ros.backend import Client
 from jacaros.ros.errors import MessageMismatch
+from jacaros.ros.guarded import guarded_by
 
 
 class RosArtifact(SensingArtifact):
@@ -125,10 +126,11 @@ class RosArtifact(SensingArtifact):
         options = GoalOptions(
             timeout, self._feedback(on_feedback), under_way, suspend, pause, resume, aborted
         )
+        await self.guarded(client)
+        runner = GoalRunner(client, goal, options, self.clock, self.current, self.log)
         try:
-            return await self.step(
-                GoalRunner(client, goal, options, self.clock, self.current, self.log).run()
-            )
+            with guarded_by(self.ros).goal():
+                return await self.step(runner.run())
         except GoalFailed as failed:
             self.fail(str(failed), failed.functor, *failed.arguments)
         except MessageMismatch as error:

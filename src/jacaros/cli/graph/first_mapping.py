@@ -9,7 +9,6 @@ from jacaros.cli.graph.kinds import Kind, Thing
 from jacaros.cli.graph.listening import root
 from jacaros.cli.graph.standard_topics import robot_of, robots
 from jacaros.cli.graph.suggestions import (
-    TWISTS,
     Entry,
     acting,
     calling,
@@ -18,6 +17,7 @@ from jacaros.cli.graph.suggestions import (
     property_of,
     publishing,
 )
+from jacaros.ros.guarded import VELOCITIES
 
 _SECTIONS = ("properties", "signals", "frames", "operations")
 _NAMES = {
@@ -129,7 +129,7 @@ def _add(joined: Joined, artifact: _Artifact, thing: Thing) -> None:
         artifact.add([acting(types, name, written, thing.type_name)])
         return
     info = joined.contents.topics[thing.name]
-    if info.subscriptions and (not info.publishers or thing.type_name in TWISTS):
+    if info.subscriptions and (not info.publishers or thing.type_name in VELOCITIES):
         artifact.add(publishing(types, name, written, info))
         return
     entry = property_of(types, name, written, info)

@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 
 from jacaros.cli.graph.kinds import Kind, Thing, all_things
-from jacaros.cli.graph.suggestions import TWISTS
 from jacaros.ros.graph import GraphContents
+from jacaros.ros.guarded import VELOCITIES
 
 _BASE = ("nav_msgs/msg/Odometry", "sensor_msgs/msg/LaserScan")
 """A namespace with one of these topics, or a subscription to ``cmd_vel``, belongs to a robot."""
@@ -100,7 +100,7 @@ def _is_usual(thing: Thing, contents: GraphContents) -> bool:
     last = thing.name.rpartition("/")[2]
     match thing.kind:
         case Kind.TOPIC:
-            if thing.type_name in TWISTS:
+            if thing.type_name in VELOCITIES:
                 return last == "cmd_vel" and bool(contents.topics[thing.name].subscriptions)
             wanted = thing.type_name in _SENSORS or thing.type_name in _BY_NAME.get(last, ())
             return wanted and _is_there(thing, contents)
@@ -119,7 +119,7 @@ def robots(contents: GraphContents) -> list[str]:
     for name, info in contents.topics.items():
         space, _, last = name.strip("/").rpartition("/")
         kinds = set(info.types) & set(_BASE) | (
-            {last} if last == "cmd_vel" and set(info.types) & set(TWISTS) else set()
+            {last} if last == "cmd_vel" and set(info.types) & set(VELOCITIES) else set()
         )
         if kinds:
             found.setdefault(space, set()).update(kinds)

@@ -10,9 +10,9 @@ from jacaros.cli.graph.known_topics import KNOWN, Body
 from jacaros.cli.graph.values import HEADER, MANY, Unit, Value, list_of, lists_of, values_of
 from jacaros.ros.fields import FieldType
 from jacaros.ros.graph import TopicInfo
+from jacaros.ros.guarded import VELOCITIES
 from jacaros.ros.names import feedback_type, goal_type, request_type, result_type
 
-TWISTS = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
 _BIG = (
     "sensor_msgs/msg/Image",
     "sensor_msgs/msg/CompressedImage",
@@ -162,7 +162,7 @@ def looking(entry: Entry) -> Entry | None:
 def publishing(types: Interfaces, name: str, topic: str, info: TopicInfo) -> list[Entry]:
     """Return operations that publish on a topic; for velocities also one that stops."""
     type_name = info.types[0]
-    if type_name in TWISTS:
+    if type_name in VELOCITIES:
         return _driving(name, topic, type_name)
     inputs, body = _filled(types, type_name, "fields")
     lines = [*_parameters(inputs), f"publish: {topic}", f"type: {type_name}", *body]
@@ -173,7 +173,7 @@ def publishing(types: Interfaces, name: str, topic: str, info: TopicInfo) -> lis
 
 
 def _driving(name: str, topic: str, type_name: str) -> list[Entry]:
-    inner = "" if type_name == TWISTS[0] else "twist."
+    inner = "" if type_name == VELOCITIES[0] else "twist."
     stamp = [] if not inner else ["  header.stamp: now", "  header.frame_id: base_link"]
     drive = (
         "parameters: [speed, turn, seconds]",

@@ -55,6 +55,14 @@ class Names:
         return self.resolve("frame").rpartition("/")[0].strip("/")
 
 
+def topics_of(joined: Joined, part: ArtifactPart) -> set[str]:
+    """Return the absolute names of the topics that an artifact receives or publishes."""
+    names = Names(joined, part)
+    received = [topic.topic.text for topic in part.topics if topic.topic is not None]
+    published = [each.target.text for each in part.operations if each.kind is OperationKind.PUBLISH]
+    return {names.resolve(written) for written in (*received, *published)}
+
+
 async def problems_of(joined: Joined, part: ArtifactPart, frames: dict[str, str]) -> list[Problem]:
     """Return all problems of an artifact, each with what was found and a suggested fix.
 
