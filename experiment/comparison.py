@@ -79,7 +79,7 @@ def ended_before_its_fault(outcome: Outcome) -> bool:
 
 
 def fisher(passed: int, runs: int, others_passed: int, others_runs: int) -> float:
-    """Return p of Fisher's exact test: the share of tables with the same sums that are no more likely than this one."""
+    """Return p of Fisher's exact test: the share of the tables with these sums that are at most as likely."""
     all_passed, all_runs = passed + others_passed, runs + others_runs
 
     def ways(first: int) -> int:
