@@ -54,6 +54,8 @@ NOT_HERE = "not ros1 and not ros2 and not rosbridge and not mqtt and not browser
 SAMPLE = 120
 LIMIT, LIMIT_FACTOR = 5.0, 10.0
 MEMORY = 4 << 30
+ASLEEP = 60.0
+"""Seconds without processor time after which a mutant is taken for one that waits for ever."""
 KILLED, LOOPS, SURVIVED, UNREACHED = "killed", "killed by the time limit", "survived", "reached by no test"
 
 
@@ -68,11 +70,14 @@ class Test(NamedTuple):
 class Trial:
     """A plugin of pytest: in place of running the tests once, run those that a mutant needs, for every mutant."""
 
-    def __init__(self, source: Path, mutants: Sequence[Mutant], jobs: int, limit: float = LIMIT) -> None:
+    def __init__(
+        self, source: Path, mutants: Sequence[Mutant], jobs: int, limit: float = LIMIT, twice: bool = True
+    ) -> None:
         self.outcomes: dict[Mutant, str] = {}
         self.problems: list[str] = []
         self._source, self._mutants, self._jobs = source, mutants, jobs
-        self._limit = limit
+        self._limit, self._twice = limit, twice
+        self._terminal = os.dup(2)
         self._failed = False
 
     @property
@@ -95,7 +100,8 @@ class Trial:
             limit = max(self._limit, LIMIT_FACTOR * max((each.seconds for each in self._tests), default=0.0))
             in_memory = [each for each in self._mutants if each.functions]
             self._try(in_memory, self._run_in_memory, limit)
-            copies = [each for each in self._mutants if self.outcomes.get(each, SURVIVED) == SURVIVED]
+            again = SURVIVED if self._twice else None
+            copies = [each for each in self._mutants if self.outcomes.get(each) in (None, again)]
             self._try(copies, self._run_on_copy, 3 * limit)
         return True
 
@@ -151,7 +157,7 @@ class Trial:
 
     def _try(self, mutants: Sequence[Mutant], run: Callable[[Mutant, list[int]], bool], limit: float) -> None:
         """Run mutants, some at the same time."""
-        running: dict[int, tuple[Mutant, float]] = {}
+        running: dict[int, tuple[Mutant, _Progress]] = {}
         waiting = list(reversed(mutants))
         while waiting or running:
             while waiting and len(running) < self._jobs:
@@ -162,14 +168,20 @@ class Trial:
                     continue
                 folder = Path(tempfile.mkdtemp(dir=self._scratch))
                 process = _fork(lambda: run(mutant, tests), limit, folder)  # noqa: B023 - called by the child at once
-                running[process] = (mutant, time.monotonic())
-            for process, (mutant, began) in list(running.items()):
-                if time.monotonic() - began > 6 * limit:
+                running[process] = (mutant, _Progress(process))
+            for process, (mutant, progress) in list(running.items()):
+                if progress.has_ceased():
                     _kill(process)
                 if (status := _ended(process)) is not None:
                     del running[process]
                     self.outcomes[mutant] = {0: SURVIVED, 1: KILLED}.get(status, LOOPS)
-            time.sleep(0.005)
+                    self._show(mutant, len(waiting) + len(running))
+            time.sleep(0.02)
+
+    def _show(self, mutant: Mutant, left: int) -> None:
+        """Show progress on the terminal, which pytest has taken."""
+        where, change = f"{mutant.file}:{mutant.line}", mutant.text.splitlines()[0]
+        os.write(self._terminal, f"{left} left: {self.outcomes[mutant]}: {where}: {change}\n".encode())
 
     def _tests_for(self, mutant: Mutant) -> list[int]:
         """The tests that reach the changed line; the file, if the line runs on import only."""
@@ -241,6 +253,30 @@ def _fork(run: Callable[[], bool], limit: float | None, folder: Path) -> int:
         status = 1
     finally:
         os._exit(status)
+
+
+class _Progress:
+    """Notices that a child waits for ever: it uses no processor time, however busy the machine is."""
+
+    def __init__(self, process: int) -> None:
+        self._process = process
+        self._used = -1.0
+        self._since = time.monotonic()
+
+    def has_ceased(self) -> bool:
+        """Whether the child has used no processor time for a minute."""
+        used = _processor_time(self._process)
+        if used != self._used:
+            self._used, self._since = used, time.monotonic()
+        return time.monotonic() - self._since > ASLEEP
+
+
+def _processor_time(process: int) -> float:
+    try:
+        fields = Path(f"/proc/{process}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
+    except OSError:  # not Linux, or it has ended
+        return 0.0
+    return float(fields[11]) + float(fields[12])
 
 
 def _ended(process: int) -> int | None:
@@ -346,7 +382,7 @@ def main(arguments: Sequence[str]) -> int:
     wanted = chosen(changes_of(source, package), given.sample, given.seed, given.shard)
     if given.files:
         wanted = [each for each in wanted if any(part in each.file for part in given.files)]
-    trial = Trial(source, wanted, given.jobs, given.limit)
+    trial = Trial(source, wanted, given.jobs, given.limit, not given.once)
     try_mutants(given.root, folder.split(",") if folder else SUBJECTS[package], trial)
     print(*trial.problems, *report(package, trial.outcomes, source), sep="\n", flush=True)
     return 1 if score(trial.outcomes) < given.least else 0
@@ -369,6 +405,8 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="mutants at the same time")
     limits = f"seconds of processor time of a mutant, or {LIMIT_FACTOR:g} times the slowest test (default {LIMIT:g})"
     parser.add_argument("--limit", type=float, default=LIMIT, help=limits)
+    once = "do not try survivors again on a copy: faster, and the score is a lower bound"
+    parser.add_argument("--once", action="store_true", help=once)
     parser.add_argument("--least", type=float, default=0.0, help="least score in percent (default 0)")
     parser.add_argument("--root", type=Path, default=ROOT, help="folder with src and tests")
     return parser

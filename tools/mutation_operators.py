@@ -163,9 +163,10 @@ class _Finder(ast.NodeVisitor):
     def visit_Return(self, node: ast.Return) -> None:
         if node.value is None:
             self._replace(node, "removed statement", "pass")
-        elif not isinstance(node.value, ast.Constant):
+            return
+        if not isinstance(node.value, ast.Constant):
             self._replace(node, "returned value", "return None")
-            self.visit(node.value)
+        self.visit(node.value)
 
     def visit_Raise(self, node: ast.Raise) -> None:
         self._replace(node, "removed statement", "pass")

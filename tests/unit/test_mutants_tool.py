@@ -35,6 +35,7 @@ def changes(source: str) -> set[str]:
         ("self.x = a", {"pass"}),
         ("stop()", {"pass"}),
         ("return a", {"return None"}),
+        ("return True", {"False"}),
         ("return", {"pass"}),
         ("raise ValueError(3)", {"pass"}),
     ],
