@@ -29,7 +29,7 @@ import sys
 import tempfile
 import time
 import traceback
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Container, Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
 from types import CodeType, FunctionType
@@ -93,7 +93,9 @@ class Trial:
         """Run the tests without a change, then with each."""
         self._items = session.items
         gc.collect()
-        gc.freeze()
+        files = {str(self._source / each.file) for each in self._mutants}
+        self._functions = [each for each in gc.get_objects() if _is_of(each, files)]
+        gc.freeze()  # a collection in a child must not copy the memory of this process
         with tempfile.TemporaryDirectory(prefix="mutants-") as folder:
             self._scratch = Path(folder)
             self._tests = self._measure()
@@ -194,7 +196,7 @@ class Trial:
     def _run_in_memory(self, mutant: Mutant, tests: list[int]) -> bool:
         path = self._source / mutant.file
         changed = compile(mutant.apply(path.read_bytes()), str(path), "exec", dont_inherit=True)
-        _replace_code(str(path), mutant, changed)
+        _replace_code(self._functions, str(path), mutant, changed)
         return self._passes(tests)
 
     def _run_on_copy(self, mutant: Mutant, tests: list[int]) -> bool:
@@ -211,11 +213,15 @@ class Trial:
 OPTIONS = ("-q", "-p", "no:cacheprovider", "-p", "no:rerunfailures", "-m", NOT_HERE)
 
 
-def _replace_code(path: str, mutant: Mutant, changed: CodeType) -> None:
+def _is_of(each: object, files: Container[str]) -> bool:
+    return isinstance(each, FunctionType) and each.__code__.co_filename in files
+
+
+def _replace_code(functions: Sequence[FunctionType], path: str, mutant: Mutant, changed: CodeType) -> None:
     """Give every function around the change its new code; those that exist are all that tests can call."""
     new = {(each.co_name, each.co_firstlineno): each for each in _codes(changed)}
-    for function in gc.get_objects():
-        if isinstance(function, FunctionType) and function.__code__.co_filename == path:
+    for function in functions:
+        if function.__code__.co_filename == path:
             key = function.__code__.co_name, function.__code__.co_firstlineno
             if key in mutant.functions and key in new:
                 with suppress(ValueError):  # other free variables: a new process tries this mutant again
