@@ -44,7 +44,7 @@ def test_a_callback_of_the_loop_is_work() -> None:
     assert found.f_code is work.__code__
 
 
-def test_an_import_is_no_work(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_import_is_not_work(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "slow_module.py").write_text(f"from {__name__} import look\nlook()\n", encoding="utf-8")
     monkeypatch.syspath_prepend(str(tmp_path))
     monkeypatch.setitem(sys.modules, __name__, sys.modules[look.__module__])

@@ -36,7 +36,7 @@ class Scene:
 
 @pytest.mark.parametrize("late", [0.0, 0.4])
 @pytest.mark.parametrize("step", [0.0, 0.4, -0.4])
-def test_half_a_second_is_no_gap(late: float, step: float) -> None:
+def test_half_a_second_is_not_a_gap(late: float, step: float) -> None:
     scene = Scene()
     scene.wait(late, step)
     assert scene.claim.gap is None
