@@ -7,7 +7,7 @@ import pytest
 
 from jacaros.artifacts.robots import approach
 from jacaros.artifacts.robots.approach import Approach, NotMoving, Outlook, Tolerance, Unsettled, pulse_for
-from jacaros.artifacts.robots.control import Limits, Pose, Velocity
+from jacaros.artifacts.robots.control import Limits, Line, Pose, Velocity, steer
 from jacaros.artifacts.robots.drive_model import DriveModel
 
 LIMITS = Limits(speed=0.6, turn_speed=2.0, acceleration=0.8, turn_acceleration=4.0)
@@ -154,3 +154,34 @@ def test_a_robot_that_does_not_move_fails() -> None:
 def drive_often(drive: Callable[[], None]) -> None:
     for _ in range(200):
         drive()
+
+
+def test_the_tolerance_narrows_first_and_ends_at_what_the_robot_can_do() -> None:
+    scene, made = Scene(), Approach(TOLERANCE)
+    axis, model = scene.model.linear, scene.model
+    axis.lower, model.jitter = 0.1, 0.05
+
+    def allowed(corrections: int) -> float:
+        made._corrections = corrections
+        return made._allowed(axis, model)
+
+    assert [allowed(each) for each in range(5)] == pytest.approx([0.00125, 0.00125, 0.0025, 0.005, 0.005])
+    assert allowed(5) == pytest.approx(axis.least * 0.07)
+    model.jitter = 0.5
+    assert allowed(5) == TOLERANCE.most
+    axis.lower, model.jitter = 0.0, 0.0
+    assert allowed(5) == TOLERANCE.usual
+
+
+def test_steering_is_gentler_the_more_irregular_commands_are_and_limited() -> None:
+    line, beside = Line(Pose(0.0, 0.0, 0.0), 2.0), Pose(0.5, 0.0, 0.1)
+    assert steer(line, beside, 0.3, 0.0, 2.0) == pytest.approx(-0.2)
+    assert steer(line, beside, 0.3, 0.1, 2.0) == pytest.approx(-0.2)
+    assert steer(line, beside, 0.3, 0.4, 2.0) == pytest.approx(-0.1)
+    assert steer(line, Pose(0.5, 0.0, 1.4), 0.3, 0.0, 2.0) == -1.0
+    left = Pose(0.5, 0.1, 0.0)
+    assert steer(line, left, 0.3, 0.0, 2.0) == pytest.approx(-2.0 * math.atan2(0.1, 0.4))
+    assert steer(line, left, -0.3, 0.0, 2.0) == pytest.approx(2.0 * math.atan2(0.1, 0.4)), (
+        "in reverse, the other way"
+    )
+    assert steer(line, Pose(1.98, 0.1, 0.0), 0.3, 0.0, 2.0) == 0.0, "close to the goal it keeps its heading"

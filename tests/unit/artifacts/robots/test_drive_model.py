@@ -310,3 +310,12 @@ def test_a_filtered_coordinate_weighs_noise_against_drift() -> None:
     noisy.measure(5.0)
     assert noisy.value == pytest.approx(6.0, abs=0.02), "it was moved: the new place counts"
     assert noisy.deviation == pytest.approx(noisy.noise, rel=0.01)
+
+
+@pytest.mark.parametrize("lag", [0, 9, 20])
+def test_an_expected_delay_and_acceleration_have_the_least_costs(lag: int) -> None:
+    axis = Axis(0.5, 0.8, 0.02)
+    axis.expect(lag, 0.8 * SHARES[2], 0.0)
+    cheapest = min((cost, i, each) for i, costs in enumerate(axis.costs) for each, cost in enumerate(costs))
+    assert cheapest == (0.0, 2, lag)
+    assert axis.acceleration == pytest.approx(0.8 * SHARES[2])
