@@ -3,6 +3,8 @@
 # make test-all      the same, and all unit tests with every other Python of the machine
 # make quick         checks before a commit: style, types, layers, unit tests
 # make coverage      lines run by the unit, contract and conformance tests, by package; about 15 minutes
+# make mutants       one-line changes that the unit tests of the robot's half notice; a sample, in about 30 minutes
+#                    make mutants MUTANTS="artifacts/robots --sample 0"   all changes of one package
 # make bench         benchmarks, beside other engines, in about 10 minutes; rewrites docs/benchmarks.md
 #                    make bench BENCH=--quick   about 3 minutes, writes nothing; JASON=/path/to/jason adds Jason
 # make experiment    the experiment of docs/experiment.md, in about 15 minutes; rewrites the page and its charts
@@ -15,7 +17,7 @@
 VENV := .venv
 PYTHON ?= $(shell tools/find_python.sh)
 
-.PHONY: demo test test-all quick coverage reference experiment bench release clean
+.PHONY: demo test test-all quick coverage mutants reference experiment bench release clean
 
 demo: $(VENV)/.installed
 	$(VENV)/bin/python tools/demo.py
@@ -31,6 +33,9 @@ quick: $(VENV)/.installed-dev
 
 coverage: $(VENV)/.installed-dev
 	$(VENV)/bin/python tools/measure_coverage.py
+
+mutants: $(VENV)/.installed-dev
+	$(VENV)/bin/python tools/mutants.py $(MUTANTS)
 
 # Reference pages and pictures generated from the code.
 reference: $(VENV)/.installed-dev

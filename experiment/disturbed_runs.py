@@ -15,6 +15,12 @@ from scenarios import FOLDER, SCENARIOS
 from virtual_run import run_baseline
 
 AGENTS, OVER_NAV2, BASELINE = "agents", "agents over Nav2", "baseline"
+PATIENT = "baseline, 20 attempts"
+"""The baseline with the policy of the agents over Nav2: as many attempts, with the same pause between them."""
+
+SAID, WARNED, HUNG, AS_IF_DONE = "say that they failed", "warn only", "hang in silence", "end as if done"
+ENDS = (SAID, WARNED, HUNG, AS_IF_DONE)
+"""How runs that fail end."""
 
 HOUSE = Path(jacaros.sim.__file__).parent / "worlds" / "house.yaml"
 
@@ -30,6 +36,24 @@ CYCLES = 2
 
 SHIFTS = {"shift(10).": f"shift({CYCLES}).", "SHIFT = 10": f"SHIFT = {CYCLES}"}
 """The lines of the programs that say how long a shift is, and what takes their place."""
+
+PATIENCE = {
+    "ATTEMPTS = 3": "ATTEMPTS = 20",
+    "py_trees.decorators.Retry(": "try_patiently(",
+    "\n\n\nclass NavigateTo": """
+
+
+def try_patiently(name, way, attempts):
+    pause = py_trees.behaviours.TickCounter("Pause", 20, Status.FAILURE)  # two seconds
+    children = [way, pause]
+    return py_trees.decorators.Retry(
+        name, py_trees.composites.Selector(f"{name} or pause", memory=True, children=children), attempts
+    )
+
+
+class NavigateTo""",
+}
+"""The changes to a tree that give it the policy of the agents over Nav2."""
 
 NEAR = 0.1
 """Metres from a corner that count as a visit here: a robot that Nav2 stops within its tolerance of 5 cm and that slips a
@@ -62,6 +86,7 @@ class Outcome(NamedTuple):
         passed: whether the checker of the example was content.
         seconds: of the virtual clock that it took.
         complaint: the first complaint of the checker, or "".
+        end: how a run that failed ended: one of `ENDS`; or "".
     """
 
     job: Job
@@ -69,12 +94,13 @@ class Outcome(NamedTuple):
     passed: bool
     seconds: float
     complaint: str
+    end: str = ""
 
 
 def sides_of(scenario: str) -> list[str]:
     """The sides that a scenario has."""
-    over_nav2 = [OVER_NAV2] if _over_nav2(scenario).exists() else []
-    return [AGENTS, *over_nav2, BASELINE]
+    over_nav2 = _over_nav2(scenario).exists()
+    return [AGENTS, OVER_NAV2, BASELINE, PATIENT] if over_nav2 else [AGENTS, BASELINE]
 
 
 def jobs(seeds: Iterable[int], scenarios: Iterable[str] = SCENARIOS) -> list[Job]:
@@ -102,29 +128,41 @@ def run_one(job: Job) -> Outcome:
         not complaints,
         round(result.seconds, 1),
         next(iter(complaints), ""),
+        _end_of(result, LIMITS[job.scenario]) if complaints else "",
     )
 
 
 def _run(job: Job, folder: Path) -> RunResult:
     faults, limit = faults_for(job.scenario, job.seed), LIMITS[job.scenario]
     scenario, world = SCENARIOS[job.scenario], world_of(job.scenario, folder)
-    if job.side == BASELINE:
-        if job.scenario == "patrol":
-            scenario = scenario._replace(baseline=_shortened(scenario.baseline, folder))
-        return run_baseline(scenario, world, limit, job.seed, faults)
+    changes = SHIFTS if job.scenario == "patrol" else {}
+    if job.side in (BASELINE, PATIENT):
+        changes = {**changes, **PATIENCE} if job.side == PATIENT else changes
+        changed = scenario._replace(baseline=_changed(scenario.baseline, changes, folder))
+        return run_baseline(changed, world, limit, job.seed, faults)
     project = scenario.project if job.side == AGENTS else _over_nav2(job.scenario)
-    if job.scenario == "patrol":
-        _shortened(project.with_name("robot.asl"), folder)
+    if changes:
+        _changed(project.with_name("robot.asl"), changes, folder)
         project = Path(shutil.copy(project, folder))
     return run_project(project, world=str(world), seconds=limit, seed=job.seed, faults=faults)
 
 
-def _shortened(program: Path, folder: Path) -> Path:
-    """Copy a program into *folder*, with a shorter shift."""
+def _end_of(result: RunResult, limit: float) -> str:
+    """How a run that failed ended, as a person at the terminal sees it."""
+    if result.exit_code or any("failed" in line for line in result.errors):
+        return SAID
+    if result.errors:
+        return WARNED
+    return HUNG if result.seconds >= limit else AS_IF_DONE
+
+
+def _changed(program: Path, changes: Mapping[str, str], folder: Path) -> Path:
+    """Copy a program into *folder*, with changes to its text."""
     text = program.read_text(encoding="utf-8")
-    long = next(each for each in SHIFTS if each in text)
+    for old, new in changes.items():
+        text = text.replace(old, new)
     made = folder / program.name
-    made.write_text(text.replace(long, SHIFTS[long]), encoding="utf-8")
+    made.write_text(text, encoding="utf-8")
     return made
 
 

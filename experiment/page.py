@@ -1,26 +1,47 @@
 """Fills the page of the experiment: the words of ``page.md`` with the tables that were measured."""
 
 import re
+import textwrap
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
 import change_requests
+import comparison
 import sizes
 import success
-from disturbed_runs import AGENTS, BASELINE, OVER_NAV2, Outcome
+from disturbed_runs import AGENTS, BASELINE, OVER_NAV2, PATIENT, Outcome
 from jacaros.metrics import ProgramMetrics, Table, as_markdown
 from jacaros.metrics.groups import Group
 from scenarios import FOLDER, SCENARIOS
 from workshop.published import size_table
 
 MARK = re.compile(r"<!-- (\w+) -->")
+FRONT_PAGE_WIDTH, PAGE_WIDTH = 140, 150
+SENTENCES = (
+    comparison.significance,
+    comparison.fewer,
+    comparison.equal_policy,
+    comparison.after_the_end,
+    comparison.alike,
+    comparison.late_runs,
+)
+"""What the figures decide, by the names of the functions."""
 
 
 def page(outcomes: Sequence[Outcome]) -> str:
     """The text of ``docs/experiment.md``."""
     tables = all_tables(outcomes)
     words = (FOLDER / "page.md").read_text(encoding="utf-8")
-    return MARK.sub(lambda mark: as_markdown(tables[mark[1]]()), words)
+    sentences = {each.__name__: each(outcomes) for each in SENTENCES}
+
+    def filled(line: str) -> str:
+        found = MARK.findall(line)
+        if not any(mark in sentences for mark in found):
+            return MARK.sub(lambda mark: as_markdown(tables[mark[1]]()), line)
+        text = MARK.sub(lambda mark: sentences[mark[1]], line)
+        return textwrap.fill(text, PAGE_WIDTH, subsequent_indent="  " if line.startswith("- ") else "")
+
+    return "\n".join(map(filled, words.split("\n")))
 
 
 def all_tables(outcomes: Sequence[Outcome]) -> Mapping[str, Callable[[], Table]]:
@@ -34,6 +55,9 @@ def all_tables(outcomes: Sequence[Outcome]) -> Mapping[str, Callable[[], Table]]
         "changes": changes_table,
         "workshop": size_table,
         "success": lambda: success.success_table(outcomes),
+        "compared": lambda: comparison.comparison_table(outcomes),
+        "equal": lambda: comparison.comparison_table(outcomes, PATIENT),
+        "ends": lambda: comparison.ends_table(outcomes),
         "patrol_by_kind": lambda: success.kind_table(outcomes, "patrol"),
         "house_cleaning_by_kind": lambda: success.kind_table(outcomes, "house_cleaning"),
     }
@@ -73,21 +97,23 @@ def changes_table() -> Table:
 
 
 def summary(outcomes: Sequence[Outcome]) -> str:
-    """The table of the front page: code lines, and runs that passed under disturbances."""
+    """The table of the front page, and its conditions: code lines, and runs that passed under disturbances."""
     agents = {each.name.partition("_")[2]: each for each in sizes.examples()}
     nav2 = {each.name: each for each in sizes.over_nav2()}
-    rows = []
+    rows: list[tuple[str | int, ...]] = []
     for name in SCENARIOS:
         program, side = (nav2[name], OVER_NAV2) if name in nav2 else (agents[name], AGENTS)
-        runs = sum(each.job[:2] == (name, side) for each in outcomes)
         rows.append(
             (
                 name.replace("_", " "),
                 program.total.code_lines,
                 program.counts(Group.BASELINE).code_lines,
-                f"{success.passed(outcomes, name, side)} of {runs}",
-                f"{success.passed(outcomes, name, BASELINE)} of {runs}",
+                *(
+                    success.share(comparison.runs_of(outcomes, name, each))
+                    for each in (side, BASELINE, PATIENT)
+                ),
             )
         )
-    header = ("scenario", "code lines: agents", "Python", "disturbed runs passed: agents", "Python")
-    return as_markdown(Table("Summary", header, tuple(rows)))
+    runs = ("disturbed runs passed: agents", "Python", "Python, same attempts")
+    table = Table("Summary", ("scenario", "code lines: agents", "Python", *runs), tuple(rows))
+    return f"{as_markdown(table)}\n\n{textwrap.fill(comparison.conditions(outcomes), FRONT_PAGE_WIDTH)}"

@@ -4,11 +4,11 @@ from collections.abc import Iterable, Sequence
 from statistics import median
 
 from disturbances import KINDS
-from disturbed_runs import AGENTS, BASELINE, OVER_NAV2, Outcome
+from disturbed_runs import AGENTS, BASELINE, OVER_NAV2, PATIENT, Outcome
 from jacaros.metrics import Table
 from scenarios import SCENARIOS
 
-SIDES = (AGENTS, OVER_NAV2, BASELINE)
+SIDES = (AGENTS, OVER_NAV2, BASELINE, PATIENT)
 
 
 def success_table(outcomes: Sequence[Outcome]) -> Table:
@@ -29,7 +29,7 @@ def kind_table(outcomes: Sequence[Outcome], scenario: str) -> Table:
         (
             kind,
             *(
-                _share(each for each in of_scenario if (each.kind, each.job.side) == (kind, side))
+                share(each for each in of_scenario if (each.kind, each.job.side) == (kind, side))
                 for side in sides
             ),
         )
@@ -38,19 +38,17 @@ def kind_table(outcomes: Sequence[Outcome], scenario: str) -> Table:
     return Table(scenario, ("disturbance", *sides), rows)
 
 
-def passed(outcomes: Iterable[Outcome], scenario: str, side: str) -> int:
-    """How many runs of a side passed."""
-    return sum(each.passed for each in outcomes if each.job[:2] == (scenario, side))
-
-
 def _cell(found: Iterable[Outcome]) -> str:
     outcomes = list(found)
     if not outcomes:
         return ""
     times = [each.seconds for each in outcomes if each.passed]
-    return f"{_share(outcomes)}, {median(times):.0f} s" if times else _share(outcomes)
+    return f"{share(outcomes)}, {median(times):.0f} s" if times else share(outcomes)
 
 
-def _share(found: Iterable[Outcome]) -> str:
+def share(found: Iterable[Outcome]) -> str:
+    """How many runs passed, of all; nothing without runs."""
     outcomes = list(found)
+    if not outcomes:
+        return ""
     return f"{sum(each.passed for each in outcomes)} of {len(outcomes)}"

@@ -11,8 +11,21 @@ from jacaros.sim.files.world import load_world
 
 sys.path.insert(0, str(EXAMPLES.parent / "experiment"))
 
+from comparison import after_the_end, compared, ends_table, fewer, fisher, mcnemar, significance
 from disturbances import KINDS, faults_for, kind_of, kinds_for
-from disturbed_runs import world_of
+from disturbed_runs import (
+    AGENTS,
+    AS_IF_DONE,
+    BASELINE,
+    HUNG,
+    PATIENCE,
+    PATIENT,
+    SAID,
+    Job,
+    Outcome,
+    run_one,
+    world_of,
+)
 from scenarios import SCENARIOS
 
 
@@ -34,3 +47,61 @@ def test_a_seed_gives_the_same_faults_and_another_seed_others() -> None:
     texts = [faults_for("patrol", seed) for seed in range(50)]
     assert texts == [faults_for("patrol", seed) for seed in range(50)]
     assert len(set(texts)) > 40
+
+
+@pytest.mark.parametrize("name", ["patrol", "house_cleaning"])
+def test_a_tree_with_the_agents_policy_differs_by_its_attempts_alone(name: str) -> None:
+    tree = SCENARIOS[name].baseline.read_text(encoding="utf-8")
+    assert all(tree.count(each) == 1 for each in PATIENCE)
+
+
+@pytest.mark.slow
+def test_a_tree_with_the_agents_policy_outlasts_aborted_goals() -> None:
+    seed = next(each for each in range(1, 50) if kind_of("house_cleaning", each) == "aborted")
+    assert not run_one(Job("house_cleaning", BASELINE, seed)).passed
+    assert run_one(Job("house_cleaning", PATIENT, seed)).passed
+
+
+def test_fishers_test_has_the_values_of_its_tables() -> None:
+    assert fisher(3, 4, 1, 4) == pytest.approx(34 / 70)  # Fisher's lady tasting tea, two-sided
+    assert fisher(50, 50, 50, 50) == 1.0
+    assert fisher(8, 8, 0, 7) == pytest.approx(1 / 6435)
+
+
+def test_mcnemars_test_has_the_values_of_the_binomial() -> None:
+    assert mcnemar(10, 0) == pytest.approx(2 / 1024)
+    assert mcnemar(0, 0) == 1.0
+    assert mcnemar(3, 1) == pytest.approx(10 / 16)
+
+
+def outcome(seed: int, side: str, passed: bool, seconds: float = 100.0, end: str = "") -> Outcome:
+    return Outcome(Job("square", side, seed), kind_of("square", seed), passed, seconds, "", end)
+
+
+def test_seeds_whose_fault_came_after_an_end_are_left_out_on_both_sides() -> None:
+    late = next(each for each in range(1, 50) if kind_of("square", each) == "carried")
+    early = late + len(kinds_for("square"))
+    runs = [outcome(late, AGENTS, True, seconds=0.5), outcome(early, AGENTS, True)]
+    runs += [outcome(late, BASELINE, False), outcome(early, BASELINE, True)]
+    (found,) = compared(runs)
+    assert [each.job.seed for each in found.agents] == [late, early]
+    assert [each.job.seed for each in found.disturbed().agents] == [early]
+    assert [each.job.seed for each in found.disturbed().baseline] == [early]
+    assert after_the_end(runs).startswith("In 1 runs")
+    assert after_the_end(runs[1:]).startswith("No program")
+
+
+def test_sentences_follow_the_figures() -> None:
+    close = [outcome(seed, side, seed % 2 == 0) for seed in range(1, 11) for side in (AGENTS, BASELINE)]
+    assert "Fisher's exact test: none" in significance(close)
+    assert fewer(close).endswith("in no scenario.")
+    apart = [outcome(seed, side, side == BASELINE) for seed in range(1, 11) for side in (AGENTS, BASELINE)]
+    assert "Fisher's exact test: square" in significance(apart)
+    assert fewer(apart).endswith("in square (0 : 10 of 10).")
+
+
+def test_failing_runs_are_counted_by_how_they_end() -> None:
+    runs = [outcome(each, BASELINE, False, end=end) for each, end in enumerate((SAID, HUNG, AS_IF_DONE))]
+    rows = {str(row[0]): row[1:] for row in ends_table([*runs, outcome(9, AGENTS, True)]).rows}
+    assert rows[BASELINE] == (3, 1, 0, 1, 1, "67 %")
+    assert rows[AGENTS] == (0, 0, 0, 0, 0, "0 %")
