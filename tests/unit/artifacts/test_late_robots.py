@@ -209,7 +209,7 @@ def test_a_robot_that_never_reacts_does_not_move() -> None:
     assert outcome.seconds < 10.0
 
 
-def test_a_robot_that_nobody_drives_is_unmatched() -> None:
+def test_a_robot_whose_topic_has_no_subscriber_is_unmatched() -> None:
     async def body() -> str:
         async with Mas(world="none", on_log=lambda text, level: None) as mas:
             base = Base(mas, Robot(), 1)
