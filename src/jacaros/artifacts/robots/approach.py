@@ -10,7 +10,8 @@ import math
 from dataclasses import dataclass
 
 from jacaros.artifacts.robots.control import Limits, Pose, Velocity
-from jacaros.artifacts.robots.drive_model import HELD, Axis, DriveModel
+from jacaros.artifacts.robots.drive_model import DriveModel
+from jacaros.artifacts.robots.response import HELD, Axis
 
 BRAKING_SHARE = 0.6
 """Fraction of the robot's acceleration used for slowing down; the rest is a reserve for disturbances."""

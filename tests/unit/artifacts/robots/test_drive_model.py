@@ -6,15 +6,9 @@ import random
 import pytest
 
 from jacaros.artifacts.robots.control import Limits, Pose, Velocity
-from jacaros.artifacts.robots.drive_model import (
-    SHARES,
-    Axis,
-    DriveModel,
-    DriveQuality,
-    Filtered,
-    _ramp,
-    _vertex,
-)
+from jacaros.artifacts.robots.drive_model import DriveModel, DriveQuality
+from jacaros.artifacts.robots.filtering import Filtered
+from jacaros.artifacts.robots.response import SHARES, Axis, ramp, vertex
 
 LIMITS = Limits(speed=0.6, turn_speed=2.0, acceleration=0.8, turn_acceleration=4.0)
 STEP = 0.01
@@ -247,19 +241,19 @@ def test_what_was_measured_earlier_is_used_from_the_start() -> None:
         (0.3, 0.3, 1.0, 2.0, 0.6, 0.3),
     ],
 )
-def test_wheels_follow_a_command_by_a_ramp(
+def test_wheels_follow_a_command_by_aramp(
     speed: float, wanted: float, acceleration: float, seconds: float, way: float, after: float
 ) -> None:
-    assert _ramp(speed, wanted, acceleration, seconds) == pytest.approx((way, after))
+    assert ramp(speed, wanted, acceleration, seconds) == pytest.approx((way, after))
 
 
 def test_the_least_cost_lies_between_candidates() -> None:
-    assert _vertex([4.0, 1.0, 2.0], 1) == pytest.approx(0.25)
-    assert _vertex([2.0, 1.0, 4.0], 1) == pytest.approx(-0.25)
-    assert _vertex([0.0, 3.0, 4.0, 1.0, 4.0], 3) == pytest.approx(0.0)
-    assert _vertex([1.0, 1.0, 1.0], 1) == 0.0
-    assert _vertex([1.0, 2.0, 3.0], 0) == 0.0
-    assert _vertex([3.0, 2.0, 1.0], 2) == 0.0
+    assert vertex([4.0, 1.0, 2.0], 1) == pytest.approx(0.25)
+    assert vertex([2.0, 1.0, 4.0], 1) == pytest.approx(-0.25)
+    assert vertex([0.0, 3.0, 4.0, 1.0, 4.0], 3) == pytest.approx(0.0)
+    assert vertex([1.0, 1.0, 1.0], 1) == 0.0
+    assert vertex([1.0, 2.0, 3.0], 0) == 0.0
+    assert vertex([3.0, 2.0, 1.0], 2) == 0.0
 
 
 def test_an_axis_brackets_its_dead_band() -> None:
