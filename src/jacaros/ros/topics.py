@@ -37,7 +37,7 @@ class _TopicEnd(Generic[N]):
     @property
     def latched(self) -> bool:
         """Whether messages are stored for late subscriptions, or received from before this one."""
-        return self.qos.durability == "transient_local"
+        return self.qos.durability != "volatile"
 
     def close(self) -> None:
         """Leave the topic."""
