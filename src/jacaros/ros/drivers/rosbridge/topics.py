@@ -135,7 +135,9 @@ class BridgeMultiplexer(TopicMultiplexer["BridgeSubscription"]):
             operation["compression"] = "cbor"
         # Without qos the server chooses one that matches all publishers that it knows. But if none exist yet, it
         # misses what they publish before they discover it.
-        if self._node.ros_version == 2 and any(reader.qos.durability == "transient_local" for reader in self.readers):
+        if self._node.ros_version == 2 and any(
+            reader.qos.durability == "transient_local" for reader in self.readers
+        ):
             operation["qos"] = _quality(QoS(durability="transient_local", depth=self._depth))
         elif self._node.ros_version == 2 and any(
             reader.qos.durability == "best_available" for reader in self.readers
