@@ -98,7 +98,7 @@ def test_a_robot_without_commands_stops_and_the_motion_is_blocked() -> None:
     lab = in_lab("driving.asl", lost("/cmd_vel", 2, 8))
     first, *others = [line for line in lab.lines if line.startswith("action_failed")]
     assert first.startswith("action_failed blocked(")
-    assert others == ["action_failed blocked(0)"]
+    assert all(each.startswith("action_failed blocked(") for each in others)
     assert lab.stands(2.7, 8.0)
     assert lab.lines[-2:] == ["at 2 0", "at 0 0"]
     assert (lab.exit_code, lab.place, lab.safe) == (0, (0, 0), True)

@@ -144,7 +144,7 @@ def test_an_unknown_artifact_class_in_a_program(project: Project) -> None:
         0,
         "[robot] warning: the goal !start failed and has no plan for its failure: action_failed, "
         "unknown artifact type `ArtOdometri`; "
-        "did you mean `ArtOdometry` or `ArtOdometryOnDemand` or `ArtCmdVelAndOdometry`? (robot.asl:3)\n"
+        "did you mean `ArtOdometry` or `ArtOdometryOnDemand`? (robot.asl:3)\n"
         '  step: makeArtifact("odom","ArtOdometri")\n'
         '  reason: env_failure_reason(makeArtifactFailure("unknown_artifact_template","ArtOdometri"))\n',
     )
@@ -190,7 +190,7 @@ def test_an_unknown_internal_action(project: Project) -> None:
     project.write("robot.asl", "!start.\n+!start\n  <- .nosuchaction(3).\n")
     assert project.run_file("robot.asl")[2].endswith(
         "action_failed, no artifact of workspace /main has an operation .nosuchaction/1; unknown internal action "
-        ".nosuchaction (robot.asl:3)\n"
+        "`.nosuchaction` (robot.asl:3)\n"
         "  step: .nosuchaction(3)\n"
         '  reason: env_failure_detail(unknown_operation(".nosuchaction/1"))\n'
     )
@@ -241,7 +241,8 @@ def test_an_unknown_option_of_an_artifact(project: Project) -> None:
         0,
         "[robot] warning: the goal !start failed and has no plan for its failure: action_failed, "
         "cannot create artifact battery (ArtSimBattery): ArtSimBattery has no option `drian`; "
-        "its options: dock_timeout, drain, expire, level, namespace, source, topic, watch_connection (robot.asl:3)\n"
+        "its options: dock_timeout, drain, expire, level, low, medium, namespace, source, topic, watch_connection "
+        "(robot.asl:3)\n"
         '  step: makeArtifact("battery","ArtSimBattery",[drian(2)],_)\n'
         '  reason: env_failure_reason(makeArtifactFailure("init_failed","battery"))\n',
     )

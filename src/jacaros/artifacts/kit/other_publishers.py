@@ -9,6 +9,9 @@ from jacaros.ros.backend import Backend
 from jacaros.ros.errors import RosError
 from jacaros.ros.guarded import guarded_by, guards_of
 
+EMBEDDED_WORLD = frozenset({"/world"})
+"""The node of the embedded world of a run: the robot itself, with its navigation."""
+
 LOOK = 1.0
 """Seconds between two queries. Only a publisher that two of them find counts: discovery also finds those that are
 leaving."""
@@ -35,6 +38,9 @@ class OtherPublishers:
     ) -> None:
         self._backend, self._clock, self._topic = backend, clock, topic
         self._changed, self._log = changed, log
+        self._own = guards_of(backend.node_name) | (
+            EMBEDDED_WORLD if backend.name == "memory" else frozenset()
+        )
         self._found: frozenset[str] = frozenset()
         self._shown: frozenset[str] = frozenset()
         self._query: asyncio.Task[None] | None = None
@@ -52,7 +58,7 @@ class OtherPublishers:
     async def _ask(self) -> None:
         with suppress(RosError):  # the graph cannot be reached now, or not be queried at all
             found = frozenset(await self._backend.other_publishers(self._topic))
-            before, self._found = self._found, found - guards_of(self._backend.node_name)
+            before, self._found = self._found, found - self._own
             self._show(self._found & before)
         self._timer = self._clock.call_later(LOOK, self._look)
 

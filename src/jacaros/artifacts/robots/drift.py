@@ -15,6 +15,8 @@ TOLERANCE = (0.05, math.radians(3.0))
 """Metres and radians that odometry may drift: the accuracy of a navigation goal."""
 LEAP = (0.5, math.radians(30.0))
 """A larger change between two poses is a new estimate, as after a pose from rviz, and not a drift."""
+LATE = 0.1
+"""Seconds by which odometry may be later than usual: a late pose of a turning robot looks like a drift."""
 OUTDATED = 1.0
 """Seconds between a pose and the newest odometry over which the motion is extrapolated."""
 
@@ -64,8 +66,9 @@ class Drift:
 
     def _odometry_at(self, stamp: float) -> Pose | None:
         """Return the pose in odometry at *stamp*, extrapolated from the newest: localisation is late by its computation."""
-        newest = self._odometer.newest
-        if newest is None:
+        odometer = self._odometer
+        newest = odometer.newest
+        if newest is None or not odometer.trusted or odometer.late > LATE:
             return None
         late = to_seconds(newest.sample.message.header.stamp) - stamp
         if not abs(late) <= OUTDATED:

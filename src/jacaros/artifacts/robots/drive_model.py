@@ -69,7 +69,7 @@ class DriveModel:
         self.jitter = self.period = 0.0
         self.measured = False
         self._x, self._y, self._heading = Filtered(), Filtered(), Filtered()
-        self._commands: deque[tuple[float, Velocity]] = deque([(-math.inf, STANDSTILL)], 400)
+        self._commands: deque[tuple[float, Velocity]] = deque([(-math.inf, STANDSTILL)])
         self._ticked = -math.inf
         self._last: tuple[Pose, Velocity] | None = None
         self._changes = (0.0, 0.0, 0.0)
@@ -110,8 +110,11 @@ class DriveModel:
         """Note a command that is sent now."""
         if velocity != STANDSTILL:
             self._still = 0
-        if velocity != self._commands[-1][1]:
-            self._commands.append((now, velocity))
+        if velocity == self._commands[-1][1]:
+            return
+        self._commands.append((now, velocity))
+        while self._commands[1][0] < now - LONGEST_PENDING:
+            self._commands.popleft()
 
     def observed(self, pose: Pose, velocity: Velocity, received: float, late: float) -> None:
         """Note a message of odometry, received *late* seconds later than others were."""
