@@ -59,8 +59,7 @@ def test_navigation_continues_after_a_restart_of_the_robot() -> None:
     lab = in_lab("navigating.asl", robot_dies, mapping="robot.yaml")
     assert lab.lines == LOST
     assert lab.stands(3.5, 10.0)
-    assert lab.errors[1:] == MISSING
-    assert "no publisher on topic /odom (nav_msgs/msg/Odometry); still listening" in lab.errors[0]
+    assert lab.errors == MISSING, "odometry was heard before, so its topic is not reported"
     assert_arrived(lab)
 
 
@@ -75,8 +74,7 @@ def test_driving_continues_after_a_restart_of_the_robot() -> None:
         "at 0 0",
     ]
     assert lab.stands(3.5, 10.0)
-    missing, unheard = lab.errors
-    assert "no publisher on topic /odom (nav_msgs/msg/Odometry)" in missing
+    (unheard,) = lab.errors
     assert "/cmd_vel" in unheard
     assert "publishing anyway" in unheard, "the robot is away when the next command is due"
     assert_arrived(lab)
