@@ -202,5 +202,7 @@ def test_an_unknown_service_type_is_refused(graph: Any, pair: Pair, topic: str) 
 def test_a_call_whose_server_dies_fails(graph: Any, pair: Pair, topic: str) -> None:
     left, _ = pair
     lose_a_call(graph, left, topic)
-    with pytest.raises(ServerGone, match=topic):
+    # A rosbridge server of ROS 1 passes on only the text of the failure.
+    told = CallFailed if graph.kind.startswith("rosbridge-ros1") else ServerGone
+    with pytest.raises(told, match=topic):
         left.end_call(topic)
