@@ -203,13 +203,14 @@ class DriveModel:
         return min(LAGS - 1, round(self.delay / (2.0 * TICK)))
 
     def _compare(self, velocity: Velocity) -> None:
-        """Compare candidates with what odometry shows, and choose the best."""
-        excited = False
+        """Compare candidates with what odometry shows, and choose the best. A blocked robot shows nothing about itself."""
+        excited, held_up = False, self._is_held_up(velocity)
+        if held_up and self.measured:
+            return
         for axis, speed in ((self.linear, velocity.linear), (self.angular, velocity.angular)):
             if axis.is_excited():
                 axis.compare(speed)
                 excited = True
-        self._note_rolling(velocity)
         if not excited:
             return
         costs = [
@@ -222,19 +223,24 @@ class DriveModel:
         self.linear.settle_on(best)
         self.angular.settle_on(best)
 
-    def _note_rolling(self, velocity: Velocity) -> None:
-        """Note the commands at which the robot rolls, or stands all the time."""
-        shown = self._at - self.delay
-        if self._stands(velocity):
-            held = self.jitter + self.linear.held
-            slowest = min(abs(each.linear) for each in self._sent(shown - held, shown))
-            if self._at - self._rolled_at > held:
-                self.linear.did_not_roll(slowest)
-            held = self.jitter + self.angular.held
-            if not slowest and self._at - self._rolled_at > held:
-                self.angular.did_not_roll(min(abs(each.angular) for each in self._sent(shown - held, shown)))
-            return
-        self._rolled_at = self._at
+    def _is_held_up(self, velocity: Velocity) -> bool:
+        """Note the commands at which the robot rolls or stands. Return whether it stands in spite of its commands."""
+        if not self._stands(velocity):
+            self._rolled_at = self._at
+            self._note_rolling(velocity, self._at - self.delay)
+            return False
+        for axis, index in ((self.linear, 0), (self.angular, 1)):
+            shown, held = self._at - self.delay, self.jitter + axis.held
+            slowest = min(abs(each[index]) for each in self._sent(shown - held, shown))
+            if slowest and self._at - self._rolled_at > held:
+                axis.did_not_roll(slowest)
+                return True
+            if slowest:
+                return False  # it turns while it drives
+        return False
+
+    def _note_rolling(self, velocity: Velocity, shown: float) -> None:
+        """Note the commands at which the robot rolls, if they are known; odometry shows those until *shown*."""
         if self.measured:
             commands = self._sent(shown - self.jitter - HELD, shown + self.jitter)
             fastest = max(abs(each.linear) for each in commands)
