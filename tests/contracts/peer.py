@@ -188,7 +188,7 @@ class Peer(ActionCommands, GraphCommands):
         def pass_on(sample: Sample) -> None:
             nonlocal due
             now = self._clock.elapsed
-            due = max(now + seconds + chance.uniform(0.0, jitter), due + 1e-6)
+            due = max(now + seconds + chance.uniform(0.0, jitter), due + 1e-3)
             self._clock.call_later(due - now, lambda: publisher.publish(sample.message))
 
         self._subscriptions[source] = self._backend.subscription(source, type_name, pass_on, QoS())
