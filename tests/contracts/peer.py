@@ -10,6 +10,7 @@ import asyncio
 import inspect
 import json
 import os
+import random
 import sys
 import threading
 import time
@@ -176,6 +177,21 @@ class Peer(ActionCommands, GraphCommands):
         subscription = self._backend.subscription(topic, type_name, receive, QoS(**qos), on_event)
         self._subscriptions[key or topic] = subscription
         return subscription.topic
+
+    def relay(
+        self, source: str, target: str, type_name: str, seconds: float, jitter: float = 0.0, seed: int = 0
+    ) -> None:
+        """Pass messages on, in their order, each after *seconds* and up to *jitter* more."""
+        publisher = self._publishers[target] = self._backend.publisher(target, type_name)
+        chance, due = random.Random(seed), 0.0
+
+        def pass_on(sample: Sample) -> None:
+            nonlocal due
+            now = self._clock.elapsed
+            due = max(now + seconds + chance.uniform(0.0, jitter), due + 1e-3)
+            self._clock.call_later(due - now, lambda: publisher.publish(sample.message))
+
+        self._subscriptions[source] = self._backend.subscription(source, type_name, pass_on, QoS())
 
     def events(self, topic: str) -> list[list[str]]:
         return [[str(event.trouble), event.text] for event in self._events[topic]]

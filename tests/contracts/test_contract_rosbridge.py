@@ -439,7 +439,9 @@ def test_a_server_without_rosapi_is_logged_and_taken_for_ros2(robot_of_ros2: Beh
     client = robot_of_ros2.peer("client", start=False)
     client.start()
     assert client.ros_version() == 2
-    assert any("has no rosapi node" in line for line in client.log())
+    [told] = [line for line in client.log() if "has no rosapi node" in line]
+    assert "If rosapi has crashed" in told
+    assert "interfaces" in told
     client.advertise("/a", STRING)
     client.subscribe("/a", STRING)
     robot_of_ros2.wait_until(lambda: _arrives(client), "topics work all the same")
@@ -462,6 +464,28 @@ def test_rosapi_that_ends_at_a_type_is_reported_with_the_type(robot_of_ros2: Beh
     assert sum(reason in line for line in client.log()) == 1
     robot_of_ros2.server.do("rosapi", True)
     assert client.contents()["nodes"]
+
+
+def test_a_run_without_rosapi_does_not_claim_that_a_topic_has_no_publisher(
+    robot_of_ros2: BehindBridge, tmp_path: Path
+) -> None:
+    robot_of_ros2.peer("robot").advertise("/odd", STRING)
+    robot_of_ros2.server.do("rosapi", False)
+    mapping, program = tmp_path / "odd.yaml", tmp_path / "listener.asl"
+    mapping.write_text(
+        f"artifacts: {{odd: {{properties: {{odd: {{topic: odd, type: {STRING}, fields: [data]}}}}}}}}\n"
+    )
+    program.write_text("!start.\n+!start <- .wait(12000); .stopMAS.\n")
+    jacaros = Path(sys.executable).parent / "jacaros"
+    options = ("--mapping", str(mapping), "--ros", "rosbridge", "--bridge", robot_of_ros2.server.url)
+    done = subprocess.run(
+        (jacaros, "run", str(program), "--clock", "real", *options),
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert "no message on topic /odd (std_msgs/msg/String); the graph cannot be queried" in done.stderr
+    assert "no publisher" not in done.stderr
 
 
 def test_the_list_says_why_types_of_actions_are_unknown(robot_of_ros2: BehindBridge) -> None:

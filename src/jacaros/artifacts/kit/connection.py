@@ -11,7 +11,7 @@ from weakref import WeakKeyDictionary, WeakSet
 from jacaros.artifacts.kit.options import Reader, one_of, positive
 from jacaros.clock import Clock
 from jacaros.ros.backend import Backend, Publisher, Sample, Subscription
-from jacaros.ros.errors import RosError
+from jacaros.ros.errors import RosError, ServiceUnavailable
 from jacaros.ros.graph import GraphContents, latching
 from jacaros.ros.names import message_type
 from jacaros.ros.waiting import MISSING_AFTER
@@ -142,7 +142,12 @@ class MissingTopic:
     async def _report(self) -> None:
         contents = GraphContents()
         with suppress(RosError):
-            contents = await self._backend.contents()
+            try:
+                contents = await self._backend.contents()
+            except ServiceUnavailable as unknown:  # without rosapi, nobody knows whether there is a publisher
+                topic = f"topic {self._subscription.topic} ({self._type_name})"
+                self._log(f"no message on {topic}; the graph cannot be queried: {unknown}")
+                return
         if self._subscription.publisher_count == 0:
             self._report_missing(contents)
         elif not self._subscription.latched:

@@ -15,10 +15,9 @@ TOLERANCE = (0.05, math.radians(3.0))
 """Metres and radians that odometry may drift: the accuracy of a navigation goal."""
 LEAP = (0.5, math.radians(30.0))
 """A larger change between two poses is a new estimate, as after a pose from rviz, and not a drift."""
-LATE = 0.1
-"""Seconds by which odometry may be later than usual: a late pose of a turning robot looks like a drift."""
-OUTDATED = 1.0
-"""Seconds between a pose and the newest odometry over which the motion is extrapolated."""
+OUTDATED, AHEAD = 1.0, 0.1
+"""Seconds over which the motion is extrapolated: from the newest odometry back to a pose, and forward to one. Over a slow
+network odometry does not yet show that the robot turns, and a pose that is further ahead would look like a drift."""
 
 _advised: WeakSet[Backend] = WeakSet()
 
@@ -68,10 +67,10 @@ class Drift:
         """Return the pose in odometry at *stamp*, extrapolated from the newest: localisation is late by its computation."""
         odometer = self._odometer
         newest = odometer.newest
-        if newest is None or not odometer.trusted or odometer.late > LATE:
+        if newest is None or not odometer.trusted:
             return None
         late = to_seconds(newest.sample.message.header.stamp) - stamp
-        if not abs(late) <= OUTDATED:
+        if not -AHEAD <= late <= OUTDATED:
             return None
         ahead = newest.pose.heading - 0.5 * late * newest.velocity.angular
         metres = late * newest.velocity.linear

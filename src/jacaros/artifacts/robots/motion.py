@@ -345,7 +345,7 @@ class Motion:
         """Return the failure of a robot that does not follow commands: it is blocked if it has followed them before."""
         model, driving = self._wheels.model, self._maneuver.activity == "driving"
         if model.has_rolled(driving):
-            return MotionFailed("the robot is stuck", "blocked", self._maneuver.covered)
+            return MotionFailed(f"the robot is stuck ({model})", "blocked", self._maneuver.covered)
         if not self._wheels.matching.exists():
             return MotionFailed("no base receives the commands", "does_not_move", Atom("unmatched"))
         return MotionFailed(

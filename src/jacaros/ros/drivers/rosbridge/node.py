@@ -219,7 +219,8 @@ class BridgeNode(Node):
         if not found.told:
             self.log(
                 f"the rosbridge server at {self.url} has no rosapi node, so the graph cannot be queried; assuming ROS 2; "
-                "its launch file starts both"
+                "its launch file starts both. If rosapi has crashed, as it does at types with bounded arrays, restart it "
+                "and name a folder with the definitions of your types (in a mapping file: interfaces)"
             )
         self.translator.ros_version, self.packs = found.ros_version, found.packs
         self._has_rosapi = found.told
