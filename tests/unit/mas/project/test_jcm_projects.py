@@ -162,7 +162,7 @@ def test_values_are_separated_by_line_ends_or_commas(folder: Path) -> None:
     assert [each.message for each in deployment.ignored] == [
         (
             "the architecture `x.First`, the architecture `x.Second` and the architecture `x.Third` have no effect: "
-            "JaCaROS runs no architectures of projects (lines 15, 16)"
+            "JaCaROS runs no architectures of projects (lines 13, 14)"
         )
     ]
     assert bob.options == {"mine": "3", "text": "one, two"}
