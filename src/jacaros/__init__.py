@@ -17,15 +17,11 @@ if TYPE_CHECKING:
     from jacaros.env.errors import OperationFailed
     from jacaros.env.values import Atom, Out, Structure
     from jacaros.errors import InternalError, JacarosError, UsageError
-    from jacaros.extension.agent import Action, Agent, AgentArch
-    from jacaros.extension.belief_base import BeliefBase
+    from jacaros.extension.agent import Agent
     from jacaros.extension.declaring import arithmetic_function, internal_action
     from jacaros.extension.literal import Literal
     from jacaros.extension.python_agent import PythonAgent
-    from jacaros.extension.views import EventView as Event
-    from jacaros.extension.views import IntentionView as Intention
     from jacaros.extension.views import Message, Option, ReceivedMessage
-    from jacaros.extension.views import PerceptView as Percept
     from jacaros.extension.views import PlanView as Plan
     from jacaros.mas.deployment import ProjectError
     from jacaros.mas.embedding.errors import AgentEnded, GoalFailed, RunEnded, UnknownAgent
@@ -36,17 +32,12 @@ if TYPE_CHECKING:
 __version__ = VERSION
 
 __all__ = [
-    "Action",
     "ActionError",
     "Agent",
-    "AgentArch",
     "AgentEnded",
     "AslError",
     "Atom",
-    "BeliefBase",
-    "Event",
     "GoalFailed",
-    "Intention",
     "InternalError",
     "JacarosError",
     "Literal",
@@ -56,7 +47,6 @@ __all__ = [
     "OperationFailed",
     "Option",
     "Out",
-    "Percept",
     "Plan",
     "ProjectError",
     "PythonAgent",
@@ -79,13 +69,11 @@ _MODULES = {
     "jacaros.env.errors": "OperationFailed",
     "jacaros.env.values": "Atom Out Structure",
     "jacaros.errors": "InternalError JacarosError UsageError",
-    "jacaros.extension.agent": "Action Agent AgentArch",
-    "jacaros.extension.belief_base": "BeliefBase",
+    "jacaros.extension.agent": "Agent",
     "jacaros.extension.declaring": "arithmetic_function internal_action",
     "jacaros.extension.literal": "Literal",
     "jacaros.extension.python_agent": "PythonAgent",
-    "jacaros.extension.views": "Event=EventView Intention=IntentionView Message Option Percept=PerceptView Plan=PlanView "
-    "ReceivedMessage",
+    "jacaros.extension.views": "Message Option Plan=PlanView ReceivedMessage",
     "jacaros.mas.deployment": "ProjectError",
     "jacaros.mas.embedding.errors": "AgentEnded GoalFailed RunEnded UnknownAgent",
     "jacaros.mas.embedding.run": "run",

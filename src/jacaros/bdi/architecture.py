@@ -38,8 +38,7 @@ class AgentSystem(Protocol):
         """Create an agent (from the program file *source*, default NAME.asl). Return its final name, or None after
         logging the reason.
 
-        *classes* are its classes from the project's Python code, by ``agentClass``, ``agentArchClass`` and
-        ``beliefBaseClass``.
+        *classes* are its classes, by ``agentClass``, ``agentArchClass`` and ``beliefBaseClass``.
         """
 
     def kill_agent(self, name: str, delay: float = 0.0) -> bool:

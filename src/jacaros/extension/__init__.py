@@ -1,4 +1,4 @@
-"""Project extensions in Python: internal actions, arithmetic functions, agent classes, belief bases.
+"""Project extensions in Python: internal actions, arithmetic functions, agent classes.
 
 Projects import these names from `jacaros` itself.
 """

@@ -1,4 +1,4 @@
-"""Beliefs, goals and percepts as Python code sees them."""
+"""Beliefs and goals as Python code sees them."""
 
 from dataclasses import dataclass, replace
 
@@ -9,7 +9,7 @@ from jacaros.env.values import Atom, Structure
 from jacaros.terms.order import annotation_set
 from jacaros.terms.substitution import resolve
 from jacaros.terms.text import text
-from jacaros.terms.values import Annotated, Functor, Term, annotations_of, arguments_of, functor, functor_of
+from jacaros.terms.values import Annotated, Term, annotations_of, arguments_of, functor, functor_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,21 +72,11 @@ def literal_of(term: Term, outputs: Outputs | None = None) -> Literal:
     symbol = functor_of(term)
     if symbol is None:
         raise ValueError(f"not a literal: {text(term)}")
-    return literal_from(symbol, arguments_of(term), annotations_of(term), outputs)
-
-
-def literal_from(
-    symbol: Functor,
-    arguments: tuple[Term, ...],
-    annotations: tuple[Term, ...],
-    outputs: Outputs | None = None,
-) -> Literal:
-    """Make a literal for Python code from its parts."""
     plain = functor(symbol.name, 0)
     return Literal(
         symbol_name(plain),
-        tuple(to_value(resolve(argument), outputs) for argument in arguments),
-        tuple(to_value(resolve(annotation), outputs) for annotation in annotations),
+        tuple(to_value(resolve(argument), outputs) for argument in arguments_of(term)),
+        tuple(to_value(resolve(annotation), outputs) for annotation in annotations_of(term)),
         symbol.negated,
         symbol.namespace,
     )

@@ -1,7 +1,6 @@
-"""Views of agents for project code: events, options, intentions, messages and percepts.
+"""Views of agents for project code: options, plans and messages.
 
-Projects import the views as ``jacaros.Event``, ``Intention``, ``Percept`` and ``Plan``, without the suffix that
-distinguishes them from the classes of the mind.
+Projects import `PlanView` as ``jacaros.Plan``; the suffix distinguishes it from the class of the mind.
 """
 
 from collections.abc import Callable
@@ -10,16 +9,12 @@ from typing import Any
 from jacaros.asl.loader import parse_term
 from jacaros.asl.lowering import fresh_names, lower
 from jacaros.bdi.actions.agents import QUESTIONS
-from jacaros.bdi.state.act import Percept
-from jacaros.bdi.state.event import Event, event_literal
-from jacaros.bdi.state.intention import ANNOTATIONS, GOAL, PLAN, Frame, Intention
-from jacaros.bdi.state.literals import literal_of
+from jacaros.bdi.state.intention import Frame
 from jacaros.bdi.state.plan import Plan
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.body.values import to_value
 from jacaros.env.values import Structure
-from jacaros.extension.literal import Literal, term_of
-from jacaros.extension.literal import literal_of as as_literal
+from jacaros.extension.literal import literal_of, term_of
 from jacaros.terms.substitution import resolve
 from jacaros.terms.text import text
 from jacaros.terms.values import PLAIN, String, Term, functor_of, is_list, list_items, make_list
@@ -56,31 +51,6 @@ class PlanView:
         return f"Plan({self.label!r})"
 
 
-class EventView:
-    """Something that happened and may need a plan.
-
-    Attributes:
-        trigger: ``+``, ``-``, ``+!``, ``-!``, ``+?`` …
-        literal: the belief or goal.
-        intention: number of the intention that raised it; None for an external event.
-    """
-
-    def __init__(self, raw: Event) -> None:
-        goal, intention, _, _ = raw
-        kind = goal[0]
-        self.trigger: str = kind.operator + kind.kind
-        self.intention = intention.id if intention is not None else None
-        self._raw = raw
-
-    @property
-    def literal(self) -> Literal:
-        """The belief or goal, with its annotations."""
-        return as_literal(resolve(event_literal(self._raw)))
-
-    def __str__(self) -> str:
-        return f"{self.trigger}{self.literal}"
-
-
 class Option:
     """An applicable plan.
 
@@ -100,33 +70,6 @@ class Option:
 
     def __repr__(self) -> str:
         return f"Option({self.plan.label!r}, {self.bindings!r})"
-
-
-class IntentionView:
-    """An intention of an agent.
-
-    Attributes:
-        id: its number.
-    """
-
-    def __init__(self, raw: Intention) -> None:
-        self.id = raw.id
-        self._raw = raw
-
-    @property
-    def goals(self) -> tuple[Literal, ...]:
-        """Its goals and events, the first one first."""
-        return tuple(
-            as_literal(resolve(literal_of(frame[GOAL], frame[ANNOTATIONS]))) for frame in self._raw.frames
-        )
-
-    @property
-    def plans(self) -> tuple[PlanView, ...]:
-        """Its running plans, the first one first."""
-        return tuple(PlanView(frame[PLAN]) for frame in self._raw.frames)
-
-    def __repr__(self) -> str:
-        return f"Intention({self.id}, {[str(goal) for goal in self.goals]})"
 
 
 class Message:
@@ -193,27 +136,6 @@ class ReceivedMessage(Message):
             self._answer(self.raw, performative, content_of(content, self.performative))
 
 
-class PerceptView:
-    """A change noticed in the environment.
-
-    Attributes:
-        kind: ``add`` or ``remove`` for a belief, ``signal`` for an event without one.
-    """
-
-    def __init__(self, raw: Percept) -> None:
-        self.kind = raw.kind
-        self.raw = raw
-
-    @property
-    def literal(self) -> Literal:
-        """The perceived literal, with its annotations."""
-        plain = as_literal(self.raw.literal)
-        return plain.with_annotations(*(to_value(annotation) for annotation in self.raw.annotations))
-
-    def __repr__(self) -> str:
-        return f"Percept({self.kind!r}, {str(self.literal)!r})"
-
-
 def content_of(value: object, performative: str = "tell") -> Term:
     """Convert a Python value to the content of a message; texts are parsed as AgentSpeak, except texts of plans.
 
@@ -241,6 +163,6 @@ def heard(content: Term) -> object:
 def _value_of(term: Term) -> object:
     """Convert a term to a Python value; atoms and structures become `Literal` with their annotations."""
     try:
-        return as_literal(term)
+        return literal_of(term)
     except ValueError:
         return to_value(term)

@@ -18,7 +18,6 @@ from jacaros.body.actions import keys
 from jacaros.clock import VirtualClock
 from jacaros.env.environment import Environment
 from jacaros.env.errors import UnknownArtifactType
-from jacaros.mas.agent_classes import is_own_architecture
 from jacaros.mas.deployment import AgentSpec, Deployment
 from jacaros.suggestions import close_matches, did_you_mean
 
@@ -69,7 +68,7 @@ def check_actions(
     if any(step.functor in _OPEN_WORLD for _, steps in found for step in steps):
         return warnings
     for agent, steps in found:
-        if not (any(map(is_own_architecture, agent.architecture_classes)) or agent.agent_class):
+        if not agent.agent_class:
             warnings += filter(None, map(offered.diagnose, steps))
     return warnings
 

@@ -3,7 +3,6 @@
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
-from pathlib import Path
 from typing import Protocol
 
 from jacaros.asl.nodes import Program
@@ -20,6 +19,7 @@ from jacaros.mas.deployment import AgentSpec
 from jacaros.mas.directory import Directory
 from jacaros.mas.idleness import AgentTimer
 from jacaros.mas.programs import Programs
+from jacaros.mas.project.unsupported import class_without_effect
 from jacaros.mas.python_code import PythonCode
 
 
@@ -132,7 +132,9 @@ class AgentLifecycle:
         log = self._run.console.log
         try:
             path = self.programs.path.find(wanted)
-            spec = _spec(self._directory.free_name(name), name, path, classes)
+            spec = AgentSpec(
+                self._directory.free_name(name), path, name, agent_class=classes.get("agentClass")
+            )
             program = self.programs.load(spec)
             host = self.add(spec, program)
         except FileNotFoundError as missing:
@@ -141,6 +143,11 @@ class AgentLifecycle:
         except JacarosError as wrong:
             log(str(wrong), "error")
             return None
+        for key, written in classes.items():
+            found = None if key == "agentClass" else class_without_effect(key, written)
+            if found is not None:
+                topic, what = found
+                log(f"warning: {what} of agent {name} has no effect: {topic.why}; {topic.help}", "warning")
         begin(host, spec, program)
         return host.name
 
@@ -200,16 +207,3 @@ def _is_situated(spec: AgentSpec) -> bool:
 def _initial(spec: AgentSpec, program: Program) -> Program:
     """Return the program that the mind starts with. The goals of a situated agent come later: see `begin`."""
     return replace(program, goals=()) if _is_situated(spec) else program
-
-
-def _spec(name: str, declared: str, path: Path, classes: Mapping[str, str]) -> AgentSpec:
-    """Return the declaration of an agent that is created at run time."""
-    architecture = classes.get("agentArchClass")
-    return AgentSpec(
-        name,
-        path,
-        declared,
-        agent_class=classes.get("agentClass"),
-        architecture_classes=(architecture,) if architecture is not None else (),
-        belief_base_class=classes.get("beliefBaseClass"),
-    )

@@ -180,9 +180,7 @@ def _of_beliefs(
 
     trees = [program for _, program in programs]
     told = check_histories(trees, types)
-    if any(
-        agent.agent_class or agent.architecture_classes or agent.belief_base_class for agent, _ in programs
-    ):
+    if any(agent.agent_class for agent, _ in programs):
         return told
     return told + check_beliefs(trees, types, folders)
 
@@ -374,9 +372,7 @@ def _of_classes(
     """Return the errors in the classes that agents declare."""
     found: list[Diagnostic] = []
     try:
-        AgentClasses(ProjectModules(*folders, unseen=unseen), deployment.base_path, found.append).check(
-            deployment.agents
-        )
+        AgentClasses(ProjectModules(*folders, unseen=unseen), found.append).check(deployment.agents)
     except ProjectError as error:
         found += error.diagnostics
     return found

@@ -55,7 +55,7 @@ class AgentSpec:
         beliefs, goals: literals separated by commas, as text (see `jacaros.asl.loader.parse_literals`).
         join: workspaces it joins at its start, in order. They include all workspaces of ``focus``.
         focus: artifacts it focuses at its start, in order.
-        agent_class, architecture_classes, belief_base_class: class names as written.
+        agent_class: name of the class as written.
         host: the requested computer, without effect.
         python_class: the class of a Python agent, in place of a file.
         span: location of the declaration.
@@ -70,8 +70,6 @@ class AgentSpec:
     join: tuple[str, ...] = ()
     focus: tuple[FocusSpec, ...] = ()
     agent_class: str | None = None
-    architecture_classes: tuple[str, ...] = ()
-    belief_base_class: str | None = None
     host: str | None = None
     python_class: type | None = None
     span: Span | None = field(default=None, compare=False, repr=False)

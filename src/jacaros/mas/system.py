@@ -145,7 +145,7 @@ class System:
 
         deployment, code = self.deployment, PythonCode(self._modules, self.options.restricted)
         programs = Programs(deployment.source_paths, warn, code, prepare)
-        classes = AgentClasses(self._modules, deployment.base_path, lambda warning: warn(warning.render()))
+        classes = AgentClasses(self._modules, lambda warning: warn(warning.render()))
         return AgentLifecycle(
             self,
             self.directory,

@@ -1,4 +1,4 @@
-"""Agents whose class is the project's: selection functions, revision of beliefs, messages, death."""
+"""Agents whose class is the project's: selection of options, messages, death."""
 
 from pathlib import Path
 
@@ -65,120 +65,15 @@ class Mine(Agent):
     assert "no applicable plan for !go" in result.errors[0]
 
 
-def test_events_are_selected_by_the_class(tmp_path: Path) -> None:
+def test_messages_are_refused_by_the_class(tmp_path: Path) -> None:
     python = """
 class Mine(Agent):
-    def select_event(self, events):
-        return min(events, key=lambda event: (event.trigger != "+", str(event.literal)))
-"""
-    program = "!c. !b. !a. z. y. +!X <- .print(X). +z <- .print(z). +y <- .print(y)."
-    assert said(tmp_path, program, python) == [
-        "y",
-        "z",
-        "a[source(self)]",
-        "b[source(self)]",
-        "c[source(self)]",
-    ]
-
-
-def test_intentions_are_selected_by_the_class(tmp_path: Path) -> None:
-    python = """
-class Mine(Agent):
-    def select_intention(self, intentions):
-        return max(intentions, key=lambda intention: intention.goals[0].arguments[0])
-"""
-    program = "!go(1). !go(3). !go(2). +!go(X) <- .print(X); .print(X)."
-    assert said(tmp_path, program, python) == ["1", "3", "3", "2", "2", "1"]
-
-
-def test_an_atomic_intention_comes_before_the_class(tmp_path: Path) -> None:
-    python = """
-class Mine(Agent):
-    def select_intention(self, intentions):
-        return intentions[-1]
-"""
-    program = "!a. !b. @a[atomic] +!a <- .print(a1); .print(a2). +!b <- .print(b1); .print(b2)."
-    assert said(tmp_path, program, python) == ["a1", "a2", "b1", "b2"]
-
-
-def test_messages_are_selected_and_refused_by_the_class(tmp_path: Path) -> None:
-    python = """
-class Mine(Agent):
-    def select_message(self, messages):
-        return max(messages, key=lambda message: message.content.arguments[0])
-
     def soc_acc(self, message):
         return message.content.arguments[0] < 5
 """
     ann = "!go. +!go <- for (.range(I, 1, 6)) { .send(bob, tell, n(I)) }."
     result = run(tmp_path, "+n(X)[source(S)] <- .print(S, X).", python, ann_asl=ann)
-    assert (result.of("bob"), result.errors) == (["ann4", "ann3", "ann2", "ann1"], [])
-
-
-def test_a_revision_can_be_refused(tmp_path: Path) -> None:
-    python = """
-class Mine(Agent):
-    def init(self, limit):
-        self.limit = limit
-
-    def brf(self, added, removed, intention):
-        if removed is not None and removed.functor == "fixed":
-            raise ActionError("fixed things stay")
-        if added is not None and added.functor == "level":
-            return added.arguments[0] <= self.limit
-"""
-    program = """
-    fixed(1).
-    !go(3). !go(9). !away.
-    +!go(N) <- +level(N); -+level(N); .print(ok, N).
-    -!go(N)[error(E), error_msg(M)] <- .print(E, " ", M).
-    +!away <- -fixed(1).
-    -!away[error(E), error_msg(M)] : fixed(1) <- .print(E, " ", M).
-    """
-    ann = "!go. +!go <- .send(bob, tell, level(20)); .send(bob, tell, level(2))."
-    result = run(
-        tmp_path,
-        program + "+level(N)[source(ann)] <- .print(N).",
-        python,
-        "agentClass my.Mine(5)",
-        ann_asl=ann,
-    )
-    assert set(result.of("bob")) == {
-        "ok3",
-        "belief_revision_failed the agent's class refuses to add level(9)[source(self)]",
-        "belief_revision_failed fixed things stay",
-        "2",
-    }
-    assert result.errors == ["[bob] info: the agent's class refused the belief level(20)[source(ann)]"]
-
-
-def test_percepts_can_be_kept_out(tmp_path: Path) -> None:
-    python = """
-class Mine(Agent):
-    def buf(self, percepts):
-        return [percept for percept in percepts if percept.literal.functor != "secret"]
-"""
-    artifacts = """
-    from jacaros.env import Artifact
-
-    class Box(Artifact):
-        def init(self):
-            self.define_property("secret", 1)
-            self.define_property("open", 2)
-    """
-    program = """
-    !go. +!go <- makeArtifact(b, "Box", [], Id); focus(Id); .wait(10); .findall(X, secret(X) | open(X), L); .print(L).
-    """
-    files = {"artifacts": artifacts}
-    write(
-        tmp_path,
-        sys_jcm="mas sys { agent bob { ag-class: my.Mine } }",
-        bob_asl=program,
-        my=HEAD + python,
-        **files,
-    )
-    result = run_project(tmp_path / "sys.jcm", until_idle=True)
-    assert (result.errors, result.lines) == ([], ["[bob] [2]"])
+    assert (result.of("bob"), result.errors) == (["ann1", "ann2", "ann3", "ann4"], [])
 
 
 def test_an_agent_need_not_accept_its_end(tmp_path: Path) -> None:
@@ -199,12 +94,25 @@ class Mine(Agent):
     def select_option(self, options):
         return 1 / 0
 
-    def select_intention(self, intentions):
+    def soc_acc(self, message):
+        raise ValueError("who is it?")
+"""
+    ann = "!go. +!go <- .send(bob, achieve, a)."
+    result = run(tmp_path, "+!a : true <- .print(a). +!a <- .print(b).", python, ann_asl=ann)
+    assert result.of("bob") == ["a"]
+    assert f"Mine.soc_acc: ValueError: who is it? ({tmp_path}/my.py:9)" in result.errors[0]
+    assert f"Mine.select_option: ZeroDivisionError: division by zero ({tmp_path}/my.py:6)" in result.errors[1]
+
+
+def test_an_option_that_is_not_offered_is_logged_and_the_first_is_used(tmp_path: Path) -> None:
+    python = """
+class Mine(Agent):
+    def select_option(self, options):
         return "this one"
 """
-    result = run(tmp_path, "!a. !b. +!a : true <- .print(a). +!b <- .print(b).", python)
-    assert result.of("bob") == ["a", "b"]
-    assert f"Mine.select_option: ZeroDivisionError: division by zero ({tmp_path}/my.py:6)" in result.errors[0]
+    result = run(tmp_path, "!a. +!a : true <- .print(a). +!a <- .print(b).", python)
+    assert result.of("bob") == ["a"]
+    assert "it returned 'this one', which is not one of the choices" in result.errors[0]
 
 
 @pytest.mark.parametrize(
@@ -212,16 +120,17 @@ class Mine(Agent):
     [
         ("agentClass my.Mien", "unknown class Mien in"),
         ("agentClass my.Mien", "did you mean `my.Mine`?"),
-        ("beliefBaseClass my.Mine", "it has no class derived from jacaros.BeliefBase"),
         ("agentClass my.Mine(1 2)", "invalid arguments of my.Mine(1 2)"),
         ("agentClass broken.Mine", "broken.py:1: NameError"),
         ("agentClass my.Mine(1)", "takes 1 positional argument but 2 were given"),
+        ("agentClass my.Broken", "my.py:9)"),
     ],
 )
 def test_an_unknown_class_is_reported_before_anything_runs(
     tmp_path: Path, declared: str, message: str
 ) -> None:
-    python = "class Mine(Agent):\n    def init(self):\n        pass\n"
+    python = "class Mine(Agent):\n    def init(self):\n        pass\n\n"
+    python += "class Broken(Agent):\n    def init(self):\n        1 / 0\n"
     result = run(tmp_path, "!go. +!go <- .print(hello).", python, declared, broken="undefined_name\n")
     assert (result.exit_code, result.lines) == (1, [])
     assert message in "\n".join(result.errors)
@@ -240,23 +149,20 @@ def test_an_agent_made_at_run_time_can_be_of_a_class(tmp_path: Path) -> None:
 class Mine(Agent):
     def init(self, word):
         self.add_belief(Literal("word", (word,)))
-
-class Loud(BeliefBase):
-    def add(self, belief):
-        self.agent.print("add ", str(belief.functor))
-        return super().add(belief)
 """
     program = """
     !go.
-    +!go <- .create_agent(sue, "sue_of_bob.asl", [agentClass("my.Mine(hi)"), beliefBaseClass(my.Loud)]);
+    +!go <- .create_agent(sue, "sue_of_bob.asl",
+                [agentClass("my.Mine(hi)"), beliefBaseClass("my.Loud"), agentArchClass("jaca.CAgentArch")]);
             .create_agent(joe, "sue_of_bob.asl", [agentClass("my.Missing")]).
     -!go[error(E)] <- .print(E).
     """
     write(tmp_path)
     (tmp_path / "sue_of_bob.asl").write_text("!go. +!go : word(W) <- .print(W).")
     result = run(tmp_path, program, python, "")
-    assert result.lines == ["[sue] add word", "[bob] internal_action", "[sue] hi"]
-    assert "unknown class Missing" in result.errors[0]
+    assert result.lines == ["[bob] internal_action", "[sue] hi"]
+    assert "the belief base `my.Loud` of agent sue has no effect" in result.errors[0]
+    assert "unknown class Missing" in result.errors[1]
 
 
 def test_python_code_can_look_at_beliefs_and_talk(tmp_path: Path) -> None:
@@ -322,13 +228,13 @@ def sq(x: float) -> float:
 def test_a_clone_is_of_the_same_class(tmp_path: Path) -> None:
     python = """
 class Mine(Agent):
-    def brf(self, added, removed, intention):
-        if added and added.functor == "bad":
-            return False
+    def select_option(self, options):
+        return options[-1]
 """
-    program = "!go. +!go <- !!try; .clone(twin). +!try <- .wait(1); +bad(1). -!try[error(E)] <- .my_name(N); .print(E, N)."
-    result = run(tmp_path, program + " +!go(_).", python)
-    assert result.of("bob") == ["belief_revision_failedbob"]
+    program = (
+        "!go. +!go <- .clone(twin); .send(twin, achieve, try). +!try <- .print(first). +!try <- .print(last)."
+    )
+    assert run(tmp_path, program, python).of("twin") == ["last"]
 
 
 def test_a_check_looks_at_the_classes_and_the_python_code(tmp_path: Path) -> None:

@@ -88,10 +88,12 @@ def test_uncertain_cases_are_not_reported(folder: Path, step: str) -> None:
     assert check(folder, f"type(x).\n!go.\n+!go : type(Type) <- {step}; .print(Type); jump.") == []
 
 
-def test_agents_with_user_defined_architectures_are_not_checked(folder: Path) -> None:
-    (folder / "body.py").write_text("from jacaros import AgentArch\n\nclass Body(AgentArch):\n    pass\n")
+def test_an_architecture_has_no_effect_so_its_actions_are_reported(folder: Path) -> None:
     project = PROJECT.replace("focus: lab.c", "focus: lab.c  ag-arch: body.Body")
-    assert check(folder, "!go.\n+!go <- jump.", project) == []
+    assert {each.message for each in check(folder, "!go.\n+!go <- jump.", project)} == {
+        "the architecture `body.Body` has no effect: JaCaROS runs no architectures of projects",
+        "unknown operation `jump/0`: no artifact of the project has it",
+    }
 
 
 def test_unknown_types_are_reported(folder: Path) -> None:

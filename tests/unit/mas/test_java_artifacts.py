@@ -60,7 +60,7 @@ def test_the_port_turns_no_warning_into_an_error(room: Path, capsys: pytest.Capt
     (room / "devices.py").write_text(PORTED)
     code, told = outcome(room, capsys, "devices.Heater")
     assert code == 0
-    assert "warning: the Java class `devices.SlowArch` has no effect" in told
+    assert "warning: the architecture `devices.SlowArch` has no effect" in told
     code, told = outcome(room, capsys, "devices.Heater", "run")
     assert code == 0
     assert "[ann] 30" in told

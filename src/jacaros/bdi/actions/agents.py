@@ -217,8 +217,8 @@ def create_agent(ctx: Context, name: Term, source: Term = None, options: Term = 
     """``.create_agent(Name[, File[, Options]])`` creates an agent that runs a program (default ``Name.asl``).
 
     The name is made unique. If the name is a variable, it is bound to the final name, a string: the variable's own name
-    in lower case, with a number if necessary. *Options* is a list of ``agentClass("my.Careful")``,
-    ``agentArchClass("my.Arch")`` and ``beliefBaseClass("my.LoudBB(3)")``, classes in the project's Python code.
+    in lower case, with a number if necessary. *Options* is a list with ``agentClass("my.Careful(3)")``, a class in the
+    project's Python code. Jason's ``agentArchClass`` and ``beliefBaseClass`` have no effect.
 
     Raises:
         ActionError: the agent could not be created, for example because its program has errors.

@@ -54,7 +54,8 @@ def replace_belief(agent: Any, symbol: Functor, row: Row, annotations: Annotatio
     ):
         posted: Raised = agent.replace_belief(symbol, row, annotations)
         return posted
-    if table.remove(newest) and (
+    table.remove(newest)
+    if (
         agent.library.selects[table.deleted] is not None
         or agent.waits.events
         or agent.waits.conditions
@@ -76,10 +77,10 @@ def delete_belief(
                 break
             mark = len(trail)
             if unify_rows(arguments, fact, trail):
-                taken = table.remove(fact)
-                if apart or not taken:
+                table.remove(fact)
+                if apart:
                     undo(trail, mark)
-                return deleted(agent, symbol, fact, BY_SELF, apart) if taken else None
+                return deleted(agent, symbol, fact, BY_SELF, apart)
             undo(trail, mark)
         else:
             return None

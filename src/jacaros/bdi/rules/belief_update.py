@@ -133,7 +133,10 @@ def insert(
 def _merge(table: Table, entry: Any, held: Annotations, annotations: Annotations) -> Annotations | None:
     """Add what is new to the annotations of a belief."""
     merged, new = merge_annotations(held, annotations)
-    return new if new and table.set(entry, merged) else None
+    if not new:
+        return None
+    table.set(entry, merged)
+    return new
 
 
 def _insert_aside(
@@ -195,10 +198,10 @@ def _remove_first(
             and unify_annotations(annotations, None, held, None, trail)
         ):
             found = resolve_all(arguments)
-            taken = take_away(table, entry, held, resolve_all(annotations))
-            if not (bind and taken):
+            take_away(table, entry, held, resolve_all(annotations))
+            if not bind:
                 undo(trail, mark)
-            return found if taken else None
+            return found
         undo(trail, mark)
     return None
 
@@ -319,7 +322,8 @@ def _abolish_entry(
         not annotations or unify_annotations(annotations, None, held, None, trail)
     )
     undo(trail, mark)
-    if matches and table.remove(entry):
+    if matches:
+        table.remove(entry)
         external_change(agent, "-", symbol, row, held)
 
 

@@ -60,8 +60,6 @@ class Urgent(Fair):
         "_in_order",
         "_named",
         "_of_kinds",
-        "_orders_events",
-        "_orders_intentions",
         "_ranked",
         "_urgent_messages",
     )
@@ -72,7 +70,6 @@ class Urgent(Fair):
         self._of_kinds = _OfKinds(self)
         self.urgencies: Mapping[Trigger, int] | None = self._of_kinds
         self._in_order = False
-        self._orders_events = self._orders_intentions = True
         self._ranked = False
         self._urgent_messages = 0
 
@@ -149,10 +146,8 @@ class Urgent(Fair):
         agent = self.agent
         if not self._in_order:
             self._in_order = True
-            if self._orders_events:
-                agent.events = UrgentQueue(self._of_event, agent.events)
-            if self._orders_intentions:
-                agent.intentions = UrgentQueue(self.urgency_of, agent.intentions)
+            agent.events = UrgentQueue(self._of_event, agent.events)
+            agent.intentions = UrgentQueue(self.urgency_of, agent.intentions)
         return agent.events, agent.intentions
 
     def _calm_down(self) -> None:

@@ -161,15 +161,14 @@ class Table:
         """Whether an entry that a search found has not been deleted meanwhile."""
         return entry in self.rows or entry in self.late
 
-    def set(self, row: Entry, annotations: tuple[Term, ...]) -> bool:
-        """Replace the annotations of a row that is held; False when the base refuses."""
+    def set(self, row: Entry, annotations: tuple[Term, ...]) -> None:
+        """Replace the annotations of a row that is held."""
         (self.rows if row in self.rows else self.late)[row] = annotations
-        return True
 
     def add(self, row: Any, annotations: tuple[Term, ...], last: bool = False) -> tuple[Term, ...] | None:
         """Put in a row that is not held; *last* puts it behind all others.
 
-        Gives the annotations back, None when the base refuses: those of projects may.
+        Gives the annotations back, None when the base refuses.
         """
         if self._base is not None and self._base.searching:
             self._part(self._base.searching)
@@ -209,21 +208,21 @@ class Table:
         for positions, index in self.indexes.items():
             _put(index, row[positions[0]] if len(positions) == 1 else key_of(row, positions), row)
 
-    def remove(self, row: Any) -> bool:
-        """Take out a row, rule or open belief that is held; False when the base refuses."""
+    def remove(self, row: Any) -> None:
+        """Take out a row, rule or open belief that is held."""
         if self._base is not None and self._base.searching:
             self._part(self._base.searching)
         if row in self.late:
             self.late.take(row)
             self._note(row, -1)
-            return True
+            return
         discard(self.rows, row)
         if self._mixed is not None:
             self._mixed.remove(row)
         if row.__class__ is not tuple:
             self.others -= 1
             self._note(row, -1)
-            return True
+            return
         for positions, index in self.indexes.items():
             key = key_of(row, positions)
             bucket = index[key]
@@ -231,7 +230,6 @@ class Table:
                 del index[key]
             else:
                 discard(bucket, row)
-        return True
 
     def _changed(self) -> None:
         """Rules, or facts among them, came or went: another function searches for them from now on."""
@@ -451,7 +449,10 @@ def without_sources(term: Term) -> Term:
     return Annotated(term.term, kept, term.tail) if kept or term.tail is not None else term.term
 
 
-def take_away(table: Table, entry: Entry, held: tuple[Term, ...], annotations: tuple[Term, ...]) -> bool:
-    """Take annotations off a belief; it goes when no source is left.  False when the base refuses."""
+def take_away(table: Table, entry: Entry, held: tuple[Term, ...], annotations: tuple[Term, ...]) -> None:
+    """Take annotations off a belief; it goes when no source is left."""
     rest = tuple(a for a in held if a not in annotations)
-    return table.set(entry, rest) if has_source(rest) else table.remove(entry)
+    if has_source(rest):
+        table.set(entry, rest)
+    else:
+        table.remove(entry)

@@ -66,7 +66,6 @@ class BoundedTable(Table):
         self._base.count(1)
         return super().add(row, annotations, last)
 
-    def remove(self, row: Any) -> bool:
-        removed = super().remove(row)
+    def remove(self, row: Any) -> None:
+        super().remove(row)
         self._base.count(-1)
-        return removed

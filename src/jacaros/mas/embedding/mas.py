@@ -97,8 +97,6 @@ class Mas(EmbeddedRun):
         focus: "Iterable[str | FocusSpec | ArtifactId]" = (),
         options: Mapping[str, str] | None = None,
         agent_class: str | None = None,
-        architectures: Sequence[str] = (),
-        belief_base: str | None = None,
         stored: Mapping[str, Any] | None = None,
     ) -> RunningAgent:
         """Create and start an agent. It has its first turn when the caller awaits something.
@@ -112,7 +110,7 @@ class Mas(EmbeddedRun):
             join: workspaces that it joins, by path or name.
             focus: artifacts that it focuses before its goals begin: names (searched in all workspaces), paths or ids.
             options: settings such as ``verbose`` and ``events``, as in project files.
-            agent_class, architectures, belief_base: Python classes of the project, as in project files.
+            agent_class: a Python class of the project, as in project files.
             stored: the result of `RunningAgent.stored` for an agent with the same program, in this process or another
                 one. The agent continues where that one was, so it adopts no initial beliefs and goals. It perceives
                 anew what it focuses. An action that was running fails with ``env_failure_reason(interrupted)``.
@@ -141,8 +139,6 @@ class Mas(EmbeddedRun):
                 join=tuple(join),
                 focus=tuple(map(_focus, focus)),
                 agent_class=agent_class,
-                architecture_classes=tuple(architectures),
-                belief_base_class=belief_base,
                 python_class=python_class,
             )
         if not spec.name.isprintable() or not spec.name or " " in spec.name:

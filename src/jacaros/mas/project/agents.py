@@ -43,8 +43,6 @@ class ProjectAgents:
             beliefs=self._literals(agent.beliefs, "belief"),
             goals=self._literals(agent.goals, "goal"),
             agent_class=agent.agent_class,
-            architecture_classes=tuple(agent.architecture_classes),
-            belief_base_class=agent.belief_base_class,
             host=agent.host,
             span=agent.span,
         )

@@ -7,7 +7,7 @@ from jacaros.asl.source import Span
 from jacaros.mas.project.cursor import Token, text_of
 from jacaros.mas.project.jcm_values import NAME, JcmValues
 from jacaros.mas.project.parts import AgentPart, FocusPart, JoinPart
-from jacaros.mas.project.unsupported import INSPECTORS, NODES, ROLES
+from jacaros.mas.project.unsupported import INSPECTORS, NODES, ROLES, class_without_effect
 from jacaros.suggestions import did_you_mean
 
 KEYS: Final = (
@@ -52,10 +52,11 @@ class JcmAgents(JcmValues):
                 self._instances(agent, key)
             case "ag-class":
                 agent.agent_class = self._class(key, agent.agent_class)
-            case "ag-bb-class":
-                agent.belief_base_class = self._class(key, agent.belief_base_class)
-            case "ag-arch":
-                agent.architecture_classes += [text for text, _ in self.classes()]
+            case "ag-arch" | "ag-bb-class":
+                for text, span in self.classes():
+                    found = class_without_effect(key.text, text)
+                    if found is not None:
+                        self.unsupported(*found, span)
             case "host" | "node":
                 agent.host = " ".join(text for text, _ in self.names())
                 self.unsupported(NODES, f"`{key.text}` of agent `{agent.name}`", cursor.span_of(key))

@@ -8,7 +8,15 @@ from jacaros.asl.source import Span
 from jacaros.mas.deployment import CARTAGO_ENVIRONMENTS
 from jacaros.mas.project.cursor import ProjectCursor, ProjectPanic, Token, text_of
 from jacaros.mas.project.parts import AgentPart, ProjectPart
-from jacaros.mas.project.unsupported import INFRASTRUCTURES, JAVA, JAVA_ENVIRONMENT, NODES, Topic, Unsupported
+from jacaros.mas.project.unsupported import (
+    INFRASTRUCTURES,
+    JAVA,
+    JAVA_ENVIRONMENT,
+    NODES,
+    Topic,
+    Unsupported,
+    class_without_effect,
+)
 from jacaros.suggestions import did_you_mean, suggestion
 
 _SECTIONS: Final = (
@@ -225,16 +233,19 @@ class _Mas2jReader:
             agent.host = text_of(self.value("the name of a host"))
             self.unsupported(NODES, f"`at` of agent `{agent.name}`", cursor.span_of(key))
             return
-        name = cursor.name("a class name")
-        text = name.text + self.parameters()
-        if key.text == "agentArchClass":
-            agent.architecture_classes.append(text)
-            while cursor.accept(","):
-                agent.architecture_classes.append(cursor.name("a class name").text + self.parameters())
-        elif key.text == "agentClass":
-            agent.agent_class = text
-        else:
-            agent.belief_base_class = text
+        if key.text == "agentClass":
+            agent.agent_class = cursor.name("a class name").text + self.parameters()
+            return
+        self.class_without_effect(key.text)
+        while key.text == "agentArchClass" and cursor.accept(","):
+            self.class_without_effect(key.text)
+
+    def class_without_effect(self, key: str) -> None:
+        name = self.cursor.name("a class name")
+        self.parameters()
+        found = class_without_effect(key, name.text)
+        if found is not None:
+            self.unsupported(*found, self.cursor.span_of(name))
 
     def count(self) -> int:
         token = self.value("a number of agents")

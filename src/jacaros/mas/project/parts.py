@@ -56,8 +56,6 @@ class AgentPart:
     join: list[JoinPart] = field(default_factory=list)
     focus: list[FocusPart] = field(default_factory=list)
     agent_class: str | None = None
-    architecture_classes: list[str] = field(default_factory=list)
-    belief_base_class: str | None = None
     host: str | None = None
     folders: tuple[Path, ...] = ()
 

@@ -50,6 +50,18 @@ JAVA_ENVIRONMENT: Final = Topic(
     "Java environments are not supported",
     "write artifacts in Python, and declare `environment: jacaros.Environment`",
 )
+ARCHITECTURES: Final = Topic(
+    "agent architectures",
+    "JaCaROS runs no architectures of projects",
+    "write percepts and actions as an artifact, as docs/how-to/come_from_jason.md shows",
+)
+BELIEF_BASES: Final = Topic(
+    "belief bases",
+    "JaCaROS runs no belief bases of projects",
+    "keep data in an artifact or a file, as docs/how-to/come_from_jason.md shows",
+)
+_REPLACED: Final = ("jaca.", "c4jason.", "jason.architecture.AgArch", "jason.bb.DefaultBeliefBase")
+"""Beginnings of class names, of other systems, whose work JaCaROS does itself."""
 
 
 class Unsupported(NamedTuple):
@@ -59,6 +71,19 @@ class Unsupported(NamedTuple):
     what: str
     span: Span
     detail: bool = False
+
+
+def class_without_effect(key: str, written: str) -> tuple[Topic, str] | None:
+    """Return what to report about the class of an agent; None if JaCaROS does its work itself.
+
+    Args:
+        key: such as ``agentArchClass`` or ``ag-bb-class``.
+        written: the class, optionally with arguments.
+    """
+    if not written or written.startswith(_REPLACED):
+        return None
+    topic, what = (ARCHITECTURES, "architecture") if "rch" in key else (BELIEF_BASES, "belief base")
+    return topic, f"the {what} `{written.partition('(')[0].strip()}`"
 
 
 def each(found: Sequence[Unsupported]) -> list[Diagnostic]:

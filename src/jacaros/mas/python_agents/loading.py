@@ -109,10 +109,6 @@ def _without_effect(spec: AgentSpec) -> Sequence[str]:
     found = [f"the option `{option}`" for option in _OF_MINDS if option in spec.options]
     if spec.goals.strip():
         found.append("`goals`")
-    if spec.architecture_classes:
-        found.append("the architecture class")
-    if spec.belief_base_class:
-        found.append("the belief base class")
     if any(focus.namespace for focus in spec.focus):
         found.append("the namespace of a focus")
     return found

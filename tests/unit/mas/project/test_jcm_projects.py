@@ -159,7 +159,12 @@ def test_values_are_separated_by_line_ends_or_commas(folder: Path) -> None:
     assert bob.beliefs == 'calc("4+2*2")[id(0)], calc("1, 2")[id(1)], names(["a", b], x), ~agent(x)'
     assert " ".join(bob.goals.split()) == 'start("a1","t(paris, athens)"), start( "a2", [1, 2])'
     assert bob.focus == (FocusSpec("one", "w"), FocusSpec("two", "w", "ns"))
-    assert bob.architecture_classes == ('x.First("a, b")', "x.Second", "x.Third")
+    assert [each.message for each in deployment.ignored] == [
+        (
+            "the architecture `x.First`, the architecture `x.Second` and the architecture `x.Third` have no effect: "
+            "JaCaROS runs no architectures of projects (lines 13, 14)"
+        )
+    ]
     assert bob.options == {"mine": "3", "text": "one, two"}
     arguments = deployment.workspaces[0].artifacts[0].arguments
     assert arguments == (2, -1, 2500.0, "a b")
@@ -338,14 +343,14 @@ def test_a_mas2j_file_reports_what_has_no_effect(folder: Path) -> None:
     deployment = load_deployment(path)
     alice = deployment.agents[2]
     assert (alice.beliefs, alice.goals) == ("at(home)", 'start("a","b")')
-    assert alice.architecture_classes == ("x.A", "jaca.CAgentArch")
-    assert " ".join((alice.belief_base_class or "").split()).startswith("x.Chain( x.One, x.Two(")
     assert deployment.agents[3].source_path == folder / "src" / "agt" / "bob.asl"
     assert [each.message for each in deployment.ignored] == [
         "the infrastructure `Jade` has no effect: all agents run in one process",
         "the environment `x.Env` has no effect: Java environments are not supported",
         "`at h0` and `at` of agent `bob` have no effect: all agents run in one process (lines 6, 9)",
         "`executionControl` and `directives` have no effect: JaCaROS runs no Java code (lines 7, 20)",
+        "the architecture `x.A` has no effect: JaCaROS runs no architectures of projects",
+        "the belief base `x.Chain` has no effect: JaCaROS runs no belief bases of projects",
     ]
 
 

@@ -98,8 +98,6 @@ def test_all_of_an_agent_in_mas2j(folder: Path):
     assert bob.source_path == folder / "carl.asl"
     assert bob.options == {"verbose": "2", "events": "requeue"}
     assert (bob.beliefs, bob.goals) == ('p(1), q("x")', "go")
-    assert bob.architecture_classes == ("jaca.CAgentArch", "jason.x.Arch(1)")
-    assert bob.belief_base_class == 'jason.bb.TextPersistentBB("f.txt")'
     assert bob.host == "host1"
     assert names(deployment) == ["bob", "alice1", "alice2", "carl"]
     assert agent(deployment, "alice2").declared_name == "alice"
@@ -243,8 +241,6 @@ def test_all_of_an_agent_in_jcm(folder: Path):
     assert bob.beliefs == 'friend(alice), price("a, b",10)[source(self)], money(5)'
     assert bob.goals == "start, go(X)"
     assert bob.agent_class == "my.Agent"
-    assert bob.architecture_classes == ("a.Arch", "b.Arch(1)")
-    assert bob.belief_base_class == "my.BB(x)"
     assert bob.options == {"verbose": "2", "debug": "mindinspector(web)"}
     assert agent(deployment, "alice").source_path == folder / "alice.asl"
     assert deployment.artifact_environment

@@ -81,13 +81,13 @@ def test_errors_in_the_file_are_reported_before_anything_runs(
 def test_declarations_without_effect_are_reported(tmp_path: Path) -> None:
     result = run(
         tmp_path,
-        m_jcm="mas m { agent a: a.py { instances: 2 goals: g  events: discard  ag-arch: X ag-bb-class: Y } }",
+        m_jcm="mas m { agent a: a.py { instances: 2 goals: g  events: discard} }",
         a_py="class A(PythonAgent):\n    pass\n",
     )
     told = [line.partition(": ")[2].partition("\n")[0] for line in result.errors]
     assert told == [
         f"warning: {what} of agent `a` has no effect: it is a Python agent"
-        for what in ("the option `events`", "`goals`", "the architecture class", "the belief base class")
+        for what in ("the option `events`", "`goals`")
     ]
 
 
