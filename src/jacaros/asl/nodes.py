@@ -367,8 +367,7 @@ class RegisteredFunction(Node):
 class Derivation(Node):
     """``{ derive(name, operator(streams, options)) }``: a belief or event composed of changes of beliefs.
 
-    ``options`` are pairs of a name and a number (or a tuple of numbers), times in seconds; ``turns`` are the full turns
-    of values that are angles, for `interpolated`.
+    ``options`` are pairs of a name and a number, times in seconds.
     """
 
     name: str
@@ -376,7 +375,6 @@ class Derivation(Node):
     operator: str
     streams: tuple[Literal, ...]
     options: tuple[tuple[str, Any], ...]
-    turns: tuple[float, ...] = ()
 
 
 class History(Node):

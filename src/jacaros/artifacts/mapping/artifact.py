@@ -11,7 +11,7 @@ from jacaros.artifacts.kit.reading import Reading, ReadingPolicy, Values
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.artifacts.mapping.checking import type_problems
 from jacaros.artifacts.mapping.declared import ArtifactPart, MappingError, MappingFile, Place
-from jacaros.artifacts.mapping.deriving import Derivation, with_angles
+from jacaros.artifacts.mapping.deriving import Derivation
 from jacaros.artifacts.mapping.file import find_mapping, load_mapping, shipped_mappings
 from jacaros.artifacts.mapping.frames import FrameUpdater
 from jacaros.artifacts.mapping.host import Elements, Tap
@@ -66,7 +66,7 @@ class MappedArtifact(RosArtifact):
         self.own_parameters = self._declare_parameters()
         self.taps: dict[str, list[Tap]] = {}
         self.derivations = {
-            each.name: Derivation(self, each, with_angles(each.spec, self.part))
+            each.name: Derivation(self, each, each.spec)
             for each in self.part.derived
             if each.spec is not None
         }

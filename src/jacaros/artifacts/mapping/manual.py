@@ -121,13 +121,7 @@ def _derived(part: DerivedPart, spec: Spec) -> str:
     """Describe a derived property or signal."""
     shape = OPERATORS[spec.operator]
     told = part.description or f"{shape.meaning}, of {' and '.join(spec.sources)}"
-    values = (
-        ""
-        if spec.gives != VALUE
-        else "(Values)"
-        if spec.operator in ("debounce", "delayed", "together", "interpolated")
-        else "(Value)"
-    )
+    values = "" if spec.gives != VALUE else "(Values)" if spec.operator == "together" else "(Value)"
     return f"{part.name}{values}: {told.rstrip('.')}{_kept(part.history)}."
 
 

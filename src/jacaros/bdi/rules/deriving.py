@@ -90,7 +90,7 @@ class Derived:
 
     def __init__(self, owner: "DerivedBeliefs", declared: nodes.Derivation, start: float) -> None:
         self.owner, self.declared, self.text = owner, declared, format_derivation(declared)
-        spec = Spec(declared.operator, streams_of(declared), dict(declared.options), turns=declared.turns)
+        spec = Spec(declared.operator, streams_of(declared), dict(declared.options))
         self.pattern = Pattern(spec, start, self._emit)
         self.scheduled = math.inf
         self.row: tuple[Functor, Row] | None = None
