@@ -377,13 +377,6 @@ class Derivation(Node):
     options: tuple[tuple[str, Any], ...]
 
 
-class History(Node):
-    """``{ history(b(_), within(Ms)) }``: past values of a belief are kept for ``window`` seconds."""
-
-    belief: Literal
-    window: float
-
-
 @dataclass(frozen=True, slots=True)
 class Program:
     """An agent program with its includes resolved, in source order per kind."""
@@ -393,7 +386,6 @@ class Program:
     plans: tuple[Plan, ...] = ()
     functions: tuple[RegisteredFunction, ...] = ()
     derived: tuple[Derivation, ...] = ()
-    histories: tuple[History, ...] = ()
 
 
 @dataclass
@@ -405,7 +397,6 @@ class Section:
     plans: list[Plan] = field(default_factory=list)
     functions: list[RegisteredFunction] = field(default_factory=list)
     derived: list[Derivation] = field(default_factory=list)
-    histories: list[History] = field(default_factory=list)
 
     def extend(self, other: Section) -> None:
         """Append the clauses of *other*."""
@@ -414,7 +405,6 @@ class Section:
         self.plans.extend(other.plans)
         self.functions.extend(other.functions)
         self.derived.extend(other.derived)
-        self.histories.extend(other.histories)
 
     def program(self) -> Program:
         """Return the finished program."""
@@ -424,5 +414,4 @@ class Section:
             tuple(self.plans),
             tuple(self.functions),
             tuple(self.derived),
-            tuple(self.histories),
         )

@@ -10,7 +10,6 @@ from jacaros.asl import nodes
 from jacaros.asl.checks.beliefs import beliefs_of
 from jacaros.asl.diagnostics import AslError
 from jacaros.asl.directives.derive import format_derivation
-from jacaros.asl.directives.history import format_history
 from jacaros.asl.loader import load_program
 from jacaros.bdi.actions.internal_action import STANDARD
 from jacaros.bdi.mind import Mind
@@ -189,27 +188,14 @@ def test_a_changed_program_keeps_the_windows_of_unchanged_declarations(new: str,
     assert [entry for entry, _ in host.agent.beliefs[functor("f", 1)].entries()] == [(1.0,)]
 
 
-def test_a_changed_program_keeps_the_history_that_both_declare() -> None:
-    kept = "{ history(e(_), within(1000)) }"
-    host = after_two_events(f"{kept} {{ history(g(_), within(1000)) }}")
-    deriving.replace(host.agent, host.agent.program, change(f"{D} {kept}"))
-    past = host.agent.observers.derived
-    assert past is not None
-    assert [row for row, _ in past.past(functor("e", 1), 450.0) or ()] == [(1.0,)]
-    assert past.past(functor("g", 1), 50.0) is None
-
-
 def test_a_clone_continues_with_the_windows_of_the_original() -> None:
-    host = after_two_events("{ history(e(_), within(1000)) }")
+    host = after_two_events()
     other = RecordingHost()
     other.time = host.time
     clone = other.agent = Mind(
         "clone", host.agent.program, other, host.agent.options, host.agent.engine.actions
     )
     copy_mind(host.agent, clone)
-    past = clone.observers.derived
-    assert past is not None
-    assert [row for row, _ in past.past(functor("e", 1), 450.0) or ()] == [(1.0,)]
     assert len(clone.beliefs[functor("d", 0)]) == 1
     run_until(other, other.time + 0.49)
     assert len(clone.beliefs[functor("d", 0)]) == 1
@@ -325,11 +311,9 @@ def test_directives_are_written_as_they_were_parsed() -> None:
         { derive(c, together([scan(R), pose(X,A), p(B,_,C)], within(0.1))) }
         { derive(d, hysteresis(battery(X), on_below(-1), off_above(1.5))) }
         { derive(f, held(~open(_), lasting(1234.5678))) }
-        { begin namespace(ns) } { derive(g, sequence([ns::g2, h::i(_)], within(100))) } { end }
-        { history(h(_,_), within(333.3)) }
-        { history(ns::k, within(1)) }"""
+        { begin namespace(ns) } { derive(g, sequence([ns::g2, h::i(_)], within(100))) } { end }"""
     program, _ = load_program("a.asl", f"{text}\n!s. +!s.")
-    written = [*map(format_derivation, program.derived), *map(format_history, program.histories)]
+    written = list(map(format_derivation, program.derived))
     assert written == [line.strip() for line in text.splitlines()]
 
 

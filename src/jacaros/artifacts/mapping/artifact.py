@@ -39,14 +39,11 @@ class MappedArtifact(RosArtifact):
     Attributes:
         mapping: the file.
         part: the declaration of this artifact.
-        property_histories: seconds for which agents that focus on it keep past values, by name; see
-            `jacaros.env.property`.
     """
 
     known_options: ClassVar[Mapping[str, Callable[[object], object]]] = {"tf_prefix": text, **MATCH_OPTIONS}
     mapping: ClassVar[MappingFile]
     part: ClassVar[ArtifactPart]
-    property_histories: ClassVar[Mapping[str, float]]
 
     def open(self) -> None:
         """Check the mapping against the types of this middleware, and open everything."""
@@ -219,7 +216,6 @@ def mapped_type(mapping: MappingFile, name: str) -> type[MappedArtifact]:
         "mapping": mapping,
         "part": part,
         "further_uses": motion_uses(part),
-        "property_histories": part.histories,
         **methods(part, parameter_words),
     }
     tuned = any(each.declaration is not None for each in part.parameters)

@@ -5,10 +5,9 @@ from collections.abc import Iterator
 from jacaros.artifacts.mapping.declared import ArtifactPart, DerivedPart, Place, TopicPart, Written
 from jacaros.artifacts.mapping.read_fields import place_of
 from jacaros.artifacts.mapping.read_names import belief_name
-from jacaros.artifacts.mapping.read_topics import plain_constant, read_window
+from jacaros.artifacts.mapping.read_topics import plain_constant
 from jacaros.streams.schema import (
     LONGEST,
-    OCCURRENCE,
     OPERATORS,
     PARTNERS_WAIT,
     VALUED,
@@ -20,7 +19,7 @@ from jacaros.streams.schema import (
 from jacaros.suggestions import suggestion
 from jacaros.yaml_nodes import Node, Problem
 
-_COMMON = ("value", "lateness", "history", "description")
+_COMMON = ("value", "lateness", "description")
 _EVENTS = frozenset({"count", "absent", "sequence"})
 """Operators that use only the events, not their values, so each element of an array may be one."""
 _EXAMPLE = "write one, such as {count: bump, within: 5, at_least: 3}"
@@ -51,16 +50,7 @@ def read_derived(name: Node, node: Node) -> DerivedPart:
         _lateness(entries, operator),
     )
     told = entries["description"].text() if "description" in entries else ""
-    history = _history(entries["history"], spec) if "history" in entries else None
-    return DerivedPart(belief_name(name), place, None if wrong else spec, sources, told, history)
-
-
-def _history(node: Node, spec: Spec) -> float | None:
-    """Read the seconds for which past values are kept; events that are not properties have none."""
-    if spec.gives == OCCURRENCE:
-        node.wrong(f"`{spec.operator}` is an event and has no history", "leave `history` out")
-        return None
-    return read_window(node)
+    return DerivedPart(belief_name(name), place, None if wrong else spec, sources, told)
 
 
 def _lateness(entries: dict[str, Node], operator: str) -> float:
