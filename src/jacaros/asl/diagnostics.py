@@ -205,7 +205,6 @@ KINDS: Final[dict[str, Kind]] = {
     "wrong-supervision": Kind("warning", "an invalid or misplaced annotation such as `within` or `retry`"),
     "wrong-tail": Kind("error", "a tail of a list or of annotations that is not a variable"),
     "wrong-trigger": Kind("error", "something that cannot be a trigger"),
-    "no-history": Kind("warning", "a condition with `ago` on a belief without a history"),
     "wrong-needs": Kind("warning", "needs of a plan or goal that can never be met"),
     "wrong-urgency": Kind("warning", "an urgency that is not a non-negative integer"),
 }

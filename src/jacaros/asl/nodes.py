@@ -367,8 +367,7 @@ class RegisteredFunction(Node):
 class Derivation(Node):
     """``{ derive(name, operator(streams, options)) }``: a belief or event composed of changes of beliefs.
 
-    ``options`` are pairs of a name and a number (or a tuple of numbers), times in seconds; ``turns`` are the full turns
-    of values that are angles, for `interpolated`.
+    ``options`` are pairs of a name and a number, times in seconds.
     """
 
     name: str
@@ -376,14 +375,6 @@ class Derivation(Node):
     operator: str
     streams: tuple[Literal, ...]
     options: tuple[tuple[str, Any], ...]
-    turns: tuple[float, ...] = ()
-
-
-class History(Node):
-    """``{ history(b(_), within(Ms)) }``: past values of a belief are kept for ``window`` seconds."""
-
-    belief: Literal
-    window: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -395,7 +386,6 @@ class Program:
     plans: tuple[Plan, ...] = ()
     functions: tuple[RegisteredFunction, ...] = ()
     derived: tuple[Derivation, ...] = ()
-    histories: tuple[History, ...] = ()
 
 
 @dataclass
@@ -407,7 +397,6 @@ class Section:
     plans: list[Plan] = field(default_factory=list)
     functions: list[RegisteredFunction] = field(default_factory=list)
     derived: list[Derivation] = field(default_factory=list)
-    histories: list[History] = field(default_factory=list)
 
     def extend(self, other: Section) -> None:
         """Append the clauses of *other*."""
@@ -416,7 +405,6 @@ class Section:
         self.plans.extend(other.plans)
         self.functions.extend(other.functions)
         self.derived.extend(other.derived)
-        self.histories.extend(other.histories)
 
     def program(self) -> Program:
         """Return the finished program."""
@@ -426,5 +414,4 @@ class Section:
             tuple(self.plans),
             tuple(self.functions),
             tuple(self.derived),
-            tuple(self.histories),
         )

@@ -13,9 +13,7 @@ from jacaros.asl.literal_parser import Namespaces
 from jacaros.asl.plan_parser import PlanParser
 from jacaros.asl.source import SourceFile
 
-_DIRECTIVE_WORDS: Final = frozenset(
-    {"begin", "derive", "end", "history", "include", "namespace", "register_function"}
-)
+_DIRECTIVE_WORDS: Final = frozenset({"begin", "derive", "end", "include", "namespace", "register_function"})
 _STARTS: Final = frozenset({"atom", "variable", "~", "!", "{", "@", "+", "-", "^"})
 """Tokens that may begin a clause."""
 

@@ -118,8 +118,8 @@ class Mind(Circumstance):
             self.take_up(self.program)
 
     def _declare(self, program: nodes.Program) -> None:
-        """Start the derived events and histories of a program."""
-        if program.derived or program.histories:
+        """Start the derived events of a program."""
+        if program.derived:
             from jacaros.bdi.rules import deriving  # imported here: most programs do not need it
 
             deriving.declare(self, program)
@@ -254,17 +254,6 @@ class Mind(Circumstance):
             self.architecture.ready()
 
     has_untaken = perceiving.is_untaken
-
-    def keep_histories(self, namespace: str | None, histories: Mapping[str, float]) -> None:
-        """Keep past values of beliefs, as ``{ history(...) }`` does.
-
-        Args:
-            namespace: of the beliefs.
-            histories: seconds to keep, by name.
-        """
-        from jacaros.bdi.rules import deriving  # imported here: most agents keep none
-
-        deriving.observe(self, namespace, histories)
 
     def complete(self, act_id: int, completion: Completion) -> None:
         """Handle the end of an external action; ids of acts that are not pending are ignored."""

@@ -25,7 +25,7 @@ from jacaros.bdi.state.supervision import SUPERVISION, GoalSupervision, is_super
 from jacaros.bdi.state.waiting import TimedWait
 from jacaros.terms.values import SOURCE_PERCEPT, String, atom, functor
 
-FORMAT = 3
+FORMAT = 4
 """Version of the format."""
 
 _FIELDS = (

@@ -1,6 +1,6 @@
 """The body of one agent: runs its actions, and perceives what it focuses on."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from functools import partial
 from typing import Protocol
 
@@ -34,9 +34,6 @@ class ServedMind(Protocol):
 
     def has_untaken(self, name: str) -> bool:
         """Return whether percepts about properties called *name* are still unprocessed."""
-
-    def keep_histories(self, namespace: str | None, histories: Mapping[str, float]) -> None:
-        """Keep past values of properties in a namespace: seconds by name."""
 
     def complete(self, act_id: int, completion: Completion) -> None:
         """Handle the outcome of an act."""
@@ -99,9 +96,7 @@ class AgentBody:
         self._entered = False
         self._session: ArtifactId | None = None
         self._workspaces = JoinedWorkspaces(environment, home)
-        focused = FocusedArtifacts(
-            agent, writer, references, mind.perceive, mind.has_untaken, mind.keep_histories
-        )
+        focused = FocusedArtifacts(agent, writer, references, mind.perceive, mind.has_untaken)
         self._selection = Selection(agent, self._workspaces, focused, keys())
         self._situation = Situation(
             agent,

@@ -1,6 +1,6 @@
 """The focused artifacts of an agent, whose properties and signals it perceives."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 
 from jacaros.bdi.state.act import Percept
 from jacaros.body.filtering import Filter, FilteredObserver
@@ -20,9 +20,6 @@ _PERSONAL = ("body_", "session_")
 
 Notice = Callable[[list[Percept]], None]
 """Receives percepts."""
-
-Keep = Callable[[str | None, Mapping[str, float]], None]
-"""Keeps past values of properties in a namespace: seconds by name."""
 
 Untaken = Callable[[str], bool]
 """Returns whether percepts about properties of a name are still unprocessed."""
@@ -72,11 +69,9 @@ class FocusedArtifacts:
         references: References,
         notice: Notice,
         untaken: Untaken = lambda name: False,
-        keep: Keep = lambda namespace, histories: None,
     ) -> None:
         self._agent = agent
         self._untaken = untaken
-        self._keep = keep
         self._writer = writer
         self._references = references
         self._notice = notice
@@ -163,8 +158,6 @@ class FocusedArtifacts:
 
     def _take(self, workspace: Workspace, artifact: ArtifactId, namespace: str | None) -> None:
         is_first = artifact not in self._focused
-        if histories := workspace.histories(artifact):
-            self._keep(namespace, histories)
         self._focused.setdefault(artifact, {})[namespace] = workspace
         self._watch(workspace, artifact.name.startswith(_PERSONAL))
         if is_first:

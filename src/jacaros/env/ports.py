@@ -9,7 +9,7 @@ after a cancel.
 """
 
 import asyncio
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Sequence
 from typing import Protocol, runtime_checkable
 
 from jacaros.clock import Clock
@@ -79,9 +79,6 @@ class Workspace(Protocol):
 
     def offers(self, artifact_id: ArtifactId) -> Collection[str]:
         """Return the operations of an artifact for agents, such as ``inc/1`` and ``sum/any``. Raises `UnknownArtifact`."""
-
-    def histories(self, artifact_id: ArtifactId) -> Mapping[str, float]:
-        """Return the seconds for which past values are kept, by property name. Raises `UnknownArtifact`."""
 
     def has_method(self, artifact_id: ArtifactId, name: str) -> bool:
         """Return whether its class has a public method of this name that is not an operation. See `offers`."""

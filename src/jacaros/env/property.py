@@ -1,6 +1,6 @@
 """The observable properties of one artifact, changed in steps that are committed or rolled back."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
@@ -28,12 +28,6 @@ class ObservableProperty:
     annotations: tuple[object, ...]
     key: int
     written: Any = field(default=None, compare=False, repr=False)
-
-
-def histories_of(artifact_type: type) -> Mapping[str, float]:
-    """Return the properties whose past values observers keep: seconds by name."""
-    found: Mapping[str, float] = getattr(artifact_type, "property_histories", {})
-    return found
 
 
 class PropertySnapshot:

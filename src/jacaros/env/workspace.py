@@ -1,7 +1,7 @@
 """Workspaces: create, find, focus, link, use and dispose artifacts."""
 
 import asyncio
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from functools import partial
 
 from jacaros.env import ports
@@ -28,7 +28,7 @@ from jacaros.env.operation import (
     marks_of,
 )
 from jacaros.env.ports import OnMade, OnOutcome, ignore_made
-from jacaros.env.property import ObservableProperty, histories_of
+from jacaros.env.property import ObservableProperty
 from jacaros.env.values import Structure
 from jacaros.suggestions import aside
 from jacaros.trace import Cause
@@ -299,14 +299,6 @@ class Workspace(ports.Workspace):
             UnknownArtifact: it is gone.
         """
         return self._registry.interface(artifact_id) or self._steps_of(artifact_id).interface
-
-    def histories(self, artifact_id: ArtifactId) -> Mapping[str, float]:
-        """Return the seconds for which agents that focus an artifact keep past values, by property name.
-
-        Raises:
-            UnknownArtifact: it is gone.
-        """
-        return histories_of(self._steps_of(artifact_id).artifact_type)
 
     def has_method(self, artifact_id: ArtifactId, name: str) -> bool:
         """Return whether the class of an artifact has a public user-defined method of this name that is not an operation.

@@ -55,9 +55,6 @@ class HostedMind(Protocol):
     def has_untaken(self, name: str) -> bool:
         """Return whether percepts of properties called *name* have not been processed yet (backpressure)."""
 
-    def keep_histories(self, namespace: str | None, histories: Mapping[str, float]) -> None:
-        """Keep past values of beliefs in a namespace: seconds by name."""
-
     def complete(self, act_id: int, completion: Completion) -> None:
         """Receive the outcome of an action."""
 

@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Final
 from jacaros.asl import nodes
 from jacaros.asl.checks.beliefs import Beliefs, beliefs_of, is_fact_of, is_misspelt, source_of
 from jacaros.asl.checks.formulas import parts_of
-from jacaros.asl.checks.histories import no_history, undeclared_histories
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.formatter import format_term
 from jacaros.asl.slips import Slips, is_slip_of
@@ -64,25 +63,6 @@ def check_beliefs(
         *_never_happening(found, types, folders),
         *_from_wrong_source(found, types, folders),
     ]
-
-
-def check_histories(
-    programs: Sequence[nodes.Program], types: "Callable[[], Sequence[type[Artifact]] | None]"
-) -> list[Diagnostic]:
-    """Return warnings about conditions on the past of beliefs for which neither a program nor an artifact keeps a history.
-
-    Args:
-        programs: as for `check_beliefs`.
-        types: as for `check_beliefs`.
-    """
-    asked = [literal for program in programs for literal in undeclared_histories(program)]
-    known = types() if asked else None
-    if known is None:
-        return []
-    from jacaros.env.property import histories_of  # here: see `_observables`
-
-    kept = {name for each in known for name in histories_of(each)}
-    return [no_history(literal) for literal in asked if literal.functor not in kept]
 
 
 def _misspelt(

@@ -169,9 +169,9 @@ def _of_beliefs(
     folders: tuple[Path, ...],
     unseen: set[Path] | None,
 ) -> list[Diagnostic]:
-    """Report histories that no agent keeps, and misspelt beliefs unless classes of the project may add more."""
+    """Report misspelt beliefs unless classes of the project may add more."""
     from jacaros.mas.action_check import made_types
-    from jacaros.mas.belief_check import check_beliefs, check_histories  # here: see `_of_artifacts`
+    from jacaros.mas.belief_check import check_beliefs  # here: see `_of_artifacts`
 
     def types() -> "list[type[Artifact]] | None":
         from jacaros.artifacts.registry import type_finder  # here: see `_of_artifacts`
@@ -179,10 +179,9 @@ def _of_beliefs(
         return made_types(deployment, trees, type_finder(ProjectModules(*folders, unseen=unseen)))
 
     trees = [program for _, program in programs]
-    told = check_histories(trees, types)
     if any(agent.agent_class for agent, _ in programs):
-        return told
-    return told + check_beliefs(trees, types, folders)
+        return []
+    return check_beliefs(trees, types, folders)
 
 
 def _check_lone_program(path: Path, findings: Findings) -> None:

@@ -60,8 +60,6 @@ def _other_names(clause: nodes.Node) -> Iterator[str]:
         elif isinstance(node, nodes.Derivation):
             for stream in node.streams:
                 yield from _functor(stream)
-        elif isinstance(node, nodes.History):
-            yield from _functor(node.belief)
 
 
 def _functor(node: object) -> Iterator[str]:
@@ -72,7 +70,7 @@ def _functor(node: object) -> Iterator[str]:
 
 def clauses_of(program: nodes.Program) -> Iterator[tuple[nodes.Node, bool]]:
     """Yield all clauses of a program, each with whether it is an initial goal."""
-    for clause in (*program.beliefs, *program.plans, *program.derived, *program.histories):
+    for clause in (*program.beliefs, *program.plans, *program.derived):
         yield clause, False
     for goal in program.goals:
         yield goal, True

@@ -1,4 +1,4 @@
-"""The number of events in a sliding window, and whether each of several streams has one there."""
+"""The number of events in a sliding window."""
 
 import math
 from collections import deque
@@ -44,30 +44,3 @@ class Count(Operator):
             self.show((len(times),))
         else:
             self.hide()
-
-
-class All(Operator):
-    """Whether each stream has an event in the window.
-
-    Args:
-        count: number of streams.
-        within: length of the window, in seconds.
-    """
-
-    __slots__ = ("_newest", "_within")
-
-    def __init__(self, emit: Emit, count: int, within: float) -> None:
-        super().__init__(emit)
-        self._within = within
-        self._newest = [-math.inf] * count
-
-    def take(self, source: int, time: float, values: Values | None) -> None:
-        if values is not None:
-            self._newest[source] = time
-            self.advance(time)
-
-    def advance(self, time: float) -> None:
-        end = min(self._newest) + self._within
-        holds = end > time
-        self.hold(holds)
-        self.deadline = end if holds else math.inf

@@ -1,7 +1,6 @@
-"""Sequences of events, and events that do not come."""
+"""Sequences of events, and their absence."""
 
 import math
-from collections import deque
 from collections.abc import Sequence
 
 from jacaros.streams.operator import Emit, Operator, Values
@@ -57,29 +56,3 @@ class Absent(Operator):
     def advance(self, time: float) -> None:
         self.deadline = math.inf
         self.show(())
-
-
-class Missing(Operator):
-    """Occurs when an event of stream 1 was not followed by one of stream 0 for *within* seconds."""
-
-    __slots__ = ("_open", "_within")
-
-    def __init__(self, emit: Emit, within: float) -> None:
-        super().__init__(emit)
-        self._within = within
-        self._open: deque[float] = deque()
-
-    def take(self, source: int, time: float, values: Values | None) -> None:
-        if values is None:
-            return
-        if source == 0:
-            self._open.clear()
-        else:
-            self._open.append(time)
-        self.deadline = self._open[0] + self._within if self._open else math.inf
-
-    def advance(self, time: float) -> None:
-        while self._open and self._open[0] + self._within <= time:
-            self._open.popleft()
-            self.occur()
-        self.deadline = self._open[0] + self._within if self._open else math.inf

@@ -10,14 +10,11 @@ from functools import partial
 from typing import Any, Final, NamedTuple
 
 from jacaros.streams.aggregates import Extreme, Mean, Slope
-from jacaros.streams.area import Circle, Inside, Rectangle
 from jacaros.streams.condition import ANYTHING, Condition
-from jacaros.streams.counting import All, Count
-from jacaros.streams.interpolated import Interpolated
+from jacaros.streams.counting import Count
 from jacaros.streams.operator import Emit, Operator
-from jacaros.streams.order import Absent, Chain, Missing
-from jacaros.streams.share import Share
-from jacaros.streams.states import Debounce, Delayed, Held, Hysteresis
+from jacaros.streams.order import Absent, Chain
+from jacaros.streams.states import Held, Hysteresis
 from jacaros.streams.together import Together
 from jacaros.suggestions import suggestion
 
@@ -38,7 +35,6 @@ class Spec:
         options: times in seconds.
         place: index of the value of an event to use, from 0.
         lateness: seconds for which the evaluation waits for late events.
-        turns: for `interpolated`, the full turn of each value of the streams after the first that is an angle, or 0.
     """
 
     operator: str
@@ -46,7 +42,6 @@ class Spec:
     options: Mapping[str, Any] = field(default_factory=dict)
     place: int = 0
     lateness: float = 0.0
-    turns: tuple[float, ...] = ()
 
     @property
     def streams(self) -> tuple[str, ...]:
@@ -108,13 +103,6 @@ OPERATORS: Final[dict[str, Shape]] = {
     "min": _aggregate("minimum in a window"),
     "max": _aggregate("maximum in a window"),
     "slope": _aggregate("slope in a window, per second"),
-    "share": Shape(
-        "share of time that a condition holds",
-        VALUE,
-        ("within",),
-        ("at_least", *_CONDITION),
-        limits=frozenset({"at_least"}),
-    ),
     "hysteresis": Shape(
         "on beyond one limit, off beyond another",
         STATE,
@@ -122,28 +110,16 @@ OPERATORS: Final[dict[str, Shape]] = {
         ("on_above", "off_below", "on_below", "off_above"),
     ),
     "held": Shape("a condition has held for a while", STATE, ("for",), _CONDITION),
-    "debounce": Shape("values that stay the same for a while", VALUE, ("for",)),
-    "delayed": Shape("values as they were some time ago", VALUE, ("by",)),
-    "inside": Shape("a pose is in an area", STATE, (), ("circle", "rectangle", "margin")),
     "absent": Shape("no event for a while", STATE, ("for",)),
-    "missing": Shape("an event did not follow another", OCCURRENCE, ("after", "within")),
     "sequence": Shape("events in this order", OCCURRENCE, ("within",), several=True),
-    "all": Shape("an event of each stream in a window", STATE, ("within",), several=True),
     "together": Shape("samples with stamps near each other", VALUE, ("within",), several=True),
-    "interpolated": Shape("values at the stamps of the first stream", VALUE, ("within",), several=True),
 }
 """All operators by name."""
 
 PARTNERS_WAIT: Final = 0.5
 """Default lateness in seconds where samples of several topics are joined, because the delays of topics differ."""
 
-JOINING: Final = ("together", "interpolated")
-"""Operators that join samples by their stamps."""
-
-_ONCE: Final = ("all", "together", "interpolated")
-"""Operators that must not name a stream twice."""
-
-VALUED: Final = frozenset({"mean", "min", "max", "slope", "share", "hysteresis", "held", "inside"})
+VALUED: Final = frozenset({"mean", "min", "max", "slope", "hysteresis", "held"})
 """Operators that use one value of an event."""
 
 
@@ -158,7 +134,7 @@ def faults(operator: str, sources: Sequence[str], options: Mapping[str, object])
 
     Args:
         operator: a name of `OPERATORS`.
-        sources: as in `Spec`, without the stream of ``after``.
+        sources: as in `Spec`.
         options: options as written, times in seconds.
     """
     shape = OPERATORS[operator]
@@ -168,7 +144,7 @@ def faults(operator: str, sources: Sequence[str], options: Mapping[str, object])
             f"`{operator}` needs two streams or more",
             "write them as a list, such as [press, release]",
         )
-    if operator in _ONCE and len(set(sources)) < len(sources):
+    if operator == "together" and len(set(sources)) < len(sources):
         yield Fault("", f"`{operator}` names a stream twice", "name each stream once")
     known = (*shape.required, *shape.optional)
     for name in shape.required:
@@ -186,8 +162,6 @@ def faults(operator: str, sources: Sequence[str], options: Mapping[str, object])
 _NEEDED: Final = {
     "within": "give the length of the window, so that its memory is bounded",
     "for": "give the time that must pass",
-    "by": "give the age of the values",
-    "after": "name the stream after which the event is expected",
 }
 
 
@@ -216,25 +190,10 @@ def _number(name: str, value: object) -> Fault | None:
     )
 
 
-def _distance(name: str, value: object) -> Fault | None:
-    if _is_number(value) and isinstance(value, int | float) and value >= 0.0:
-        return None
-    return Fault(name, f"`{name}` must be a distance in metres, zero or more", "write a number such as 0.1")
-
-
 def _positive(name: str, value: object) -> Fault | None:
     if _is_number(value) and isinstance(value, int | float) and value > 0.0:
         return None
     return Fault(name, f"`{name}` must be above zero", "write a positive number")
-
-
-def _numbers(count: int, words: str) -> Callable[[str, object], Fault | None]:
-    def check(name: str, value: object) -> Fault | None:
-        if isinstance(value, Sequence) and len(value) == count and all(map(_is_number, value)):
-            return None
-        return Fault(name, f"`{name}` must be {count} numbers: {words}", f"write [{words}], in metres")
-
-    return check
 
 
 def _any(name: str, value: object) -> Fault | None:
@@ -244,19 +203,14 @@ def _any(name: str, value: object) -> Fault | None:
 _KINDS: Final[dict[str, Callable[[str, object], Fault | None]]] = {
     "within": _seconds,
     "for": _seconds,
-    "by": _seconds,
     "above": _number,
     "below": _number,
     "equals": _any,
-    "after": _any,
     "at_least": _positive,
     "on_above": _number,
     "off_below": _number,
     "on_below": _number,
     "off_above": _number,
-    "margin": _distance,
-    "circle": _numbers(3, "x, y, radius"),
-    "rectangle": _numbers(4, "left, bottom, right, top"),
 }
 
 
@@ -268,12 +222,6 @@ def _check_count(options: Mapping[str, object]) -> Iterator[Fault]:
     wanted = options.get("at_least")
     if _is_number(wanted) and isinstance(wanted, int | float) and (wanted < 1 or wanted != int(wanted)):
         yield Fault("at_least", "`at_least` must be a whole number", "write a number such as 3")
-
-
-def _check_share(options: Mapping[str, object]) -> Iterator[Fault]:
-    wanted = options.get("at_least")
-    if _is_number(wanted) and isinstance(wanted, int | float) and wanted > 1.0:
-        yield Fault("at_least", "`at_least` must be at most 1", "write a share such as 0.8")
 
 
 def _check_hysteresis(options: Mapping[str, object]) -> Iterator[Fault]:
@@ -298,32 +246,9 @@ def _check_hysteresis(options: Mapping[str, object]) -> Iterator[Fault]:
         yield Fault(name, f"`{name}` must be {side} `{given[0][0]}`", "swap the two limits")
 
 
-def _check_inside(options: Mapping[str, object]) -> Iterator[Fault]:
-    if ("circle" in options) == ("rectangle" in options):
-        yield Fault(
-            "",
-            "`inside` needs one area",
-            "give `circle` (x, y, radius) or `rectangle` (left, bottom, right, top), in metres",
-        )
-        return
-    name = "circle" if "circle" in options else "rectangle"
-    area = options[name]
-    if _KINDS[name](name, area) is not None:
-        return
-    assert isinstance(area, Sequence)
-    if name == "circle" and area[2] <= 0.0:
-        yield Fault(name, "the radius must be above zero", "write a radius such as 0.5")
-    if name == "rectangle" and not (area[0] < area[2] and area[1] < area[3]):
-        yield Fault(
-            name, "the rectangle is empty", "write its lower left corner first: left, bottom, right, top"
-        )
-
-
 _CHECKS: Final[dict[str, Callable[[Mapping[str, object]], Iterator[Fault]]]] = {
     "count": _check_count,
-    "share": _check_share,
     "hysteresis": _check_hysteresis,
-    "inside": _check_inside,
 }
 
 
@@ -354,21 +279,11 @@ def _make_extreme(sign: float, spec: Spec, emit: Emit) -> Operator:
     return Extreme(emit, _within(spec), spec.place, _condition(spec), sign)
 
 
-def _make_share(spec: Spec, emit: Emit) -> Operator:
-    return Share(emit, _within(spec), spec.place, _condition(spec), spec.options.get("at_least"))
-
-
 def _make_hysteresis(spec: Spec, emit: Emit) -> Operator:
     options = spec.options
     if "on_above" in options:
         return Hysteresis(emit, spec.place, options["on_above"], options["off_below"], True)
     return Hysteresis(emit, spec.place, options["on_below"], options["off_above"], False)
-
-
-def _make_inside(spec: Spec, emit: Emit) -> Operator:
-    options = spec.options
-    area = Circle(*options["circle"]) if "circle" in options else Rectangle(*options["rectangle"])
-    return Inside(emit, area, float(options.get("margin", 0.0)), spec.place)
 
 
 def _make_chain(spec: Spec, emit: Emit) -> Operator:
@@ -382,18 +297,9 @@ _MAKERS: Final[dict[str, Callable[[Spec, Emit], Operator]]] = {
     "slope": partial(_make_aggregate, Slope),
     "min": partial(_make_extreme, -1.0),
     "max": partial(_make_extreme, 1.0),
-    "share": _make_share,
     "hysteresis": _make_hysteresis,
     "held": lambda spec, emit: Held(emit, float(spec.options["for"]), spec.place, _condition(spec)),
-    "debounce": lambda spec, emit: Debounce(emit, float(spec.options["for"])),
-    "inside": _make_inside,
-    "delayed": lambda spec, emit: Delayed(emit, float(spec.options["by"])),
     "absent": lambda spec, emit: Absent(emit, float(spec.options["for"])),
-    "missing": lambda spec, emit: Missing(emit, _within(spec)),
     "sequence": _make_chain,
-    "all": lambda spec, emit: All(emit, len(spec.sources), _within(spec)),
-    "interpolated": lambda spec, emit: Interpolated(
-        emit, len(spec.sources), _within(spec), spec.lateness, spec.turns
-    ),
     "together": lambda spec, emit: Together(emit, len(spec.sources), _within(spec), spec.lateness),
 }

@@ -1,7 +1,6 @@
-"""States of one stream: hysteresis, a condition held for a while, debouncing, delayed values."""
+"""States of one stream: hysteresis, and a condition held for a while."""
 
 import math
-from collections import deque
 
 from jacaros.streams.condition import Condition
 from jacaros.streams.operator import Emit, Operator, Values, number_at
@@ -60,55 +59,6 @@ class Held(Operator):
     def advance(self, time: float) -> None:
         self.deadline = math.inf
         self.show(())
-
-
-class Debounce(Operator):
-    """Shows the values of the stream once they have stayed the same for *lasting* seconds."""
-
-    __slots__ = ("_candidate", "_lasting")
-
-    def __init__(self, emit: Emit, lasting: float) -> None:
-        super().__init__(emit)
-        self._lasting = lasting
-        self._candidate: Values | None = None
-
-    def take(self, source: int, time: float, values: Values | None) -> None:
-        if values != self._candidate:
-            self._candidate = values
-            self.deadline = math.inf if values == self.shown else time + self._lasting
-
-    def advance(self, time: float) -> None:
-        self.deadline = math.inf
-        if self._candidate is None:
-            self.hide()
-        else:
-            self.show(self._candidate)
-
-
-class Delayed(Operator):
-    """Shows what the stream showed *by* seconds ago."""
-
-    __slots__ = ("_by", "_past")
-
-    def __init__(self, emit: Emit, by: float) -> None:
-        super().__init__(emit)
-        self._by = by
-        self._past: deque[tuple[float, Values | None]] = deque()
-
-    def take(self, source: int, time: float, values: Values | None) -> None:
-        self._past.append((time, values))
-        self.deadline = self._past[0][0] + self._by
-
-    def advance(self, time: float) -> None:
-        past = self._past
-        while past and past[0][0] + self._by <= time:
-            _, values = past.popleft()
-            if not past or past[0][0] + self._by > time:  # of simultaneous events the last one counts
-                if values is None:
-                    self.hide()
-                else:
-                    self.show(values)
-        self.deadline = past[0][0] + self._by if past else math.inf
 
 
 def _satisfies(values: Values | None, place: int, condition: Condition) -> bool:

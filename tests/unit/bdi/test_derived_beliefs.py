@@ -10,7 +10,6 @@ from jacaros.asl import nodes
 from jacaros.asl.checks.beliefs import beliefs_of
 from jacaros.asl.diagnostics import AslError
 from jacaros.asl.directives.derive import format_derivation
-from jacaros.asl.directives.history import format_history
 from jacaros.asl.loader import load_program
 from jacaros.bdi.actions.internal_action import STANDARD
 from jacaros.bdi.mind import Mind
@@ -47,7 +46,6 @@ def run(folder: Path, derived: str, body: str, plans: str = "") -> list[str]:
         ("mean(e(X), within(1000))", "+e(1); .wait(10); +e(4)", ["1", "2.5"]),
         ("max(e(_,X), within(1000))", "+e(1,7); .wait(10); +e(4,3)", ["7"]),
         ("slope(e(X), within(5000), above(1.5))", "+e(1); .wait(1000); +e(4)", ["onderived", "off"]),
-        ("share(on, within(1000), at_least(0.5))", "+on; .wait(100); -on; .wait(300)", ["onderived", "off"]),
         (
             "hysteresis(b(X), on_below(20), off_above(30))",
             "-+b(10); .wait(1); -+b(25); .wait(1); -+b(31)",
@@ -60,33 +58,11 @@ def run(folder: Path, derived: str, body: str, plans: str = "") -> list[str]:
         ),
         ("held(door(open), lasting(100))", "+door(open); .wait(60); -door(open); .wait(60)", []),
         (
-            "debounce(b(X), lasting(100))",
-            "-+b(1); .wait(20); -+b(2); .wait(120); -+b(3); .wait(20)",
-            ["2", "3"],
-        ),
-        ("delayed(b(X), by(100))", "-+b(1); .wait(50); -+b(2); .wait(200)", ["1", "2"]),
-        (
             "absent(e(_), lasting(100))",
             ".wait(50); +e(1); .wait(120); +e(2)",
             ["onderived", "off", "onderived"],
         ),
-        (
-            "missing(r(_), after(q), within(100))",
-            "+q; .wait(50); +r(1); .wait(100); -q; +q; .wait(120)",
-            ["onderived"],
-        ),
         ("sequence([p, r], within(100))", "+p; .wait(50); +r; -p; -r; +p; .wait(150); +r", ["onderived"]),
-        ("all([p, r], within(100))", "+p; .wait(50); +r", ["onderived", "off"]),
-        (
-            "inside(pose(X, Y, _), circle(0, 0, 1), margin(0.5))",
-            "-+pose(0,0,9); .wait(1); -+pose(1.3,0,9); .wait(1); -+pose(2,0,9)",
-            ["onderived", "off"],
-        ),
-        (
-            "inside(pose(X, Y, _), rectangle(-1, -1, 1, 1))",
-            "-+pose(0,0,9); .wait(1); -+pose(1.3,0,9)",
-            ["onderived", "off"],
-        ),
     ],
 )
 def test_derived_beliefs_come_and_go(tmp_path: Path, derived: str, body: str, printed: list[str]) -> None:
@@ -99,16 +75,8 @@ def test_samples_come_together(tmp_path: Path) -> None:
     assert run(tmp_path, "together([scan(R), odom(X, Y)], within(50))", body, plans) == ["123"]
 
 
-def test_values_are_interpolated(tmp_path: Path) -> None:
-    plans = '+d(R,X,A) <- .print(R, " ", X, " ", A).'
-    body = "-+pose(0,350); .wait(50); -+scan(1); .wait(50); -+pose(2,10)"
-    derived = "interpolated([scan(R), pose(X, A)], within(80), degrees(A))"
-    [printed] = run(tmp_path, derived, body, plans)
-    assert [round(float(each), 3) for each in printed.split()] == [1.0, 1.0, 0.0]
-
-
 def test_derived_beliefs_may_be_derived_of_others(tmp_path: Path) -> None:
-    plans = "{ derive(both, all([d, x], within(1000))) }\n+both <- .print(both)."
+    plans = "{ derive(both, sequence([x, d], within(1000))) }\n+both <- .print(both)."
     assert run(tmp_path, "count(e(_), within(50), at_least(2))", "+x; +e(1); +e(2)", plans) == [
         "onderived",
         "both",
@@ -118,7 +86,7 @@ def test_derived_beliefs_may_be_derived_of_others(tmp_path: Path) -> None:
 
 def test_a_block_of_a_namespace_has_beliefs_and_derived_ones_of_its_own(tmp_path: Path) -> None:
     plans = """{ begin namespace(ns) }
-        { derive(c, all([g, h::i(_)], within(100))) }
+        { derive(c, sequence([g, h::i(_)], within(100))) }
         +c <- .print(c).
         { end }"""
     assert run(tmp_path, "count(g, within(50))", "+ns::g; +h::i(1)", plans) == ["c"]
@@ -131,11 +99,8 @@ def test_a_block_of_a_namespace_has_beliefs_and_derived_ones_of_its_own(tmp_path
         ("mean(e(X), within(1000))", "+e(1); .wait(700); +e(2); .wait(200); +e(6)"),
         ("slope(e(X), within(1000))", "+e(1); .wait(700); +e(2); .wait(200); +e(6)"),
         ("max(e(X), within(1000))", "+e(5); .wait(700); +e(2); .wait(500); +e(3)"),
-        ("share(e, within(1000), at_least(0.5))", "+e; .wait(700); -e; .wait(900); +e; .wait(900)"),
         ("held(e(X), above(1), lasting(300))", "+e(2); .wait(700); -e(2)"),
-        ("debounce(e(X), lasting(300))", "+e(2); .wait(700); -+e(3); .wait(100); -+e(4)"),
         ("sequence([e, f, g], within(300))", "+e; .wait(100); +f; .wait(100); +g"),
-        ("missing(f, after(e), within(300))", "+e; .wait(100); +f; .wait(100); -+e; -e; +e"),
         ("together([e(X), f(Y)], within(50))", "+e(1); .wait(10); +f(2)"),
         ("absent(e, lasting(300))", ".wait(100); +e"),
     ],
@@ -223,27 +188,14 @@ def test_a_changed_program_keeps_the_windows_of_unchanged_declarations(new: str,
     assert [entry for entry, _ in host.agent.beliefs[functor("f", 1)].entries()] == [(1.0,)]
 
 
-def test_a_changed_program_keeps_the_history_that_both_declare() -> None:
-    kept = "{ history(e(_), within(1000)) }"
-    host = after_two_events(f"{kept} {{ history(g(_), within(1000)) }}")
-    deriving.replace(host.agent, host.agent.program, change(f"{D} {kept}"))
-    past = host.agent.observers.derived
-    assert past is not None
-    assert [row for row, _ in past.past(functor("e", 1), 450.0) or ()] == [(1.0,)]
-    assert past.past(functor("g", 1), 50.0) is None
-
-
 def test_a_clone_continues_with_the_windows_of_the_original() -> None:
-    host = after_two_events("{ history(e(_), within(1000)) }")
+    host = after_two_events()
     other = RecordingHost()
     other.time = host.time
     clone = other.agent = Mind(
         "clone", host.agent.program, other, host.agent.options, host.agent.engine.actions
     )
     copy_mind(host.agent, clone)
-    past = clone.observers.derived
-    assert past is not None
-    assert [row for row, _ in past.past(functor("e", 1), 450.0) or ()] == [(1.0,)]
     assert len(clone.beliefs[functor("d", 0)]) == 1
     run_until(other, other.time + 0.49)
     assert len(clone.beliefs[functor("d", 0)]) == 1
@@ -355,15 +307,13 @@ def test_invalid_patterns_are_reported_with_help(derived: str, message: str, hel
 
 def test_directives_are_written_as_they_were_parsed() -> None:
     text = """{ derive(a, count(e(_,3,"x y"), within(100), at_least(2))) }
-        { derive(b, missing(r(_), after(q(z)), within(57))) }
-        { derive(c, interpolated([scan(R), pose(X,A), p(B,_,C)], within(0.1), degrees(A, C), radians(B))) }
-        { derive(d, inside(pose(X,Y,_), circle(0, -1, 1.5), margin(0.5))) }
+        { derive(b, sequence([r(_), q(z)], within(57))) }
+        { derive(c, together([scan(R), pose(X,A), p(B,_,C)], within(0.1))) }
+        { derive(d, hysteresis(battery(X), on_below(-1), off_above(1.5))) }
         { derive(f, held(~open(_), lasting(1234.5678))) }
-        { begin namespace(ns) } { derive(g, all([ns::g2, h::i(_)], within(100))) } { end }
-        { history(h(_,_), within(333.3)) }
-        { history(ns::k, within(1)) }"""
+        { begin namespace(ns) } { derive(g, sequence([ns::g2, h::i(_)], within(100))) } { end }"""
     program, _ = load_program("a.asl", f"{text}\n!s. +!s.")
-    written = [*map(format_derivation, program.derived), *map(format_history, program.histories)]
+    written = list(map(format_derivation, program.derived))
     assert written == [line.strip() for line in text.splitlines()]
 
 

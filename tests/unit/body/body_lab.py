@@ -1,6 +1,6 @@
 """An agent without a reasoner: tests act through its body and check what its mind receives."""
 
-from collections.abc import Callable, Coroutine, Mapping
+from collections.abc import Callable, Coroutine
 
 from jacaros.bdi.state.act import Act, Completion, Percept
 from jacaros.body.body import AgentBody
@@ -134,9 +134,6 @@ class Robot:
 
     def has_untaken(self, name: str) -> bool:
         return False
-
-    def keep_histories(self, namespace: str | None, histories: Mapping[str, float]) -> None:
-        pass
 
     def complete(self, act_id: int, completion: Completion) -> None:
         assert act_id not in self.completions

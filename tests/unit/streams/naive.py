@@ -16,18 +16,9 @@ def shown(spec: Spec, events: Sequence[Event], now: float) -> Values | None:
     return _STATES[spec.operator](spec, past, now)
 
 
-def occurrences(spec: Spec, events: Sequence[Event], end: float) -> list[float]:
-    """Return the times of occurrences until *end*."""
+def occurrences(spec: Spec, events: Sequence[Event]) -> list[float]:
+    """Return the times of occurrences."""
     within = spec.options["within"]
-    if spec.operator == "missing":
-        return sorted(
-            time + within
-            for place, (stream, time, values) in enumerate(events)
-            if stream == 1
-            and values is not None
-            and time + within <= end
-            and not any(s == 0 and v is not None and t < time + within for s, t, v in events[place + 1 :])
-        )
     steps = [spec.streams.index(each) for each in spec.sources]
     found = []
     for place, (stream, time, values) in enumerate(events):
@@ -98,12 +89,6 @@ def _count(spec: Spec, past: Sequence[Event], now: float) -> Values | None:
     return (count,) if count else None
 
 
-def _all(spec: Spec, past: Sequence[Event], now: float) -> Values | None:
-    within = spec.options["within"]
-    seen = {stream for stream, time, values in past if values is not None and time + within > now}
-    return () if len(seen) == len(spec.sources) else None
-
-
 def _satisfied(spec: Spec, values: Values | None) -> bool:
     if values is None:
         return False
@@ -115,30 +100,6 @@ def _satisfied(spec: Spec, values: Values | None) -> bool:
         and (below is None or value < below)
         and (equals is None or value == equals)
     )
-
-
-def _segments(spec: Spec, past: Sequence[Event], now: float) -> list[tuple[float, float, bool]]:
-    ends = [time for _, time, _ in past[1:]] + [now]
-    return [(time, end, _satisfied(spec, values)) for (_, time, values), end in zip(past, ends, strict=True)]
-
-
-def share_margin(spec: Spec, past: Sequence[Event], now: float) -> float:
-    """Return the seconds of the window for which the condition held beyond the wanted share."""
-    start = now - spec.options["within"]
-    held = sum(max(0.0, end - max(start, begun)) for begun, end, holds in _segments(spec, past, now) if holds)
-    return held - spec.options.get("at_least", 0.0) * min(spec.options["within"], now - past[0][1])
-
-
-def _share(spec: Spec, past: Sequence[Event], now: float) -> Values | None:
-    if not past:
-        return None
-    if "at_least" in spec.options:
-        if past[0][1] == now:
-            return () if _satisfied(spec, past[-1][2]) else None
-        return () if share_margin(spec, past, now) >= -1e-9 else None
-    end = past[-1][1]
-    known = min(spec.options["within"], end - past[0][1])
-    return (share_margin(spec, past, end) / known if known else float(_satisfied(spec, past[-1][2])),)
 
 
 def _hysteresis(spec: Spec, past: Sequence[Event], now: float) -> Values | None:
@@ -167,51 +128,15 @@ def _held(spec: Spec, past: Sequence[Event], now: float) -> Values | None:
     return () if since is not None and since + spec.options["for"] <= now else None
 
 
-def _debounce(spec: Spec, past: Sequence[Event], now: float) -> Values | None:
-    stable: Values | None = None
-    candidate: Values | None = None
-    since = 0.0
-    for _, time, values in past:
-        if values != candidate:
-            if since + spec.options["for"] <= time:
-                stable = candidate
-            candidate, since = values, time
-    return candidate if since + spec.options["for"] <= now else stable
-
-
-def _delayed(spec: Spec, past: Sequence[Event], now: float) -> Values | None:
-    return next((values for _, time, values in reversed(past) if time + spec.options["by"] <= now), None)
-
-
 def _absent(spec: Spec, past: Sequence[Event], now: float) -> Values | None:
     newest = max((time for _, time, values in past if values is not None), default=0.0)
     return () if newest + spec.options["for"] <= now else None
 
 
-def _inside(spec: Spec, past: Sequence[Event], now: float) -> Values | None:
-    inside = False
-    x0, y0, radius = spec.options["circle"]
-    for _, _, values in past:
-        if values is None:
-            inside = False
-            continue
-        x, y = values[0], values[1]
-        assert isinstance(x, float)
-        assert isinstance(y, float)
-        distance = math.hypot(x - x0, y - y0) - radius
-        inside = distance <= 0.0 or (inside and distance <= spec.options["margin"])
-    return () if inside else None
-
-
 _STATES = {
     **dict.fromkeys(("mean", "min", "max", "slope"), _aggregate),
     "count": _count,
-    "all": _all,
-    "share": _share,
     "hysteresis": _hysteresis,
     "held": _held,
-    "debounce": _debounce,
     "absent": _absent,
-    "delayed": _delayed,
-    "inside": _inside,
 }

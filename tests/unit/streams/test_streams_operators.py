@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from naive import Event, occurrences, share_margin, shown
+from naive import Event, occurrences, shown
 
 from jacaros.streams.operator import OCCUR, Values
 from jacaros.streams.pattern import Pattern
@@ -25,24 +25,17 @@ STATES = [
     Spec("min", ("a",), {"within": 2.5}),
     Spec("max", ("a",), {"within": 2.5}, 1),
     Spec("slope", ("a",), {"within": 4.0}),
-    Spec("share", ("a",), {"within": 4.0, "above": 2.0}),
-    Spec("share", ("a",), {"within": 4.0, "above": 2.0, "at_least": 0.75}),
-    Spec("share", ("a",), {"within": 3.0, "equals": 1.0, "at_least": 0.5}),
     Spec("hysteresis", ("a",), {"on_above": 3.0, "off_below": 1.0}),
     Spec("hysteresis", ("a",), {"on_below": 1.0, "off_above": 3.0}),
     Spec("held", ("a",), {"for": 1.5, "above": 1.0}),
+    Spec("held", ("a",), {"for": 1.0, "equals": 1.0}),
     Spec("held", ("a",), {"for": 1.5}),
-    Spec("debounce", ("a",), {"for": 1.0}),
-    Spec("delayed", ("a",), {"by": 1.5}),
     Spec("absent", ("a",), {"for": 1.5}),
-    Spec("inside", ("a",), {"circle": (1.0, 1.0, 1.0), "margin": 0.5}),
-    Spec("all", ("a", "b", "c"), {"within": 2.0}),
 ]
 MOMENTS = [
     Spec("sequence", ("a", "b"), {"within": 2.0}),
     Spec("sequence", ("a", "a"), {"within": 1.0}),
     Spec("sequence", ("a", "b", "a", "c"), {"within": 5.0}),
-    Spec("missing", ("a", "b"), {"within": 1.5}),
 ]
 NUMBERS = st.integers(0, 4).map(float)
 
@@ -92,17 +85,6 @@ def _same(one: Values | None, other: Values | None) -> bool:
     )
 
 
-def _close_call(spec: Spec, past: list[Event], now: float) -> bool:
-    """Return whether the share is so near to the limit that rounding decides."""
-    return (
-        spec.operator == "share"
-        and "at_least" in spec.options
-        and bool(past)
-        and past[0][1] < now
-        and abs(share_margin(spec, past, now)) < 1e-4
-    )
-
-
 @pytest.mark.parametrize("spec", STATES, ids=lambda spec: f"{spec.operator}-{len(spec.options)}")
 @given(data=st.data())
 @settings(max_examples=25, deadline=None)
@@ -116,9 +98,7 @@ def test_states_equal_those_of_the_naive_evaluator(spec: Spec, data: st.DataObje
         run.until(now)
         while left and left[0][1] <= now:
             run.pattern.take(*left.popleft())
-        past = [event for event in events if event[1] <= now]
-        if not _close_call(spec, past, now):
-            assert _same(run.pattern.shown, shown(spec, events, now)), f"at {now}"
+        assert _same(run.pattern.shown, shown(spec, events, now)), f"at {now}"
 
 
 @pytest.mark.parametrize("spec", MOMENTS, ids=lambda spec: f"{spec.operator}-{len(spec.sources)}")
@@ -132,7 +112,7 @@ def test_occurrences_equal_those_of_the_naive_evaluator(spec: Spec, data: st.Dat
         run.until(time)
         run.pattern.take(stream, time, values)
     run.until(end)
-    assert run.occurred == occurrences(spec, events, end)
+    assert run.occurred == occurrences(spec, events)
 
 
 @pytest.mark.parametrize("spec", [*STATES, *MOMENTS], ids=lambda spec: f"{spec.operator}-{len(spec.options)}")
@@ -192,7 +172,6 @@ EVERYTHING = [
     *STATES,
     *MOMENTS,
     Spec("together", ("a", "b"), {"within": 0.1}, lateness=1.0),
-    Spec("interpolated", ("a", "b"), {"within": 0.1}, lateness=1.0),
 ]
 
 
@@ -250,48 +229,3 @@ def test_running_sums_do_not_drift(operator: str) -> None:
     expected = 0.02 * (49_999 - 49.5) if operator == "mean" else 2.0
     assert pattern.shown is not None
     assert pattern.shown[0] == pytest.approx(expected, rel=1e-5)
-
-
-def test_values_are_interpolated_at_the_times_of_the_first_stream() -> None:
-    made: list[Values] = []
-    spec = Spec("interpolated", ("scan", "pose"), {"within": 0.1}, lateness=0.3, turns=(0.0, 360.0))
-    pattern = Pattern(spec, 50.0, lambda kind, values: made.append(values))
-    pattern.take(1, 50.00, (0.0, 170.0, "a"))
-    pattern.take(0, 50.05, ("s0",))
-    assert made == []
-    pattern.take(1, 50.10, (1.0, -170.0, "b"))
-    name, x, yaw, word = made.pop()
-    assert (name, abs(float(yaw)), word) == ("s0", pytest.approx(180.0), "a")  # type: ignore[arg-type]
-    assert x == pytest.approx(0.5)
-    pattern.take(0, 50.10, ("s1",))  # there is a pose at its very time
-    assert made.pop() == ("s1", 1.0, -170.0, "b")
-    pattern.take(0, 50.15, ("s2",))
-    pattern.take(1, 50.30, (2.0, 0.0, "c"))  # too far behind s2
-    assert made == []
-    pattern.take(1, 50.19, (1.9, -152.0, "d"))  # late, and in time
-    name, x, yaw, word = made.pop()
-    assert (name, word) == ("s2", "b")
-    assert (x, yaw) == pytest.approx((1.5, -160.0))
-    pattern.take(0, 50.12, ("old",))
-    assert pattern.dropped == 1
-
-
-@given(st.lists(st.tuples(st.integers(0, 1), st.integers(0, 30)), max_size=40, unique=True))
-@settings(max_examples=50, deadline=None)
-def test_interpolation_equals_that_of_the_naive_evaluator(events: list[tuple[int, int]]) -> None:
-    made: list[Values] = []
-    spec = Spec("interpolated", ("a", "b"), {"within": 2 * STEP}, lateness=100.0)
-    pattern = Pattern(spec, 0.0, lambda kind, values: made.append(values))
-    expected: list[tuple[float, float]] = []
-    waiting: set[int] = set()
-    line: set[int] = set()
-    until = -1
-    for stream, tick in events:
-        pattern.take(stream, tick * STEP, (3.0 * tick,) if stream else (float(tick),))
-        (line if stream else waiting).add(tick)
-        for each in sorted(waiting):
-            near = [other for other in line if abs(other - each) <= 2]
-            if each > until and any(t <= each for t in near) and any(t >= each for t in near):
-                expected.append((float(each), 3.0 * each))
-                until = each
-    assert made == [pytest.approx(each) for each in expected]

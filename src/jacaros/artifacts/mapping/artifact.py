@@ -11,7 +11,7 @@ from jacaros.artifacts.kit.reading import Reading, ReadingPolicy, Values
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.artifacts.mapping.checking import type_problems
 from jacaros.artifacts.mapping.declared import ArtifactPart, MappingError, MappingFile, Place
-from jacaros.artifacts.mapping.deriving import Derivation, with_angles
+from jacaros.artifacts.mapping.deriving import Derivation
 from jacaros.artifacts.mapping.file import find_mapping, load_mapping, shipped_mappings
 from jacaros.artifacts.mapping.frames import FrameUpdater
 from jacaros.artifacts.mapping.host import Elements, Tap
@@ -39,14 +39,11 @@ class MappedArtifact(RosArtifact):
     Attributes:
         mapping: the file.
         part: the declaration of this artifact.
-        property_histories: seconds for which agents that focus on it keep past values, by name; see
-            `jacaros.env.property`.
     """
 
     known_options: ClassVar[Mapping[str, Callable[[object], object]]] = {"tf_prefix": text, **MATCH_OPTIONS}
     mapping: ClassVar[MappingFile]
     part: ClassVar[ArtifactPart]
-    property_histories: ClassVar[Mapping[str, float]]
 
     def open(self) -> None:
         """Check the mapping against the types of this middleware, and open everything."""
@@ -66,7 +63,7 @@ class MappedArtifact(RosArtifact):
         self.own_parameters = self._declare_parameters()
         self.taps: dict[str, list[Tap]] = {}
         self.derivations = {
-            each.name: Derivation(self, each, with_angles(each.spec, self.part))
+            each.name: Derivation(self, each, each.spec)
             for each in self.part.derived
             if each.spec is not None
         }
@@ -219,7 +216,6 @@ def mapped_type(mapping: MappingFile, name: str) -> type[MappedArtifact]:
         "mapping": mapping,
         "part": part,
         "further_uses": motion_uses(part),
-        "property_histories": part.histories,
         **methods(part, parameter_words),
     }
     tuned = any(each.declaration is not None for each in part.parameters)

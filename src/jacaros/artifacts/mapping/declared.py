@@ -130,7 +130,6 @@ class TopicPart:
         initial: values before the first message; None: no property until then.
         when_changed: send a signal only if its values differ from the previous ones.
         frame: the only frame whose messages are shown; None: any.
-        history: seconds for which agents that focus on the artifact keep past values.
     """
 
     name: str
@@ -150,7 +149,6 @@ class TopicPart:
     frame: Written | None = None
     signal: bool = False
     description: str = ""
-    history: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,7 +160,6 @@ class FramePart:
         fields: have paths of one step, ``x`` to ``stamp``.
         rate: look-ups per second.
         oldest: maximum age of a transform, in seconds; None: any.
-        history: as for a `TopicPart`.
     """
 
     name: str
@@ -175,7 +172,6 @@ class FramePart:
     oldest: float | None = None
     policy: ReadingPolicy = ALWAYS
     description: str = ""
-    history: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -206,7 +202,6 @@ class DerivedPart:
     Attributes:
         spec: the pattern; None after a mistake.
         sources: the properties and signals, as written.
-        history: as for a `TopicPart`.
     """
 
     name: str
@@ -214,7 +209,6 @@ class DerivedPart:
     spec: Spec | None
     sources: tuple[Written, ...]
     description: str = ""
-    history: float | None = None
 
     @property
     def signal(self) -> bool:
@@ -363,12 +357,6 @@ class ArtifactPart:
     def properties(self) -> tuple[TopicPart, ...]:
         """Properties from topics."""
         return tuple(part for part in self.topics if not part.signal)
-
-    @property
-    def histories(self) -> dict[str, float]:
-        """The seconds for which past values of properties are kept, by name."""
-        parts: tuple[TopicPart | FramePart | DerivedPart, ...] = (*self.topics, *self.frames, *self.derived)
-        return {each.name: each.history for each in parts if each.history is not None}
 
     @property
     def signals(self) -> tuple[TopicPart, ...]:

@@ -1,21 +1,18 @@
 """Derived properties and signals: messages of other properties go through a pattern of `jacaros.streams`."""
 
-import dataclasses
-import math
 from collections import deque
 from functools import partial
 
 from jacaros.artifacts.kit.reading import Values
-from jacaros.artifacts.mapping.declared import ArtifactPart, DerivedPart, FieldPart, FramePart
+from jacaros.artifacts.mapping.declared import ArtifactPart, DerivedPart, FramePart
 from jacaros.artifacts.mapping.host import Host
-from jacaros.artifacts.mapping.read_fields import ANGLES
 from jacaros.artifacts.mapping.stamped_frames import StampedFrames
 from jacaros.clock import Timer
 from jacaros.excerpts import is_worth_a_line
 from jacaros.ros.message import to_seconds
 from jacaros.streams.operator import HIDE, OCCUR, SHOW
 from jacaros.streams.pattern import Pattern
-from jacaros.streams.schema import JOINING, Spec
+from jacaros.streams.schema import Spec
 from jacaros.trace import Cause
 
 JUMP = 0.1
@@ -166,33 +163,10 @@ class Derivation:
 
 def frames_at_stamps(spec: Spec, part: ArtifactPart) -> dict[int, FramePart]:
     """Return the frames that are looked up at the stamps of the first stream, by the numbers of their streams."""
-    if spec.operator not in JOINING:
+    if spec.operator != "together":
         return {}
     frames = {each.name: each for each in part.frames}
     return {number: frames[name] for number, name in enumerate(spec.streams) if number and name in frames}
-
-
-def with_angles(spec: Spec, part: ArtifactPart) -> Spec:
-    """Return the pattern with the values marked that are headings: their numbers wrap around after a turn."""
-    if spec.operator != "interpolated":
-        return spec
-    fields = {each.name: each.fields or () for each in part.topics} | {
-        each.name: each.fields for each in part.frames
-    }
-    turns = [
-        _turn(field)
-        for name in spec.sources[1:]
-        for field in fields.get(name, ())
-        for _ in range(field.count)
-    ]
-    return dataclasses.replace(spec, turns=tuple(turns))
-
-
-def _turn(field: FieldPart) -> float:
-    """Return a full turn of an angle in the agent's unit; 0 if the field is not an angle."""
-    if field.conversion.kind not in ANGLES and field.path.text not in ANGLES:
-        return 0.0
-    return 360.0 if field.conversion.unit == "degrees" else math.tau
 
 
 def stamp_of(message: object, latched: bool) -> float:

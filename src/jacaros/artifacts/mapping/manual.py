@@ -77,7 +77,6 @@ def _properties(part: ArtifactPart, interfaces: Interfaces) -> Iterator[str]:
     for frame in part.frames:
         told = frame.description or f"frame {frame.source} in {frame.target}"
         words = [_of_transform(field) for field in frame.fields]
-        told += _kept(frame.history)
         yield f"{usage(frame.name, frame.fields)}: {_described(told, frame.fields, words)}."
     for parameter in part.parameters:
         yield f"{parameter.name}(Value): {_of_parameter(parameter)}."
@@ -121,19 +120,8 @@ def _derived(part: DerivedPart, spec: Spec) -> str:
     """Describe a derived property or signal."""
     shape = OPERATORS[spec.operator]
     told = part.description or f"{shape.meaning}, of {' and '.join(spec.sources)}"
-    values = (
-        ""
-        if spec.gives != VALUE
-        else "(Values)"
-        if spec.operator in ("debounce", "delayed", "together", "interpolated")
-        else "(Value)"
-    )
-    return f"{part.name}{values}: {told.rstrip('.')}{_kept(part.history)}."
-
-
-def _kept(history: float | None) -> str:
-    """Return how long past values are kept, after a comma."""
-    return "" if history is None else f", past values are kept for {history:g} s"
+    values = "" if spec.gives != VALUE else "(Values)" if spec.operator == "together" else "(Value)"
+    return f"{part.name}{values}: {told.rstrip('.')}."
 
 
 def _from_topic(topic: TopicPart, interfaces: Interfaces) -> str:
@@ -142,7 +130,7 @@ def _from_topic(topic: TopicPart, interfaces: Interfaces) -> str:
     type_name = topic.type_name.text if topic.type_name is not None else ""
     of_type = f" ({type_name})" if type_name else ""
     told = topic.description or f"from topic {topic.topic.text}{of_type}{each}{_when(topic.policy)}"
-    return _observed(topic, type_name, told.rstrip(".") + _kept(topic.history), interfaces)
+    return _observed(topic, type_name, told.rstrip("."), interfaces)
 
 
 def _observed(topic: TopicPart, type_name: str, told: str, interfaces: Interfaces) -> str:

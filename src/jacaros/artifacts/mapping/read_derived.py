@@ -5,11 +5,9 @@ from collections.abc import Iterator
 from jacaros.artifacts.mapping.declared import ArtifactPart, DerivedPart, Place, TopicPart, Written
 from jacaros.artifacts.mapping.read_fields import place_of
 from jacaros.artifacts.mapping.read_names import belief_name
-from jacaros.artifacts.mapping.read_topics import plain_constant, read_window
+from jacaros.artifacts.mapping.read_topics import plain_constant
 from jacaros.streams.schema import (
-    JOINING,
     LONGEST,
-    OCCURRENCE,
     OPERATORS,
     PARTNERS_WAIT,
     VALUED,
@@ -21,8 +19,8 @@ from jacaros.streams.schema import (
 from jacaros.suggestions import suggestion
 from jacaros.yaml_nodes import Node, Problem
 
-_COMMON = ("value", "lateness", "history", "description")
-_EVENTS = frozenset({"count", "absent", "missing", "sequence", "all"})
+_COMMON = ("value", "lateness", "description")
+_EVENTS = frozenset({"count", "absent", "sequence"})
 """Operators that use only the events, not their values, so each element of an array may be one."""
 _EXAMPLE = "write one, such as {count: bump, within: 5, at_least: 3}"
 
@@ -42,10 +40,6 @@ def read_derived(name: Node, node: Node) -> DerivedPart:
     wrong = list(faults(operator, [each.text for each in sources], options))
     for fault in wrong:
         _report(fault, entries, node)
-    after = entries.get("after")
-    if after is not None and operator == "missing":
-        sources += (Written(after.text(), place_of(after)),)
-        options.pop("after")
     if "value" in entries and operator not in VALUED:
         entries["value"].wrong(f"`{operator}` does not use values", "leave `value` out")
     spec = Spec(
@@ -56,22 +50,13 @@ def read_derived(name: Node, node: Node) -> DerivedPart:
         _lateness(entries, operator),
     )
     told = entries["description"].text() if "description" in entries else ""
-    history = _history(entries["history"], spec) if "history" in entries else None
-    return DerivedPart(belief_name(name), place, None if wrong else spec, sources, told, history)
-
-
-def _history(node: Node, spec: Spec) -> float | None:
-    """Read the seconds for which past values are kept; events that are not properties have none."""
-    if spec.gives == OCCURRENCE:
-        node.wrong(f"`{spec.operator}` is an event and has no history", "leave `history` out")
-        return None
-    return read_window(node)
+    return DerivedPart(belief_name(name), place, None if wrong else spec, sources, told)
 
 
 def _lateness(entries: dict[str, Node], operator: str) -> float:
     if "lateness" in entries:
         return entries["lateness"].number(0.0, LONGEST)
-    return PARTNERS_WAIT if operator in JOINING else 0.0
+    return PARTNERS_WAIT if operator == "together" else 0.0
 
 
 def _operator(name: Node, node: Node, entries: dict[str, Node]) -> str | None:
@@ -105,8 +90,6 @@ def _option(key: str, node: Node) -> object:
     """Read the value of an option in the form that the schema checks."""
     if key == "equals":
         return plain_constant(node)
-    if isinstance(node.value, list):
-        return tuple(item.value for item in node.sequence())
     return node.value
 
 
@@ -146,7 +129,7 @@ def _unfit(spec: Spec, topic: TopicPart, place: Place) -> Iterator[Problem]:
             f"`{topic.name}` is one property for each element, but `{spec.operator}` needs a single one",
             f"use one of {', '.join(sorted(_EVENTS))}, or a property without `each`",
         )
-    needed = spec.place + (2 if spec.operator == "inside" else 1)
+    needed = spec.place + 1
     if spec.operator in VALUED and topic.fields is not None:
         count = sum(field.count for field in topic.fields)
         if count < needed:

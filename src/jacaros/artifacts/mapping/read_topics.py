@@ -18,15 +18,14 @@ from jacaros.artifacts.mapping.read_names import UNNAMED, belief_name, is_type, 
 from jacaros.artifacts.mapping.units import UNITS
 from jacaros.env.values import Atom
 from jacaros.ros.qos import DEFAULT_QOS, LATCHED, SENSOR_DATA, Durability, QoS, Reliability
-from jacaros.streams.schema import LONGEST
 from jacaros.yaml_nodes import Node, Problem
 
 _MESSAGE = ("topic", "type", "frame", "fields", "each", "key", "annotations", "qos", "description")
 _POLICY = ("mode", "rate", "dead_band", "latest_only", "expire")
-PROPERTY = (*_MESSAGE, *_POLICY, "initial", "range_of_view", "history")
+PROPERTY = (*_MESSAGE, *_POLICY, "initial", "range_of_view")
 SIGNAL = (*_MESSAGE, "rate", "when_changed")
 FEEDBACK = ("fields", "annotations", "description", "rate", "dead_band", "latest_only")
-FRAME = ("target", "source", "fields", "annotations", "description", "history", *_POLICY)
+FRAME = ("target", "source", "fields", "annotations", "description", *_POLICY)
 PLACES = ("x", "y", "z", "roll", "pitch", "yaw", "stamp")
 """The parts of a transform that can be shown."""
 
@@ -49,7 +48,6 @@ def read_property(name: Node, node: Node) -> TopicPart:
         policy=policy,
         initial=_initial(initial, fields, part.each is not None) if initial is not None else None,
         view=_view(entries["range_of_view"], part.each is not None) if "range_of_view" in entries else None,
-        history=read_window(entries["history"]) if "history" in entries else None,
     )
 
 
@@ -165,14 +163,6 @@ def positive(node: Node) -> float:
     return value
 
 
-def read_window(node: Node) -> float:
-    """Read the seconds for which past values are kept: above zero, and at most a day."""
-    seconds = positive(node)
-    if seconds > LONGEST:
-        node.wrong(f"{node.what} is longer than a day", "write at most 86400 s: it limits memory")
-    return min(seconds, LONGEST)
-
-
 def _bands(node: Node | None, fields: tuple[FieldPart, ...] | None) -> float | tuple[float, ...]:
     """Read one number for all values, or one for each value."""
     own = any(field.dead_band is not None for field in fields or ())
@@ -279,7 +269,6 @@ def read_frame(name: Node, node: Node) -> FramePart:
         policy.expire,
         dataclasses.replace(policy, rate=None, expire=None),
         entries["description"].text() if "description" in entries else "",
-        read_window(entries["history"]) if "history" in entries else None,
     )
 
 

@@ -101,9 +101,7 @@ def beliefs_of(program: nodes.Program, actions: Mapping[str, Declaration]) -> Be
 
 
 def _derive(program: nodes.Program, asked: set[int], found: Beliefs) -> None:
-    """Note the derived beliefs and events, whatever their arguments, and their streams and those with a history."""
-    for kept in program.histories:
-        _ask(kept.belief, asked, found)
+    """Note the derived beliefs and events, whatever their arguments, and their streams."""
     for derived in program.derived:
         if derived.namespace is None:
             found.made.add(derived.name)

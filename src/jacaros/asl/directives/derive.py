@@ -1,6 +1,5 @@
 """``{ derive(name, pattern) }``: a belief or event composed of changes of beliefs."""
 
-import math
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, Final
 
@@ -9,7 +8,7 @@ from jacaros.asl.source import Span
 from jacaros.streams.schema import OPERATORS, VALUED, Fault, faults, unknown
 
 EXAMPLE: Final = "write `{ derive(bumped_often, count(bump(_), within(5000), at_least(3))) }`"
-_TIMES: Final = {"within": "within", "lasting": "for", "by": "by"}
+_TIMES: Final = {"within": "within", "lasting": "for"}
 """Options in milliseconds, and their names in the schema, where they are in seconds (`for` is a keyword)."""
 
 _OF_MAPPINGS: Final = {
@@ -17,9 +16,6 @@ _OF_MAPPINGS: Final = {
     "lateness": "remove it: an agent handles changes in order, so none is late",
 }
 """Options that only mapping files have, and the alternative here."""
-
-_TURNS: Final = {"degrees": 360.0, "radians": math.tau}
-"""Options of `interpolated` that name angles, and their full turns."""
 
 Report = Callable[[str, Span | None, str], None]
 """Reports a message with its place and help."""
@@ -72,27 +68,15 @@ class _Reader:
         first, *rest = pattern.arguments
         streams = list(self._streams(first, OPERATORS[operator].several, operator))
         options, places = self._options(rest)
-        checked = {
-            name: value for name, value in options.items() if operator != "interpolated" or name not in _TURNS
-        }
-        for fault in list(faults(operator, [written(each) for each in streams], checked)):
+        for fault in list(faults(operator, [written(each) for each in streams], options)):
             self._report_error(
                 _as_written(fault.message), places.get(fault.option, pattern), _as_written(fault.help)
             )
-        if "after" in options and isinstance(options["after"], nodes.Literal):
-            streams += list(self._streams(options.pop("after"), False, operator))
-        angles = self._angles(streams, options) if operator == "interpolated" else ()
         if operator in VALUED and streams:
             self._check_values(operator, streams[0], options)
         return nodes.Derivation(
-            name.functor, namespace, operator, tuple(streams), tuple(options.items()), angles, span=span
+            name.functor, namespace, operator, tuple(streams), tuple(options.items()), span=span
         )
-
-    def _angles(self, streams: list[nodes.Literal], options: dict[str, Any]) -> tuple[float, ...]:
-        """Return the full turns of the values after the first stream, 0 for those that are not angles."""
-        turns = {each: turn for name, turn in _TURNS.items() for each in options.pop(name, ())}
-        named = [each.arguments[place] for each in streams[1:] for place in values_of(each)]
-        return tuple(turns.get(each.name, 0.0) if isinstance(each, nodes.Variable) else 0.0 for each in named)
 
     def _streams(self, term: nodes.Term, several: bool, operator: str) -> Iterator[nodes.Literal]:
         terms = term.items if several and isinstance(term, nodes.ListTerm) else (term,)
@@ -129,13 +113,8 @@ class _Reader:
                 continue
             name = _TIMES.get(term.functor, term.functor)
             places[name] = term
-            if name in _TURNS:
-                found[name] = [each.name for each in term.arguments if isinstance(each, nodes.Variable)]
-                continue
             values = [_constant(each) for each in term.arguments]
-            if name == "after":
-                found[name] = term.arguments[0]
-            elif len(values) > 1:
+            if len(values) > 1:
                 found[name] = tuple(values)
             elif term.functor in _TIMES and isinstance(values[0], float):
                 found[name] = values[0] / 1000.0
@@ -144,25 +123,14 @@ class _Reader:
         return found, places
 
     def _check_values(self, operator: str, stream: nodes.Literal, options: Mapping[str, object]) -> None:
-        count = len(values_of(stream))
-        needed = {"inside": 2}.get(operator, 1)
-        if operator in ("share", "held") and not {"above", "below", "equals"} & options.keys():
-            needed = 0
-        if count < needed or (count > needed and operator != "inside"):
-            named = (
-                "the two coordinates variables: `inside(pose(X, Y, _), ...)`"
-                if needed == 2
-                else "one argument a variable"
-            )
-            help_ = (
-                f"make {named}, and the others `_`"
-                if needed
-                else "write `_` for the arguments that do not matter"
-            )
+        bare = operator == "held" and not {"above", "below"} & options.keys()
+        if len(values_of(stream)) != (needed := 0 if bare else 1):
             self._report_error(
-                f"`{operator}` expects {needed or 'no'} named variable{'s' if needed != 1 else ''} in its belief",
+                f"`{operator}` expects {needed or 'no'} named variable{'s' if bare else ''} in its belief",
                 stream,
-                help_,
+                "write `_` for the arguments that do not matter"
+                if bare
+                else "make one argument a variable, and the others `_`",
             )
 
 
@@ -217,9 +185,7 @@ def streams_of(derived: nodes.Derivation) -> tuple[str, ...]:
 def format_derivation(derived: nodes.Derivation) -> str:
     """Return the directive as text, equal for equal ones, in a block of its namespace if it has one."""
     streams = list(map(written, derived.streams))
-    words = [f"after({streams.pop()})"] if derived.operator == "missing" else []
-    words += [_option(name, value) for name, value in derived.options]
-    words += _angles_of(derived)
+    words = [_option(name, value) for name, value in derived.options]
     first = f"[{', '.join(streams)}]" if OPERATORS[derived.operator].several else streams[0]
     pattern = f"{derived.operator}({', '.join([first, *words])})"
     directive = f"{{ derive({derived.name}, {pattern}) }}"
@@ -227,15 +193,14 @@ def format_derivation(derived: nodes.Derivation) -> str:
     return directive if name is None else f"{{ begin namespace({name}) }} {directive} {{ end }}"
 
 
-def _option(name: str, value: float | tuple[float, ...]) -> str:
+def _option(name: str, value: float) -> str:
     """Return an option as programs write it."""
     from jacaros.terms.text import number_text
 
-    values = value if isinstance(value, tuple) else (value,)
     for here, known in _TIMES.items():
         if name == known:
-            return f"{here}({number_text(milliseconds(values[0]))})"
-    return f"{name}({', '.join(number_text(float(each)) for each in values)})"
+            return f"{here}({number_text(milliseconds(value))})"
+    return f"{name}({number_text(float(value))})"
 
 
 def milliseconds(seconds: float) -> float:
@@ -243,21 +208,6 @@ def milliseconds(seconds: float) -> float:
     exact = seconds * 1000.0
     rounded = round(exact, 6)
     return rounded if rounded / 1000.0 == seconds else exact
-
-
-def _angles_of(derived: nodes.Derivation) -> list[str]:
-    """Return the options that name the variables of angles."""
-    named = [each.arguments[place] for each in derived.streams[1:] for place in values_of(each)]
-    found = []
-    for name, turn in _TURNS.items():
-        angles = [
-            each.name
-            for each, own in zip(named, derived.turns, strict=False)
-            if own == turn and isinstance(each, nodes.Variable)
-        ]
-        if angles:
-            found.append(f"{name}({', '.join(angles)})")
-    return found
 
 
 def circle(derived: list[nodes.Derivation]) -> nodes.Derivation | None:

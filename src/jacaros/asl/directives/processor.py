@@ -42,7 +42,7 @@ PATTERNS: Final[dict[str, Callable[[PatternCall, nodes.Section], nodes.Section]]
     "sga": sequenced,
 }
 _Result = TypeVar("_Result")
-_SIMPLE: Final = ("derive", "history", "include", "namespace", "register_function")
+_SIMPLE: Final = ("derive", "include", "namespace", "register_function")
 _DEEPEST: Final = 40
 """Maximum depth of includes, so that parsing them does not exhaust Python's stack."""
 _MOST_INCLUDES: Final = 10_000
@@ -87,8 +87,6 @@ class DirectiveProcessor:
                 section.functions.append(function)
         elif name == "derive":
             self._derive(parser, directive, section)
-        elif name == "history":
-            self._keep_history(parser, directive, section)
         elif name in PATTERNS:
             parser.report(
                 "wrong-directive",
@@ -295,19 +293,6 @@ class DirectiveProcessor:
             self._derived.pop()
             return
         section.derived.append(made)
-
-    def _keep_history(self, parser: ProgramParser, directive: nodes.Literal, section: nodes.Section) -> None:
-        from jacaros.asl.directives.history import read_history  # imported here: few programs keep histories
-
-        def report(message: str, span: Span | None, help: str) -> None:
-            parser.report("wrong-directive", message, span or directive.span, help)
-
-        def placed(term: nodes.Term) -> nodes.Term:
-            return self._placed(parser.namespaces, term)
-
-        made = read_history(directive, placed, report)
-        if made is not None:
-            section.histories.append(made)
 
     # patterns
 

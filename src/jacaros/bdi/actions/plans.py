@@ -165,7 +165,7 @@ def _program_text(agent: Circumstance, goals: list[Term]) -> str:
             if annotations != (SOURCE_DERIVED,)
         ),
         "",
-        *(["// derived events and histories", *directives, ""] if directives else ()),
+        *(["// derived events", *directives, ""] if directives else ()),
         "// initial goals",
         *(f"!{text(goal)}." for goal in goals),
         "",
@@ -182,15 +182,13 @@ def _program_text(agent: Circumstance, goals: list[Term]) -> str:
 
 
 def _directives(agent: Circumstance) -> list[str]:
-    """Return the derived events and histories declared by the agent's program and the programs it has included."""
+    """Return the derived events declared by the agent's program and the programs it has included."""
     if agent.observers.derived is None:
         return []
     from jacaros.asl.directives.derive import format_derivation  # imported here: most agents derive nothing
-    from jacaros.asl.directives.history import format_history
     from jacaros.bdi.rules.deriving import directives
 
-    derived, histories = directives(agent)
-    return [*map(format_derivation, derived), *map(format_history, histories)]
+    return list(map(format_derivation, directives(agent)))
 
 
 def _belief_text(symbol: Functor, entry: Any, annotations: tuple[Term, ...]) -> str:

@@ -7,23 +7,21 @@ one cycle (a property with a new value) has not ended in between.
 import heapq
 import itertools
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from typing import Any
 
 from jacaros.asl import nodes
 from jacaros.asl.directives.derive import format_derivation, streams_of, values_of
-from jacaros.asl.directives.history import format_history
 from jacaros.asl.lowering import lower_value
 from jacaros.bdi.rules import belief_update
 from jacaros.bdi.rules.alarms import cancel_alarm, set_alarm
-from jacaros.bdi.rules.histories import Histories
-from jacaros.bdi.state.belief_base import Item, Row, take_away
+from jacaros.bdi.state.belief_base import Row, take_away
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.waiting import Alarm
 from jacaros.streams.operator import HIDE, OCCUR, Values
 from jacaros.streams.pattern import Pattern
 from jacaros.streams.schema import Spec
-from jacaros.terms.values import SOURCE_DERIVED, Functor, Term, arguments_of, functor, functor_of
+from jacaros.terms.values import SOURCE_DERIVED, Functor, arguments_of, functor, functor_of
 from jacaros.trace import Cause
 
 _ANNOTATIONS = (SOURCE_DERIVED,)
@@ -90,7 +88,7 @@ class Derived:
 
     def __init__(self, owner: "DerivedBeliefs", declared: nodes.Derivation, start: float) -> None:
         self.owner, self.declared, self.text = owner, declared, format_derivation(declared)
-        spec = Spec(declared.operator, streams_of(declared), dict(declared.options), turns=declared.turns)
+        spec = Spec(declared.operator, streams_of(declared), dict(declared.options))
         self.pattern = Pattern(spec, start, self._emit)
         self.scheduled = math.inf
         self.row: tuple[Functor, Row] | None = None
@@ -127,13 +125,11 @@ class DerivedBeliefs:
 
     Attributes:
         cause: of the change that is being worked on.
-        histories: what beliefs were.
     """
 
     def __init__(self, agent: Circumstance) -> None:
         self.agent = agent
         self.cause: Cause | None = None
-        self.histories = Histories(agent, self._soon)
         self._all: dict[str, Derived] = {}
         self._streams: dict[Functor, dict[str, Stream]] = {}
         self._pending: list[tuple[Stream, Values | None, Cause | None]] = []
@@ -145,18 +141,9 @@ class DerivedBeliefs:
         self._latest, self._offset = agent.architecture.now(), 0.0
 
     @property
-    def directives(self) -> tuple[list[nodes.Derivation], list[nodes.History]]:
+    def directives(self) -> list[nodes.Derivation]:
         """All declarations."""
-        return [each.declared for each in self._all.values()], list(self.histories.declared.values())
-
-    def _soon(self) -> None:
-        """Settle before the next cycle, unless the agent is already settling."""
-        if not self._settling:
-            self.agent.do_soon(settle)
-
-    def past(self, symbol: Functor, milliseconds: Term) -> list[Item] | None:
-        """Return what was believed that time ago, newest first; None if no history of such beliefs is kept."""
-        return self.histories.past(symbol, milliseconds, self._now())
+        return [each.declared for each in self._all.values()]
 
     def declare(self, declared: Iterable[nodes.Derivation]) -> None:
         """Start declarations that are not active yet."""
@@ -179,8 +166,6 @@ class DerivedBeliefs:
         for text in texts(old) - texts(new):
             if text in self._all:
                 self._end(self._all.pop(text))
-            self.histories.declared.pop(text, None)
-        self.histories.keep(new.histories)
         self.declare(new.derived)
 
     def _end(self, derived: Derived) -> None:
@@ -196,19 +181,14 @@ class DerivedBeliefs:
 
     def stored(self, program: nodes.Program) -> dict[str, Any]:
         """Return the remains of the past as data, and the declarations that are not those of a program."""
-        self.histories.note(self._now())
         own = texts(program)
         return {
-            "histories": self.histories.stored(),
-            "latest": self._latest,
+            "latest": self._now(),
             "derived": [
                 (text, each.pattern.state(), None if each.row is None else (*each.row,))
                 for text, each in self._all.items()
             ],
-            "included": (
-                [each.declared for text, each in self._all.items() if text not in own],
-                [each for text, each in self.histories.declared.items() if text not in own],
-            ),
+            "included": [each.declared for text, each in self._all.items() if text not in own],
             "pending": [(stream.symbol, stream.name, values) for stream, values, _ in self._pending],
         }
 
@@ -219,7 +199,6 @@ class DerivedBeliefs:
             if text in self._all:
                 self._all[text].pattern.resume(state)
                 self._all[text].row = row
-        self.histories.resume(held["histories"])
         for symbol, name, values in held["pending"]:
             stream = self._streams.get(symbol, {}).get(name)
             if stream is not None:
@@ -243,15 +222,14 @@ class DerivedBeliefs:
 
     def heard(self, operator: str, symbol: Functor, row: Row, cause: Cause | None) -> None:
         """Handle a belief that was added or deleted, or a signal."""
-        self.histories.heard(symbol, row)
         streams = self._streams.get(symbol)
         if streams is None:
             return
         for stream in streams.values():
             if not stream.known or stream.matches(row):
                 pending = self._pending
-                if not pending:
-                    self._soon()
+                if not pending and not self._settling:
+                    self.agent.do_soon(settle)
                 stream.last = len(pending)
                 pending.append((stream, stream.event(row) if operator == "+" else None, cause))
 
@@ -274,7 +252,6 @@ class DerivedBeliefs:
                             self._schedule(derived)
         finally:
             self._settling, self.cause = False, None
-            self.histories.note(now)
         self._wait()
 
     def ring(self, due: float) -> None:
@@ -323,15 +300,8 @@ class DerivedBeliefs:
 
 def declare(agent: Circumstance, program: nodes.Program) -> None:
     """Start the declarations of a program; an agent without any has no costs."""
-    if program.derived or program.histories:
-        derived = _begun(agent)
-        derived.histories.keep(program.histories)
-        derived.declare(program.derived)
-
-
-def observe(agent: Circumstance, namespace: str | None, histories: Mapping[str, float]) -> None:
-    """Keep what beliefs in a namespace were, as an artifact asks for: seconds by name."""
-    _begun(agent).histories.observe(namespace, histories)
+    if program.derived:
+        _begun(agent).declare(program.derived)
 
 
 def _begun(agent: Circumstance) -> DerivedBeliefs:
@@ -347,12 +317,12 @@ def _begun(agent: Circumstance) -> DerivedBeliefs:
 
 def texts(program: nodes.Program) -> set[str]:
     """Return the declarations of a program as text."""
-    return {*map(format_derivation, program.derived), *map(format_history, program.histories)}
+    return set(map(format_derivation, program.derived))
 
 
-def directives(agent: Circumstance) -> tuple[list[nodes.Derivation], list[nodes.History]]:
+def directives(agent: Circumstance) -> list[nodes.Derivation]:
     """Return the declarations of an agent, also those of programs that it has included."""
-    return ([], []) if agent.observers.derived is None else _derived(agent).directives
+    return [] if agent.observers.derived is None else _derived(agent).directives
 
 
 def stored(agent: Circumstance, program: nodes.Program) -> dict[str, Any] | None:
@@ -367,8 +337,7 @@ def resume(agent: Circumstance, program: nodes.Program, held: dict[str, Any] | N
     """
     declare(agent, program)
     if held is not None:
-        derived, histories = held["included"]
-        declare(agent, nodes.Program(derived=tuple(derived), histories=tuple(histories)))
+        declare(agent, nodes.Program(derived=tuple(held["included"])))
         _begun(agent).resume(held)
     kept = [] if agent.observers.derived is None else _derived(agent).rows
     for symbol, table in list(agent.beliefs.items()):

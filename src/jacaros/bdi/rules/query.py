@@ -5,10 +5,7 @@ bound to a variable, sent in a message or passed to an internal action.  Both gi
 `jacaros.bdi.rules.searching.run`.
 """
 
-from collections.abc import Callable
-
 from jacaros.asl import nodes
-from jacaros.asl.directives.history import asks_for_past
 from jacaros.asl.lowering import Lookup, fresh_names, lower
 from jacaros.asl.walk import operands
 from jacaros.bdi.actions.internal_action import InternalAction
@@ -20,7 +17,6 @@ from jacaros.bdi.rules.calls import (
     unknown,
 )
 from jacaros.bdi.rules.deconstruction import deconstruct, deconstruct_in
-from jacaros.bdi.rules.past import solve_past
 from jacaros.bdi.rules.searching import exists, run, solve, solve_annotated, unify_rows
 from jacaros.bdi.state.belief_base import literal
 from jacaros.bdi.state.circumstance import Circumstance
@@ -60,10 +56,7 @@ def answers(agent: Circumstance, node: nodes.Node, lookup: Lookup, trail: Trail)
         return _collecting(agent, action, node, lookup, trail)
     if isinstance(node, nodes.Relation) and node.operator == "=..":
         return _deconstruction(node, lookup, trail)
-    formula = lower(node, lookup)
-    if formula.__class__ is Annotated and isinstance(node, nodes.Literal) and not asks_for_past(node):
-        return _annotated(agent, formula, trail, solve_annotated)
-    return solve_formula(agent, formula, trail)
+    return solve_formula(agent, lower(node, lookup), trail)
 
 
 def _deconstruction(node: nodes.Relation, lookup: Lookup, trail: Trail) -> Answers:
@@ -187,16 +180,14 @@ def _atom(agent: Circumstance, symbol: Functor, trail: Trail) -> Answers:
     return solve(agent, agent.beliefs[symbol], (), trail)
 
 
-def _annotated(
-    agent: Circumstance, formula: Annotated, trail: Trail, solve_: Callable[..., Answers] = solve_past
-) -> Answers:
+def _annotated(agent: Circumstance, formula: Annotated, trail: Trail) -> Answers:
     term = settle(formula.term)
     if term.__class__ is Annotated:
-        return _annotated(agent, resolve(formula), trail, solve_)
+        return _annotated(agent, resolve(formula), trail)
     if term.__class__ is Var or (term.__class__ is tuple and term[0] is NEGATED):
         return _anything(agent, formula, trail)
     symbol, arguments = (term[0], term[1:]) if term.__class__ is tuple else (term, ())
-    return solve_(agent, agent.beliefs[symbol], arguments, formula.annotations, formula.tail, trail)
+    return solve_annotated(agent, agent.beliefs[symbol], arguments, formula.annotations, formula.tail, trail)
 
 
 def _anything(agent: Circumstance, pattern: Term, trail: Trail) -> Answers:
@@ -315,7 +306,7 @@ def solve_in_namespaces(
             if items is None:
                 search = solve(agent, table, arguments, trail)
             else:
-                search = solve_past(agent, table, arguments, items, tail, trail)
+                search = solve_annotated(agent, table, arguments, items, tail, trail)
             while (yield search) is not None:
                 yield ()
         undo(trail, mark)

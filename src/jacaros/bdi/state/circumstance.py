@@ -8,7 +8,7 @@ from typing import Any, Final, Literal, NamedTuple, Protocol
 from jacaros.asl.source import Span
 from jacaros.bdi.architecture import Architecture
 from jacaros.bdi.state.act import Percept
-from jacaros.bdi.state.belief_base import BeliefTables, Item
+from jacaros.bdi.state.belief_base import BeliefTables
 from jacaros.bdi.state.budget import SearchBudget, budgets
 from jacaros.bdi.state.condition_waits import ConditionWaits
 from jacaros.bdi.state.event import EVENT_GOAL, EVENT_INTENTION, Annotations, Event
@@ -121,9 +121,6 @@ class BeliefObserver(Protocol):
 
     def heard(self, operator: str, symbol: Functor, row: tuple[Term, ...], cause: Cause | None) -> None:
         """Hear of a belief that was added (``+``) or deleted (``-``), or of a signal."""
-
-    def past(self, symbol: Functor, milliseconds: Term) -> list[Item] | None:
-        """Return what was believed that time ago, newest first; None if no history of such beliefs is kept."""
 
 
 class HeldEvent(NamedTuple):

@@ -43,7 +43,7 @@ def reload_programs(directory: Directory[AgentHost], lifecycle: AgentLifecycle) 
 
 def _texts(program: nodes.Program) -> set[tuple[str, str]]:
     """Return names and texts of the files of a program. The project's declarations are not in a file."""
-    clauses = (*program.plans, *program.beliefs, *program.goals, *program.derived, *program.histories)
+    clauses = (*program.plans, *program.beliefs, *program.goals, *program.derived)
     return {(clause.span.file.name, clause.span.file.text) for clause in clauses if clause.span is not None}
 
 
@@ -83,10 +83,10 @@ def _report(mind: Mind, new: nodes.Program) -> list[str]:
 
 
 def _declarations(agent: str, before: set[str], after: set[str]) -> Iterator[str]:
-    """Report changes of derived events and histories."""
+    """Report changes of derived events."""
     if before != after:
         counts = f"{len(before - after)} removed, {len(after - before)} new, {len(before & after)} unchanged"
-        yield f"{agent}: derived events and histories: {counts}"
+        yield f"{agent}: derived events: {counts}"
 
 
 def _new_facts(old: nodes.Program, new: nodes.Program) -> Iterator[str]:

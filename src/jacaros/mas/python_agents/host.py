@@ -290,9 +290,6 @@ class _Task:
         """Return False: its session processes everything immediately."""
         return False
 
-    def keep_histories(self, namespace: str | None, histories: Mapping[str, float]) -> None:
-        """Do nothing: it has no beliefs."""
-
     def complete(self, act_id: int, completion: Completion) -> None:
         """Do nothing: it acts through its session."""
 

@@ -132,7 +132,7 @@ def test_derived_events_that_stay_keep_their_windows(tmp_path: Path) -> None:
             patterns + "{ derive(next, count(hit(_), within(1000), at_least(3))) }\n",
         )
         told = mas.reload()
-        assert "agent bob: derived events and histories: 0 removed, 1 new, 1 unchanged" in told
+        assert "agent bob: derived events: 0 removed, 1 new, 1 unchanged" in told
         await mas.sleep(0.7)
         assert lines == ["bob many"]
         await mas.sleep(0.2)

@@ -1,7 +1,6 @@
 """Code for questions in conditions: literals, asked of beliefs and rules table by table, and calls of internal actions."""
 
 from jacaros.asl import nodes
-from jacaros.asl.directives.history import asks_for_past
 from jacaros.asl.walk import names_in
 from jacaros.bdi.actions.internal_action import InternalAction
 from jacaros.bdi.fast.generated.annotations import each_match, patterns_in_order
@@ -103,14 +102,13 @@ def _annotated_literal(fn: FunctionBuilder, node: nodes.Literal, then: Then) -> 
     symbol = fn.constant(functor_of_literal(node))
     fn.line(f"{table} = agent.beliefs[{symbol}]")
     patterns = patterns_in_order(node.annotations)
-    past = asks_for_past(node)
-    if patterns is not None and not (fn.trampoline or fn.snapshot or past):
+    if patterns is not None and not (fn.trampoline or fn.snapshot):
         _rows_with_annotations(fn, node, table, patterns, then)
         return
     names = names_in(node)
     arguments = tuple_of([build(fn, a) for a in node.arguments]) if node.arguments else "()"
     items, tail = annotation_parts(fn, node.annotations)
-    call = f"{'solve_past' if past else 'solve_annotated'}(agent, {table}, {arguments}, {items}, {tail}, t)"
+    call = f"solve_annotated(agent, {table}, {arguments}, {items}, {tail}, t)"
     loop_binding(fn, call, names, then)
 
 

@@ -20,7 +20,6 @@ from jacaros.bdi.rules.calls import (
 )
 from jacaros.bdi.rules.deconstruction import constructed, deconstruct, deconstruct_in, deconstructed
 from jacaros.bdi.rules.forks import join_branch
-from jacaros.bdi.rules.past import solve_past
 from jacaros.bdi.rules.plan_guards import begin_guarded
 from jacaros.bdi.rules.searching import (
     Loop,
@@ -109,7 +108,6 @@ _FUNCTIONS = (
     solve,
     solve_annotated,
     solve_held,
-    solve_past,
     too_many_open,
     undo,
     unify,
