@@ -29,7 +29,6 @@ CYCLE = ("beliefs", "body_statements", "failure", "intentions", "plan_selection"
 def main(arguments: list[str]) -> int:
     """Run one of the suites."""
     suite = arguments[0] if arguments else "language"
-    os.environ.setdefault("JACAROS_CACHE", "0")  # no cached code, unless the caller sets the variable
     if suite == "language":
         return judge(*run(CASES, "fast", 2))
     if suite == "plain":

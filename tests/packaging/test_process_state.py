@@ -43,7 +43,6 @@ CACHES = {
     "bdi.rules.proc_msg._only_from": "of a name",
     "body.actions.keys": "of nothing",
     "body.values.symbol_of": "of a name",
-    "mas.code_folder._own_build": "of files of the package",
     "mas.mappings.stored_interfaces": "of files of the package",
     "mas.history.values._field_names": "of a class of messages",
 }

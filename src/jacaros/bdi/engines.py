@@ -5,7 +5,7 @@ from collections.abc import Mapping
 
 from jacaros.bdi.actions.internal_action import InternalAction
 from jacaros.bdi.rules.interpreter import Interpreter
-from jacaros.bdi.state.engine import CodeCache, Engine
+from jacaros.bdi.state.engine import Engine
 
 
 def is_plain() -> bool:
@@ -13,18 +13,15 @@ def is_plain() -> bool:
     return os.environ.get("JACAROS_PLAIN", "0") not in ("", "0")
 
 
-def new_engine(
-    actions: Mapping[str, InternalAction], plain: bool | None = None, cache: CodeCache | None = None
-) -> Engine:
+def new_engine(actions: Mapping[str, InternalAction], plain: bool | None = None) -> Engine:
     """Return the engine for plans and rules.
 
     Args:
         actions: the internal actions that plans may call.
         plain: no generated code; the default is `is_plain`.
-        cache: where generated code is kept between runs; None to keep none.
     """
     if is_plain() if plain is None else plain:
         return Interpreter(actions)
     from jacaros.bdi.fast.compiler import Compiler  # imported here: a plain run does not need it
 
-    return Compiler(actions, cache)
+    return Compiler(actions)

@@ -171,10 +171,7 @@ def command(
     """Run FILE: an agent program (.asl, or .py for an agent in Python) or a project (.mas2j, .jcm).
 
     The output of agents goes to the standard output as `[agent] text`, everything else to the standard error output.
-
-    Compiled plans are cached in $XDG_CACHE_HOME/jacaros (default: ~/.cache/jacaros) to make the next start faster. Set
-    JACAROS_CACHE to another folder, or to 0 to disable the cache. You can delete the folder at any time.
-    """  # fmt: skip
+    """
     check_file(file)
     outputs = Outputs(
         record,

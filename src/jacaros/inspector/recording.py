@@ -1,4 +1,4 @@
-"""A recorded run in memory, read from a recorder's file or made from a ground truth."""
+"""A recorded run in memory, read from a recorder's file."""
 
 import json
 from dataclasses import dataclass, field
@@ -8,7 +8,6 @@ from typing import Any, NamedTuple
 from jacaros.errors import JacarosError
 from jacaros.excerpts import printable
 from jacaros.inspector.line_format import MAGIC, unpacked
-from jacaros.sim import GroundTruth, Sample
 from jacaros.sim.ground_truth import FIELDS, present_kind
 from jacaros.text_files import LARGEST, file_bytes, text_of
 
@@ -162,23 +161,6 @@ class Recording:
                 f"events without data are skipped: `{kind}` at {t:g} s without `{missing[0]}`"
             )
 
-    @classmethod
-    def of_ground_truth(cls, truth: GroundTruth) -> "Recording":
-        """Make a recording (without agents) from a ground truth, for example of a served world."""
-        recording = cls(world=dict(truth.world))
-        recording.events = [(e.time, e.kind, {"robot": e.robot, **e.data}) for e in truth.events]
-        paths = [[*truth.path(robot), truth.latest(robot)] for robot in truth.robots]
-        times = sorted({sample.time for path in paths for sample in path})
-        places = [0] * len(paths)
-        for t in times:
-            row = []
-            for index, path in enumerate(paths):
-                while places[index] + 1 < len(path) and path[places[index] + 1].time <= t:
-                    places[index] += 1
-                row.append(_row_of(path[places[index]]))
-            recording.frames.append(Frame(t, tuple(row)))
-        return recording
-
 
 def _reason(error: Exception) -> str:
     """Return the error in a line, as text."""
@@ -278,7 +260,3 @@ def _not_a_recording(place: str, why: str) -> JacarosError:
         f"error: not a recording: {printable(why)}\n  --> {printable(place)}\n"
         "  = help: `jacaros run FILE --record RUN.jsonl` makes one"
     )
-
-
-def _row_of(sample: Sample) -> tuple[Any, ...]:
-    return sample.x, sample.y, sample.yaw, sample.battery, sample.charging, sample.touching

@@ -14,7 +14,6 @@ from jacaros.errors import JacarosError
 from jacaros.mas.agent_classes import AgentClasses
 from jacaros.mas.agent_host import AgentHost, Run
 from jacaros.mas.agent_options import mind_options
-from jacaros.mas.code_folder import CodeFolder
 from jacaros.mas.deployment import AgentSpec
 from jacaros.mas.directory import Directory
 from jacaros.mas.idleness import AgentTimer
@@ -42,7 +41,6 @@ class AgentLifecycle:
         seed: seed of the run.
         situate: gives each agent its place in the environment.
         when_made: called with every agent before it begins.
-        folder: keeps the code of their plans between runs. None: do not keep it.
 
     Attributes:
         programs: reads programs.
@@ -59,7 +57,6 @@ class AgentLifecycle:
         seed: int,
         situate: Situate,
         when_made: Callable[[AgentHost], None] | None = None,
-        folder: CodeFolder | None = None,
     ) -> None:
         self.programs = programs
         self._run = run
@@ -69,7 +66,6 @@ class AgentLifecycle:
         self._seed = seed
         self._situate = situate
         self._when_made = when_made
-        self._folder = folder
         self.when_ended: Callable[[str], None] = lambda name: None
         self._specs: dict[str, AgentSpec] = {}
         self._plans: dict[int, ProgramPlans] = {}
@@ -105,8 +101,7 @@ class AgentLifecycle:
         """Return the plans of a program. Agents with the same program share them, compiled."""
         made = self._plans.get(id(program.plans))
         if made is None:
-            kept = None if self._folder is None else self._folder.of_program(program.plans)
-            made = ProgramPlans(program.plans, new_engine(self._code.actions, cache=kept))
+            made = ProgramPlans(program.plans, new_engine(self._code.actions))
             self._plans[id(program.plans)] = made
             self._uncompiled.append(made)
         return made
@@ -122,8 +117,6 @@ class AgentLifecycle:
             if plans.engine.compile_ahead(plans):
                 return True
             self._uncompiled.popleft()
-            if self._folder is not None:
-                self._folder.write()
         return False
 
     def create(self, name: str, source: str | None, classes: Mapping[str, str]) -> str | None:

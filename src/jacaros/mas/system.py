@@ -15,7 +15,6 @@ from jacaros.clock import Clock, of_run
 from jacaros.mas.agent_classes import AgentClasses
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.agent_lifecycle import AgentLifecycle, begin
-from jacaros.mas.code_folder import code_folder
 from jacaros.mas.console import Console, HeardConsole
 from jacaros.mas.deployment import AgentSpec, Deployment, has_own_artifacts
 from jacaros.mas.directory import NAME as DIRECTORY_NAME
@@ -106,7 +105,6 @@ class System:
         self.services: Services = ServiceDirectory(self._make_directory_agent, self.deliver)
         self._has_environment = deployment.artifact_environment or bool(deployment.workspaces)
         self._seed = self.options.seed if self.options.seed is not None else Random().getrandbits(64)
-        self._code_folder = code_folder()
         self.lifecycle = self._found(prepare, when_made)
         self._reserve: mmap.mmap | None = mmap.mmap(-1, RESERVE)
         self._ended: asyncio.Future[int] | None = None
@@ -155,7 +153,6 @@ class System:
             self._seed,
             self._situate,
             when_made,
-            self._code_folder,
         )
 
     async def run(self, when_started: Callable[[], None] | None = None) -> int:
@@ -457,8 +454,6 @@ class System:
         async with AsyncExitStack() as steps:  # runs in reverse order
             for closer in self._closers:
                 steps.push_async_callback(closer)
-            if self._code_folder is not None:
-                steps.callback(self._code_folder.close)
             steps.push_async_callback(self.ros.close)
             if self._diagnostics is not None:
                 steps.callback(self._diagnostics.close)

@@ -4,7 +4,7 @@ Modelled on ROS 2's actions (design article "Actions") and on ROS 1's actionlib,
 three outcomes. Everything here happens on the loop of the backend's clock.
 """
 
-from collections.abc import Awaitable, Callable, Mapping
+from collections.abc import Awaitable, Callable
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any, Protocol
@@ -195,5 +195,3 @@ class ActionServer(Protocol):
 
 SERVER_LOST_AFTER = 3.0
 """Seconds without any sign of the server after which an active goal fails with `ServerLost`."""
-
-GoalFields = Mapping[str, Any]

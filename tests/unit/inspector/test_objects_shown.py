@@ -55,7 +55,10 @@ def test_cliffs_are_in_the_picture_and_all_of_it_reaches_the_replay_page() -> No
 def test_a_robot_that_is_moved_by_hand_is_not_an_object_that_is_put_down() -> None:
     world = World.load(WORLD)
     world.place("turtlebot", 0.5, 0.5)
-    recording = Recording.of_ground_truth(world.ground_truth)
+    recorder = recorded()
+    for event in world.ground_truth.events:
+        recorder.event(event.time, event.kind, {"robot": event.robot, **event.data})
+    recording = recorder.recording
     assert [(kind, data["x"]) for _, kind, data in recording.events] == [("robot_placed", 0.5)]
     assert "<title>cup</title>" in picture_svg(recording)
 

@@ -207,14 +207,6 @@ def test_a_watched_run_is_the_same_as_an_unwatched_one() -> None:
     assert watched.ground_truth.digest() == unwatched.ground_truth.digest()
 
 
-def test_a_ground_truth_becomes_a_recording() -> None:
-    _, world = watched_run()
-    recording = Recording.of_ground_truth(world.ground_truth)
-    assert recording.frames[-1].robots[0][:3] == world.ground_truth.pose()
-    assert recording.robots == ["turtlebot"]
-    assert [kind for _, kind, _ in recording.events] == [event.kind for event in world.log]
-
-
 def test_a_compressed_recording_reads_back_the_same(tmp_path: Path) -> None:
     recorder = record(tmp_path / "run.jsonl.gz")
     assert (tmp_path / "run.jsonl.gz").read_bytes().startswith(b"\x1f\x8b")

@@ -18,7 +18,7 @@ from jacaros.bdi.fast.units import Units, executed
 from jacaros.bdi.rules.interpreter import Interpreter
 from jacaros.bdi.state.belief_base import BeliefTables
 from jacaros.bdi.state.circumstance import Circumstance
-from jacaros.bdi.state.engine import CodeCache, Every, Select
+from jacaros.bdi.state.engine import Every, Select
 from jacaros.bdi.state.intention import NextStep
 from jacaros.bdi.state.plan import Plan
 from jacaros.bdi.state.plan_library import ProgramPlans
@@ -39,12 +39,11 @@ class Compiler(Interpreter):
 
     Args:
         actions: the internal actions that plans may call.
-        cache: where the code is kept between runs; None to keep none.
     """
 
-    def __init__(self, actions: Mapping[str, InternalAction], cache: CodeCache | None = None) -> None:
+    def __init__(self, actions: Mapping[str, InternalAction]) -> None:
         super().__init__(actions)
-        self._units = Units(actions, cache)
+        self._units = Units(actions)
         self._functions: dict[Any, Any] = {}
         self._begun = False
         self._one_by_one: dict[Trigger, PlanByPlan] = {}

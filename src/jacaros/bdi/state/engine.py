@@ -18,20 +18,6 @@ Every = Callable[[Any, Goal, EventAnnotations], Iterator[Frame]]
 """The same for the frames of all applicable plans."""
 
 
-class CodeCache(Protocol):
-    """The port to a store of generated code between runs; the mind itself reads and writes no files.
-
-    What it returns is executed. So it must return only what was put there under the same key, by the same version of
-    this package and of Python.
-    """
-
-    def get(self, key: bytes) -> bytes | None:
-        """Return what is kept under a key, immediately; None if there is nothing."""
-
-    def put(self, key: bytes, entry: bytes) -> None:
-        """Keep an entry, now or later; never fails."""
-
-
 class Engine(Protocol):
     """Runs the plans and rules of a program, for all agents with that program.
 

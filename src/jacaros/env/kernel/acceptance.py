@@ -6,10 +6,10 @@ import sys
 import types
 import typing
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
 from jacaros.env.kernel import kinds
-from jacaros.env.kernel.kinds import ANYTHING, Accept, Kind, Unsuitable, alternatives, got, instance_of
+from jacaros.env.kernel.kinds import ANYTHING, Kind, Unsuitable, alternatives, got, instance_of
 from jacaros.env.values import Atom, Out, Structure, equal, text
 
 
@@ -76,8 +76,6 @@ def _kind_of_class(kind: type) -> Kind:
         return simple
     if issubclass(kind, enum.Enum):
         return _member(kind)
-    if _of_numpy(kind, "generic"):
-        return _numpy_scalar(kind)
     fields = kinds.fields_of(kind)
     if fields is not None:
         return kinds.record(kind, fields, kind_of)
@@ -251,38 +249,11 @@ def _array(container: Any, members: tuple[Any, ...]) -> Kind:
     return Kind(f"a list of {'integers' if whole else 'numbers'} (or of such lists of equal length)", accept)
 
 
-def _numpy_scalar(kind: Any) -> Kind:
-    integral = _of_numpy(kind, "integer")
-
-    def accept(argument: object) -> object:
-        if isinstance(argument, kind):
-            return argument
-        number = _integer(argument) if integral else _real(argument)
-        try:
-            return kind(number)
-        except OverflowError:
-            raise Unsuitable from None
-
-    return Kind("an integer" if integral else "a number", accept)
-
-
 def _takes_none(argument: object) -> object:
     if argument is None:
         return argument
     raise Unsuitable
 
-
-class _Word(NamedTuple):
-    kind: type
-    expected: str
-
-
-_WORDS = (
-    _Word(bool, "true or false"),
-    _Word(Atom, "an atom"),
-    _Word(Structure, "a structure"),
-    _Word(Out, "an unbound variable (it is an output)"),
-)
 
 _SIMPLE: dict[Any, Kind] = {
     object: ANYTHING,
@@ -292,25 +263,26 @@ _SIMPLE: dict[Any, Kind] = {
     str: Kind("a text", _text),
     type(None): Kind("nothing", _takes_none),
     None: Kind("nothing", _takes_none),
-    **{each.kind: instance_of(each.kind, each.expected) for each in _WORDS},
+    bool: instance_of(bool, "true or false"),
+    Atom: instance_of(Atom, "an atom"),
+    Structure: instance_of(Structure, "a structure"),
+    Out: instance_of(Out, "an unbound variable (it is an output)"),
 }
 
 _SAME: dict[Any, Any] = {typing.List: list, typing.Dict: dict, typing.Tuple: tuple, typing.Set: set}  # noqa: UP006
 
-_LIST, _MAP = _list_like(lambda items: items), _mapping
+_LIST = _list_like(lambda items: items)
 _CONTAINERS: dict[Any, Callable[[tuple[Any, ...]], Kind]] = {
     list: _LIST,
     tuple: _tuple,
     set: _list_like(_set_of(set)),
     frozenset: _list_like(_set_of(frozenset)),
-    dict: _MAP,
-    collections.abc.Mapping: _MAP,
-    collections.abc.MutableMapping: _MAP,
+    dict: _mapping,
+    collections.abc.Mapping: _mapping,
+    collections.abc.MutableMapping: _mapping,
     collections.abc.Sequence: _LIST,
     collections.abc.MutableSequence: _LIST,
     collections.abc.Collection: _LIST,
     collections.abc.Iterable: _LIST,
     collections.abc.Set: _list_like(_set_of(set)),
 }
-
-__all__ = ["Accept", "Kind", "Unsuitable", "kind_of"]

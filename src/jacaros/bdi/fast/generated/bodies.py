@@ -140,7 +140,7 @@ def _call(compiler: BodyCompiler, node: nodes.InternalAction, name: str, next_na
     with fn.writer.block(head(name)):
         fn.load(compiler.frame, names_in(node))
         if direct is not None:
-            function = fn.unit.constant(direct, node)
+            function = fn.constant(direct)
             fn.line(f"{function}({', '.join(['agent', *(build(fn, a) for a in node.arguments)])})")
             fn.store(compiler.frame)
             fn.line(f"frame[0] = {next_name}")

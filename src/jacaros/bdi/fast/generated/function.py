@@ -22,8 +22,8 @@ class Unit(Protocol):
     def actions(self) -> Mapping[str, InternalAction]:
         """The internal actions known at compile time."""
 
-    def constant(self, value: Term, call: nodes.InternalAction | None = None) -> str:
-        """A global name for a value, perhaps one that an internal action gave for a *call*."""
+    def constant(self, value: Term) -> str:
+        """A global name for a value."""
 
     def add(self, writer: Writer) -> None:
         """Make the finished function part of the unit."""

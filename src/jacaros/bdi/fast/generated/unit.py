@@ -1,6 +1,6 @@
 """A unit of generated code: the functions of one event kind or rule, before they are executed."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from itertools import groupby
 from types import CodeType
 from typing import Any, NamedTuple
@@ -25,7 +25,6 @@ class CodeUnit:
         actions: the internal actions known at compile time.
         globals: the names that the functions use.
         writers: the functions.
-        calls: the names of functions that internal actions gave for calls as they are written, with these calls.
     """
 
     def __init__(self, filename: str, actions: Mapping[str, InternalAction]) -> None:
@@ -33,12 +32,11 @@ class CodeUnit:
         self.actions = actions
         self.globals: dict[str, Any] = dict(runtime.NAMES)
         self.writers: list[Writer] = []
-        self.calls: dict[str, nodes.InternalAction] = {}
         self._constants: dict[Any, str] = {}
         self._count = 0
 
-    def constant(self, value: Term, call: nodes.InternalAction | None = None) -> str:
-        """A global name for a value; equal values share it.  With a *call*, the value is what its action gave for it."""
+    def constant(self, value: Term) -> str:
+        """A global name for a value; equal values share it."""
         key: Any = value if value.__class__ in (Functor, Trigger) else (value.__class__, id(value))
         if value.__class__ in (String, float, int):
             key = (value.__class__, value)
@@ -46,13 +44,7 @@ class CodeUnit:
         if name is None:
             name = self._constants[key] = f"{_prefix(value)}_{len(self._constants)}"
             self.globals[name] = value
-            if call is not None:
-                self.calls[name] = call
         return name
-
-    def constants(self) -> Iterator[tuple[str, Any]]:
-        """The constants by their names."""
-        return ((name, self.globals[name]) for name in self._constants.values())
 
     def add(self, writer: Writer) -> None:
         """Make a finished function part of the unit."""
