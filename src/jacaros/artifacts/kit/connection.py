@@ -144,7 +144,7 @@ class MissingTopic:
         with suppress(RosError):
             try:
                 contents = await self._backend.contents()
-            except ServiceUnavailable as unknown:  # without rosapi, nobody knows whether there is a publisher
+            except ServiceUnavailable as unknown:  # without rosapi, a publisher cannot be looked for
                 topic = f"topic {self._subscription.topic} ({self._type_name})"
                 self._log(f"no message on {topic}; the graph cannot be queried: {unknown}")
                 return
