@@ -153,7 +153,7 @@ def find_base(joined: Joined, named: set[str], namespace: str) -> tuple[TopicInf
         namespace: the robot's namespace. A robot in another one is never driven.
 
     Raises:
-        UsageError: there is none, or it is unclear which one is meant.
+        UsageError: no base is found, or several are.
     """
     commands = [info for info in joined.contents.topics.values() if info.subscriptions]
     odometry = [info for info in joined.contents.topics.values() if info.publishers]
