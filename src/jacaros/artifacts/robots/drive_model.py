@@ -17,6 +17,9 @@ from jacaros.artifacts.robots.response import HELD, LAGS, TICK, WINDOW, Axis, ra
 LONGEST_PENDING = 3.0
 """Seconds of commands that may be on the way; without odometry, poses are made up anyway."""
 
+STOOD = 0.09
+"""Seconds for which odometry must show a standing robot: below its threshold, wheels may still roll out."""
+
 RESTED = 2.0
 """Seconds after the last command from which on candidates that stand need not be moved."""
 
@@ -76,6 +79,7 @@ class DriveModel:
         self._at = self._received = -math.inf
         self._compared = self._rolled_at = -math.inf
         self._still = 0
+        self._stood_since = -math.inf
 
     @property
     def pose(self) -> Pose:
@@ -130,6 +134,7 @@ class DriveModel:
             self._compared = at
             self._compare(velocity)
         self._still = self._still + 1 if standing and unmoved else 0
+        self._stood_since = self._stood_since if self._still > 1 else at
 
     def _note_arrival(self, received: float) -> None:
         interval = received - self._received
@@ -311,7 +316,9 @@ class DriveModel:
 
     def has_come_to_rest(self) -> bool:
         """Return whether the robot stands and nothing is on the way that would move it."""
-        return self._still >= (2 if len(self._commands) > 1 else 1)
+        if len(self._commands) == 1:
+            return self._still >= 1
+        return self._still >= 2 and self._at - self._stood_since >= STOOD
 
 
 def _changes(old: Pose, new: Pose) -> tuple[float, float, float]:
