@@ -189,10 +189,11 @@ def test_what_was_measured_is_a_property() -> None:
 
 def test_what_was_measured_is_kept_for_the_next_run(tmp_path: Path) -> None:
     kept = tmp_path / "robot.json"
-    first = drive(LATE, ("rotate", 30), quality_file=str(kept))
-    assert json.loads(kept.read_text())["delay"] == pytest.approx(0.35, abs=0.1)
-    second = drive(LATE, ("rotate", 30), quality_file=str(kept))
-    assert second.seconds <= first.seconds
+    sticky = replace(LATE, dead_band=0.08)
+    first = drive(sticky, ("rotate", 4), quality_file=str(kept))
+    assert json.loads(kept.read_text())["least_turn"] > 0.5
+    second = drive(sticky, ("rotate", 4), quality_file=str(kept))
+    assert second.seconds < first.seconds - 0.5, "the dead band need not be searched again"
     kept.write_text("[1, 2]")
     assert drive(LATE, ("rotate", 30), quality_file=str(kept)).reason == ""
 

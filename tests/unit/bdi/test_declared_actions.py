@@ -16,7 +16,7 @@ def total(found: list[Term]) -> Term:
 
 @pytest.fixture(autouse=True)
 def _total(monkeypatch: pytest.MonkeyPatch) -> None:
-    action = InternalAction(".total", total, arity=3, condition=1, collects=True, repeatable=True)
+    action = InternalAction(".total", total, arity=3, condition=1, collects=True, pure=True)
     monkeypatch.setitem(internal_action._declared, ".total", action)
 
 
