@@ -10,7 +10,7 @@ from jacaros.ros.errors import RosError
 from jacaros.ros.guarded import guarded_by, guards_of
 
 EMBEDDED_WORLD = frozenset({"/world"})
-"""The node of the embedded world of a run: the robot itself, with its navigation."""
+"""The node of the embedded world, in this process or of `jacaros sim`: the robot itself, with its navigation."""
 
 LOOK = 1.0
 """Seconds between two queries. Only a publisher that two of them find counts: discovery also finds those that are
@@ -38,9 +38,7 @@ class OtherPublishers:
     ) -> None:
         self._backend, self._clock, self._topic = backend, clock, topic
         self._changed, self._log = changed, log
-        self._own = guards_of(backend.node_name) | (
-            EMBEDDED_WORLD if backend.name == "memory" else frozenset()
-        )
+        self._own = guards_of(backend.node_name) | EMBEDDED_WORLD
         self._found: frozenset[str] = frozenset()
         self._shown: frozenset[str] = frozenset()
         self._query: asyncio.Task[None] | None = None

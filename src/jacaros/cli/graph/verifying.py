@@ -102,9 +102,10 @@ def warnings_of(joined: Joined, part: ArtifactPart) -> Iterator[Problem]:
     """Yield a warning for each topic of velocities that another node publishes on, too."""
     names = Names(joined, part)
     for operation in part.operations:
+        if operation.kind is not OperationKind.PUBLISH:
+            continue  # the target of other operations may be empty, or not a topic
         info = joined.contents.topics.get(names.resolve(operation.target.text))
-        velocity = info is not None and any(each in VELOCITIES for each in info.types)
-        if operation.kind is OperationKind.PUBLISH and velocity and info is not None and info.publishers:
+        if info is not None and info.publishers and any(each in VELOCITIES for each in info.types):
             yield operation.target.place.problem(
                 f"{_nodes(info.publishers)} also publishes on {info.name}: the robot follows whichever command came last",
                 "give every source a topic of its own, and let twist_mux choose between them",

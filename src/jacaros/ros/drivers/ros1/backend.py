@@ -105,7 +105,14 @@ class Ros1Backend(Ros1Node):
         return await graph_contents(self, timeout)
 
     async def _publishers(self, topic: str) -> list[str]:
-        return list(self.link.publishers.get(topic, ()))
+        nodes = list(self.link.publishers.get(topic, ()))
+        if nodes == [self.node_name]:
+            return nodes
+        master = Master(self.master_uri, self.node_name)
+        own = self.node_name
+        return await in_thread(
+            self.loop, lambda: [node for node in nodes if node == own or master.reaches(node)], "graph"
+        )
 
 
 ACTION_TOPICS = ("goal", "cancel", "status", "feedback", "result")

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from jacaros.ros.calling import server_gone
-from jacaros.ros.errors import CallFailed, MessageMismatch, ServiceError, ServiceUnavailable
+from jacaros.ros.errors import CallFailed, MessageMismatch, RosError, ServiceError, ServiceUnavailable
 
 PUBLICATION, SUBSCRIPTION, SERVICE = range(3)
 
@@ -96,6 +96,14 @@ class Master:
         if code != 1:
             raise CallFailed(str(text))
         return value
+
+    def reaches(self, node: str) -> bool:
+        """Return whether a node answers: the master lists nodes that were killed until `rosnode cleanup`."""
+        try:
+            Master(self.ask("lookupNode", node), self._caller).ask("getPid")
+        except RosError:
+            return False
+        return True
 
 
 class MasterLink:
