@@ -3,7 +3,7 @@
 import importlib.util
 import shutil
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -54,6 +54,11 @@ def run_of(project: str) -> RunResult:
     return run(project)
 
 
+def unexpected(errors: Sequence[str]) -> list[str]:
+    """Return the messages of a run but for the advice to robots that drive by odometry."""
+    return [each for each in errors if "odometry and localisation have drifted" not in each]
+
+
 def run(project: str, beliefs: str = "", world: Path | None = None, seed: int = 0) -> RunResult:
     """Run an example whose agent has further beliefs, or in another world."""
     began = time.perf_counter()
@@ -62,7 +67,7 @@ def run(project: str, beliefs: str = "", world: Path | None = None, seed: int = 
     print(
         f"{project}: {result.seconds:.1f} simulated seconds in {took:.2f} s, {result.seconds / took:.0f} times as fast"
     )
-    assert result.errors == []
+    assert unexpected(result.errors) == []
     assert result.exit_code == 0
     assert result.seconds < LONGEST
     return result
