@@ -18,7 +18,7 @@ LOW = '+diagnostics("Low Battery")'
 @pytest.fixture(scope="module")
 def records(tmp_path_factory: pytest.TempPathFactory) -> list[Record]:
     run = tmp_path_factory.mktemp("patrol") / "run.jsonl"
-    arguments = ["run", str(EXAMPLE / "patrol.jcm"), "--clock", "fast", "--seed", "1", "--for", "60"]
+    arguments = ["run", str(EXAMPLE / "patrol.jcm"), "--clock", "fast", "--seed", "1", "--for", "52"]
     assert call([*arguments, "--record", str(run), "--quiet"]) == 0
     return list(Recording.read(run).events)
 

@@ -181,7 +181,8 @@ def _of_beliefs(
     trees = [program for _, program in programs]
     if any(agent.agent_class for agent, _ in programs):
         return []
-    return check_beliefs(trees, types, folders)
+    base = deployment.base_path.absolute()  # the working folder may be any, with any words in its files
+    return check_beliefs(trees, types, [each for each in folders if each.absolute().is_relative_to(base)])
 
 
 def _check_lone_program(path: Path, findings: Findings) -> None:

@@ -78,7 +78,7 @@ class Wheels:
     def __init__(self) -> None:
         self.noted: list[str] = []
         self.newest: Any = None
-        self.driving = True
+        self.driving = self.trusted = True
         self.drift = drift.Drift(Graph(), self, lambda: self.driving, self.noted.append)  # type: ignore[arg-type]
 
     def at(self, moment: float) -> tuple[float, float, float]:

@@ -45,7 +45,8 @@ def test_every_plan_reads_back_from_its_text():
         functions = {function.name: function.arity for function in program.functions}
         for plan in program.plans:
             text = format_plan(plan)
-            if not plan.subplans:
+            # No other file can write the name of a local namespace, which ends with its file.
+            if not plan.subplans and "#" not in text:
                 again = format_plan(parse_plan(text, functions=functions))
                 assert without_numbers(again) == without_numbers(text), path
 

@@ -81,7 +81,7 @@ def test_a_program_whose_meaning_would_change_is_kept(
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
-        (["b.asl"], "did you mean `a.asl`?"),
+        (["aa.asl"], "did you mean `a.asl`?"),
         (["-", "a.asl"], "`-` cannot be combined with files"),
         (["p.jcm"], "unsupported file type: `p.jcm`\n  = help: expected .asl"),
         ([], "FILE"),

@@ -87,7 +87,7 @@ def test_all_that_cannot_be_counted_is_reported_in_one_pass(
         "wrong/bad.jcm:1:23: error: program of agent `ann` not found: none.asl\n"
         "  1 | mas bad { agent ann : none.asl }\n"
         "    |                       ^^^^^^^^\n"
-        "  = help: expected in wrong\n"
+        "  = help: expected in wrong, .\n"
         "\n"
         "wrong/robot.asl:2:16: error: unmatched `)`\n"
         "  2 | +!go <- move(1)).\n"

@@ -14,8 +14,10 @@ class FakeBrakes:
     """Note when goals were cancelled and zero was sent."""
 
     described = "brakes"
+    simulated_time = False
 
     def __init__(self) -> None:
+        self.found: dict[str, int] = {}
         self.stops: list[float] = []
         self.cancels: list[float] = []
 
@@ -38,7 +40,7 @@ def with_tripped_guard(
     async def main() -> None:
         backend = open_backend("memory", clock, "guard", log=lambda text: None)
         await backend.start()
-        guard: Any = Guard(backend, tmp_path / "socket", 0.3, False, lambda text: None)
+        guard: Any = Guard(backend, "/robot", tmp_path / "socket", 0.3, False, lambda text: None)
         guard._brakes = brakes
         loop = asyncio.get_running_loop()
         guard._watch.connect(loop.time())

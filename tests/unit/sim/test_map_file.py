@@ -209,10 +209,10 @@ def test_mistakes_in_a_map_are_also_reported_in_the_world_file(tmp_path: Path) -
         (2, f"{made}:1:8: image `{tmp_path / 'm.pgm'}`: the image ends after 0 of 81 pixels (9 x 9)"),
         (4, "'name' must be a text, not 1"),
     ]
-    path.write_text("name: x\nmap: n.yaml\nrobots:\n  - {}\n")
+    path.write_text("name: x\nmap: mm.yaml\nrobots:\n  - {}\n")
     (problem,) = world_problems(path)[1]
     assert (problem.message, problem.help) == (
-        f"map not found: `{tmp_path / 'n.yaml'}`",
+        f"map not found: `{tmp_path / 'mm.yaml'}`",
         "did you mean `m.yaml`?",
     )
 

@@ -172,7 +172,7 @@ def test_names_may_be_exchanged() -> None:
             "2:55: error: a topic that is received has no 'rate'",
             "remove 'rate', or 'receive'",
         ),
-        ("services: {t: {typ: a/srv/B}}", "2:21: error: 't' has no key 'typ'", "did you mean 'type'?"),
+        ("services: {t: {typ: a/srv/B}}", "2:21: error: 't' has no key 'typ'", "did you mean `type`?"),
     ],
 )
 def test_mistakes_are_reported_with_their_place(entry: str, problem: str, help: str) -> None:
