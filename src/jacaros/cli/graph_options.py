@@ -66,7 +66,7 @@ class NoiseFactor(click.FloatRange):
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """Return the factor."""
         try:
-            return super().convert({"off": 0.0, "on": 1.0}.get(value, value), param, ctx)
+            return super().convert({"off": 0.0, "on": 1.0}.get(value, value), param, ctx)  # pyright: ignore[reportArgumentType]
         except click.BadParameter:
             raise usage_error(
                 f"invalid value of --noise: expected off, on or a factor up to 100, found `{value}`",

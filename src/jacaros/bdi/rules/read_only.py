@@ -46,7 +46,8 @@ def reading(agent: Circumstance, steps: int, look_up: bool = False) -> Iterator[
         look_up: whether a belief base of the project may look up beliefs elsewhere.
     """
     view = ReadOnly(agent, SearchBudget(steps), look_up)
-    budget, running = agent.beliefs.budget, RUNNING.set(cast("Circumstance", view))
+    budget = agent.beliefs.budget
+    running = RUNNING.set(cast("Circumstance", view))  # pyright: ignore[reportArgumentType]
     agent.beliefs.budget = view.beliefs.budget  # for pure actions that search, too
     try:
         yield view

@@ -88,7 +88,8 @@ def _shown(unit: str) -> Unit:
     """Return how to show values in a unit of messages; angles are shown in degrees."""
     if unit in ("rad", "rad/s"):
         return _DEGREES if unit == "rad" else _DEGREES_PER_SECOND
-    return Unit(UNIT_WORDS.get(unit, unit), *_PRECISION.get(unit, (3,)))
+    digits, band = _PRECISION.get(unit, (3, 0.0))
+    return Unit(UNIT_WORDS.get(unit, unit), digits, band)
 
 
 @dataclass(frozen=True, slots=True)

@@ -302,7 +302,8 @@ class LiveServer:
                 if garbage >= GARBAGE:
                     self._disconnect(connection)
                     return
-                task = asyncio.create_task(metered(self._reply(connection, command), allowance.spend))
+                work = metered(self._reply(connection, command), allowance.spend)
+                task = asyncio.create_task(work)  # pyright: ignore[reportArgumentType] - a generator is one, too
                 running.add(task)
                 task.add_done_callback(running.discard)
                 count += 1
