@@ -95,7 +95,7 @@ def test_breakpoints_at_random_change_nothing(name: str, seed: int) -> None:
     stops: list[str] = []
     stopped = observed(project, seconds, breakpoints_at_random(seed, stops))
     assert plain.lines
-    assert len({why for why in stops if why}) > 3, "at several places"
+    assert len({why for why in stops if why}) >= 3, "at several places"
     assert stopped.lines == plain.lines
     assert stopped.frames == plain.frames
 
