@@ -182,6 +182,8 @@ class Guard:
         if self._writer is not None or (run != self._run and watch.agents and not watch.tripped):
             return
         if not watch.agents:
+            if self._ending:
+                return  # a guard that is ending takes no agents, as at its socket
             watch.connect(asyncio.get_running_loop().time(), self._network_timeout)
         elif message["goodbye"] and watch.driving:
             self._brakes.stop()  # the zero velocity of the agents may have been lost

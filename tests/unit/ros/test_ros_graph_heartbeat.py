@@ -242,6 +242,17 @@ def test_other_messages_on_the_topics_are_ignored(tmp_path: Path) -> None:
     assert in_lab(tmp_path, body).lines == []
 
 
+def test_a_guard_that_is_ending_takes_no_agents(tmp_path: Path) -> None:
+    async def body(lab: Lab) -> None:
+        lab.state.leave()
+        lab.guard._ending = True
+        lab.heartbeat._publish()
+        await asyncio.sleep(0.01)
+        assert not lab.state.agents
+
+    assert in_lab(tmp_path, body).lines == []
+
+
 def test_a_run_reports_a_guard_that_appears_and_one_that_disappears(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
