@@ -41,6 +41,8 @@ class Chosen(Urgent):
 
     __slots__ = ("_choose", "_mind")
 
+    chooses = True
+
     def __init__(self, mind: Mind, choose: Callable[..., object]) -> None:
         super().__init__(mind)
         self._mind, self._choose = mind, choose

@@ -127,10 +127,10 @@ def insert(
     if not all(map(is_key, row)):
         return _insert_aside(table, symbol, row, annotations, last)
     held = table.get(row)
-    return table.add(row, annotations, last) if held is None else _merge(table, row, held, annotations)
+    return table.add(row, annotations, last) if held is None else merge(table, row, held, annotations)
 
 
-def _merge(table: Table, entry: Any, held: Annotations, annotations: Annotations) -> Annotations | None:
+def merge(table: Table, entry: Any, held: Annotations, annotations: Annotations) -> Annotations | None:
     """Add what is new to the annotations of a belief."""
     merged, new = merge_annotations(held, annotations)
     if not new:
@@ -146,7 +146,7 @@ def _insert_aside(
     known = table.aside(row)
     if known is not None:
         held = table.get(known)
-        return _merge(table, known, held or (), annotations)
+        return merge(table, known, held or (), annotations)
     return table.add(OpenFact(rename(literal(symbol, row)), annotations), annotations, last)
 
 
@@ -290,9 +290,16 @@ def external_change(
         _tell_change(agent, operator, symbol, row, annotations, cause, believed)
     table = agent.beliefs[symbol]
     kind = table.added if operator == "+" else table.deleted
-    if agent.library.selects[kind] is not None or agent.waits.events or _is_kept(agent, kind):
+    library = agent.library
+    if (
+        library.selects[kind] is not None
+        or agent.waits.events
+        or agent.options.events != "discard"
+        or (library.reactions.of and library.reactions[kind])
+    ):
         agent.post(((kind, *row), None, annotations, cause))
-    note_change(agent, symbol, row)
+    if agent.waits.conditions:
+        note_change(agent, symbol, row)
 
 
 def abolish(agent: Circumstance, pattern: Term) -> None:

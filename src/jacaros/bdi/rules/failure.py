@@ -224,7 +224,7 @@ def has_handler(agent: Circumstance, intention: Intention, above: int) -> bool:
 
 def handles_own(agent: Circumstance, intention: Intention, kind: Trigger) -> bool:
     """Return whether a goal without a plan has a handler of its own; as in Jason, only the innermost scope counts."""
-    scope = next(subplans.scopes(intention), None) if agent.features.subplans else None
+    scope = next(iter(subplans.scopes(intention)), None)
     if scope is None:
         return agent.library.selects[kind] is not None
     return subplans.has_inner(agent, scope, kind)
@@ -246,7 +246,7 @@ def _handler_index(agent: Circumstance, intention: Intention) -> int:
     innermost scope the bottom goal comes first.
     """
     scoped = False
-    for scope in subplans.scopes(intention) if agent.features.subplans else ():
+    for scope in subplans.scopes(intention):
         index = _first_handled(intention, scoped, partial(subplans.has_inner, agent, scope))
         if index >= 0:
             return index

@@ -3,13 +3,13 @@
 A sensor that is faster than its agent checks whether the last percept has been handled before it sends another one.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
 from jacaros.bdi.rules import failure
-from jacaros.bdi.rules.belief_update import external_change, insert
+from jacaros.bdi.rules.belief_update import external_change, merge
 from jacaros.bdi.state.act import Percept
-from jacaros.bdi.state.belief_base import Row, literal, take_away
+from jacaros.bdi.state.belief_base import Row, Table, literal, take_away
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.event import EVENT_GOAL, EVENT_INTENTION
 from jacaros.bdi.state.intention import GOAL, Intention
@@ -17,26 +17,22 @@ from jacaros.bdi.state.rule import OpenFact
 from jacaros.bdi.state.triggers import Trigger
 from jacaros.errors import InternalError
 from jacaros.terms.collections import detached, holds_collection
-from jacaros.terms.substitution import is_key
+from jacaros.terms.substitution import ATOMIC, is_key
 from jacaros.terms.values import Functor, Term, arguments_of, functor_of
 
 Annotations = tuple[Term, ...]
+Kept = tuple[Functor, Row, bool]
 Holder = tuple[Annotations, Any]
 """The annotations of a property among several with the same values, and the entry of its belief in the table."""
 
 
-def take_in(agent: Circumstance, percepts: list[Percept]) -> None:
-    """Bring the belief base in line with what was noticed in one step, and raise the events, in order."""
-    for percept in percepts:
-        take(agent, percept)
-
-
-def take_percepts(agent: Circumstance, way: Callable[[Circumstance, list[Percept]], None] = take_in) -> None:
+def take_percepts(agent: Circumstance) -> None:
     """Bring the belief base in line with what was noticed; a fault skips the rest of a step."""
     while agent.incoming.percepts:
         percepts = agent.incoming.percepts.popleft()
         try:
-            way(agent, percepts)
+            for percept in percepts:
+                take(agent, percept)
         except InternalError:
             raise
         except Exception as fault:
@@ -49,21 +45,36 @@ def take(agent: Circumstance, percept: Percept) -> None:
     Raises:
         InternalError: its literal is not a literal.
     """
-    symbol, row = functor_of(percept.literal), arguments_of(percept.literal)
-    if symbol is None:
-        raise InternalError(f"a percept is not a literal: {percept.literal!r}")
-    keyed = all(is_key(argument) and not holds_collection(argument) for argument in row)
+    symbol, row, keyed = percept.kept or _keep(percept)
     own: Row | None
     if percept.kind == "add":
         own = (_believe if keyed else _believe_unkeyed)(agent, symbol, row, percept)
     elif percept.kind == "remove":
         own = (_forget if keyed else _forget_unkeyed)(agent, symbol, row, percept)
     else:
-        own = _own_row(row)
+        own = row if keyed else _own_row(row)
     if own is not None:
         operator = "-" if percept.kind == "remove" else "+"
-        believed = percept.kind in ("add", "remove")
-        external_change(agent, operator, symbol, own, percept.annotations, percept.cause, believed)
+        external_change(
+            agent, operator, symbol, own, percept.annotations, percept.cause, percept.kind != "signal"
+        )
+
+
+def _keep(percept: Percept) -> Kept:
+    """Keep functor and arguments of a percept for all minds that share it, and whether it can be looked up by these."""
+    literal = percept.literal
+    if literal.__class__ is tuple:
+        symbol, row = literal[0], literal[1:]
+    else:
+        symbol, row = functor_of(literal), arguments_of(literal)
+    if symbol is None:
+        raise InternalError(f"a percept is not a literal: {literal!r}")
+    keyed = True
+    for argument in row:  # nearly all are numbers, strings and atoms
+        if argument.__class__ not in ATOMIC and (not is_key(argument) or holds_collection(argument)):
+            keyed = False
+    percept.kept = kept = symbol, row, keyed
+    return kept
 
 
 def _believe(agent: Circumstance, symbol: Functor, row: Row, percept: Percept) -> Row | None:
@@ -74,9 +85,11 @@ def _believe(agent: Circumstance, symbol: Functor, row: Row, percept: Percept) -
     known = agent.beliefs.held_percepts.get(percept.literal)
     if known is not None:
         return _believe_apart(agent, symbol, row, percept, known)
-    refusals = agent.beliefs.refusals
-    insert(agent, symbol, row, percept.annotations)
-    if agent.beliefs.refusals != refusals:
+    table = agent.beliefs[symbol]
+    held = table.get(row)
+    if held is not None:
+        merge(table, row, held, percept.annotations)
+    elif table.add(row, percept.annotations) is None:
         return None
     agent.beliefs.held_percepts[percept.literal] = percept.annotations
     return row
@@ -104,18 +117,21 @@ def _forget(agent: Circumstance, symbol: Functor, row: Row, percept: Percept) ->
     Return None if the belief is no longer held.
     """
     known = agent.beliefs.held_percepts.pop(percept.literal, None)
+    table = agent.beliefs[symbol]
+    if known is percept.annotations and table.rows.get(row) is known:  # nobody else believes it
+        table.remove(row)
+        return row
     holders: list[Holder] = known if known.__class__ is list else [] if known is None else [(known, row)]
     # Of two properties of one artifact the annotations are equal, too: either may go.
     place = next((i for i, holder in enumerate(holders) if holder[0] == percept.annotations), None)
     entry = row if place is None else holders.pop(place)[1]
     if holders:
         agent.beliefs.held_percepts[percept.literal] = holders
-    return row if _take_away(agent, symbol, entry, percept) else None
+    return row if _take_away(table, entry, percept) else None
 
 
-def _take_away(agent: Circumstance, symbol: Functor, entry: Any, percept: Percept) -> bool:
+def _take_away(table: Table, entry: Any, percept: Percept) -> bool:
     """Remove the annotations of a percept from its belief; return False if it is no longer held."""
-    table = agent.beliefs[symbol]
     held = table.get(entry)
     if held is not None:
         take_away(table, entry, held, percept.annotations)
@@ -145,7 +161,7 @@ def _believe_unkeyed(agent: Circumstance, symbol: Functor, row: Row, percept: Pe
 
 def _forget_unkeyed(agent: Circumstance, symbol: Functor, row: Row, percept: Percept) -> Row | None:
     belief, _, own = agent.beliefs.held_percepts.pop(_identity(symbol, row), (None, row, row))
-    return own if belief is not None and _take_away(agent, symbol, belief, percept) else None
+    return own if belief is not None and _take_away(agent.beliefs[symbol], belief, percept) else None
 
 
 def _identity(symbol: Functor, row: Row) -> tuple[object, ...]:
@@ -188,7 +204,6 @@ def _is_change(kind: Trigger, name: str) -> bool:
 def _queued(agent: Circumstance) -> Iterator[Intention]:
     """The intentions that wait for nothing but their turn."""
     yield from agent.intentions
-    yield from agent.crowd
     for event in agent.events:
         intention = event[EVENT_INTENTION]
         if intention is not None:
