@@ -127,10 +127,10 @@ def insert(
     if not all(map(is_key, row)):
         return _insert_aside(table, symbol, row, annotations, last)
     held = table.get(row)
-    return table.add(row, annotations, last) if held is None else merge(table, row, held, annotations)
+    return table.add(row, annotations, last) if held is None else _merge(table, row, held, annotations)
 
 
-def merge(table: Table, entry: Any, held: Annotations, annotations: Annotations) -> Annotations | None:
+def _merge(table: Table, entry: Any, held: Annotations, annotations: Annotations) -> Annotations | None:
     """Add what is new to the annotations of a belief."""
     merged, new = merge_annotations(held, annotations)
     if not new:
@@ -146,7 +146,7 @@ def _insert_aside(
     known = table.aside(row)
     if known is not None:
         held = table.get(known)
-        return merge(table, known, held or (), annotations)
+        return _merge(table, known, held or (), annotations)
     return table.add(OpenFact(rename(literal(symbol, row)), annotations), annotations, last)
 
 

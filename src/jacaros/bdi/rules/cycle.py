@@ -23,78 +23,75 @@ from jacaros.terms.arithmetic import RUNNING
 
 
 def run(agent: Circumstance, fuel: int) -> bool:
-    """Make at most *fuel* cycles; True when there is more to do.
-
-    When nothing else needs a cycle, the next one would select the event and the intention of this one. So `execute`
-    stays with an intention until something does: another event or intention, or input (`Incoming.called`).
-    """
+    """Make at most *fuel* cycles; True when there is more to do."""
     if agent.options.search_limit and fuel > 1:
         # Each cycle gets the whole budget of searches.
         return all(run(agent, 1) for _ in range(fuel))
     if agent.beliefs.budget is not None:
         agent.beliefs.budget.renew()
-    counts, incoming, sensing = agent.counts, agent.incoming, agent.options.percept_interval != 1
-    end = counts.cycles + fuel
     # New input need not wake the agent meanwhile, and functions in terms are evaluated for it.
     before = RUNNING.set(agent)  # pyright: ignore[reportArgumentType]
     agent.running = True
     try:
         if agent.sleep == "asleep":
             meta_events.awake(agent)
-        while counts.cycles < end and not agent.stopped:
-            if (incoming.called or sensing) and agent.held is None:
-                look_around(agent, counts.cycles)
-            chosen = deliberate(agent)
-            if chosen is False:
-                return not agent.stopped and has_work(agent)
-            if chosen is not True:
-                fuel = end - counts.cycles
-                try:
-                    left = execute(agent, chosen, fuel)
-                except InternalError:
-                    raise
-                except Exception as fault:
-                    failure.drop_after_error(agent, agent.current or chosen, fault)
-                    left = fuel - 1
-                counts.cycles += fuel - left
-                if agent.waits.requeued:
-                    agent.events.extendleft(reversed(agent.waits.requeued))
-                    agent.waits.requeued.clear()
-            if not (agent.events or agent.intentions or incoming.called or agent.features.edges):
-                return False  # the next cycle would find nothing to do
-        return not agent.stopped
+        return _cycles(agent, agent.counts.cycles + fuel)
     finally:
         agent.running = False
         RUNNING.reset(before)
-        if counts.cycles >= counts.next_check:
+        if agent.counts.cycles >= agent.counts.next_check:
             agent.beliefs.forget_names()
-            counts.next_check = counts.cycles + max(INTERVAL, len(agent.beliefs))
+            agent.counts.next_check = agent.counts.cycles + max(INTERVAL, len(agent.beliefs))
 
 
-def deliberate(agent: Circumstance) -> Intention | bool:
-    """Handle one event, and return the intention that makes a step.
+def _cycles(agent: Circumstance, end: int) -> bool:  # noqa: C901 - the whole cycle is here
+    """Sense, deliberate and act until the cycle *end*; return whether there is more to do.
 
-    Without one, return whether there may be one in the next cycle; False also while an observer holds the agent.
+    When nothing else needs a cycle, the next one would select the event and the intention of this one. So `execute`
+    stays with an intention until something does: another event or intention, or input (`Incoming.called`).
     """
-    if agent.held is not None:
-        held = _continue_held(agent)
-        if held is not None:
-            return held
-    elif agent.events:
-        if agent.atomic is not None:
-            handle_atomic_event(agent, agent.atomic)
+    counts, incoming, always = agent.counts, agent.incoming, agent.options.percept_interval == 1
+    while counts.cycles < end and not agent.stopped:
+        chosen: Intention | bool | None = None
+        if agent.held is None:
+            if incoming.called or not always:
+                look_around(agent, counts.cycles)
+            if agent.events:
+                if agent.atomic is None:
+                    handle_event(agent)
+                else:
+                    handle_atomic_event(agent, agent.atomic)
         else:
-            handle_event(agent)
-    if agent.held is not None:
-        return False
-    if agent.conditioned:
-        end_achieved_goals(agent)
-    intention = select_intention(agent)
-    if intention is None:
-        return _waits(agent)
-    if agent.observers.step is not None and is_held_before_step(agent, intention):
-        return False
-    return intention
+            chosen = _continue_held(agent)
+        if chosen is None:
+            if agent.held is not None:
+                break
+            if agent.conditioned:
+                end_achieved_goals(agent)
+            chosen = select_intention(agent)
+            if chosen is None:
+                chosen = _waits(agent)
+            elif agent.observers.step is not None and is_held_before_step(agent, chosen):
+                break
+        if chosen is False:
+            break
+        if chosen is not True:
+            left = fuel = end - counts.cycles
+            try:
+                left = execute(agent, chosen, fuel)
+            except InternalError:
+                raise
+            except Exception as fault:
+                failure.drop_after_error(agent, agent.current or chosen, fault)
+                left -= 1
+            counts.cycles += fuel - left
+            if agent.waits.requeued:
+                agent.events.extendleft(reversed(agent.waits.requeued))
+                agent.waits.requeued.clear()
+        if not (agent.events or agent.intentions or incoming.called or agent.features.edges):
+            return False  # the next cycle would find nothing to do
+    # Without cycles left it was not seen yet that nothing is to be done: that takes another look.
+    return not agent.stopped and (counts.cycles >= end or has_work(agent))
 
 
 def _continue_held(agent: Circumstance) -> Intention | bool | None:

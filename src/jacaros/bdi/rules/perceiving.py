@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from jacaros.bdi.rules import failure
-from jacaros.bdi.rules.belief_update import external_change, merge
+from jacaros.bdi.rules.belief_update import external_change, insert
 from jacaros.bdi.state.act import Percept
 from jacaros.bdi.state.belief_base import Row, Table, literal, take_away
 from jacaros.bdi.state.circumstance import Circumstance
@@ -46,18 +46,27 @@ def take(agent: Circumstance, percept: Percept) -> None:
         InternalError: its literal is not a literal.
     """
     symbol, row, keyed = percept.kept or _keep(percept)
-    own: Row | None
-    if percept.kind == "add":
-        own = (_believe if keyed else _believe_unkeyed)(agent, symbol, row, percept)
-    elif percept.kind == "remove":
-        own = (_forget if keyed else _forget_unkeyed)(agent, symbol, row, percept)
-    else:
-        own = row if keyed else _own_row(row)
+    kind, shown, annotations = percept.kind, percept.literal, percept.annotations
+    table, holders = agent.beliefs[symbol], agent.beliefs.held_percepts
+    own: Row | None = row
+    if kind == "add":
+        if keyed and shown not in holders and row not in table.rows and not table.late:
+            if table.add(row, annotations) is None:
+                return
+            holders[shown] = annotations
+        else:
+            own = (_believe if keyed else _believe_unkeyed)(agent, symbol, row, percept)
+    elif kind == "remove":
+        if keyed and holders.get(shown) is annotations and table.rows.get(row) is annotations:
+            del holders[shown]  # nothing else makes the agent believe it
+            table.remove(row)
+        else:
+            own = (_forget if keyed else _forget_unkeyed)(agent, symbol, row, percept)
+    elif not keyed:
+        own = _own_row(row)
     if own is not None:
-        operator = "-" if percept.kind == "remove" else "+"
-        external_change(
-            agent, operator, symbol, own, percept.annotations, percept.cause, percept.kind != "signal"
-        )
+        operator = "-" if kind == "remove" else "+"
+        external_change(agent, operator, symbol, own, annotations, percept.cause, kind != "signal")
 
 
 def _keep(percept: Percept) -> Kept:
@@ -78,18 +87,14 @@ def _keep(percept: Percept) -> Kept:
 
 
 def _believe(agent: Circumstance, symbol: Functor, row: Row, percept: Percept) -> Row | None:
-    """Add the belief of a percept that may already be held, by the agent or for other properties with the same values.
+    """Add a percept to a belief that is already held, by the agent or for other properties with the same values.
 
     Return None if the base has no room for it.
     """
     known = agent.beliefs.held_percepts.get(percept.literal)
     if known is not None:
         return _believe_apart(agent, symbol, row, percept, known)
-    table = agent.beliefs[symbol]
-    held = table.get(row)
-    if held is not None:
-        merge(table, row, held, percept.annotations)
-    elif table.add(row, percept.annotations) is None:
+    if insert(agent, symbol, row, percept.annotations) is None and agent.beliefs[symbol].get(row) is None:
         return None
     agent.beliefs.held_percepts[percept.literal] = percept.annotations
     return row
@@ -117,17 +122,13 @@ def _forget(agent: Circumstance, symbol: Functor, row: Row, percept: Percept) ->
     Return None if the belief is no longer held.
     """
     known = agent.beliefs.held_percepts.pop(percept.literal, None)
-    table = agent.beliefs[symbol]
-    if known is percept.annotations and table.rows.get(row) is known:  # nobody else believes it
-        table.remove(row)
-        return row
     holders: list[Holder] = known if known.__class__ is list else [] if known is None else [(known, row)]
     # Of two properties of one artifact the annotations are equal, too: either may go.
     place = next((i for i, holder in enumerate(holders) if holder[0] == percept.annotations), None)
     entry = row if place is None else holders.pop(place)[1]
     if holders:
         agent.beliefs.held_percepts[percept.literal] = holders
-    return row if _take_away(table, entry, percept) else None
+    return row if _take_away(agent.beliefs[symbol], entry, percept) else None
 
 
 def _take_away(table: Table, entry: Any, percept: Percept) -> bool:

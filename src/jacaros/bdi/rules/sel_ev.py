@@ -9,49 +9,53 @@ from jacaros.bdi.rules.goal_failure import unplanned
 from jacaros.bdi.rules.holding import is_held_before_event
 from jacaros.bdi.rules.proc_msg import RECEIVED, receive_event
 from jacaros.bdi.state.circumstance import Circumstance
-from jacaros.bdi.state.event import EVENT_CAUSE, EVENT_INTENTION, Event
+from jacaros.bdi.state.event import EVENT_ANNOTATIONS, EVENT_CAUSE, EVENT_GOAL, EVENT_INTENTION, Event
 from jacaros.bdi.state.intention import PLAN, Intention
 from jacaros.bdi.state.plan import Plan
 from jacaros.errors import InternalError
 from jacaros.terms.values import BY_SELF
 
 
-def handle_event(agent: Circumstance) -> None:
-    """Rule SelEv and the rules after it: handle one event; external events without a plan are skipped."""
+def handle_event(agent: Circumstance, event: Event | None = None) -> None:
+    """Rule SelEv and the rules after it: handle one event; external events without a plan are skipped.
+
+    *event* is the one before which an observer held the agent, if it did.
+    """
     selections, step = agent.selections, agent.observers.step
-    while agent.events:
-        event = agent.events.popleft() if selections.plain else selections.select_event()
-        if event is None or (step is not None and is_held_before_event(agent, event)):
-            return
-        if _is_handled(agent, event):
-            return
+    while event is not None or agent.events:
+        if event is None:
+            event = agent.events.popleft() if selections.plain else selections.select_event()
+            if event is None or (step is not None and is_held_before_event(agent, event)):
+                return
+        try:
+            if event[EVENT_INTENTION] is None:
+                if begin_intention(agent, event):
+                    return
+            elif _continue_intention(agent, event[EVENT_INTENTION], event):
+                return
+        except InternalError:
+            raise
+        except Exception as fault:
+            skip_event(agent, event, fault)
+        event = None
+
+
+def _continue_intention(agent: Circumstance, intention: Intention, event: Event) -> bool:
+    if intention.dropped:
+        return False
+    agent.current = intention  # contexts may ask for it
+    if push(agent, intention, event[EVENT_GOAL], event[EVENT_ANNOTATIONS]):
+        agent.make_ready(intention)
+    agent.current = None
+    return True
 
 
 def handle_held_event(agent: Circumstance, event: Event) -> None:
     """Handle the event before which the agent was held."""
     if agent.atomic is not None:
         _push_atomic(agent, agent.atomic, event)
-    elif not _is_handled(agent, event):
-        handle_event(agent)
-
-
-def _is_handled(agent: Circumstance, event: Event) -> bool:
-    goal, intention, annotations, _ = event
-    try:
-        if intention is None:
-            return begin_intention(agent, event)
-        if intention.dropped:
-            return False
-        agent.current = intention  # contexts may ask for it
-        if push(agent, intention, goal, annotations):
-            agent.make_ready(intention)
-        agent.current = None
-        return True
-    except InternalError:
-        raise
-    except Exception as fault:
-        skip_event(agent, event, fault)
-        return False
+    else:
+        handle_event(agent, event)
 
 
 def handle_atomic_event(agent: Circumstance, intention: Intention) -> None:
