@@ -76,14 +76,8 @@ def push(agent: Circumstance, intention: Intention, goal: Goal, annotations: Eve
             agent.atomic_over = True
     else:
         frames.append(frame)
-    if (
-        frame[PLAN].special
-        or annotations is not BY_SELF
-        or agent.features.meta
-        or len(frames) > agent.options.goal_depth
-    ):
-        return begin_plan(agent, intention, frame)
-    return True
+    usual = annotations is BY_SELF and len(frames) <= agent.options.goal_depth
+    return (usual and not (frame[PLAN].special or agent.features.meta)) or begin_plan(agent, intention, frame)
 
 
 def begin_plan(agent: Circumstance, intention: Intention, frame: Frame) -> bool:

@@ -41,7 +41,7 @@ def select_intention(agent: Circumstance) -> Intention | None:
     return None
 
 
-def execute(agent: Circumstance, intention: Intention, fuel: int) -> int:
+def execute(agent: Circumstance, intention: Intention, fuel: int) -> int:  # noqa: C901 - the two rules alternate
     """Rules ExecInt and ClrInt: one step of an intention, and further ones while nothing else needs a cycle.
 
     Return what is left of *fuel*, the number of steps that it may make. An atomic intention makes one.
@@ -52,14 +52,15 @@ def execute(agent: Circumstance, intention: Intention, fuel: int) -> int:
         agent.atomic, agent.atomic_over = None, False
     frames, trail = intention.frames, agent.trail
     events, intentions, incoming = agent.events, agent.intentions, agent.incoming
-    awaited, features, selections = agent.waits.events, agent.features, agent.selections
+    listened = agent.waits.events or agent.features.meta or agent.selections.urgencies is not None
     while True:
         fuel -= 1
         frame: Frame = frames[-1]
+        step: Any = frame[0]
         posted: Any = None
-        if frame[STEP] is not None:
+        if step is not None:
             try:
-                posted = frame[STEP](agent, frame)
+                posted = step(agent, frame)
             except InternalError:
                 raise
             except Exception as fault:
@@ -71,7 +72,7 @@ def execute(agent: Circumstance, intention: Intention, fuel: int) -> int:
         if agent.stopped or intention.dropped:
             break
         if posted is None:
-            if frame[STEP] is None and not pop_finished(agent, intention):
+            if frame[0] is None and not pop_finished(agent, intention):
                 break
         elif posted is SUSPENDED:
             tell_waiting(agent, intention)
@@ -80,12 +81,17 @@ def execute(agent: Circumstance, intention: Intention, fuel: int) -> int:
             goal, annotations = (
                 (posted, BY_SELF) if posted.__class__ is tuple else (posted.goal, posted.annotations)
             )
-            if awaited or features.meta or selections.urgencies is not None:
+            if listened:
                 announce(agent, intention, goal, annotations)
-            # In the next cycle the event of this goal would be the only one, so it is handled now.
-            pursue = _post if fuel <= last or events or intentions or incoming.called else push
-            if not pursue(agent, intention, goal, annotations):
+            if fuel <= last or events or intentions or incoming.called:
+                if not _post(agent, intention, goal, annotations):
+                    break
+            elif not push(agent, intention, goal, annotations):
                 break
+            elif agent.atomic is None:
+                continue  # the next cycle, which would handle this event alone, has begun
+            agent.make_ready(intention)
+            break
         if fuel <= last or events or intentions or incoming.called:
             agent.make_ready(intention)
             break
