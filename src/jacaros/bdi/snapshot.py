@@ -223,9 +223,7 @@ def copy_mind(original: Mind, clone: Mind) -> None:
         for event in original.events
         if (intention := event[EVENT_INTENTION]) is None or _can_be_copied(original, intention)
     ]
-    part["intentions"] = [
-        each for each in original.intentions if _can_be_copied(original, each)
-    ]
+    part["intentions"] = [each for each in original.intentions if _can_be_copied(original, each)]
     part["derived"] = deriving.stored(original, original.program)
     writer = Writer(original, shared=True)
     entry = writer.write(part)

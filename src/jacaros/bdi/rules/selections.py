@@ -77,6 +77,7 @@ class Fair:
     def note_message(self, message: SpeechAct) -> None:
         """Do nothing: the message is read last."""
 
+
 def options(agent: Circumstance, goal: Goal, annotations: EventAnnotations) -> Iterator[Frame]:
     """Yield the frames of all applicable plans, in program order; a frame is valid until the next one is requested."""
     agent.selections.refused = False
