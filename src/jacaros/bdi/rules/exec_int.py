@@ -11,7 +11,7 @@ from jacaros.bdi.rules.goal_failure import fail_intention
 from jacaros.bdi.rules.holding import is_held_before_event
 from jacaros.bdi.rules.sel_ev import is_ready
 from jacaros.bdi.state.circumstance import Circumstance
-from jacaros.bdi.state.intention import STEP, Frame, Intention
+from jacaros.bdi.state.intention import Frame, Intention
 from jacaros.bdi.state.literals import EventAnnotations
 from jacaros.bdi.state.plan import FAILED, SUSPENDED, Fail
 from jacaros.bdi.state.triggers import Goal

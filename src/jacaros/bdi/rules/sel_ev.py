@@ -28,10 +28,11 @@ def handle_event(agent: Circumstance, event: Event | None = None) -> None:
             if event is None or (step is not None and is_held_before_event(agent, event)):
                 return
         try:
-            if event[EVENT_INTENTION] is None:
+            intention = event[EVENT_INTENTION]
+            if intention is None:
                 if begin_intention(agent, event):
                     return
-            elif _continue_intention(agent, event[EVENT_INTENTION], event):
+            elif _continue_intention(agent, intention, event):
                 return
         except InternalError:
             raise

@@ -185,18 +185,16 @@ class Table:
             self._note(row, 1)
             return annotations
         self.rows[row] = annotations
+        if self._mixed is not None:
+            self._mixed.add(row)
         if row.__class__ is not tuple:
             self.others += 1
-            if self._mixed is not None:
-                self._mixed.add(row)
             self._note(row, 1)
             return annotations
         if self.searches is not None and self.deep is not None and (self.searches.before or self.deep.before):
             self._changed()  # no rule answers before the newest fact
         if self.indexes:
             self._add_to_indexes(row)
-        if self._mixed is not None:
-            self._mixed.add(row)
         return annotations
 
     def _note(self, entry: Entry, change: int) -> None:
