@@ -76,7 +76,7 @@ def push(agent: Circumstance, intention: Intention, goal: Goal, annotations: Eve
             agent.atomic_over = True
     else:
         frames.append(frame)
-    usual = annotations is BY_SELF and len(frames) <= agent.options.goal_depth
+    usual = (annotations is BY_SELF or kind.failing) and len(frames) <= agent.options.goal_depth
     return (usual and not (frame[PLAN].special or agent.features.meta)) or begin_plan(agent, intention, frame)
 
 

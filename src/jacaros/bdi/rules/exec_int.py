@@ -93,7 +93,10 @@ def execute(agent: Circumstance, intention: Intention, fuel: int) -> int:  # noq
             agent.make_ready(intention)
             break
         if fuel <= last or events or intentions or incoming.called:
-            agent.make_ready(intention)
+            if intention.suspended is None and agent.selections.urgencies is None:
+                intentions.append(intention)
+            else:
+                agent.make_ready(intention)
             break
     agent.current = None
     return fuel

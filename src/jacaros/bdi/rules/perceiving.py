@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from jacaros.bdi.rules import failure
-from jacaros.bdi.rules.belief_update import external_change, insert
+from jacaros.bdi.rules.belief_update import external_change, insert, is_quiet
 from jacaros.bdi.state.act import Percept
 from jacaros.bdi.state.belief_base import Row, Table, literal, take_away
 from jacaros.bdi.state.circumstance import Circumstance
@@ -30,17 +30,18 @@ def take_percepts(agent: Circumstance) -> None:
     """Bring the belief base in line with what was noticed; a fault skips the rest of a step."""
     while agent.incoming.percepts:
         percepts = agent.incoming.percepts.popleft()
+        quiet = is_quiet(agent)
         try:
             for percept in percepts:
-                take(agent, percept)
+                take(agent, percept, quiet)
         except InternalError:
             raise
         except Exception as fault:
             failure.report_skipped(agent, "percepts", fault)
 
 
-def take(agent: Circumstance, percept: Percept) -> None:
-    """Add or remove the belief of one percept, and raise its event.
+def take(agent: Circumstance, percept: Percept, quiet: bool) -> None:
+    """Add or remove the belief of one percept, and raise its event; of *quiet* ones only plans want to know.
 
     Raises:
         InternalError: its literal is not a literal.
@@ -64,6 +65,8 @@ def take(agent: Circumstance, percept: Percept) -> None:
             own = (_forget if keyed else _forget_unkeyed)(agent, symbol, row, percept)
     elif not keyed:
         own = _own_row(row)
+    if quiet and agent.library.selects[table.deleted if kind == "remove" else table.added] is None:
+        return
     if own is not None:
         operator = "-" if kind == "remove" else "+"
         external_change(agent, operator, symbol, own, annotations, percept.cause, kind != "signal")

@@ -13,7 +13,6 @@ from jacaros.bdi.state.event import EVENT_ANNOTATIONS, EVENT_CAUSE, EVENT_GOAL, 
 from jacaros.bdi.state.intention import PLAN, Intention
 from jacaros.bdi.state.plan import Plan
 from jacaros.errors import InternalError
-from jacaros.terms.values import BY_SELF
 
 
 def handle_event(agent: Circumstance, event: Event | None = None) -> None:
@@ -116,9 +115,13 @@ def begin_intention(agent: Circumstance, event: Event) -> bool:
     intention.frames.append(frame)
     if kind.failing:
         intention.handlers.append(0)
-    usual = not (frame[PLAN].special or agent.features.meta) and (annotations is BY_SELF or not kind.kind)
-    if usual or begin_plan(agent, intention, frame):
-        agent.make_ready(intention)
+    # A goal that needs something has annotations beside its source.
+    plain = not kind.kind or (annotations.__class__ is tuple and len(annotations) == 1)  # type: ignore[arg-type]
+    if (plain and not (frame[PLAN].special or agent.features.meta)) or begin_plan(agent, intention, frame):
+        if agent.selections.urgencies is None:
+            agent.intentions.append(intention)
+        else:
+            agent.make_ready(intention)
     return True
 
 
