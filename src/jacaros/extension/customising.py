@@ -48,10 +48,6 @@ class Chosen(Urgent):
         self._mind, self._choose = mind, choose
         self.look_anew()
 
-    def _calm_down(self) -> None:
-        super()._calm_down()
-        self.plain = False
-
     def select_option(
         self, goal: Goal, annotations: EventAnnotations, intention: Intention | None
     ) -> Frame | None:
