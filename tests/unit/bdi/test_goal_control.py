@@ -174,3 +174,17 @@ def test_the_body_of_a_plan_that_waits_for_a_goal_begins_with_it() -> None:
              .nth(1, Found, Inner); .print(Inner); .nth(2, Found, Outer); .print(Outer).
         """
     assert printed(program)[:2] == ["at(4,{ ?k(7); .print(7) })", "at(3,{ !h(X,3); .print(end) })"]
+
+
+def test_the_reason_of_a_suspended_goal_is_its_suspension_once_its_wait_has_ended() -> None:
+    host = mind(
+        """
+        !a. !b. !look.
+        +!a <- .wait(20).
+        +!b <- .suspend.
+        +!look <- .wait(1); .suspend(a); .suspended(a, wait(_)[time(20)]); .wait(50); .suspended(a, R); .suspended(b, S);
+           .print(R, " ", S).
+        """
+    )
+    host.run()
+    assert host.printed == ["suspend_ia suspend_ia"]

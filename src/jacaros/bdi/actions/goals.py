@@ -18,10 +18,10 @@ from jacaros.bdi.state.literals import literal_of
 from jacaros.bdi.state.plan import SUSPENDED, Failure
 from jacaros.bdi.state.supervision import is_supervision
 from jacaros.bdi.state.triggers import Trigger
-from jacaros.bdi.state.waiting import OWN_SUSPENSION, OwnSuspension, is_action
+from jacaros.bdi.state.waiting import BY_SUSPEND, HeldEnd, OwnSuspension, is_action
 from jacaros.terms.order import annotation_set
 from jacaros.terms.plans import BODY_TERM, make_body, trigger
-from jacaros.terms.substitution import rename, resolve
+from jacaros.terms.substitution import resolve
 from jacaros.terms.text import text
 from jacaros.terms.values import (
     Annotated,
@@ -250,10 +250,9 @@ def suspend(ctx: Context, goal: Term = None) -> object:
     current = ctx.intention
     if goal is None:
         assert current is not None
-        goals.suspend_intention(ctx.agent, current, OWN_SUSPENSION)
+        goals.suspend_intention(ctx.agent, current, BY_SUSPEND)
     else:
-        reason = structure("suspended", rename(goal))
-        _on_goal(ctx, goal, lambda wanted: goals.suspend_goal(ctx.agent, wanted, reason))
+        _on_goal(ctx, goal, lambda wanted: goals.suspend_goal(ctx.agent, wanted))
     if current is None or current.suspended is None:
         return None
     # The step lasts until the intention is resumed, so that a last step does not end its goal before that.
@@ -268,14 +267,14 @@ def resume(ctx: Context, goal: Term) -> None:
 
 @internal_action(".suspended", arity=2, backtracks=True, pure=True)
 def suspended(ctx: Context, goal: Term, reason: Term) -> Iterator[None]:
-    """``.suspended(G, R)``: an intention with the goal is suspended or waiting, and *R* is the reason (``act`` for an
-    action).
+    """``.suspended(G, R)``: an intention with the goal is suspended or waiting, and *R* is the reason: ``act`` for an
+    action, ``suspend_ia`` after ``.suspend``.
     """
     for candidate in goals.intentions_for(ctx.agent, _goal(goal)):
         why = candidate.suspended
         waiting = candidate.waiting
         lost = goals.is_preempted(candidate)
-        if waiting is not None and waiting.reason is not OWN_SUSPENSION and not lost:
+        if waiting is not None and not isinstance(waiting, HeldEnd | OwnSuspension) and not lost:
             # As in Jason, an intention that is suspended while it waits is reported with what it waits for.
             why = atom("act") if is_action(waiting.reason) else waiting.reason
         found = goals.goal_of(ctx.agent, candidate, goal)
@@ -284,7 +283,7 @@ def suspended(ctx: Context, goal: Term, reason: Term) -> Iterator[None]:
     for _ in goals.goal_events(ctx.agent, goal):
         if any(
             goals.matches(ctx.agent, goal, _event(e)) for e in ctx.agent.waits.suspended_events
-        ) and ctx.unify(reason, atom("suspended")):
+        ) and ctx.unify(reason, BY_SUSPEND):
             yield
             return
 

@@ -15,7 +15,7 @@ from jacaros.bdi.state.intention import Frame, Intention
 from jacaros.bdi.state.literals import EventAnnotations
 from jacaros.bdi.state.plan import FAILED, SUSPENDED, Fail
 from jacaros.bdi.state.triggers import Goal
-from jacaros.bdi.state.waiting import OWN_SUSPENSION
+from jacaros.bdi.state.waiting import BY_SUSPEND
 from jacaros.errors import InternalError
 from jacaros.terms.unifier import undo
 from jacaros.terms.values import BY_SELF
@@ -148,5 +148,5 @@ def announce(agent: Circumstance, intention: Intention, goal: Goal, annotations:
 def tell_waiting(agent: Circumstance, intention: Intention) -> None:
     """Notify observers that an intention waits."""
     waiting = intention.waiting if agent.features.meta else None
-    if waiting is not None and waiting.reason is not OWN_SUSPENSION:
+    if waiting is not None and waiting.reason is not BY_SUSPEND:
         meta_events.top_goal_state(agent, intention, "waiting", waiting.reason)

@@ -22,12 +22,12 @@ from jacaros.bdi.state.event import (
 from jacaros.bdi.state.intention import ANNOTATIONS, GOAL, SERIAL, Intention
 from jacaros.bdi.state.literals import literal_of, own_annotations
 from jacaros.bdi.state.triggers import Trigger
-from jacaros.bdi.state.waiting import ActWait, HeldEnd, Waiting
+from jacaros.bdi.state.waiting import BY_SUSPEND, ActWait, HeldEnd, Waiting
 from jacaros.terms.substitution import rename
 from jacaros.terms.unifier import undo, unify
 from jacaros.terms.values import Term, atom, functor
 
-_BY_SUSPEND, _BY_RESUME = atom("suspend_ia"), atom("resume_ia")
+_BY_RESUME = atom("resume_ia")
 PREEMPTED = functor("preempted", 1)
 """Functor of the reason of intentions that have lost a resource; they are resumed when they regain it."""
 
@@ -211,17 +211,17 @@ def _event_state(agent: Circumstance, event: Event, *states: str) -> None:
 # --- suspending --------------------------------------------------------------------------------------------
 
 
-def suspend_goal(agent: Circumstance, goal: Term, reason: Term) -> None:
+def suspend_goal(agent: Circumstance, goal: Term) -> None:
     """Suspend all intentions with the goal until it is resumed; a goal that has not begun yet does not begin."""
     for event in goal_events(agent, goal):
         if event in agent.events:
             agent.events.remove(event)
             agent.waits.suspended_events.append(event)
             meta_events.goal_state(
-                agent, event[EVENT_GOAL], event[EVENT_ANNOTATIONS], "suspended", _BY_SUSPEND
+                agent, event[EVENT_GOAL], event[EVENT_ANNOTATIONS], "suspended", BY_SUSPEND
             )
     for intention in intentions_for(agent, goal):
-        suspend_intention(agent, intention, reason)
+        suspend_intention(agent, intention, BY_SUSPEND)
 
 
 def is_preempted(intention: Intention) -> bool:
@@ -230,9 +230,7 @@ def is_preempted(intention: Intention) -> bool:
     return reason.__class__ is tuple and reason[0] is PREEMPTED
 
 
-def suspend_intention(
-    agent: Circumstance, intention: Intention, reason: Term, by: Term = _BY_SUSPEND
-) -> None:
+def suspend_intention(agent: Circumstance, intention: Intention, reason: Term, by: Term = BY_SUSPEND) -> None:
     """Suspend one intention: a pausable external action is paused, and resources are given back.
 
     One that has lost a resource is from now on suspended for the program's reason: it waits for ``.resume``.
@@ -244,14 +242,14 @@ def suspend_intention(
     if agent.features.meta:
         for frame in intention.frames:
             meta_events.frame_state(agent, intention, frame, "suspended", by)
-    if by is _BY_SUSPEND:
+    if by is BY_SUSPEND:
         for need in needs.of(agent, intention):
             agent.architecture.suspend_act(need.number)
     event = pending_event(agent, intention)
     if event is not None and event in agent.events:
         agent.events.remove(event)
         agent.waits.suspended_events.append(event)
-    if intention.waiting is not None and (by is _BY_SUSPEND or not _lost(agent, intention.waiting)):
+    if intention.waiting is not None and (by is BY_SUSPEND or not _lost(agent, intention.waiting)):
         waits.suspend(agent, intention.waiting)
 
 

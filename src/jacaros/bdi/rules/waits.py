@@ -10,7 +10,7 @@ from jacaros.bdi.state.condition_waits import ConditionObserver, ConditionWait, 
 from jacaros.bdi.state.event import EVENT_GOAL, Event, event_literal
 from jacaros.bdi.state.plan import Failure
 from jacaros.bdi.state.waiting import (
-    OWN_SUSPENSION,
+    BY_SUSPEND,
     ActWait,
     AnswerWait,
     CoroutineWait,
@@ -77,7 +77,7 @@ def _continue(agent: Circumstance, waiting: Waiting) -> None:
     assert frame is not None
     if waiting.failure is None:
         frame[0] = waiting.next_step
-        if agent.features.meta and waiting.reason is not OWN_SUSPENSION:
+        if agent.features.meta and waiting.reason is not BY_SUSPEND:
             meta_events.top_goal_state(agent, intention, "executing")
         if pop_finished(agent, intention):
             agent.make_ready(intention)

@@ -15,8 +15,8 @@ from jacaros.terms.values import Functor, Term, atom, functor
 ACTION = functor("action", 1)
 """Functor of the reason of a wait for the end of an external action."""
 
-OWN_SUSPENSION = atom("suspended")
-"""Reason of the steps by which an intention suspends itself: its goals are suspended, not waiting."""
+BY_SUSPEND = atom("suspend_ia")
+"""Reason of what ``.suspend`` has suspended, as in Jason."""
 
 
 def is_action(reason: Term) -> bool:
@@ -124,7 +124,7 @@ class OwnSuspension(Waiting):
     __slots__ = ()
 
     def __init__(self, intention: Intention) -> None:
-        super().__init__(intention, OWN_SUSPENSION)
+        super().__init__(intention, BY_SUSPEND)
 
 
 class GoalConditionWait(Waiting):
