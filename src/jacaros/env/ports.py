@@ -10,6 +10,7 @@ after a cancel.
 
 import asyncio
 from collections.abc import Callable, Collection, Sequence
+from functools import partial
 from typing import Protocol, runtime_checkable
 
 from jacaros.clock import Clock
@@ -44,6 +45,31 @@ class UnderWay(Protocol):
 
     def resume(self) -> None:
         """Let it continue."""
+
+
+async def awaited(begin: Callable[[OnMade], UnderWay | None]) -> ArtifactId:
+    """Begin a request for an artifact, and wait for it. Cancelling the wait cancels the request.
+
+    Raises:
+        OperationFailed: the request failed.
+    """
+    found: asyncio.Future[ArtifactId] = asyncio.get_running_loop().create_future()
+
+    def on_done(artifact_id: ArtifactId | None, outcome: OperationOutcome) -> None:
+        if found.done():
+            return
+        if artifact_id is not None:
+            found.set_result(artifact_id)
+        else:
+            found.set_exception(OperationFailed(outcome.message or "", outcome.reason))
+
+    under_way = begin(on_done)
+    try:
+        return await found
+    except asyncio.CancelledError:
+        if under_way is not None:
+            under_way.cancel()
+        raise
 
 
 @runtime_checkable
@@ -105,22 +131,7 @@ class Workspace(Protocol):
                 ``"artifact_already_present"``, ``"unknown_artifact_template"`` (What is the type) or
                 ``"init_failed"``. Nothing remains of the artifact.
         """
-        made: asyncio.Future[ArtifactId] = asyncio.get_running_loop().create_future()
-
-        def on_done(artifact_id: ArtifactId | None, outcome: OperationOutcome) -> None:
-            if made.done():
-                return
-            if artifact_id is not None:
-                made.set_result(artifact_id)
-            else:
-                made.set_exception(OperationFailed(outcome.message or "", outcome.reason))
-
-        execution = self.create(name, type_name, args, creator, on_done)
-        try:
-            return await made
-        except asyncio.CancelledError:
-            execution.cancel()
-            raise
+        return await awaited(partial(self.create, name, type_name, args, creator))
 
     def create(
         self,
