@@ -93,8 +93,10 @@ def test_whatever_is_wrong_is_a_failure_with_its_reason(on_rails, act, told):
         (
             lambda: Act("drive"),
             [
-                "[tree] behaviour 'drive': no artifact of workspace /main has an operation drive/0; "
-                "did you mean `drive/1` of 'cart'?"
+                (
+                    "[tree] behaviour 'drive': no artifact of workspace /main has an operation drive/0; "
+                    "did you mean `drive/1` of 'cart'?"
+                )
             ],
         ),
         (lambda: Act("drive", 20), []),
