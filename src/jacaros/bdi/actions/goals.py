@@ -360,7 +360,7 @@ def _outer_done(ctx: Context, current: Intention) -> object:
     assert current.outer is not None
     owner, frame = current.outer
     if not owner.dropped and any(frame is other for other in owner.frames):
-        queued = ctx.agent.is_in_turn(owner)
+        queued = owner in ctx.agent.intentions
         achieve(ctx.agent, owner, next(i for i, other in enumerate(owner.frames) if other is frame))
         if goals.goes_on(ctx.agent, owner) and not queued:
             ctx.agent.make_ready(owner)

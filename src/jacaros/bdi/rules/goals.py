@@ -312,7 +312,7 @@ def succeed_goal(agent: Circumstance, goal: Term) -> bool:
             continue
         index = frame_of(agent, intention, goal)
         running = intention is agent.current
-        queued = agent.is_in_turn(intention)
+        queued = intention in agent.intentions
         end_periods(intention, len(intention.frames) if index is None else index)
         if index is None:
             event = pending_event(agent, intention)
@@ -358,9 +358,8 @@ def fail_goal(agent: Circumstance, goal: Term, reason: FailureReason | None = No
         release_bindings(frame[GOAL], frame[SERIAL])
         goal_failure.observe_failed(agent, intention, index + 1, ended)
         cut(agent, intention, index)
-        for queue in (agent.intentions, agent.crowd):
-            if intention in queue:
-                queue.remove(intention)
+        if intention in agent.intentions:
+            agent.intentions.remove(intention)
         _post(
             agent,
             intention,
