@@ -4,36 +4,29 @@ from collections.abc import Callable
 from functools import partial
 from typing import Protocol
 
-from jacaros.bdi.state.act import NEEDS, Act, Completion, Percept
-from jacaros.body.actions import ACTIONS, Action, Situation, keys
-from jacaros.body.call import Call, Direction, read
+from jacaros.bdi.state.act import NEEDS, Act, Completion
+from jacaros.body.actions import ACTIONS, Action, keys
+from jacaros.body.call import Call, read, undelivered
 from jacaros.body.completion import SUCCEEDED, Deadline, of_operation, refused, succeeded
-from jacaros.body.focus import FocusedArtifacts
+from jacaros.body.focus import PerceivingMind
 from jacaros.body.needs import Needs
-from jacaros.body.percepts import ADD, REMOVE, PerceptWriter
-from jacaros.body.personal import AgentBodyArtifact, AgentSessionArtifact
-from jacaros.body.selection import JoinedWorkspaces, Selection
-from jacaros.body.values import Outputs, References, atom_of, to_value
-from jacaros.env.artifact import Artifact
-from jacaros.env.errors import OperationFailed
+from jacaros.body.percepts import PerceptWriter
+from jacaros.body.presence import AgentPresence
+from jacaros.body.values import Outputs, References, to_value
+from jacaros.env.environment import Environment
+from jacaros.env.errors import OperationFailed, UnknownArtifact
 from jacaros.env.ids import ArtifactId
 from jacaros.env.operation import OperationOutcome, OperationRequest
-from jacaros.env.ports import Environment, UnderWay, Workspace
+from jacaros.env.ports import UnderWay
+from jacaros.env.presence.presence import ANYWHERE, Direction, UnknownOperation
 from jacaros.env.values import Structure
 from jacaros.terms.text import display
-from jacaros.terms.values import String
 
 _CONSOLE = "console"
 
 
-class ServedMind(Protocol):
+class ServedMind(PerceivingMind, Protocol):
     """The interface of a mind for its body (`jacaros.bdi.mind.Mind`)."""
-
-    def perceive(self, percepts: list[Percept]) -> None:
-        """Take percepts."""
-
-    def has_untaken(self, name: str) -> bool:
-        """Return whether percepts about properties called *name* are still unprocessed."""
 
     def complete(self, act_id: int, completion: Completion) -> None:
         """Handle the outcome of an act."""
@@ -70,6 +63,9 @@ class AgentBody:
         show: prints a line of the agent's output.
         activity: counts running actions.
         home: full path of the agent's home workspace.
+
+    Attributes:
+        presence: the agent's workspaces and focused artifacts.
     """
 
     def __init__(
@@ -83,48 +79,20 @@ class AgentBody:
         activity: Activity,
         home: str = "/main",
     ) -> None:
-        self._agent = agent
+        self.presence = AgentPresence(agent, mind, environment, references, writer, home, keys())
         self._mind = mind
         self._environment = environment
         self._references = references
-        self._writer = writer
         self._show = show
         self._activity = activity
         # Running acts; without a handle until the call that begins them returns.
         self._pending: dict[int, UnderWay | None] = {}
         self._needs = Needs(agent, environment, self)
-        self._entered = False
-        self._session: ArtifactId | None = None
-        self._workspaces = JoinedWorkspaces(environment, home)
-        focused = FocusedArtifacts(agent, writer, references, mind.perceive, mind.has_untaken)
-        self._selection = Selection(agent, self._workspaces, focused, keys())
-        self._situation = Situation(
-            agent,
-            environment,
-            self._workspaces,
-            focused,
-            self._selection,
-            references,
-            self._joined,
-            self._session_id,
-        )
-
-    @property
-    def situation(self) -> Situation:
-        """The agent's workspaces and focused artifacts."""
-        return self._situation
 
     @property
     def pending(self) -> tuple[int, ...]:
         """The running acts."""
         return tuple(self._pending)
-
-    def enter(self) -> None:
-        """Add the belief about the home workspace; at the latest done by the agent's first action."""
-        if not self._entered:
-            self._entered = True
-            for workspace in self._workspaces.joined():
-                self._joined(workspace, True)
 
     def join(self, path: str) -> None:
         """Join a workspace for the project, before the agent acts.
@@ -132,10 +100,8 @@ class AgentBody:
         Raises:
             OperationFailed: no workspace has this full path.
         """
-        self.enter()
-        workspace = self._environment.workspace(path)
-        if self._workspaces.join(workspace):
-            self._joined(workspace, True)
+        self.presence.enter()
+        self.presence.join(self._environment.workspace(path))
 
     def focus(self, artifact: ArtifactId, namespace: str | None = None) -> None:
         """Focus on an artifact for the project, and join its workspace.
@@ -143,16 +109,15 @@ class AgentBody:
         Raises:
             OperationFailed: the artifact does not exist.
         """
-        self.enter()
-        workspace = self._environment.workspace(artifact.workspace)
-        if not self._workspaces.has_joined(workspace.path):
-            self.join(workspace.path)
-        self._situation.focused.begin(workspace, artifact, namespace)
+        if not self.presence.workspaces.has_joined(artifact.workspace):
+            self.join(artifact.workspace)
+        self.presence.enter()
+        workspace = self.presence.workspaces.at(artifact.workspace)
+        self.presence.focused.begin(workspace, artifact, namespace)
 
     def act(self, act: Act) -> None:
         """Begin an action; the mind receives its outcome, possibly before this returns."""
-        if not self._entered:
-            self.enter()
+        self.presence.enter()
         self._pending[act.id] = None
         self._activity.begin()
         if act.functor is NEEDS:
@@ -194,23 +159,17 @@ class AgentBody:
 
     def close(self) -> None:
         """Cancel all actions and stop focusing everything; the mind receives nothing more."""
-        self._situation.focused.fall_silent()
+        self.presence.focused.fall_silent()
         for act_id in self.pending:
             self.cancel_act(act_id)
         self._needs.close()
-        if self._session is None:
-            return
-        focused = self._situation.focused
-        for workspace in self._workspaces.joined():
-            focused.end_all(workspace)
-            self._withdraw(workspace, focused.body_in(workspace))
-        self._withdraw(self._workspaces.home, self._session)
+        self.presence.leave()
 
     # ---- resources of plans
 
     def _need(self, act: Act) -> None:
-        focused = self._situation.focused.in_order()
-        near = [each for workspace in self._workspaces.joined() for each in workspace.artifacts()]
+        focused = self.presence.focused.in_order()
+        near = [each for workspace in self.presence.workspaces.joined() for each in workspace.artifacts()]
         try:
             self._needs.ask(act, focused, near)
         except OperationFailed as failure:
@@ -243,9 +202,10 @@ class AgentBody:
         action = ACTIONS.get((call.name, len(call.arguments)))
         if action is not None and call.direction.artifact is None:
             return self._by_itself(action, call)
-        artifact = self._selection.artifact_for(call)
-        if action is not None and self._is_own(artifact, call):
-            here = self._environment.workspace(artifact.workspace) if artifact is not self._session else None
+        artifact = self._artifact_for(call)
+        if action is not None and self.presence.is_own(artifact) and self._offers(artifact, call):
+            at_home = artifact is self.presence.session
+            here = None if at_home else self._environment.workspace(artifact.workspace)
             call.direction = Direction(None, here, call.direction.timeout)
             return self._by_itself(action, call)
         if artifact.creator is None and artifact.name == _CONSOLE and _prints(call):
@@ -258,19 +218,29 @@ class AgentBody:
     def _by_itself(self, action: Action, call: Call) -> UnderWay | None:
         finish = partial(self._finish, call.act.id)
         if call.direction.timeout is None:
-            return action(self._situation, call, finish)
+            return action(self.presence, call, finish)
         deadline = Deadline(call, self._environment.clock, finish, self._references)
         try:
-            return deadline.watch(action(self._situation, call, deadline.ended))
+            return deadline.watch(action(self.presence, call, deadline.ended))
         except OperationFailed:
             deadline.cancel()
             raise
 
-    def _is_own(self, artifact: ArtifactId, call: Call) -> bool:
-        """Return whether an artifact stands for the agent itself, and has that operation."""
-        if artifact is not self._session and not self._situation.focused.is_body(artifact):
-            return False
+    def _offers(self, artifact: ArtifactId, call: Call) -> bool:
         return call.key in self._environment.workspace(artifact.workspace).offers(artifact)
+
+    def _artifact_for(self, call: Call) -> ArtifactId:
+        direction, intention = call.direction, call.act.intention
+        try:
+            return self.presence.artifact_for(
+                call.name, len(call.arguments), direction, intention, call.namespace
+            )
+        except UnknownArtifact:
+            raise
+        except OperationFailed as failure:
+            if isinstance(failure, UnknownOperation) or direction is not ANYWHERE:
+                raise undelivered(call.act, failure) from None
+            raise
 
     def _execute(self, call: Call, artifact: ArtifactId) -> UnderWay:
         act = call.act
@@ -285,8 +255,10 @@ class AgentBody:
         timeout = call.direction.timeout
         tracer, why = self._environment.tracer, act.cause
         if tracer is not None:
-            why = tracer.link("act", f"{self._agent} {call.key}", why, (self._agent, act))
-        request = OperationRequest(artifact, call.name, tuple(arguments), self._agent, why, done, timeout)
+            why = tracer.link("act", f"{self.presence.name} {call.key}", why, (self.presence.name, act))
+        request = OperationRequest(
+            artifact, call.name, tuple(arguments), self.presence.name, why, done, timeout
+        )
         request.urgency, request.yields = act.urgency, act.yields
         if act.within:
             request.within = self._needs.claims(act.within)
@@ -304,41 +276,6 @@ class AgentBody:
             del self._pending[act_id]
             self._activity.end()
             self._mind.complete(act_id, completion)
-
-    def _joined(self, workspace: Workspace, is_in: bool) -> None:
-        session = self._session_id()
-        focused = self._situation.focused
-        if is_in:
-            made_of = (self._agent, focused, workspace)
-            focused.inhabit(workspace, self._offer("body", workspace, AgentBodyArtifact, *made_of))
-        percept = self._writer.own(
-            ADD if is_in else REMOVE,
-            session,
-            "joinedWsp",
-            self._references.of(workspace),
-            atom_of(workspace.name),
-            String(workspace.path),
-        )
-        self._mind.perceive([percept])
-        if not is_in:
-            self._withdraw(workspace, focused.body_in(workspace))
-
-    def _session_id(self) -> ArtifactId:
-        if self._session is None:
-            made = (self._agent, self._workspaces)
-            self._session = self._offer("session", self._workspaces.home, AgentSessionArtifact, *made)
-        return self._session
-
-    def _offer(
-        self, kind: str, workspace: Workspace, artifact_type: type[Artifact], *arguments: object
-    ) -> ArtifactId:
-        return workspace.offer(f"{kind}_{self._agent}", artifact_type, arguments, personal=True)
-
-    def _withdraw(self, workspace: Workspace, personal: ArtifactId) -> None:
-        """Dispose an artifact that stands for the agent, if it still exists."""
-        workspace.take_back(personal)
-        self._references.forget(personal)
-        self._writer.forget(personal)
 
 
 def _too_deep(artifact: ArtifactId, key: str) -> OperationFailed:

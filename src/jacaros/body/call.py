@@ -10,6 +10,7 @@ from jacaros.body.values import symbol_name, unquoted
 from jacaros.env.errors import OperationFailed
 from jacaros.env.ids import ArtifactId
 from jacaros.env.ports import Workspace
+from jacaros.env.presence.presence import ANYWHERE, Direction, UnknownOperation
 from jacaros.env.values import Atom, Structure
 from jacaros.suggestions import aside
 from jacaros.terms.text import text
@@ -20,25 +21,6 @@ _BY_WORKSPACE = {"wid": "workspace", "wsp": "workspace"}
 _TIMEOUT = "timeout"
 _DIRECTIONS = (*_BY_ARTIFACT, *_BY_WORKSPACE, _TIMEOUT)
 _DIRECTING = ", ".join(_DIRECTIONS)
-
-
-@dataclass(slots=True)
-class Direction:
-    """The direction of an action by its annotations, and its time limit.
-
-    Attributes:
-        artifact: an artifact, or its name; None if not given.
-        workspace: a workspace, or its name or path; None if not given.
-        timeout: seconds; None: no limit.
-    """
-
-    artifact: ArtifactId | str | None = None
-    workspace: Workspace | str | None = None
-    timeout: float | None = None
-
-
-ANYWHERE = Direction()
-"""The direction of actions without annotations; immutable by convention."""
 
 
 @dataclass(slots=True)
@@ -102,7 +84,7 @@ def _direction(act: Act) -> Direction:
             else:
                 direction.workspace = workspace_argument(annotation[1], name)
         except OperationFailed as failure:
-            raise unreachable(act, failure) from None
+            raise undelivered(act, failure) from None
     return direction
 
 
@@ -182,24 +164,20 @@ class Undelivered(OperationFailed):
         self.term = term
 
 
-def nobody_offers(act: Act, message: str) -> Undelivered:
-    """Return the failure of an action that no artifact offers."""
+def undelivered(act: Act, failure: OperationFailed) -> Undelivered:
+    """Return the failure of an action that no artifact offers, or that is directed to where the agent cannot act."""
     symbol = act.functor
-    name = unquoted(symbol.name)
-    namespace = atom(symbol.namespace or "default")
-    words = " ".join(("(", name, *map(_words, act.arguments), ")"))
-    reason = Structure("unknown_operation", (f"{name}/{symbol.arity}",))
-    return Undelivered(message, _action_failed(symbol, (_OP, namespace, String(words))), reason)
+    why: Term = _GENERIC_ERROR
+    if isinstance(failure, UnknownOperation):
+        words = " ".join(("(", unquoted(symbol.name), *map(_words, act.arguments), ")"))
+        why = (_OP, atom(symbol.namespace or "default"), String(words))
+    term = (_ENV_FAILURE, (_ACTION_FAILED, atom(symbol.name), why))
+    return Undelivered(failure.message, term, failure.reason)
 
 
 def _words(term: Term) -> str:
     term = deref(term)
     return str(term) if term.__class__ is String else text(term)
-
-
-def unreachable(act: Act, failure: OperationFailed) -> Undelivered:
-    """Return the failure of an action directed to where the agent cannot act."""
-    return Undelivered(failure.message, _action_failed(act.functor, _GENERIC_ERROR), failure.reason)
 
 
 def unknown_annotation(act: Act, annotation: Term, message: str) -> Undelivered:
@@ -208,7 +186,3 @@ def unknown_annotation(act: Act, annotation: Term, message: str) -> Undelivered:
     action = Annotated((symbol, *act.arguments) if act.arguments else symbol, act.annotations)
     reason = Structure("unknown_annotation", (text(annotation),))
     return Undelivered(message, (_ACTION_FAILED, action, _UNKNOWN_ANNOTATION), reason)
-
-
-def _action_failed(symbol: Functor, why: Term) -> Term:
-    return (_ENV_FAILURE, (_ACTION_FAILED, atom(symbol.name), why))

@@ -5,9 +5,9 @@ from dataclasses import replace
 from typing import Protocol
 
 from jacaros.bdi.state.act import Act
+from jacaros.env.environment import Environment
 from jacaros.env.errors import OperationFailed
 from jacaros.env.ids import ArtifactId
-from jacaros.env.ports import Environment
 from jacaros.env.resources.arbiter import Arbiter
 from jacaros.env.resources.claim import POLICIES, Claim, Policy
 from jacaros.env.resources.resource import Use, local_name, read_uses, together

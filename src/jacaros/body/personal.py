@@ -7,10 +7,10 @@ operations on them are run by its `AgentBody`.
 from typing import NoReturn
 
 from jacaros.body.focus import FocusedArtifacts
-from jacaros.body.selection import JoinedWorkspaces
 from jacaros.env.artifact import Artifact, Out, internal_operation, operation
 from jacaros.env.ids import ArtifactId
 from jacaros.env.ports import Workspace
+from jacaros.env.presence.joined import JoinedWorkspaces
 from jacaros.env.values import Atom
 
 

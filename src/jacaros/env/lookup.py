@@ -3,11 +3,11 @@
 If several artifacts offer an operation, CArtAgO's rule decides, for agents and sessions alike.
 """
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 
-from jacaros.env.errors import OperationFailed, UnknownArtifact
-from jacaros.env.ids import ArtifactId, resolve_path
-from jacaros.env.ports import Environment, Workspace
+from jacaros.env.errors import UnknownArtifact
+from jacaros.env.ids import ArtifactId
+from jacaros.env.ports import Workspace
 
 
 class OperationIndex:
@@ -157,33 +157,3 @@ def _preferred(
     if of_own is not None:
         return of_own
     return next((artifact for artifact in focused if index.is_preferred(artifact)), index.oldest())
-
-
-def in_order(joined: Mapping[str, Workspace], current: Workspace, home: Workspace) -> Iterator[Workspace]:
-    """Iterate over workspaces in the order of lookup: the current one, home (while joined), then the others.
-
-    Args:
-        joined: joined workspaces by full path, in the order of joining.
-        current: the current workspace.
-        home: the workspace joined at the start.
-    """
-    yield current
-    if home is not current and home.path in joined:
-        yield home
-    if len(joined) > 1:
-        yield from (w for w in joined.values() if w is not current and w is not home)
-
-
-def joined_workspace(
-    environment: Environment, joined: Mapping[str, Workspace], current: Workspace, home: Workspace, name: str
-) -> Workspace | None:
-    """Return the joined workspace with this name or path (relative to the current one), or None."""
-    full = resolve_path(current.path, name)
-    for workspace in in_order(joined, current, home):
-        if (workspace.path == full or workspace.name == name) and workspace.path in joined:
-            return workspace
-    try:
-        # The path may contain a link.
-        return joined.get(environment.workspace(full).path)
-    except OperationFailed:
-        return None

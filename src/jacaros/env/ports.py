@@ -1,7 +1,7 @@
 """The ports of an environment, for everything that acts and observes in it.
 
-`jacaros.env.workspace.Workspace` and `jacaros.env.environment.Environment` implement them. Workspaces of another
-process can do so, too: see `Environment.mount`.
+`jacaros.env.workspace.Workspace` implements the port of workspaces. Workspaces of another process can do so, too: see
+`jacaros.env.environment.Environment.mount`.
 
 A *lookup* returns immediately, from local knowledge: a remote workspace keeps a copy of its artifacts and what they
 offer. A *request* may take time. Its outcome is passed to a callback, possibly before the method returns, and never
@@ -10,17 +10,15 @@ after a cancel.
 
 import asyncio
 from collections.abc import Callable, Collection, Sequence
+from functools import partial
 from typing import Protocol, runtime_checkable
 
-from jacaros.clock import Clock
 from jacaros.env.artifact import Artifact
 from jacaros.env.errors import OperationFailed
 from jacaros.env.ids import ArtifactId
 from jacaros.env.observation import Observer
 from jacaros.env.operation import OperationOutcome, OperationRequest, ignore_outcome
-from jacaros.env.resources.arbiter import Arbiter
-from jacaros.env.resources.resource import Use
-from jacaros.trace import Cause, Tracer
+from jacaros.trace import Cause
 
 OnOutcome = Callable[[OperationOutcome], None]
 """Called with the outcome of a request."""
@@ -44,6 +42,31 @@ class UnderWay(Protocol):
 
     def resume(self) -> None:
         """Let it continue."""
+
+
+async def awaited(begin: Callable[[OnMade], UnderWay | None]) -> ArtifactId:
+    """Begin a request for an artifact, and wait for it. Cancelling the wait cancels the request.
+
+    Raises:
+        OperationFailed: the request failed.
+    """
+    found: asyncio.Future[ArtifactId] = asyncio.get_running_loop().create_future()
+
+    def on_done(artifact_id: ArtifactId | None, outcome: OperationOutcome) -> None:
+        if found.done():
+            return
+        if artifact_id is not None:
+            found.set_result(artifact_id)
+        else:
+            found.set_exception(OperationFailed(outcome.message or "", outcome.reason))
+
+    under_way = begin(on_done)
+    try:
+        return await found
+    except asyncio.CancelledError:
+        if under_way is not None:
+            under_way.cancel()
+        raise
 
 
 @runtime_checkable
@@ -105,22 +128,7 @@ class Workspace(Protocol):
                 ``"artifact_already_present"``, ``"unknown_artifact_template"`` (What is the type) or
                 ``"init_failed"``. Nothing remains of the artifact.
         """
-        made: asyncio.Future[ArtifactId] = asyncio.get_running_loop().create_future()
-
-        def on_done(artifact_id: ArtifactId | None, outcome: OperationOutcome) -> None:
-            if made.done():
-                return
-            if artifact_id is not None:
-                made.set_result(artifact_id)
-            else:
-                made.set_exception(OperationFailed(outcome.message or "", outcome.reason))
-
-        execution = self.create(name, type_name, args, creator, on_done)
-        try:
-            return await made
-        except asyncio.CancelledError:
-            execution.cancel()
-            raise
+        return await awaited(partial(self.create, name, type_name, args, creator))
 
     def create(
         self,
@@ -164,37 +172,3 @@ class Workspace(Protocol):
         self, from_id: ArtifactId, port: str, to_id: ArtifactId, on_done: OnOutcome = ignore_outcome
     ) -> None:
         """Link an out port of an artifact to another artifact. Raises `OperationFailed` if that is known to be invalid."""
-
-
-class Environment(Protocol):
-    """All visible workspaces."""
-
-    @property
-    def tracer(self) -> Tracer | None:
-        """Receives every cause. None if no tracer is set."""
-
-    @property
-    def arbiter(self) -> Arbiter:
-        """Assigns resources to operations and plans."""
-
-    def used_by(self, artifact_id: ArtifactId) -> Sequence[Use]:
-        """Return the resources that the operations of an artifact use. Empty if it is remote."""
-
-    @property
-    def clock(self) -> Clock:
-        """Clock of artifacts and time limits."""
-
-    def workspaces(self) -> Sequence[Workspace]:
-        """Return all workspaces, the oldest first."""
-
-    def workspace(self, path: str) -> Workspace:
-        """Return the workspace with this full path. Raises `UnknownWorkspace`."""
-
-    def create_workspace(self, path: str) -> Workspace:
-        """Create a workspace. Raises `OperationFailed`."""
-
-    def execute(self, request: OperationRequest) -> UnderWay:
-        """Run an operation, wherever the artifact is. See `Workspace.execute`."""
-
-    def log_error(self, who: str, what: str, error: BaseException) -> None:
-        """Log that *what* failed in the code of *who*."""

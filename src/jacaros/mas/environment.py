@@ -146,7 +146,7 @@ class RunEnvironment:
         An artifact that does not exist is focused as soon as it is created. Other errors are logged.
         """
         body = self.make_body(host)
-        body.enter()
+        body.presence.enter()
         for workspace in spec.join:
             self._try(spec, partial(self._join, body, workspace))
         for focus in spec.focus:

@@ -200,7 +200,7 @@ def _current_workspaces(ctx: Context, result: Term) -> bool:
     body = getattr(ctx.architecture, "situated", lambda: None)()
     if not isinstance(body, AgentBody):
         raise ActionError("the project has no environment")
-    body.enter()
-    situation = body.situation
-    ids = [situation.references.of(workspace) for workspace in situation.workspaces.joined()]
+    presence = body.presence
+    presence.enter()
+    ids = [presence.references.of(workspace) for workspace in presence.workspaces.joined()]
     return ctx.unify(result, make_list(ids))

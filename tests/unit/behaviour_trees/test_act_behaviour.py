@@ -68,7 +68,7 @@ def test_the_place_of_the_failure_can_be_chosen(on_rails):
     ("act", "told"),
     [
         (lambda: Act("fly"), "has an operation fly/0 [unknown_operation"),
-        (lambda: Act("drive"), "drive/0; cart has drive/1"),
+        (lambda: Act("drive"), "drive/0; did you mean `drive/1` of 'cart'?"),
         (lambda: Act("drive", "far"), "metres"),
         (lambda: Act("drive", 1, artifact="plane"), "unknown artifact `plane`"),
         (lambda: Act("break_down"), "no wheels"),
@@ -93,7 +93,10 @@ def test_whatever_is_wrong_is_a_failure_with_its_reason(on_rails, act, told):
         (
             lambda: Act("drive"),
             [
-                "[tree] behaviour 'drive': no artifact of workspace /main has an operation drive/0; cart has drive/1"
+                (
+                    "[tree] behaviour 'drive': no artifact of workspace /main has an operation drive/0; "
+                    "did you mean `drive/1` of 'cart'?"
+                )
             ],
         ),
         (lambda: Act("drive", 20), []),

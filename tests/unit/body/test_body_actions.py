@@ -246,7 +246,7 @@ async def test_an_agent_enters_its_home_with_the_first_action(
     assert one.log == []
     one.do("println")
     assert one.log[0].endswith('main,"/main")')
-    one.body.enter()
+    one.body.presence.enter()
     assert len(one.log) == 2
 
 
@@ -256,4 +256,4 @@ async def test_a_project_can_let_agents_join_and_focus(one: Robot, two: Robot, c
     made = one.make("lab/c", "Counter", 5)
     two.body.focus(made.value, "ns")
     assert two.beliefs == ["ns::count(5)"]
-    assert [w.path for w in two.body.situation.workspaces.joined()] == ["/main", "/main/lab"]
+    assert [w.path for w in two.body.presence.workspaces.joined()] == ["/main", "/main/lab"]

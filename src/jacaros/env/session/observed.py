@@ -6,6 +6,8 @@ from typing import NamedTuple
 from jacaros.env.errors import UnknownProperty
 from jacaros.env.ids import ArtifactId
 from jacaros.env.observation import Observation
+from jacaros.env.ports import Workspace
+from jacaros.env.presence.focused import Focused
 from jacaros.env.property import ObservableProperty
 from jacaros.env.values import equal, plain
 from jacaros.suggestions import aside
@@ -43,59 +45,50 @@ class PropertyChange(NamedTuple):
     artifact: ArtifactId
 
 
-class Observed:
-    """An observer that keeps the properties of the artifacts it focuses.
+class Observed(Focused):
+    """The focused artifacts of a session, and their properties. It observes for the session itself.
 
     Args:
         agent: its name.
         tell: called with every observation, after it has been processed.
+
+    Attributes:
+        agent: its name.
     """
 
     def __init__(self, agent: str, tell: Callable[[Observation], None]) -> None:
-        self._agent = agent
+        super().__init__()
+        self.agent = agent
         self._tell = tell
         self._properties: dict[ArtifactId, dict[int, ObservableProperty]] = {}
-        self._gone: set[ArtifactId] = set()
 
-    @property
-    def agent(self) -> str:
-        """Its name."""
-        return self._agent
+    def observer(self, namespace: str | None) -> "Observed":
+        """Return itself."""
+        return self
 
-    @property
-    def focused(self) -> tuple[ArtifactId, ...]:
-        """The focused artifacts, in the order of focusing."""
-        return tuple(artifact for artifact in self._properties if artifact not in self._gone)
-
-    def begin(self, artifact: ArtifactId) -> None:
-        """Prepare for an artifact. Its properties arrive as its first observation."""
+    def began(self, workspace: Workspace, artifact: ArtifactId) -> None:
+        """Prepare for an artifact, if its properties have not arrived."""
         self._properties.setdefault(artifact, {})
 
-    def end(self, artifact: ArtifactId) -> None:
-        """Forget an artifact."""
-        self._properties.pop(artifact, None)
-        self._gone.discard(artifact)
-
-    def gone(self, artifact: ArtifactId) -> None:
-        """Note that an artifact has been disposed. The observation that removes its properties follows, if it has any."""
-        if self._properties.get(artifact):
-            self._gone.add(artifact)
-        else:
-            self.end(artifact)
+    def ended(self, workspace: Workspace, artifact: ArtifactId, disposed: bool) -> None:
+        """Forget an artifact, but one that was disposed only with the observation that removes its properties."""
+        if not (disposed and self._properties.get(artifact)):
+            self._properties.pop(artifact, None)
 
     def observe(self, observation: Observation) -> None:
         """Process an observation."""
-        held = self._properties.get(observation.artifact)
+        artifact = observation.artifact
+        if observation.added:
+            self._properties.setdefault(artifact, {})
+        held = self._properties.get(artifact)
         if held is None:
             return
-        for _, new in observation.changed:
-            held[new.key] = new
-        for new in observation.added:
+        for new in (*(change[1] for change in observation.changed), *observation.added):
             held[new.key] = new
         for old in observation.removed:
             held.pop(old.key, None)
-        if not held and observation.artifact in self._gone:
-            self.end(observation.artifact)
+        if not held and artifact not in self:
+            del self._properties[artifact]
         self._tell(observation)
 
     def find(

@@ -48,7 +48,7 @@ class Perceiving:
     @property
     def focused(self) -> tuple[ArtifactId, ...]:
         """The focused artifacts, in the order of focusing."""
-        return self._observed.focused
+        return self._observed.in_order()
 
     def lookup(self, name: str) -> ArtifactId:
         """Return an artifact by name or path."""
@@ -199,9 +199,6 @@ class Perceiving:
         for stream in self._read_streams():
             stream.close()
         self._conditions.close(self._is_closed())
-        for artifact in self.focused:
-            self.environment.workspace(artifact.workspace).stop_focus(artifact, self._observed)
-            self._observed.end(artifact)
 
     def _check(self) -> None:
         if self._closed:

@@ -1,24 +1,22 @@
 """Working sessions, for scripts, behaviour trees and Python agents."""
 
-import asyncio
-from collections.abc import Callable, Sequence
-from contextlib import suppress
+from collections.abc import Sequence
+from functools import partial
 from types import TracebackType
 from typing import Any
 
 from jacaros.env.artifact import Artifact
 from jacaros.env.environment import Environment
-from jacaros.env.errors import OperationFailed, UnknownArtifact, WorkspaceError
+from jacaros.env.errors import OperationFailed, WorkspaceError
 from jacaros.env.ids import ArtifactId, resolve_path
-from jacaros.env.lookup import artifact_named, chosen_artifact
+from jacaros.env.lookup import artifact_named
 from jacaros.env.operation import OperationOutcome, OperationRequest
-from jacaros.env.ports import Workspace
+from jacaros.env.ports import Workspace, awaited
+from jacaros.env.presence.presence import ANYWHERE, Direction, Presence
 from jacaros.env.session.account import Account, Observer
 from jacaros.env.session.operation import SessionOperation
 from jacaros.env.session.perception import Perceiving
-from jacaros.env.session.workspaces import SessionWorkspaces
-from jacaros.env.values import Atom, Out, Structure, plain, text
-from jacaros.suggestions import aside
+from jacaros.env.values import Atom, Out, plain, text
 
 
 class Session(Perceiving):
@@ -45,8 +43,7 @@ class Session(Perceiving):
         self, environment: Environment, name: str, home: str = "/main", account: Account | None = None
     ) -> None:
         super().__init__(environment, name, account)
-        self._workspaces = SessionWorkspaces(environment, home)
-        self._watched: dict[Workspace, Callable[[], None]] = {}
+        self._presence = Presence(environment, name, home, self._observed)
         self._under_way: dict[SessionOperation, None] = {}
         self.observer: Observer | None = None
 
@@ -55,7 +52,7 @@ class Session(Perceiving):
     @property
     def joined(self) -> tuple[str, ...]:
         """Full paths of the joined workspaces, in the order of joining. The current one comes last."""
-        return self._workspaces.joined
+        return tuple(workspace.path for workspace in self._presence.workspaces.joined())
 
     def join(self, path: str) -> str:
         """Join a workspace and make it the current one. Joining again only makes it the current one.
@@ -70,7 +67,9 @@ class Session(Perceiving):
             UnknownWorkspace: the workspace does not exist.
         """
         self._check()
-        return self._workspaces.join(path).path
+        workspace = self._presence.workspaces.find(path)
+        self._presence.join(workspace)
+        return workspace.path
 
     def quit(self, workspace: str) -> None:
         """Leave a workspace, given by path or name, and stop focusing its artifacts.
@@ -78,13 +77,7 @@ class Session(Perceiving):
         Raises:
             OperationFailed: it is not joined; reason ``workspace_not_joined(Name)``.
         """
-        left = self._workspaces.quit(workspace)
-        for artifact in self.focused:
-            if artifact.workspace == left.path:
-                self._lose(left, artifact)
-        stop_watching = self._watched.pop(left, None)
-        if stop_watching is not None:
-            stop_watching()
+        self._presence.quit(self._presence.workspaces.named(workspace))
 
     def create_workspace(self, path: str) -> str:
         """Create a workspace without joining it.
@@ -99,7 +92,11 @@ class Session(Perceiving):
             OperationFailed: it already exists, or its parent workspace does not.
         """
         self._check()
-        return self.environment.create_workspace(resolve_path(self._workspaces.current.path, path)).path
+        return self.environment.create_workspace(resolve_path(self._here.path, path)).path
+
+    @property
+    def _here(self) -> Workspace:
+        return self._presence.workspaces.current()
 
     # ---- artifacts
 
@@ -117,7 +114,7 @@ class Session(Perceiving):
             OperationFailed: see `Workspace.make_artifact`.
         """
         self._check()
-        workspace, plain_name = self._workspaces.place(name)
+        workspace, plain_name = self._presence.place(self._here, name)
         self._account.begin()
         try:
             return await workspace.make_artifact(
@@ -133,9 +130,9 @@ class Session(Perceiving):
             OperationFailed: it does not exist; reason ``artifact_not_available(Name)``.
         """
         if "/" in name:
-            workspace, name = self._workspaces.place(name)
+            workspace, name = self._presence.place(self._here, name)
             return workspace.lookup(name)
-        return artifact_named(self._workspaces.in_order(), name)
+        return artifact_named(self._presence.workspaces.in_order(), name)
 
     def dispose_artifact(self, artifact: ArtifactId | str) -> None:
         """Dispose an artifact. See `Workspace.dispose_artifact`.
@@ -144,7 +141,7 @@ class Session(Perceiving):
             OperationFailed: it does not exist, or its workspace is not joined.
         """
         found = self._artifact(artifact)
-        self._workspaces.of(found).dispose_artifact(found)
+        self._presence.workspaces.at(found.workspace).dispose_artifact(found)
 
     def link_artifacts(self, source: ArtifactId | str, port: str, target: ArtifactId | str) -> None:
         """Link an out port of *source* to *target*. See `Workspace.link`.
@@ -153,7 +150,7 @@ class Session(Perceiving):
             OperationFailed: an artifact or the port does not exist.
         """
         found = self._artifact(source)
-        self._workspaces.of(found).link(found, port, self._artifact(target))
+        self._presence.workspaces.at(found.workspace).link(found, port, self._artifact(target))
 
     def _artifact(self, wanted: ArtifactId | str) -> ArtifactId:
         self._check()
@@ -170,49 +167,18 @@ class Session(Perceiving):
             OperationFailed: it does not exist, or its workspace is not joined.
         """
         found = self._artifact(artifact)
-        workspace = self._workspaces.of(found)
-        if found not in self.focused:
-            self._begin_focus(workspace, found)
+        self._observed.begin(self._presence.workspaces.at(found.workspace), found)
         return found
-
-    def _begin_focus(self, workspace: Workspace, artifact: ArtifactId) -> None:
-        if workspace not in self._watched:
-            self._watched[workspace] = workspace.watch(self._look)
-        self._observed.begin(artifact)
-        try:
-            workspace.focus(artifact, self._observed)
-        except OperationFailed:
-            self._observed.end(artifact)
-            raise
-
-    def _look(self, artifact: ArtifactId, is_there: bool) -> None:
-        if not is_there:
-            self._observed.gone(artifact)
 
     async def focus_when_available(self, name: str) -> ArtifactId:
         """Wait until an artifact of this name exists in the current workspace (or at a path), and focus it.
 
         Raises:
-            OperationFailed: its workspace does not exist, or is not joined.
+            OperationFailed: its workspace does not exist, is not joined, or was quit meanwhile.
         """
         self._check()
-        workspace, plain_name = self._workspaces.place(name)
-        if any(artifact.name == plain_name for artifact in workspace.artifacts()):
-            return self.focus(workspace.lookup(plain_name))
-        self._workspaces.named(workspace.path)
-        found: asyncio.Future[ArtifactId] = asyncio.get_running_loop().create_future()
-
-        def look(artifact: ArtifactId, is_there: bool) -> None:
-            if is_there and artifact.name == plain_name and not found.done():
-                with suppress(UnknownArtifact):  # it has been disposed immediately: wait for the next one
-                    found.set_result(self.focus(artifact))
-
-        stop = workspace.watch(look)
-        try:
-            with self._account.waiting():
-                return await found
-        finally:
-            stop()
+        with self._account.waiting():
+            return await awaited(partial(self._presence.focus_when_available, self._here, name))
 
     def stop_focus(self, artifact: ArtifactId | str) -> None:
         """Stop focusing an artifact. Without effect if it is not focused.
@@ -223,11 +189,6 @@ class Session(Perceiving):
         if isinstance(artifact, str):
             named = [each for each in self.focused if artifact in (each.name, each.path)]
             artifact = named[0] if named else self.lookup(artifact)
-        if artifact in self.focused:
-            self._lose(self._workspaces.of(artifact), artifact)
-
-    def _lose(self, workspace: Workspace, artifact: ArtifactId) -> None:
-        workspace.stop_focus(artifact, self._observed)
         self._observed.end(artifact)
 
     # ---- operations
@@ -293,7 +254,9 @@ class Session(Perceiving):
         if self.observer is not None:
             self._observe(handle, given)
         try:
-            target = self._target(operation, len(given), artifact, workspace)
+            directed = artifact is not None or workspace is not None
+            direction = Direction(artifact, workspace) if directed else ANYWHERE
+            target = self._presence.artifact_for(operation, len(given), direction)
         except OperationFailed as failure:
             handle.end(OperationOutcome(False, failure.message, failure.reason))
             return handle
@@ -332,30 +295,6 @@ class Session(Perceiving):
         del self._under_way[handle]
         self._account.end()
 
-    def _target(
-        self, operation: str, arity: int, artifact: ArtifactId | str | None, workspace: str | None
-    ) -> ArtifactId:
-        if artifact is None and workspace is None:
-            # The common case: the only one in the current workspace.
-            candidates = self._workspaces.current.providers(operation, arity)
-            if len(candidates) == 1:
-                return candidates[0]
-        places = self._workspaces.in_order() if workspace is None else (self._workspaces.named(workspace),)
-        if isinstance(artifact, ArtifactId):
-            self._workspaces.of(artifact)
-            return artifact
-        if artifact is not None:
-            return self.lookup(artifact) if "/" in artifact else artifact_named(places, artifact)
-        chosen = chosen_artifact(places, operation, arity, self.name, self.focused)
-        if chosen is not None:
-            return chosen
-        names = ", ".join(place.path for place in places)
-        where = f"workspace {names}" if len(places) == 1 else f"the workspaces {names}"
-        raise OperationFailed(
-            f"no artifact of {where} has an operation {operation}/{arity}{_offer(places, operation)}",
-            Structure("unknown_operation", (str.__str__(operation),)),
-        )
-
     # ---- the end
 
     def close(self) -> None:
@@ -364,9 +303,9 @@ class Session(Perceiving):
             return
         self._closed = True
         self.cancel_operations()
-        for stop_watching in self._watched.values():
-            stop_watching()
         self._end_perceiving()
+        for workspace in self._presence.workspaces.joined():
+            self._observed.end_all(workspace)
 
     def __enter__(self) -> "Session":
         return self
@@ -377,17 +316,4 @@ class Session(Perceiving):
         self.close()
 
     def __repr__(self) -> str:
-        return f"<session {self.name} in {self._workspaces.current.path}>"
-
-
-def _offer(places: Sequence[Workspace], operation: str) -> str:
-    """Return the operations of this name with other arities, or a suggestion of a similar name."""
-    names: set[str] = set()
-    for place in places:
-        for artifact in place.artifacts():
-            offers = place.offers(artifact)
-            names.update(key.rpartition("/")[0] for key in offers)
-            same = [key for key in offers if key.rpartition("/")[0] == operation]
-            if same:
-                return f"; {artifact.name} has {', '.join(same)}"
-    return aside(operation, sorted(names))
+        return f"<session {self.name} in {', '.join(self.joined[-1:]) or 'no workspace'}>"

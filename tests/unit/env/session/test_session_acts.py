@@ -68,11 +68,13 @@ def test_a_failure_is_raised_with_its_reason(play):
             await session.act("never")
         assert raised.value.reason == Structure("never", (1,))
         with pytest.raises(
-            OperationFailed, match="has an operation inc/2; counter has inc/0, inc/1"
+            OperationFailed, match="inc/2; did you mean `inc/0` of 'counter' or `inc/1` of 'counter'"
         ) as raised:
             await session.act("inc", 1, 2)
-        assert raised.value.reason == Structure("unknown_operation", ("inc",))
-        with pytest.raises(OperationFailed, match=r"has an operation incc/0; did you mean `inc`"):
+        assert raised.value.reason == Structure("unknown_operation", ("inc/2",))
+        with pytest.raises(
+            OperationFailed, match=r"has an operation incc/0; did you mean `inc/1` of 'counter' or"
+        ):
             await session.act("incc")
         with pytest.raises(OperationFailed) as raised:
             await session.act("inc", "two")

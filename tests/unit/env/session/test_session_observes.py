@@ -251,3 +251,16 @@ def test_streams_get_a_signal_in_the_order_of_creation_and_end_without_a_reader(
         assert len(session._streams) == 1
 
     play(scene)
+
+
+def test_a_personal_artifact_that_was_disposed_is_no_longer_focused(play):
+    async def scene(stage):
+        body = stage.main.offer("body_bob", Counter, personal=True)
+        session = session_in(stage)
+        session.focus("body_bob")
+        assert session.focused == (body,)
+        stage.main.dispose_artifact(body)
+        assert session.focused == ()
+        assert not session.has_property("count")
+
+    play(scene)

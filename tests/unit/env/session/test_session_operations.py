@@ -92,7 +92,7 @@ def test_an_operation_that_cannot_begin_has_failed(play):
         session = session_in(stage)
         operation = session.begin("fly")
         assert operation.done
-        assert operation.outcome.reason == Structure("unknown_operation", ("fly",))
+        assert operation.outcome.reason == Structure("unknown_operation", ("fly/0",))
         counter = await stage.make(Counter)
         stage.main.dispose_artifact(counter)
         assert session.begin("inc", artifact=counter).outcome.reason == Structure(

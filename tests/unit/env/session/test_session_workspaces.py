@@ -1,5 +1,7 @@
 """Sessions join workspaces and leave them."""
 
+import asyncio
+
 import pytest
 from session_lab import Counter, session_in
 
@@ -66,5 +68,46 @@ def test_what_was_quit_cannot_be_quit_again(play):
         with pytest.raises(OperationFailed) as failure:
             session.quit("main")
         assert failure.value.reason == Structure("workspace_not_joined", ("main",))
+
+    play(scene)
+
+
+def test_outside_all_workspaces_nothing_can_be_done_but_join(play):
+    async def scene(stage):
+        session = session_in(stage)
+        await session.make_artifact("counter", Counter)
+        session.quit("main")
+        for request in (session.act("inc"), session.act("inc", artifact="counter")):
+            with pytest.raises(OperationFailed, match="workspace /main has not been joined; join it first"):
+                await request
+        session.join("/main")
+        await session.act("inc")
+
+    play(scene)
+
+
+def test_an_operation_does_not_reach_a_workspace_that_was_not_joined_by_a_path(play):
+    async def scene(stage):
+        session = session_in(stage)
+        session.create_workspace("lab")
+        await session.make_artifact("lab/counter", Counter)
+        with pytest.raises(OperationFailed) as failure:
+            await session.act("inc", artifact="lab/counter")
+        assert failure.value.reason == Structure("workspace_not_joined", ("/main/lab",))
+
+    play(scene)
+
+
+def test_waiting_for_an_artifact_fails_when_its_workspace_was_quit(play):
+    async def scene(stage):
+        session = session_in(stage)
+        session.create_workspace("lab")
+        session.join("lab")
+        waiting = asyncio.ensure_future(session.focus_when_available("counter"))
+        await asyncio.sleep(0)
+        session.quit("lab")
+        await session.make_artifact("lab/counter", Counter)
+        with pytest.raises(OperationFailed, match="workspace /main/lab has not been joined"):
+            await waiting
 
     play(scene)
